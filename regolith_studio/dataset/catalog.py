@@ -14,6 +14,7 @@ from regolith_studio.dataset.serialization import shape_of
 from regolith_studio.errors import DatasetError, RegolithError, os_error_reason
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.io.json_text import parse_strict_json
+from regolith_studio.messages import N_
 
 RESULT = "repose.json"
 """What a simulated angle of repose is kept in."""
@@ -137,8 +138,8 @@ def _facts(document: DatasetDocument) -> dict[str, str]:
         "Description": metadata.description,
         "Sources": _few(sources),
         "Steps": " ".join(metadata.processing_steps),
-        "Model": metadata.model or "",
-        "Coarsening": f"{coarsening.method}, {_fineness(coarsening)}, seed {coarsening.seed}"
+        N_("Model"): metadata.model or "",
+        N_("Coarsening"): f"{coarsening.method}, {_fineness(coarsening)}, seed {coarsening.seed}"
         if coarsening
         else "",
         "Software": ", ".join(f"{name} {version}" for name, version in sorted(metadata.software.items())),

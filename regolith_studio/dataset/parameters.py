@@ -4,10 +4,11 @@ from dataclasses import dataclass, field, fields
 from typing import Any
 
 from regolith_studio.errors import InputError
+from regolith_studio.messages import N_
 
-NOT_GIVEN = "not given in the paper"
+NOT_GIVEN = N_("not given in the paper")
 
-GRAVITIES = {"Earth": 9.81, "Moon": 1.62, "Mars": 3.71}
+GRAVITIES = {N_("Earth"): 9.81, N_("Moon"): 1.62, N_("Mars"): 3.71}
 """Accelerations at the surface in m/s^2."""
 
 
@@ -57,14 +58,14 @@ class ContactParameters:
         If a value is out of its range.
     """
 
-    density: float = _number(3075.0, "Particle density", "g/cm³", 100.0, 30_000.0, "Table 1", 1e-3)
-    youngs_modulus: float = _number(30e9, "Young's modulus", "GPa", 1e4, 1e13, "Table 1", 1e-9)
-    poissons_ratio: float = _number(0.2, "Poisson's ratio", "", 0.0, 0.49, "Table 1")
-    static_friction: float = _number(0.8, "Static friction", "", 0.0, 5.0, "Table 1")
-    dynamic_friction: float = _number(0.8, "Dynamic friction", "", 0.0, 5.0, "Table 1")
-    rolling_friction: float = _number(0.0, "Rolling resistance", "", 0.0, 2.0)
-    restitution: float = _number(0.3, "Restitution", "", 0.0, 1.0)
-    surface_energy: float = _number(0.010, "Surface energy", "mJ/m²", 0.0, 10.0, "Table 1", 1e3)
+    density: float = _number(3075.0, N_("Particle density"), "g/cm³", 100.0, 3e4, N_("Table 1"), 1e-3)
+    youngs_modulus: float = _number(30e9, N_("Young's modulus"), "GPa", 1e4, 1e13, N_("Table 1"), 1e-9)
+    poissons_ratio: float = _number(0.2, N_("Poisson's ratio"), "", 0.0, 0.49, N_("Table 1"))
+    static_friction: float = _number(0.8, N_("Static friction"), "", 0.0, 5.0, N_("Table 1"))
+    dynamic_friction: float = _number(0.8, N_("Dynamic friction"), "", 0.0, 5.0, N_("Table 1"))
+    rolling_friction: float = _number(0.0, N_("Rolling resistance"), "", 0.0, 2.0)
+    restitution: float = _number(0.3, N_("Restitution"), "", 0.0, 1.0)
+    surface_energy: float = _number(0.010, N_("Surface energy"), "mJ/m²", 0.0, 10.0, N_("Table 1"), 1e3)
 
     def __post_init__(self) -> None:
         check_limits(self, "contact parameter")
@@ -93,13 +94,13 @@ class LiftingCylinderTest:
         If a value is out of its range.
     """
 
-    diameter: float = _number(0.02, "Cylinder diameter", "cm", 1e-5, 10.0, "Table 2", 1e2)
-    height: float = _number(0.08, "Cylinder height", "cm", 1e-5, 100.0, "Table 2", 1e2)
-    mass: float = _number(0.015, "Particle mass", "g", 1e-12, 1e6, "Table 2", 1e3)
-    lift_speed: float = _number(0.03, "Lift speed", "cm/s", 1e-5, 10.0, factor=1e2)
-    wall_friction: float = _number(0.3, "Wall friction", "", 0.0, 5.0)
-    plate_friction: float = _number(0.8, "Plate friction", "", 0.0, 5.0)
-    gravity: float = _number(9.81, "Gravity", "m/s²", 1e-4, 1e4)
+    diameter: float = _number(0.02, N_("Cylinder diameter"), "cm", 1e-5, 10.0, N_("Table 2"), 1e2)
+    height: float = _number(0.08, N_("Cylinder height"), "cm", 1e-5, 100.0, N_("Table 2"), 1e2)
+    mass: float = _number(0.015, N_("Particle mass"), "g", 1e-12, 1e6, N_("Table 2"), 1e3)
+    lift_speed: float = _number(0.03, N_("Lift speed"), "cm/s", 1e-5, 10.0, factor=1e2)
+    wall_friction: float = _number(0.3, N_("Wall friction"), "", 0.0, 5.0)
+    plate_friction: float = _number(0.8, N_("Plate friction"), "", 0.0, 5.0)
+    gravity: float = _number(9.81, N_("Gravity"), "m/s²", 1e-4, 1e4)
 
     def __post_init__(self) -> None:
         check_limits(self, "test parameter")
@@ -127,8 +128,8 @@ class ScriptTimes:
         If a value is out of its range.
     """
 
-    settling_time: float = _number(1.0, "Settling time", "s", 1e-4, 1e4)
-    resting_time: float = _number(1.0, "Resting time", "s", 1e-4, 1e4)
+    settling_time: float = _number(1.0, N_("Settling time"), "s", 1e-4, 1e4)
+    resting_time: float = _number(1.0, N_("Resting time"), "s", 1e-4, 1e4)
 
     def __post_init__(self) -> None:
         check_limits(self, "waiting time")

@@ -19,6 +19,7 @@ from regolith_studio.geometry.topology import (
     neighbours,
     pinched_corners,
 )
+from regolith_studio.messages import N_
 
 MAX_FACES_SEARCHED = 200_000
 """Meshes with more faces are not searched for self-intersections."""
@@ -232,9 +233,9 @@ def _sentences(found: MeshHealth, searched: bool) -> Sequence[str]:
             found.non_manifold_edges > 0,
             f"It is not a simple surface: {_edges(found.non_manifold_edges)} three faces or more.",
         ),
-        (not found.consistent_winding, "Its faces do not all look the same way: some are turned round."),
-        (found.volume < 0.0, "It is inside out: its faces look inwards."),
-        (found.volume == 0.0, "It encloses no volume."),
+        (not found.consistent_winding, N_("Its faces do not all look the same way: some are turned round.")),
+        (found.volume < 0.0, N_("It is inside out: its faces look inwards.")),
+        (found.volume == 0.0, N_("It encloses no volume.")),
         (
             0 < found.inverted_bodies < found.bodies,
             f"{_count(found.inverted_bodies, 'closed body is', 'closed bodies are')} turned inwards: "

@@ -14,6 +14,7 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.mesh_health import MeshHealth, body_volumes, inspect, unit_size
 from regolith_studio.geometry.non_manifold import split_non_manifold_edges
 from regolith_studio.geometry.topology import edge_table, find_bodies, neighbours
+from regolith_studio.messages import N_
 
 TOLERANCES = (1e-7, 1e-6, 1e-5)
 """Shares of the mesh's size within which the vertices of an open mesh may be joined."""
@@ -307,7 +308,7 @@ def _face_outwards(draft: _Draft) -> _Draft:
     _require_volume(draft.vertices, draft.faces)
     if Mesh(draft.vertices, draft.faces).volume > 0.0:
         return draft
-    return draft.changed("Turned all faces: the mesh was inside out.", faces=draft.faces[:, ::-1])
+    return draft.changed(N_("Turned all faces: the mesh was inside out."), faces=draft.faces[:, ::-1])
 
 
 def _require_volume(vertices: FloatArray, faces: IntArray) -> None:

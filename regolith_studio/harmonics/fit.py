@@ -22,6 +22,7 @@ from regolith_studio.harmonics.reference_surface import REFERENCES, Ellipsoid
 from regolith_studio.harmonics.star_point import STAR_POINT_RULES, centre_of_mass, least_hidden_volume
 from regolith_studio.harmonics.transform import SAMPLING_DEGREE, RayGrid, analyse, band_limited, ray_grid
 from regolith_studio.harmonics.visibility import hidden_surface_share
+from regolith_studio.messages import N_
 
 HIDDEN_TOLERANCE = 0.01
 """Hidden share of the surface from which on a fit carries a warning."""
@@ -237,7 +238,7 @@ def _sampled(
         return sample_radius(mesh, centre_of_mass(mesh), rays.directions, rule), ()
     except GeometryError:
         point = least_hidden_volume(mesh)
-    note = "The centre of mass lies outside the particle; the point with the least hidden volume is used."
+    note = N_("The centre of mass lies outside the particle; the point with the least hidden volume is used.")
     return sample_radius(mesh, point, rays.directions, rule), (note,)
 
 

@@ -25,6 +25,7 @@ from regolith_studio.imaging.connected_components import largest_component, pore
 from regolith_studio.imaging.grain_surface import MARGIN, grey_mesh, mask_mesh
 from regolith_studio.imaging.label_table import GrainCrop, grain_crops, label_masks, label_table
 from regolith_studio.imaging.volume_slabs import SliceSource
+from regolith_studio.messages import N_
 
 Surface = Literal["mask", "grey"]
 SURFACES: tuple[Surface, ...] = get_args(Surface)
@@ -147,7 +148,7 @@ class Extraction:
     @property
     def summary(self) -> str:
         """One sentence for the user."""
-        particles = "1 particle" if self.n_found == 1 else f"{self.n_found} particles"
+        particles = N_("1 particle") if self.n_found == 1 else f"{self.n_found} particles"
         return f"{particles}; left out: {len(self.border)} at the border, {len(self.small)} too small."
 
 

@@ -31,6 +31,7 @@ from regolith_studio.jobs.events import (
 )
 from regolith_studio.jobs.executor import Executor, open_executor
 from regolith_studio.jobs.particle_jobs import FIT_DEGREE
+from regolith_studio.messages import N_
 
 
 @dataclass(frozen=True)
@@ -105,7 +106,7 @@ class CoarsenedParticle:
 
 def coarsen_one(mesh: Mesh, request: CoarseningRequest, particle_index: int = 0) -> Steps:
     """Coarsen `mesh` as requested; yields ``CoarseningProgress``, returns a ``CoarseningResult``."""
-    yield Started("Coarsening")
+    yield Started(N_("Coarsening"))
     return (yield from _run_coarsening(mesh, request, particle_index))
 
 
@@ -143,7 +144,7 @@ def coarsen_sample(
     depend on `workers` (0: one process a core), and with their `indices` in a larger sample (by default
     0, 1, 2 ...) not on which of its particles are coarsened.
     """
-    yield Started("Coarsening", len(particles))
+    yield Started(N_("Coarsening"), len(particles))
     places = range(len(particles)) if indices is None else indices
     pairs = list(zip(particles, places, strict=True))
     jobs = [Job(coarsen_particle, (particle, request, at)) for particle, at in pairs]

@@ -35,6 +35,7 @@ from regolith_studio.jobs.representatives_jobs import (
     choose_particles,
     measure_population,
 )
+from regolith_studio.messages import N_
 
 
 @dataclass(frozen=True)
@@ -108,7 +109,7 @@ def build_dataset_folder(
         if population is None:
             population = yield from measure_population(particles, options.workers)
         chosen, outcomes = yield from coarsen_chosen(particles, population, request, options)
-    yield Started("Writing the dataset")
+    yield Started(N_("Writing the dataset"))
     name = options.name or folder.name
     dataset = dataset_of(particles, outcomes, request, name, options.preset, chosen, sizing)
     write_dataset(folder, dataset, overwrite=options.overwrite)
@@ -275,7 +276,7 @@ def export_dataset_folder(
         is broken, or something cannot be written.
     """
     exporters = chosen_exporters(keys)
-    yield Started("Exporting", len(exporters))
+    yield Started(N_("Exporting"), len(exporters))
     for exporter in exporters:
         check_loss_accepted(exporter, accept_loss)
     dataset, digest = read_dataset(source), dataset_hash(source)
@@ -310,13 +311,13 @@ def chosen_exporters(keys: Sequence[str]) -> tuple[Exporter, ...]:
 
 def open_dataset_folder(folder: Path) -> Steps:
     """Returns the folder and its dataset."""
-    yield Started("Reading the dataset")
+    yield Started(N_("Reading the dataset"))
     return folder, read_dataset(folder)
 
 
 def validate_dataset_folder(folder: Path) -> Steps:
     """Returns the problems of the folder, one sentence each."""
-    yield Started("Checking the dataset")
+    yield Started(N_("Checking the dataset"))
     return tuple(validate_dataset(folder))
 
 
@@ -328,7 +329,7 @@ def list_library(root: Path, results: Path | None = None) -> Steps:
     results
         Where simulations are kept if not below `root`; those of its datasets are listed too.
     """
-    yield Started("Looking for datasets")
+    yield Started(N_("Looking for datasets"))
     found: list[CatalogEntry] = []
     for entry in _entries(root, results):
         found.append(entry)

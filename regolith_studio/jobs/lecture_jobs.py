@@ -29,6 +29,7 @@ from regolith_studio.harmonics.surface import gallery
 from regolith_studio.harmonics.synthesis import radii_on_icosphere
 from regolith_studio.jobs.coarsening_jobs import CoarseningRequest
 from regolith_studio.jobs.events import Partial, Progress, Started, Steps
+from regolith_studio.messages import N_
 from regolith_studio.shape_models.materials import materials
 from regolith_studio.shape_models.realizations import virtual_mesh
 from regolith_studio.shape_models.spectrum_sliders import with_amplitudes
@@ -115,7 +116,7 @@ def trace_annealing(mesh: Mesh, request: CoarseningRequest, particle_index: int 
         raise InputError(f"A lesson has at most {MAX_ITERATIONS:,} iterations; choose fewer in the settings.")
     if request.weights.all_zero:
         raise InputError("All weights of the loss are 0, so there is nothing to optimise; raise one of them.")
-    yield Started("Annealing step by step", settings.iterations)
+    yield Started(N_("Annealing step by step"), settings.iterations)
     target = Target.of(mesh)
     seed = np.random.SeedSequence(request.seed, spawn_key=(particle_index,))
     run = METHODS["annealing"].run(target, request.n_facets, request.weights, seed, settings)
@@ -216,7 +217,7 @@ class DegreeStep:
 def trace_degrees(mesh: Mesh, fit: HarmonicFit, level: int = 4) -> Steps:
     """The fit at every degree from 0 on; partial results and the result are tuples of :class:`DegreeStep`."""
     degrees = range(fit.l_max + 1)
-    yield Started("Growing the fit", len(degrees))
+    yield Started(N_("Growing the fit"), len(degrees))
     truth = describe(mesh, LOSS_KEYS)
     steps: tuple[DegreeStep, ...] = ()
     for degree, surface in gallery(fit, degrees, level):

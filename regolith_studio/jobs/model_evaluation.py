@@ -9,6 +9,7 @@ import numpy as np
 
 from regolith_studio.jobs.events import Partial, Progress, Started, Step, Steps
 from regolith_studio.jobs.study_jobs import study_population
+from regolith_studio.messages import N_
 from regolith_studio.shape_models.models import MODELS
 from regolith_studio.shape_models.realizations import Realizations
 from regolith_studio.shape_models.sample import Sample
@@ -145,7 +146,7 @@ def compare_distributions(sample: Sample | None, draws: Realizations) -> Steps:
         rows = sample.truncated(min(draws.l_max, sample.l_max)).coefficients[:MAX_COMPARED]
         kinds.append(Realizations(rows, "radius", "measured", draws.seed, sample.unit))
     total = sum(len(each) for each in kinds)
-    yield Started("Comparing distributions", total)
+    yield Started(N_("Comparing distributions"), total)
     tables, done = [], 0
     for each in kinds:
         tables.append((yield from _descriptor_table(each, done, total)))

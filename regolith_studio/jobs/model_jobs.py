@@ -12,6 +12,7 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.harmonics.surface import reconstruct
 from regolith_studio.jobs.events import Progress, Started, Steps
+from regolith_studio.messages import N_
 from regolith_studio.readers.shape_files import ShapeSource
 from regolith_studio.shape_models.models import MODELS
 from regolith_studio.shape_models.protocol import FittedModel
@@ -134,7 +135,7 @@ def fit_model(source: ShapeSource, request: GenerationRequest) -> Steps:
         If source and order do not go together, or the model cannot be fitted.
     """
     content = source.content
-    yield Started("Fitting the model")
+    yield Started(N_("Fitting the model"))
     if isinstance(content, MaterialCard):
         return _model_of_card(content, request)
     if not isinstance(content, Sample):
@@ -147,7 +148,7 @@ def fit_model(source: ShapeSource, request: GenerationRequest) -> Steps:
 
 def draw(model: FittedModel, request: GenerationRequest) -> Steps:
     """The particles of an order, chunk by chunk; returns :class:`Realizations`."""
-    yield Started("Drawing", request.n)
+    yield Started(N_("Drawing"), request.n)
     parts: list[Realizations] = []
     for part in model.draw_chunks(request.n, request.seed, request.size_range):
         parts.append(part)
@@ -218,7 +219,7 @@ def make_particles(draws: Realizations, model: FittedModel, title: str, level: i
 
     Returns a tuple of :class:`Particle`.
     """
-    yield Started("Making meshes", len(draws))
+    yield Started(N_("Making meshes"), len(draws))
     names, groups = drawn_names(title, len(draws)), groups_of(draws, model)
     notes, made = (_origin(draws),), []
     for index, (name, group) in enumerate(zip(names, groups, strict=True)):
@@ -235,7 +236,7 @@ def write_meshes(
     Each process makes, measures and writes particles of its own, so that memory does not grow with their
     number. Returns a tuple of :class:`MeasuredParticle`.
     """
-    yield Started("Writing particles", len(draws))
+    yield Started(N_("Writing particles"), len(draws))
     jobs = (
         Job(
             _write_batch,
@@ -258,7 +259,7 @@ def write_meshes(
 
 
 def _write_batch(draws: Realizations, groups: tuple[str, ...], level: int, folder: Path, first: int) -> Steps:
-    yield Started("Writing particles", len(draws))
+    yield Started(N_("Writing particles"), len(draws))
     facts = []
     for particle in particles_of(draws, groups, level, first):
         (folder / f"{particle.name}.stl").write_bytes(stl_bytes(particle.mesh.triangles, STL_HEADER))

@@ -18,6 +18,7 @@ from regolith_studio.harmonics.surface import reconstruct
 from regolith_studio.harmonics.visibility import StarPointVisibility, hidden_faces, star_point_visibility
 from regolith_studio.jobs.events import Failed, Job, Partial, Progress, Started, Steps
 from regolith_studio.jobs.executor import Executor, open_executor, value_of
+from regolith_studio.messages import N_
 from regolith_studio.readers.particles import (
     FileProblem,
     LoadedParticles,
@@ -39,7 +40,7 @@ def load_particles(paths: Sequence[Path], unit: str = "um", repair: bool = True)
     problems: list[FileProblem] = []
     results: list[Particle | FileProblem] = []
     files = find_files(paths, problems)
-    yield Started("Reading particles", len(files))
+    yield Started(N_("Reading particles"), len(files))
     for done, (file, result) in enumerate(read_each(files, unit, repair), start=1):
         results.append(result)
         yield Progress(done, len(files), file.path.name)
@@ -48,7 +49,7 @@ def load_particles(paths: Sequence[Path], unit: str = "um", repair: bool = True)
 
 def load_sample() -> Steps:
     """Read the particles that ship with the program; returns :class:`LoadedParticles`."""
-    yield Started("Reading the sample")
+    yield Started(N_("Reading the sample"))
     return LoadedParticles(tuple(sample_particles()))
 
 
@@ -96,7 +97,7 @@ def find_faults(particle: Particle, seen: StarPointVisibility | None = None) -> 
     Returns the corners (k, 3, 3) of the triangles of each kind, as ``defect_triangles`` names them, and
     ``hidden``.
     """
-    yield Started("Looking for faults")
+    yield Started(N_("Looking for faults"))
     found: dict[str, FloatArray] = defect_triangles(particle)
     if seen is not None and seen.hidden_surface_share > 0.0:
         hidden = hidden_faces(particle.mesh, np.array(seen.star_point))
@@ -106,7 +107,7 @@ def find_faults(particle: Particle, seen: StarPointVisibility | None = None) -> 
 
 def measure_one(particle: Particle, box_metric: str = "exact") -> Steps:
     """As :func:`measure_particle`, for a runner."""
-    yield Started("Measuring")
+    yield Started(N_("Measuring"))
     return measure_particle(particle, box_metric)
 
 
@@ -116,7 +117,7 @@ def measure_particles(particles: Sequence[Particle], box_metric: str = "exact") 
     A partial result comes when an eighth more is known: what is copied grows as the number of particles
     and not as its square.
     """
-    yield Started("Measuring particles", len(particles))
+    yield Started(N_("Measuring particles"), len(particles))
     seen: list[MeasuredParticle] = []
     due = 1
     for particle in particles:
@@ -132,7 +133,7 @@ def measure_sample(
     particles: Sequence[Particle], box_metric: str = "exact", workers: int | Executor = 1
 ) -> Steps:
     """As :func:`measure_particles`, by several processes; returns a tuple of :class:`MeasuredParticle`."""
-    yield Started("Measuring", len(particles))
+    yield Started(N_("Measuring"), len(particles))
     jobs = [Job(measure_one, (particle, box_metric)) for particle in particles]
     with open_executor(workers) as executor:
         results = yield from executor.run_all(jobs, [particle.name for particle in particles])
@@ -169,19 +170,19 @@ class FitRequest:
 
 def fit_one(mesh: Mesh, request: FitRequest = FitRequest()) -> Steps:
     """Fit `mesh`; returns a ``HarmonicFit``."""
-    yield Started("Fitting spherical harmonics")
+    yield Started(N_("Fitting spherical harmonics"))
     return request.fit_options.fit(mesh, request.l_max)
 
 
 def draw_surface(fit: HarmonicFit, l_max: int, level: int) -> Steps:
     """The fit's surface cut at `l_max`; returns a :class:`Mesh` in the particle's frame."""
-    yield Started("Drawing the fit")
+    yield Started(N_("Drawing the fit"))
     return reconstruct(fit, l_max, level=level)
 
 
 def describe_meshes(meshes: Mapping[str, Mesh], box_metric: str = "exact") -> Steps:
     """Descriptors of named meshes; partial results and the result are ``dict[name, Descriptors]``."""
-    yield Started("Measuring", len(meshes))
+    yield Started(N_("Measuring"), len(meshes))
     described: dict[str, Descriptors] = {}
     for name, mesh in meshes.items():
         described[name] = describe(mesh, box_metric=box_metric)
@@ -194,7 +195,7 @@ def fit_sample(
     particles: Sequence[Particle], request: FitRequest = FitRequest(), workers: int | Executor = 1
 ) -> Steps:
     """Fit every particle; returns a tuple of ``HarmonicFit``, or the sentence where that is impossible."""
-    yield Started("Fitting spherical harmonics", len(particles))
+    yield Started(N_("Fitting spherical harmonics"), len(particles))
     jobs = [Job(fit_one, (particle.mesh, request)) for particle in particles]
     with open_executor(workers) as executor:
         results = yield from executor.run_all(jobs, [particle.name for particle in particles])

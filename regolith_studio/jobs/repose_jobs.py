@@ -32,6 +32,7 @@ from regolith_studio.geometry.particle import Particle
 from regolith_studio.jobs.coarsening_jobs import CoarseningRequest
 from regolith_studio.jobs.dataset_jobs import DatasetOptions, build_dataset_folder
 from regolith_studio.jobs.events import Partial, Progress, Started, Step, Steps
+from regolith_studio.messages import N_
 from regolith_studio.studies.repose import runs_from
 
 PROGRESS_STEPS = 1000
@@ -91,7 +92,7 @@ def simulate_repose(dataset_folder: Path, folder: Path, request: ReposeRequest) 
     Partial results are :class:`~regolith_studio.dem.engine.Snapshot`. What was saved stays when the run
     is stopped or fails, and ``repose.json`` says so.
     """
-    yield Started("Angle of repose", PROGRESS_STEPS)
+    yield Started(N_("Angle of repose"), PROGRESS_STEPS)
     prepared = prepare(read_dataset(dataset_folder), request.case, dataset_hash(dataset_folder))
     return (yield from simulate_prepared(prepared, folder, request))
 
@@ -181,7 +182,7 @@ def measure_result(
 
 def preview_repose(dataset_folder: Path, case: ReposeCase) -> Steps:
     """The particles of a case before they fall; returns (:class:`PreparedCase`, :class:`ParticleState`)."""
-    yield Started("Drawing particles")
+    yield Started(N_("Drawing particles"))
     prepared = prepare(read_dataset(dataset_folder), case, dataset_hash(dataset_folder))
     yield Progress(1, 2)
     return prepared, loose_column(prepared)
@@ -189,7 +190,7 @@ def preview_repose(dataset_folder: Path, case: ReposeCase) -> Steps:
 
 def remeasure(pile: ParticleState, evaluation: EvaluationSettings) -> Steps:
     """The angle of a pile once more, with other choices; returns the measurement or the refusal."""
-    yield Started("Measuring")
+    yield Started(N_("Measuring"))
     try:
         return measure_repose(pile.points, pile.diameters, evaluation, base=0.0)
     except NotAPileError as refusal:
@@ -229,7 +230,7 @@ def study_repose(rows: Sequence[ReposeVariant], folder: Path, repeats: int = 1) 
     stopped goes on where it was. A run that fails is a row without an angle.
     """
     plan = [(row, row.request.case.seed + k) for row in rows for k in range(repeats)]
-    yield Started("Angle of repose: study", PROGRESS_STEPS * len(plan))
+    yield Started(N_("Angle of repose: study"), PROGRESS_STEPS * len(plan))
     done: list[tuple[str, float | str, str, dict[str, Any]]] = []
     for number, (row, seed) in enumerate(plan):
         request = replace(row.request, case=replace(row.request.case, seed=seed), overwrite=True)
@@ -348,7 +349,7 @@ class ReposeStudyRequest:
                 _with_shape_value(self.coarsening, self.key, value)
             return
         if self.dataset is None:
-            raise InputError("There is no dataset yet: open one, or make one first.")
+            raise InputError(N_("There is no dataset yet: open one, or make one first."))
         for value in self.values:
             with_value(self.request, self.key, value)
 

@@ -20,6 +20,7 @@ from regolith_studio.geometry.particle import Particle
 from regolith_studio.jobs.events import Partial, Progress, Started, Steps
 from regolith_studio.jobs.executor import Executor
 from regolith_studio.jobs.particle_jobs import measure_sample
+from regolith_studio.messages import N_
 
 
 @dataclass(frozen=True)
@@ -157,7 +158,7 @@ def _problem_of(descriptors: Descriptors) -> str:
 def measure_quality(population: MeasuredPopulation, request: RepresentativesRequest) -> Steps:
     """Errors over the number of representatives; partial results are points, returns ``QualityCurve``."""
     counts = curve_counts(len(population.kept), request.count)
-    yield Started("Choosing representatives", len(counts))
+    yield Started(N_("Choosing representatives"), len(counts))
     steps = quality_steps(
         population.descriptors,
         counts,
@@ -220,5 +221,5 @@ def survey_representatives(
 
 def choose_job(population: MeasuredPopulation, request: RepresentativesRequest) -> Steps:
     """As :func:`choose_particles`, for a runner."""
-    yield Started("Choosing representatives")
+    yield Started(N_("Choosing representatives"))
     return choose_particles(population, request)

@@ -9,6 +9,7 @@ from regolith_studio.jobs.coarsening_jobs import CoarseningRequest
 from regolith_studio.jobs.events import Job, Partial, Progress, Started, Step, Steps
 from regolith_studio.jobs.executor import Executor, call, open_executor, value_of
 from regolith_studio.jobs.study_checkpoint import Mapper, StudyCheckpoint, hash_of_particles, hash_of_rows
+from regolith_studio.messages import N_
 from regolith_studio.shape_models.sample import Sample
 from regolith_studio.studies.coarsening import TargetChoice, coarsening_study
 from regolith_studio.studies.lmax import lmax_study
@@ -34,7 +35,7 @@ def study_lmax(
     options
         Further ones of :func:`~regolith_studio.studies.lmax.lmax_study`: degrees, level, keys ...
     """
-    yield Started("RMSRE against l_max", len(particles))
+    yield Started(N_("RMSRE against l_max"), len(particles))
     if answers is not None:
         answers.open("lmax", (seed, sorted(options.items())), hash_of_particles(particles))
     with open_executor(workers) as executor:
@@ -62,7 +63,7 @@ def study_population(
     options
         Further ones of :func:`~regolith_studio.studies.population.population_study`.
     """
-    yield Started("Judging models", 0)
+    yield Started(N_("Judging models"), 0)
     if answers is not None:
         inputs = hash_of_rows(sample.coefficients, (*sample.names, sample.unit))
         answers.open("population", (models, sorted(options.items())), inputs)

@@ -38,6 +38,7 @@ from regolith_studio.jobs.events import Job, Progress, Started, Step, Steps
 from regolith_studio.jobs.executor import Executor, open_executor, value_of
 from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput
 from regolith_studio.jobs.particle_jobs import MeasuredParticle, measure_one
+from regolith_studio.messages import N_
 from regolith_studio.readers.file_bytes import sha256_of
 from regolith_studio.readers.volumes.files import slice_names
 from regolith_studio.readers.volumes.read import VolumeFile, describe_volume, read_volume
@@ -129,7 +130,7 @@ def read_scan(given: VolumeInput) -> Steps:
         kind=given.kind,
         raw=given.raw,
     )
-    yield Progress(1, 2, "Counting grey values")
+    yield Progress(1, 2, N_("Counting grey values"))
     return scan_of(volume)
 
 
@@ -141,7 +142,7 @@ def find_grains(scan: Scan, settings: SegmentationSettings) -> Steps:
         found: Segmentation = yield from segment_volume(scan.volume, settings, scratch)
         if not large:
             return GrainSegmentation(found, SliceImages(found.labels.array), scratch)
-        yield Started("Preparing the view")
+        yield Started(N_("Preparing the view"))
         return GrainSegmentation(found, (yield from _slice_images(found.labels)), scratch)
     except BaseException:
         scratch.close()
@@ -156,13 +157,13 @@ def scratch_folder() -> Path:
 
 def read_sample_scan(kind: SampleVolume = "grey") -> Steps:
     """Read the shipped synthetic scan; returns a :class:`Scan`."""
-    yield Started("Reading the sample scan")
+    yield Started(N_("Reading the sample scan"))
     return scan_of(sample_volume(kind))
 
 
 def preview_part(volume: Volume, box: Box, settings: SegmentationSettings, level: float | None) -> Steps:
     """Segment a small part; returns a ``Segmentation``, or ``None`` where no grain is in it."""
-    yield Started("Preview")
+    yield Started(N_("Preview"))
     try:
         found: Segmentation = preview(volume, box, settings, level)
     except RegolithError:
@@ -179,7 +180,7 @@ def _map_volume(source: VolumeFile) -> Generator[Step, None, Scan]:
             ranges = slab_ranges(source.shape)
             for done, (first, stop) in enumerate(ranges, start=1):
                 array[:, :, first:stop] = source.read(first, stop)
-                yield Progress(done, len(ranges), "Unpacking into a temporary file")
+                yield Progress(done, len(ranges), N_("Unpacking into a temporary file"))
         volume = Volume(array, np.array(source.voxel_size), source.kind, source.name)
         return scan_of(volume, (yield from _slice_images(volume)), scratch)
     except BaseException:
@@ -195,7 +196,7 @@ def _slice_images(volume: Volume) -> Generator[Step, None, SliceImages]:
         except StopIteration as end:
             return SliceImages(volume.array, *end.value)
         if done % 16 == 0:
-            yield Progress(done, total, "Looking through the slices")
+            yield Progress(done, total, N_("Looking through the slices"))
 
 
 def _n_bytes(source: VolumeFile) -> int:
@@ -318,7 +319,7 @@ def extract_labels(
 
     They are what :func:`extract_file` makes of the file, if it held the values `grey`.
     """
-    yield Started("Extracting particles")
+    yield Started(N_("Extracting particles"))
     source = _source_of(path, labels)
     return (yield from _collect(extraction_steps(labels, settings, path.stem, source, grey=grey)))
 
@@ -362,7 +363,7 @@ def _extract(
             segmentation: Segmentation = yield from segment_volume(volume, recipe.segmentation, scratch)
             facts, labels = _summary_of(segmentation), segmentation.labels
             del segmentation
-        yield Started("Extracting particles")
+        yield Started(N_("Extracting particles"))
         grey = volume if volume.kind == "grey" else None
         steps = extraction_steps(labels, recipe.extraction, given.path.stem, source, collect, grey)
         extraction = yield from consume(steps)

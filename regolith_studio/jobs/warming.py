@@ -12,6 +12,7 @@ from regolith_studio.harmonics.surface import reconstruct
 from regolith_studio.jobs.events import Job, Started, Steps
 from regolith_studio.jobs.executor import Executor, call, open_executor, value_of
 from regolith_studio.jobs.particle_jobs import measure_particle
+from regolith_studio.messages import N_
 
 
 def warm_up(workers: int | Executor = 0) -> Steps:
@@ -24,7 +25,7 @@ def warm_up(workers: int | Executor = 0) -> Steps:
     """
     chores: dict[str, Callable[[str], None]] = dict.fromkeys(reversed(list(METHODS)), _coarsen)
     chores["fit"] = _measure_and_fit
-    yield Started("Compiling", len(chores))
+    yield Started(N_("Compiling"), len(chores))
     jobs = [Job(call, (chore, name)) for name, chore in chores.items()]
     with open_executor(workers) as executor:
         results = yield from executor.run_all(jobs, list(chores))

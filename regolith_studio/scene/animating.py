@@ -9,6 +9,7 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.harmonics.fit import HarmonicFit
 from regolith_studio.jobs.events import Job, Started, Steps
 from regolith_studio.jobs.executor import open_executor, value_of
+from regolith_studio.messages import N_
 from regolith_studio.scene.cameras import CameraPose
 from regolith_studio.scene.degrees import degree_animation
 from regolith_studio.scene.figure import three_views
@@ -23,14 +24,14 @@ _PROCESSES = 2
 def animate(particle: Mesh, fit: HarmonicFit, degrees: Sequence[int], path: Path) -> Steps:
     """Write a GIF or WebP of the fit growing through `degrees`; returns its path."""
     yield from _apart(
-        "Drawing the animation", path, degree_animation, particle, fit, tuple(degrees), path, LEVEL
+        N_("Drawing the animation"), path, degree_animation, particle, fit, tuple(degrees), path, LEVEL
     )
     return path
 
 
 def turn(shapes: Sequence[Shape], pose: CameraPose | None, path: Path, scale: int = 1) -> Steps:
     """Write a GIF or WebP of the bodies turning once; returns its path."""
-    yield from _apart("Drawing the turntable", path, _turn, tuple(shapes), pose, path, scale)
+    yield from _apart(N_("Drawing the turntable"), path, _turn, tuple(shapes), pose, path, scale)
     return path
 
 
@@ -46,7 +47,7 @@ def draw_figure(
 ) -> Steps:
     """Write the figure of the three views as PNG; returns its path."""
     arguments = (particle, fit, coarsened, titles, path, scale, pose, transparent)
-    yield from _apart("Drawing the figure", path, _figure, *arguments)
+    yield from _apart(N_("Drawing the figure"), path, _figure, *arguments)
     return path
 
 

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.messages import N_
 
 Vector = tuple[float, float, float]
 
@@ -38,13 +39,13 @@ class Direction:
 
 DIRECTIONS: Mapping[str, Direction] = MappingProxyType(
     {
-        "isometric": Direction("Isometric", (1.0, -1.0, 0.8), (0.0, 0.0, 1.0)),
-        "front": Direction("Front (from -y)", (0.0, -1.0, 0.0), (0.0, 0.0, 1.0)),
-        "back": Direction("Back (from +y)", (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)),
-        "left": Direction("Left (from -x)", (-1.0, 0.0, 0.0), (0.0, 0.0, 1.0)),
-        "right": Direction("Right (from +x)", (1.0, 0.0, 0.0), (0.0, 0.0, 1.0)),
-        "top": Direction("Top (from +z)", (0.0, 0.0, 1.0), (0.0, 1.0, 0.0)),
-        "bottom": Direction("Bottom (from -z)", (0.0, 0.0, -1.0), (0.0, 1.0, 0.0)),
+        "isometric": Direction(N_("Isometric"), (1.0, -1.0, 0.8), (0.0, 0.0, 1.0)),
+        "front": Direction(N_("Front (from -y)"), (0.0, -1.0, 0.0), (0.0, 0.0, 1.0)),
+        "back": Direction(N_("Back (from +y)"), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)),
+        "left": Direction(N_("Left (from -x)"), (-1.0, 0.0, 0.0), (0.0, 0.0, 1.0)),
+        "right": Direction(N_("Right (from +x)"), (1.0, 0.0, 0.0), (0.0, 0.0, 1.0)),
+        "top": Direction(N_("Top (from +z)"), (0.0, 0.0, 1.0), (0.0, 1.0, 0.0)),
+        "bottom": Direction(N_("Bottom (from -z)"), (0.0, 0.0, -1.0), (0.0, 1.0, 0.0)),
     }
 )
 

@@ -11,6 +11,7 @@ import pyvista as pv
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.harmonics.fit import HarmonicFit
 from regolith_studio.harmonics.surface import gallery
+from regolith_studio.messages import N_
 from regolith_studio.scene import annotations, cameras, palette, stage, surfaces
 from regolith_studio.scene.figure import Picture
 from regolith_studio.scene.moving_picture import save_animation
@@ -52,7 +53,7 @@ def degree_picture(
     InputError
         If a degree is negative or above that of the fit.
     """
-    shown: list[tuple[Mesh | None, str]] = [(particle, "CT particle")]
+    shown: list[tuple[Mesh | None, str]] = [(particle, N_("CT particle"))]
     shown += [(surface, degree_title(fit, degree)) for degree, surface in gallery(fit, degrees, level)]
     columns = min(N_COLUMNS, len(shown))
     rows = ceil(len(shown) / columns)
@@ -115,7 +116,7 @@ def _frames(
             plotter.subplot(0, column)
             stage.set_stage(plotter, palette.PAPER)
         plotter.subplot(0, 0)
-        _fill(plotter, particle, "CT particle", is_particle=True)
+        _fill(plotter, particle, N_("CT particle"), is_particle=True)
         cameras.apply_pose(plotter, pose)
         plotter.subplot(0, 1)
         for degree, surface in gallery(fit, degrees, level):

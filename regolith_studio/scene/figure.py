@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from regolith_studio.coarsening.result import CoarseningResult
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.messages import N_
 from regolith_studio.scene import annotations, cameras, palette, stage, surfaces
 from regolith_studio.scene.cameras import CameraPose
 
@@ -95,7 +96,7 @@ def _fill(
 def view_titles(l_max: int, polyhedron: ConvexPolyhedron | CoarseningResult) -> tuple[str, str, str]:
     """The titles that the window and the figures share; facets are not triangles, so both are named."""
     return (
-        "CT particle",
+        N_("CT particle"),
         f"Spherical-harmonics fit, l_max = {l_max}",
         f"Polyhedron, {polyhedron.n_facets} facets "
         f"({polyhedron.n_vertices} vertices, {polyhedron.n_triangles} triangles)",

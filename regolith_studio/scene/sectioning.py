@@ -13,6 +13,7 @@ from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.cross_section import CrossSection, plane_axes
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.oriented_box import OrientedBox
+from regolith_studio.messages import N_
 from regolith_studio.scene import palette
 from regolith_studio.scene.extras import hide_named, show_named
 from regolith_studio.scene.palette import Surroundings
@@ -21,13 +22,13 @@ CAP = "section_cap"
 CUT = "section_cut_"
 FRAME = "section_frame"
 DIRECTIONS = {
-    "x": "along x",
-    "y": "along y",
-    "z": "along z",
-    "longest": "along Dmax",
-    "intermediate": "along Dint",
-    "shortest": "along Dmin",
-    "eye": "to the eye",
+    "x": N_("along x"),
+    "y": N_("along y"),
+    "z": N_("along z"),
+    "longest": N_("along Dmax"),
+    "intermediate": N_("along Dint"),
+    "shortest": N_("along Dmin"),
+    "eye": N_("to the eye"),
 }
 """Directions a section can be moved in; those of the box are its edges."""
 SHADE = 0.84

@@ -10,12 +10,13 @@ from regolith_studio.coarsening.progress import placed
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.messages import N_
 from regolith_studio.scene import palette, surfaces
 from regolith_studio.scene.palette import Material, Surroundings
 
 PARTICLE, FIT, POLYHEDRON = "particle", "fit", "polyhedron"
 NAMES = (PARTICLE, FIT, POLYHEDRON)
-LABELS = {PARTICLE: "CT particle", FIT: "Fit", POLYHEDRON: "Polyhedron"}
+LABELS = {PARTICLE: N_("CT particle"), FIT: "Fit", POLYHEDRON: N_("Polyhedron")}
 MATERIALS: dict[str, Material] = {
     PARTICLE: palette.PARTICLE_MATERIAL,
     FIT: palette.FIT_MATERIAL,

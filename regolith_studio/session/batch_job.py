@@ -8,6 +8,7 @@ from regolith_studio.errors import FileError
 from regolith_studio.io.checkpoint import read_note
 from regolith_studio.jobs.events import Partial, Started, Steps
 from regolith_studio.jobs.executor import ExecutorSettings
+from regolith_studio.messages import N_
 from regolith_studio.session.recipe import Recipe
 
 
@@ -36,7 +37,7 @@ def run_recipe_job(
     """
     from regolith_studio.session.run_recipe import run_recipe  # with all that a batch needs, figures included
 
-    yield Started("Looking for the cluster" if settings.runner == "dask" else "Starting the workers")
+    yield Started(N_("Looking for the cluster") if settings.runner == "dask" else N_("Starting the workers"))
     with contextlib.closing(settings.open()) as executor:
         yield Partial(ExecutorReady(executor.workers, executor.dashboard))
         return (yield from run_recipe(recipe, base, folder, executor, resume))

@@ -7,6 +7,7 @@ from regolith_studio.descriptors.comparison import relative_errors
 from regolith_studio.jobs.coarsening_jobs import coarsen_one
 from regolith_studio.jobs.events import Failed, Job
 from regolith_studio.jobs.particle_jobs import FitRequest, describe_meshes, draw_surface, fit_one
+from regolith_studio.messages import N_
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.dependencies import LIVE, Kind, needs, plan
 from regolith_studio.session.results import ParticleEntry, Results
@@ -20,10 +21,10 @@ if TYPE_CHECKING:
     from regolith_studio.harmonics.fit import FitOptions, HarmonicFit
 
 TITLES = {
-    Kind.FIT: "Fitting spherical harmonics",
-    Kind.SURFACE: "Drawing the fit",
-    Kind.DESCRIPTORS: "Measuring the fit",
-    Kind.COARSENING: "Coarsening",
+    Kind.FIT: N_("Fitting spherical harmonics"),
+    Kind.SURFACE: N_("Drawing the fit"),
+    Kind.DESCRIPTORS: N_("Measuring the fit"),
+    Kind.COARSENING: N_("Coarsening"),
 }
 _EMPTY: Mapping[Kind, Mapping[str, Any]] = {
     Kind.FIT: {"fit": None},

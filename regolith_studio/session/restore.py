@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from regolith_studio.errors import FileError, InputError, RegolithError
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.jobs.events import Progress, Started, Steps
+from regolith_studio.messages import N_
 from regolith_studio.readers.particles import FileProblem, LoadedParticles
 from regolith_studio.session.provenance import (
     FileSource,
@@ -69,7 +70,7 @@ def restore_particles(recipe: Recipe, beside: Path) -> Steps:
 
 
 def _read(members: Sequence["BatchInput"], problems: list[FileProblem], places: "_References") -> Steps:
-    yield Started("Bringing particles back", len(members))
+    yield Started(N_("Bringing particles back"), len(members))
     found: list[tuple[Particle, ParticleRef]] = []
     for number, item in enumerate(members, start=1):
         try:

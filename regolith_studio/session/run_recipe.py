@@ -27,6 +27,7 @@ from regolith_studio.jobs.events import Job, Progress, Started, Step, Steps
 from regolith_studio.jobs.executor import Executor, open_executor
 from regolith_studio.jobs.study_checkpoint import StudyCheckpoint
 from regolith_studio.jobs.study_jobs import study_coarsening, study_lmax
+from regolith_studio.messages import N_
 from regolith_studio.readers.particles import unique_name
 from regolith_studio.session.batch.dataset_step import (
     build_dataset_step,
@@ -206,7 +207,7 @@ def _worked(done: RecipeRun, batch: Batch, executor: Executor) -> Part:
         fit_options=done.choices.fit_options,
     )
     members = done.items.members
-    yield Started("Working on particles", len(members))
+    yield Started(N_("Working on particles"), len(members))
     yield from run_batch(
         batch,
         lambda chunk: Job(process_particles, (tuple((i, members[i]) for i in chunk), asked)),
@@ -218,7 +219,7 @@ def _worked(done: RecipeRun, batch: Batch, executor: Executor) -> Part:
 def _assembled(done: RecipeRun, batch: Batch) -> Part:
     """Turn what is on disk into the files that were asked for."""
     wish = done.recipe.outputs
-    yield Started("Writing the results", batch.n_items)
+    yield Started(N_("Writing the results"), batch.n_items)
     _tally(done, batch)
     with contextlib.ExitStack() as stack:
         sinks: list[ResultWriter] = [
@@ -334,7 +335,7 @@ def _studied(done: RecipeRun, particles: list[Particle], executor: Executor) -> 
 
 def _read(done: RecipeRun) -> Generator[Step, None, list[Particle]]:
     """All particles that can be read, which a study needs at the same time."""
-    yield Started("Reading particles", len(done.items.members))
+    yield Started(N_("Reading particles"), len(done.items.members))
     found: list[Particle] = []
     for number, item in enumerate(done.items.members, start=1):
         with contextlib.suppress(RegolithError):

@@ -12,6 +12,7 @@ from regolith_studio.errors import InputError
 from regolith_studio.imaging.extraction import is_remark
 from regolith_studio.io.tables import Column, Table
 from regolith_studio.jobs.particle_jobs import MeasuredParticle
+from regolith_studio.messages import N_
 from regolith_studio.session.outputs.descriptors import descriptor_table
 from regolith_studio.session.results import ParticleEntry
 
@@ -52,9 +53,9 @@ def health_word(entry: ParticleEntry) -> str:
 def health_sentences(entry: ParticleEntry) -> str:
     """All that is known about the mesh, one sentence a line."""
     if entry.health is None:
-        return "Being measured …"
+        return N_("Being measured …")
     sentences = (*entry.health.problems, *entry.particle.notes)
-    return "\n".join(sentences) or "A closed mesh without faults."
+    return "\n".join(sentences) or N_("A closed mesh without faults.")
 
 
 def form_of(entry: ParticleEntry) -> str:
@@ -97,7 +98,9 @@ def statistics_table(
     """
     measured = [entry for entry in entries if entry.descriptors and key in entry.descriptors]
     groups = list(dict.fromkeys(entry.particle.group for entry in measured))
-    named = [(group or "(no group)", [e for e in measured if e.particle.group == group]) for group in groups]
+    named = [
+        (group or N_("(no group)"), [e for e in measured if e.particle.group == group]) for group in groups
+    ]
     if len(groups) != 1:
         named.append((EVERYTHING, measured))
     unit = UNITS[CATALOGUE[key].dimension]

@@ -16,6 +16,7 @@ from regolith_studio.jobs.particle_jobs import (
     measure_particles,
 )
 from regolith_studio.jobs.runners.protocol import Runner
+from regolith_studio.messages import N_
 from regolith_studio.readers.particles import FileProblem, LoadedParticles, unique_names
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.dependencies import STUDIES, Kind, depends
@@ -144,11 +145,11 @@ class Session:
         repair = self.choices.repair if repair is None else repair
         named = tuple(Path(path).absolute() for path in paths)
         origin = FileSource(tuple(map(str, named)), unit, repair)
-        return self._load("Reading particles", Job(load_particles, (named, unit, repair)), origin, add)
+        return self._load(N_("Reading particles"), Job(load_particles, (named, unit, repair)), origin, add)
 
     def open_sample(self) -> int:
         """Load the particles that ship with the program; returns the task's id."""
-        return self._load("Reading the sample", Job(load_sample), SampleSource())
+        return self._load(N_("Reading the sample"), Job(load_sample), SampleSource())
 
     def open_recipe(self, recipe: Recipe, beside: Path) -> int:
         """Bring the particles of a recipe into the session, read, extracted or drawn; returns the task's id.
@@ -167,7 +168,7 @@ class Session:
         def take(brought: RestoredParticles) -> None:
             self._replace_particles(brought.loaded, brought.places)
 
-        title = "Bringing particles back"
+        title = N_("Bringing particles back")
         job = Job(restore_particles, (recipe, beside))
         return self._board.start("load", title, job, Reactions(take, failed=self.tell_failure(title)))
 
@@ -288,7 +289,7 @@ class Session:
                 self.events.problems.emit(failed)
             self.events.exported.emit(built.folder)
 
-        title = "Building the dataset"
+        title = N_("Building the dataset")
         return self._board.start("export", title, job, Reactions(tell, failed=self.tell_failure(title)))
 
     def run(
@@ -353,7 +354,7 @@ class Session:
 
     def _open_particles(self) -> tuple[Particle, ...]:
         if not self.particles:
-            raise InputError("No particle is open; open a mesh first.")
+            raise InputError(N_("No particle is open; open a mesh first."))
         return tuple(entry.particle for entry in self.particles)
 
     def _follow(self, before: Choices) -> None:
@@ -416,6 +417,6 @@ class Session:
             self.events.particles.emit()
 
         job = Job(measure_particles, (self._open_particles(),))
-        title = "Measuring particles"
+        title = N_("Measuring particles")
         reactions = Reactions(note, partial=note, failed=self.tell_failure(title))
         self._board.start("inspect", title, job, reactions)

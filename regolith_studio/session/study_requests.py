@@ -14,6 +14,7 @@ from regolith_studio.jobs.events import Job, Partial, Progress, Started, Step, S
 from regolith_studio.jobs.executor import Executor, open_executor
 from regolith_studio.jobs.study_checkpoint import StudyCheckpoint, hash_of_particles
 from regolith_studio.jobs.study_jobs import study_coarsening, study_lmax
+from regolith_studio.messages import N_
 from regolith_studio.session.choices import L_MAX_LIMIT, Choices
 from regolith_studio.session.dependencies import Kind
 from regolith_studio.studies.loss_variants import LossVariant, loss_variants, losses, paper_variants
@@ -27,13 +28,13 @@ CHOSEN = "chosen"
 def present_row(choices: Choices) -> LossVariant:
     """What is chosen now, as a row."""
     return LossVariant(
-        "Chosen weights", choices.weights, choices.method, choices.facet_count, choices.settings
+        N_("Chosen weights"), choices.weights, choices.method, choices.facet_count, choices.settings
     )
 
 
 def loss_names() -> dict[str, str]:
     """Every loss that can be a row, with its label; the chosen weights last."""
-    return {name: loss.label for name, loss in losses().items()} | {CHOSEN: "Chosen weights"}
+    return {name: loss.label for name, loss in losses().items()} | {CHOSEN: N_("Chosen weights")}
 
 
 def chosen_rows(names: Sequence[str], choices: Choices) -> tuple[LossVariant, ...]:
@@ -83,7 +84,7 @@ def study_job(
     match kind:
         case Kind.LMAX_STUDY:
             return StudyJob(
-                "RMSRE against l_max",
+                N_("RMSRE against l_max"),
                 Job(
                     study_lmax,
                     (tuple(particles),),
@@ -97,7 +98,7 @@ def study_job(
             )
         case Kind.COARSENING_STUDY:
             job = Job(study_coarsening, (tuple(particles), choices.order), options)
-            return StudyJob("RMSRE against loss weights", job)
+            return StudyJob(N_("RMSRE against loss weights"), job)
         case _:
             raise InputError(f"There is no study called {kind}.")
 
@@ -133,7 +134,7 @@ def coarsen_gallery(
     """
     chosen = paper_variants() if rows is None else tuple(rows)
     total = len(particles) * len(chosen)
-    yield Started("Coarsening for the gallery", total)
+    yield Started(N_("Coarsening for the gallery"), total)
     done: list[GalleryCell] = []
     for column, particle in enumerate(particles):
         fit = _fit_of(particle, order)
@@ -163,7 +164,7 @@ def study_gallery(
         Keeps what is known of each particle, so that the study can be taken up again.
     """
     chosen = paper_variants() if rows is None else tuple(rows)
-    yield Started("Coarsening for the gallery", len(particles))
+    yield Started(N_("Coarsening for the gallery"), len(particles))
     if answers is not None:
         answers.open("solids", (order, chosen), hash_of_particles(particles))
     labels, names = [row.label for row in chosen], [particle.name for particle in particles]

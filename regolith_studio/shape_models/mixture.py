@@ -16,6 +16,7 @@ from scipy.special import logsumexp
 
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.messages import N_
 
 MAX_STEPS = 300
 TOLERANCE = 1e-7
@@ -44,18 +45,20 @@ class MixtureSettings:
     n_components: int = field(
         default=0,
         metadata={
-            "label": "Parts",
+            "label": N_("Parts"),
             "maximum": 50,
-            "tip": "0 for the best number by Bayes' criterion.",
+            "tip": N_("0 for the best number by Bayes' criterion."),
         },
     )
     max_components: int = field(
-        default=8, metadata={"label": "At most", "minimum": 1, "maximum": 50, "tip": "Highest number tried."}
+        default=8,
+        metadata={"label": N_("At most"), "minimum": 1, "maximum": 50, "tip": N_("Highest number tried.")},
     )
     n_starts: int = field(
-        default=2, metadata={"label": "Starts", "minimum": 1, "maximum": 50, "tip": "For each number."}
+        default=2,
+        metadata={"label": N_("Starts"), "minimum": 1, "maximum": 50, "tip": N_("For each number.")},
     )
-    seed: int = field(default=0, metadata={"label": "Seed of starts"})
+    seed: int = field(default=0, metadata={"label": N_("Seed of starts")})
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,6 +10,7 @@ from regolith_studio.coarsening.coarsen import DEFAULT_METHOD
 from regolith_studio.coarsening.weights import JACCARD, WEIGHT_KEYS, LossWeights, presets
 from regolith_studio.descriptors.catalogue import CATALOGUE, LOSS_KEYS
 from regolith_studio.errors import InputError
+from regolith_studio.messages import N_
 
 PAPER_LOSSES = (
     "quadric",
@@ -147,7 +148,7 @@ def tradeoff_variants(
     wanted = {key: like.weights[key] for key in LOSS_KEYS if like.weights[key]}
     if not wanted:
         raise InputError("A trade-off needs a weight above 0 on at least one descriptor.")
-    alone = like.relabelled("Overlap only", weights=LossWeights.of(**{JACCARD: overlap}))
+    alone = like.relabelled(N_("Overlap only"), weights=LossWeights.of(**{JACCARD: overlap}))
     if like.method in CONDITION_METHODS:
         return (alone, *_condition_variants(like, overlap, wanted))
     weighed = [
@@ -182,7 +183,7 @@ def sensitivity_variants(
         If no weight is above 0, a factor is negative, or the method has no loss.
     """
     _check_factors(like, factors)
-    rows = [like.relabelled("As given")]
+    rows = [like.relabelled(N_("As given"))]
     for key in WEIGHT_KEYS:
         for factor in sorted(set(factors) - {1.0}):
             changed = like.weights.replaced(**{key: like.weights[key] * factor})

@@ -15,6 +15,7 @@ from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.descriptors.describe import describe
 from regolith_studio.errors import InputError, RegolithError
 from regolith_studio.geometry.arrays import FloatArray, IntArray
+from regolith_studio.messages import N_
 from regolith_studio.shape_models.goodness_of_fit import nearest_neighbour_ratio_in_frame
 from regolith_studio.shape_models.inertia_ellipsoid import canonical
 from regolith_studio.shape_models.models import MODELS
@@ -271,13 +272,13 @@ def population_study(
     _check_arguments(sample, chosen, keys, (drawn, n_splits, n_repeats))
     work = StudyExecutor(tuple(keys), level, mapper, len(sample) + len(chosen) * n_splits * n_repeats * drawn)
     known = Realizations(sample.truncated(l_max).coefficients, "radius", "measured", seed, sample.unit)
-    table = yield from work.measured(known, "measured particles")
+    table = yield from work.measured(known, N_("measured particles"))
     keep = np.flatnonzero(np.isfinite(table).all(axis=1))
     if len(keep) < MIN_PARTICLES:
         raise InputError(
             f"Only {len(keep)} particles bound a solid at l_max = {l_max}; {MIN_PARTICLES} are needed."
         )
-    frames = yield from work.framed(known.chosen(keep), l_max, "measured particles")
+    frames = yield from work.framed(known.chosen(keep), l_max, N_("measured particles"))
     half = _TrainTestSplit(sample.chosen(keep), table[keep], frames, work)
     floor = yield from half.floor(seed)
     rounds: dict[str, list[_Round]] = {key: [] for key in chosen}

@@ -5,6 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from regolith_studio.io.tables import Column, Table
+from regolith_studio.messages import N_
 from regolith_studio.studies.population import N_FLOOR_SPLITS, ModelEvaluation, PopulationStudy
 from regolith_studio.studies.population_distances import CONFIDENCE, N_RESAMPLES, WEIGHTINGS
 
@@ -114,19 +115,19 @@ def _targets(study: PopulationStudy, model: ModelEvaluation) -> Iterator[tuple[s
     if paper is not None and paper is not model and "aspect_ratio" in study.keys:
         column = study.keys.index("aspect_ratio")
         gain = paper.distances.wasserstein.mean(axis=0)[0, column] / far[0, column]
-        yield "aspect ratio, times nearer than the paper's model", gain, "at least", LEAST_GAIN
+        yield N_("aspect ratio, times nearer than the paper's model"), gain, "at least", LEAST_GAIN
     if columns := [study.keys.index(key) for key in AT_NOISE if key in study.keys]:
         worst = (far / np.percentile(noise, 95, axis=0))[:, columns].max()
-        yield "r_eq, A, AR, S: the worst, over the 95th percentile of noise", worst, "at most", 1.0
+        yield N_("r_eq, A, AR, S: the worst, over the 95th percentile of noise"), worst, "at most", 1.0
     if "convexity" in study.keys:
         column = study.keys.index("convexity")
         gap = model.distances.kolmogorov[:, 0, column].mean() / study.floor.kolmogorov[:, 0, column].mean()
-        yield "V/CH: Kolmogorov-Smirnov distance in floors", gap, "at most", MOST_FLOORS
+        yield N_("V/CH: Kolmogorov-Smirnov distance in floors"), gap, "at most", MOST_FLOORS
     if pairs := [i for i, pair in enumerate(study.pairs) if set(pair) <= set(PAPERS_PAIRS)]:
         worst = 100 * model.distances.energy.mean(axis=0)[pairs].max()
-        yield "pairs of r_eq, A, AR: the largest energy distance [%]", worst, "at most", MOST_ENERGY
-    yield "draws thrown away [%]", 100 * model.rejected.mean(), "at most", 0.0
-    yield "median novelty", model.novelty.mean(), "at least", LEAST_NOVELTY
+        yield N_("pairs of r_eq, A, AR: the largest energy distance [%]"), worst, "at most", MOST_ENERGY
+    yield N_("draws thrown away [%]"), 100 * model.rejected.mean(), "at most", 0.0
+    yield N_("median novelty"), model.novelty.mean(), "at least", LEAST_NOVELTY
 
 
 def _notes(study: PopulationStudy) -> tuple[str, ...]:

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from regolith_studio.io.tables import Cell, Column, Table
+from regolith_studio.messages import N_
 
 COLUMNS = (
     Column("varied"),
@@ -70,7 +71,7 @@ class ReposeStudy:
 
 def repose_table(study: ReposeStudy) -> Table:
     """One row a run."""
-    return Table("Angle of repose", COLUMNS, tuple(_row(run) for run in study.runs))
+    return Table(N_("Angle of repose"), COLUMNS, tuple(_row(run) for run in study.runs))
 
 
 def _row(run: ReposeStudyRun) -> tuple[Cell, ...]:

@@ -12,6 +12,7 @@ from regolith_studio.descriptors.catalogue import LOSS_KEYS
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.io.tables import Column, Table
+from regolith_studio.messages import N_
 from regolith_studio.studies.coarsening import COLUMNS, CoarseningStudy, rmsre_table, study_notes
 from regolith_studio.studies.loss_variants import (
     CHANGE_FACTORS,
@@ -141,7 +142,7 @@ def tradeoff_table(study: CoarseningStudy) -> Table:
         "efficient: no other row has both a smaller distance and a smaller mean_rmsre.",
         *study_notes(study),
     )
-    return Table("Overlap against descriptors", columns, tuple(lines), notes)
+    return Table(N_("Overlap against descriptors"), columns, tuple(lines), notes)
 
 
 def sensitivity_table(study: CoarseningStudy) -> Table:
@@ -163,7 +164,7 @@ def sensitivity_table(study: CoarseningStudy) -> Table:
         for k, key in enumerate(COLUMNS)
     ]
     columns = (
-        *map(Column, ("change", "descriptor")),
+        *map(Column, ("change", N_("descriptor"))),
         *(Column(name, "%") for name in ("as_given", "changed")),
         *(Column(name, "pp") for name in ("difference", "difference_low", "difference_high")),
         Column("beyond_chance"),
@@ -183,24 +184,24 @@ SWEEPS: Mapping[str, Sweep] = {
     for each in (
         Sweep(
             "facets",
-            "Error against the number of facets",
-            "Numbers of facets",
+            N_("Error against the number of facets"),
+            N_("Numbers of facets"),
             tuple(map(float, FACET_COUNTS)),
             facet_count_variants,
             rmsre_table,
         ),
         Sweep(
             "tradeoff",
-            "Overlap against descriptors",
-            "Factors on the weight of the overlap",
+            N_("Overlap against descriptors"),
+            N_("Factors on the weight of the overlap"),
             OVERLAP_FACTORS,
             tradeoff_variants,
             tradeoff_table,
         ),
         Sweep(
             "sensitivity",
-            "Sensitivity to the weights",
-            "Factors on one weight at a time",
+            N_("Sensitivity to the weights"),
+            N_("Factors on one weight at a time"),
             CHANGE_FACTORS,
             sensitivity_variants,
             sensitivity_table,

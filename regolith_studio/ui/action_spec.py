@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from regolith_studio.ui.translation import mark
+from regolith_studio.messages import N_
 
 
 @dataclass(frozen=True)
@@ -40,5 +40,5 @@ class ActionSpec:
 
 
 BREAK = "-"
-PAGE_MENU = mark("&Page")
+PAGE_MENU = N_("&Page")
 """Menu of the commands of the page that is seen."""

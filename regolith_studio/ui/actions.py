@@ -7,59 +7,96 @@ from PySide6.QtCore import Qt
 from PySide6.QtGui import QAction, QKeySequence
 from PySide6.QtWidgets import QMainWindow, QMenu, QToolBar, QToolButton
 
+from regolith_studio.messages import N_
 from regolith_studio.ui.action_spec import BREAK, PAGE_MENU, ActionSpec
 from regolith_studio.ui.dialogs.command_palette import Command
 from regolith_studio.ui.icons import icon
 from regolith_studio.ui.page import Page
 from regolith_studio.ui.shortcuts import plain, shown_keys, with_keys
 from regolith_studio.ui.theme import Theme
-from regolith_studio.ui.translation import mark, tr
+from regolith_studio.ui.translation import tr
 
-WITHIN_VIEW = (mark("Look &from"), mark("&Theme"))
-MENUS = (mark("&File"), mark("&Edit"), mark("&View"), mark("&Go"), PAGE_MENU, mark("&Help"))
+WITHIN_VIEW = (N_("Look &from"), N_("&Theme"))
+MENUS = (N_("&File"), N_("&Edit"), N_("&View"), N_("&Go"), PAGE_MENU, N_("&Help"))
 
 ROWS: tuple[ActionSpec, ...] = (
-    ActionSpec("&File", "open", "&Open …", "open", "Ctrl+O", "Open mesh files", None, "words"),
-    ActionSpec("&File", "open_folder", "Open &folder …", "", "Ctrl+Shift+O"),
+    ActionSpec(N_("&File"), "open", N_("&Open …"), "open", "Ctrl+O", N_("Open mesh files"), None, "words"),
+    ActionSpec(N_("&File"), "open_folder", N_("Open &folder …"), "", "Ctrl+Shift+O"),
     ActionSpec(
-        "&File", "open_sample", "Open &sample", "sample", "", "Open the shipped particles", bar="words"
+        N_("&File"),
+        "open_sample",
+        N_("Open &sample"),
+        "sample",
+        "",
+        N_("Open the shipped particles"),
+        bar="words",
     ),
-    ActionSpec("&File", "recent", "Open &recent"),
+    ActionSpec(N_("&File"), "recent", N_("Open &recent")),
     ActionSpec(
-        "&File", "repair", "&Mend meshes on opening", "", "", "Say, and mend, what is wrong", checked=True
+        N_("&File"),
+        "repair",
+        N_("&Mend meshes on opening"),
+        "",
+        "",
+        N_("Say, and mend, what is wrong"),
+        checked=True,
     ),
-    ActionSpec("&File", BREAK, ""),
+    ActionSpec(N_("&File"), BREAK, ""),
     ActionSpec(
-        "&File", "export", "&Export dataset …", "export", "Ctrl+E", "Export a DEM dataset", None, "words"
+        N_("&File"),
+        "export",
+        N_("&Export dataset …"),
+        "export",
+        "Ctrl+E",
+        N_("Export a DEM dataset"),
+        None,
+        "words",
     ),
-    ActionSpec("&File", "save_recipe", "Save re&cipe …", "recipe", "Ctrl+Alt+S", "For regolith-studio run"),
-    ActionSpec("&File", "run_batch", "Run as a &batch …", "", "Ctrl+Alt+R", "Here or on a cluster"),
-    ActionSpec("&File", BREAK, ""),
-    ActionSpec("&File", "save_project", "&Save project", "", "Ctrl+S"),
-    ActionSpec("&File", "save_project_as", "Save project &as …", "", "Ctrl+Shift+S"),
-    ActionSpec("&File", BREAK, ""),
-    ActionSpec("&File", "quit", "&Quit", "", "Ctrl+Q"),
-    ActionSpec("&Edit", "undo", "&Undo", "undo", "Ctrl+Z", bar="icon"),
-    ActionSpec("&Edit", "redo", "&Redo", "redo", "Ctrl+Shift+Z", bar="icon"),
-    ActionSpec("&Edit", BREAK, ""),
-    ActionSpec("&Edit", "copy_command", "Copy as co&mmand", "", "", "The command line that does the same"),
-    ActionSpec("&Edit", "copy_python", "Copy as &Python", "", "", "A script that does the same"),
-    ActionSpec("&Edit", BREAK, ""),
-    ActionSpec("&Edit", "palette", "&Commands …", "", "Ctrl+Shift+P", "Any command by a few letters"),
-    ActionSpec("&Edit", "preferences", "P&references …", "", "Ctrl+,", "Language, theme, size of letters"),
-    ActionSpec("&Go", "next_page", "&Next page", "", "Ctrl+PgDown"),
-    ActionSpec("&Go", "previous_page", "&Previous page", "", "Ctrl+PgUp"),
+    ActionSpec(
+        N_("&File"),
+        "save_recipe",
+        N_("Save re&cipe …"),
+        "recipe",
+        "Ctrl+Alt+S",
+        N_("For regolith-studio run"),
+    ),
+    ActionSpec(
+        N_("&File"), "run_batch", N_("Run as a &batch …"), "", "Ctrl+Alt+R", N_("Here or on a cluster")
+    ),
+    ActionSpec(N_("&File"), BREAK, ""),
+    ActionSpec(N_("&File"), "save_project", N_("&Save project"), "", "Ctrl+S"),
+    ActionSpec(N_("&File"), "save_project_as", N_("Save project &as …"), "", "Ctrl+Shift+S"),
+    ActionSpec(N_("&File"), BREAK, ""),
+    ActionSpec(N_("&File"), "quit", N_("&Quit"), "", "Ctrl+Q"),
+    ActionSpec(N_("&Edit"), "undo", N_("&Undo"), "undo", "Ctrl+Z", bar="icon"),
+    ActionSpec(N_("&Edit"), "redo", N_("&Redo"), "redo", "Ctrl+Shift+Z", bar="icon"),
+    ActionSpec(N_("&Edit"), BREAK, ""),
+    ActionSpec(
+        N_("&Edit"), "copy_command", N_("Copy as co&mmand"), "", "", N_("The command line that does the same")
+    ),
+    ActionSpec(N_("&Edit"), "copy_python", N_("Copy as &Python"), "", "", N_("A script that does the same")),
+    ActionSpec(N_("&Edit"), BREAK, ""),
+    ActionSpec(
+        N_("&Edit"), "palette", N_("&Commands …"), "", "Ctrl+Shift+P", N_("Any command by a few letters")
+    ),
+    ActionSpec(
+        N_("&Edit"), "preferences", N_("P&references …"), "", "Ctrl+,", N_("Language, theme, size of letters")
+    ),
+    ActionSpec("&Go", "next_page", N_("&Next page"), "", "Ctrl+PgDown"),
+    ActionSpec("&Go", "previous_page", N_("&Previous page"), "", "Ctrl+PgUp"),
     ActionSpec("&Go", BREAK, ""),
-    ActionSpec("&Theme", "theme_system", "As the &system"),
-    ActionSpec("&Theme", "theme_light", "&Light"),
-    ActionSpec("&Theme", "theme_dark", "&Dark"),
-    ActionSpec("&View", "tasks", "&Tasks", "", "Ctrl+T", "What is running"),
-    ActionSpec("&View", "log", "L&og", "", "Ctrl+Shift+L", "What was said"),
-    ActionSpec("&View", "standard_layout", "Standard la&yout", "", "", "Forget sizes and borders"),
-    ActionSpec("&View", BREAK, ""),
-    ActionSpec("&Help", "tour", "&Tour", "tour", "", "A walk through the window"),
-    ActionSpec("&Help", "shortcuts", "&Keyboard and mouse", "help", "F1"),
-    ActionSpec("&Help", "about", "&About Regolith Studio"),
+    ActionSpec(N_("&Theme"), "theme_system", N_("As the &system")),
+    ActionSpec(N_("&Theme"), "theme_light", N_("&Light")),
+    ActionSpec(N_("&Theme"), "theme_dark", N_("&Dark")),
+    ActionSpec(N_("&View"), "tasks", N_("&Tasks"), "", "Ctrl+T", N_("What is running")),
+    ActionSpec(N_("&View"), "log", N_("L&og"), "", "Ctrl+Shift+L", N_("What was said")),
+    ActionSpec(
+        N_("&View"), "standard_layout", N_("Standard la&yout"), "", "", N_("Forget sizes and borders")
+    ),
+    ActionSpec(N_("&View"), BREAK, ""),
+    ActionSpec(N_("&Help"), "tour", N_("&Tour"), "tour", "", N_("A walk through the window")),
+    ActionSpec(N_("&Help"), "shortcuts", N_("&Keyboard and mouse"), "help", "F1"),
+    ActionSpec(N_("&Help"), "about", N_("&About Regolith Studio")),
 )
 
 
@@ -110,7 +147,7 @@ class Actions:
             for action in actions:
                 action.setVisible(owner == key)
                 action.setEnabled(owner == key)
-        for title in (PAGE_MENU, "Look &from"):
+        for title in (PAGE_MENU, N_("Look &from")):
             if menu := self._menus.get(title):
                 menu.menuAction().setVisible(any(each.isVisible() for each in menu.actions()))
 

@@ -8,6 +8,7 @@ from PySide6.QtWidgets import QWidget
 
 from regolith_studio.errors import RegolithError
 from regolith_studio.jobs.events import Failed, Job
+from regolith_studio.messages import N_
 from regolith_studio.session.batch_job import ExecutorReady, run_recipe_job
 from regolith_studio.session.preferences import Preferences
 from regolith_studio.session.project import without_file
@@ -15,13 +16,13 @@ from regolith_studio.session.recipe import Recipe, read_recipe
 from regolith_studio.session.session import Session
 from regolith_studio.session.session_recipe import SessionRecipe
 from regolith_studio.ui.dialogs.batch import BatchDialog, BatchOrder
-from regolith_studio.ui.translation import mark, tr
+from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.toast import Toast
 
 if TYPE_CHECKING:  # what it brings is loaded when a batch runs
     from regolith_studio.session.run_recipe import RecipeRun
 
-TITLE = mark("Running the recipe")
+TITLE = N_("Running the recipe")
 
 
 class Batches(QObject):

@@ -11,6 +11,7 @@ from PySide6.QtWidgets import QDialog, QFileDialog, QWidget
 
 from regolith_studio.errors import RegolithError
 from regolith_studio.io.atomic import write_bytes
+from regolith_studio.messages import N_
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.code_export import as_command, as_python
 from regolith_studio.session.dependencies import Kind
@@ -23,15 +24,15 @@ from regolith_studio.session.session import Session
 from regolith_studio.session.session_recipe import SessionRecipe
 from regolith_studio.ui.dialogs.export import ExportDialog, ExportOrder
 from regolith_studio.ui.dialogs.unit import UnitDialog
-from regolith_studio.ui.translation import mark, tr
+from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.toast import Toast
 
 MESH_FILTERS = (
-    mark("Particles (*.stl *.ply *.obj *.off *.glb *.gltf *.3mf *.anm *.sh *.shc)"),
-    mark("Tables of coefficients (*.anm *.sh *.shc *.txt *.dat *.csv)"),
-    mark("Projects (*.regolith)"),
-    mark("Recipes (*.json)"),
-    mark("All files (*)"),
+    N_("Particles (*.stl *.ply *.obj *.off *.glb *.gltf *.3mf *.anm *.sh *.shc)"),
+    N_("Tables of coefficients (*.anm *.sh *.shc *.txt *.dat *.csv)"),
+    N_("Projects (*.regolith)"),
+    N_("Recipes (*.json)"),
+    N_("All files (*)"),
 )
 T = TypeVar("T")
 

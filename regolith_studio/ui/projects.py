@@ -8,16 +8,17 @@ from PySide6.QtCore import QDateTime, QLockFile, QObject, QTimer, Signal
 from PySide6.QtWidgets import QFileDialog, QMessageBox, QWidget
 
 from regolith_studio.errors import RegolithError
+from regolith_studio.messages import N_
 from regolith_studio.session.preferences import preferences_path
 from regolith_studio.session.project import SUFFIX, Project, read_project
 from regolith_studio.session.session import Session
 from regolith_studio.session.session_recipe import SessionRecipe
 from regolith_studio.ui.commands import without
 from regolith_studio.ui.page_stack import PageStack
-from regolith_studio.ui.translation import mark, tr
+from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.toast import Toast
 
-FILTER = mark("Projects (*.regolith)")
+FILTER = N_("Projects (*.regolith)")
 AUTOSAVE_SECONDS = 10
 """Between a change and the copy of it that is kept for the case of a crash."""
 

@@ -1,8070 +1,6575 @@
 <?xml version="1.0" encoding="utf-8"?>
 <!DOCTYPE TS>
 <TS version="2.1" language="de" sourcelanguage="en">
- <context>
-  <name>RegolithStudio</name>
-  <message>
-   <location filename="ui/actions.py" />
-   <source>&amp;About Regolith Studio</source>
-   <translation>&amp;Über Regolith Studio</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/__init__.py" />
-   <source>&amp;Another one</source>
-   <translation>&amp;Ein anderes</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/__init__.py" />
-   <source>&amp;Another particle in the view</source>
-   <translation>&amp;Ein anderes Partikel zeigen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/explore/__init__.py" />
-   <source>&amp;Bounding box</source>
-   <translation>&amp;Hüllquader</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/__init__.py" />
-   <source>&amp;Build the dataset …</source>
-   <translation>Datensatz &amp;bauen …</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/__init__.py" />
-   <source>&amp;Check the dataset</source>
-   <translation>Datensatz &amp;prüfen</translation>
-  </message>
-  <message>
-   <location filename="ui/actions.py" />
-   <source>&amp;Commands …</source>
-   <translation>&amp;Befehle …</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/studies/__init__.py" />
-   <source>&amp;Compute all</source>
-   <translation>Alles &amp;berechnen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/__init__.py" />
-   <source>&amp;Copy table</source>
-   <translation>Tabelle k&amp;opieren</translation>
-  </message>
-  <message>
-   <location filename="ui/actions.py" />
-   <source>&amp;Dark</source>
-   <translation>&amp;Dunkel</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/explore/__init__.py" />
-   <source>&amp;Distance map</source>
-   <translation>&amp;Abstandskarte</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/__init__.py" />
-   <source>&amp;Draw particles</source>
-   <translation>Partikel &amp;ziehen</translation>
-  </message>
-  <message>
-   <location filename="ui/actions.py" />
-   <source>&amp;Edit</source>
-   <translation>&amp;Bearbeiten</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/explore/__init__.py" />
-   <source>&amp;Enlarge one view</source>
-   <translation>Eine Ansicht &amp;vergrößern</translation>
-  </message>
-  <message>
-   <location filename="ui/actions.py" />
-   <source>&amp;Export dataset …</source>
-   <translation>Datensatz &amp;exportieren …</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/__init__.py" />
-   <source>&amp;Export figure and JSON …</source>
-   <translation>Abbildung und JSON &amp;exportieren …</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/__init__.py" />
-   <source>&amp;Export to DEM programs …</source>
-   <translation>In DEM-Programme &amp;exportieren …</translation>
-  </message>
-  <message>
-   <location filename="ui/actions.py" />
-   <source>&amp;File</source>
-   <translation>&amp;Datei</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/__init__.py" />
-   <source>&amp;Find grains</source>
-   <translation>Körner &amp;finden</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/__init__.py" />
-   <source>&amp;Find representatives</source>
-   <translation>&amp;Repräsentanten finden</translation>
-  </message>
-  <message>
-   <location filename="ui/actions.py" />
-   <source>&amp;Go</source>
-   <translation>&amp;Gehe zu</translation>
-  </message>
-  <message>
-   <location filename="ui/actions.py" />
-   <source>&amp;Help</source>
-   <translation>&amp;Hilfe</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/__init__.py" />
-   <source>&amp;Judge models</source>
-   <translation>Modelle &amp;beurteilen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/__init__.py" />
-   <source>&amp;Keep only these</source>
-   <translation>Nur diese &amp;behalten</translation>
-  </message>
-  <message>
-   <location filename="ui/actions.py" />
-   <source>&amp;Keyboard and mouse</source>
-   <translation>&amp;Tastatur und Maus</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/__init__.py" />
-   <source>&amp;Larger letters</source>
-   <translation>&amp;Größere Schrift</translation>
-  </message>
-  <message>
-   <location filename="ui/actions.py" />
-   <source>&amp;Light</source>
-   <translation>&amp;Hell</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/explore/__init__.py" />
-   <source>&amp;Link cameras</source>
-   <translation>&amp;Kameras koppeln</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/__init__.py" />
-   <source>&amp;Make particles</source>
-   <translation>&amp;Partikel erzeugen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/__init__.py" />
-   <source>&amp;Measure positions …</source>
-   <translation>Positionen &amp;vermessen …</translation>
-  </message>
-  <message>
-   <location filename="ui/actions.py" />
-   <source>&amp;Mend meshes on opening</source>
-   <translation>Netze beim Öffnen &amp;ausbessern</translation>
-  </message>
-  <message>
-   <location filename="ui/actions.py" />
-   <source>&amp;Next page</source>
-   <translation>&amp;Nächste Seite</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/__init__.py" />
-   <source>&amp;Open a dataset …</source>
-   <translation>Datensatz &amp;öffnen …</translation>
-  </message>
-  <message>
-   <location filename="ui/actions.py" />
-   <source>&amp;Open …</source>
-   <translation>Ö&amp;ffnen …</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/explore/__init__.py" />
-   <source>&amp;Overlay</source>
-   <translation>Überla&amp;gern</translation>
-  </message>
-  <message>
-   <location filename="ui/action_spec.py" />
-   <source>&amp;Page</source>
-   <translation>&amp;Seite</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/__init__.py" />
-   <source>&amp;Play or pause</source>
-   <translation>&amp;Abspielen oder anhalten</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/__init__.py" />
-   <source>&amp;Play the run</source>
-   <translation>Lauf &amp;abspielen</translation>
-  </message>
-  <message>
-   <location filename="ui/actions.py" />
-   <source>&amp;Previous page</source>
-   <translation>&amp;Vorherige Seite</translation>
-  </message>
-  <message>
-   <location filename="ui/actions.py" />
-   <source>&amp;Quit</source>
-   <translation>&amp;Beenden</translation>
-  </message>
-  <message>
-   <location filename="ui/actions.py" />
-   <source>&amp;Redo</source>
-   <translation>&amp;Wiederholen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/explore/__init__.py" />
-   <source>&amp;Reset cameras</source>
-   <translation>Kameras &amp;zurücksetzen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/__init__.py" />
-   <source>&amp;Run the test</source>
-   <translation>Versuch durch&amp;führen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/studies/__init__.py" />
-   <source>&amp;Save figures and tables …</source>
-   <translation>Abbildungen und Tabellen &amp;speichern …</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/__init__.py" />
-   <source>&amp;Save model …</source>
-   <translation>Modell &amp;speichern …</translation>
-  </message>
-  <message>
-   <location filename="ui/actions.py" />
-   <source>&amp;Save project</source>
-   <translation>Projekt &amp;speichern</translation>
-  </message>
-  <message>
-   <location filename="ui/actions.py" />
-   <source>&amp;Tasks</source>
-   <translation>A&amp;ufgaben</translation>
-  </message>
-  <message>
-   <location filename="ui/actions.py" />
-   <source>&amp;Theme</source>
-   <translation>&amp;Farbschema</translation>
-  </message>
-  <message>
-   <location filename="ui/actions.py" />
-   <source>&amp;Tour</source>
-   <translation>&amp;Rundgang</translation>
-  </message>
-  <message>
-   <location filename="ui/actions.py" />
-   <source>&amp;Undo</source>
-   <translation>&amp;Rückgängig</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/__init__.py" />
-   <source>&amp;Use as population</source>
-   <translation>Als Population &amp;verwenden</translation>
-  </message>
-  <message>
-   <location filename="ui/actions.py" />
-   <location filename="ui/pages/explore/__init__.py" />
-   <source>&amp;View</source>
-   <translation>&amp;Ansicht</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/explore/__init__.py" />
-   <source>&amp;Wireframe</source>
-   <translation>&amp;Drahtgitter</translation>
-  </message>
-  <message>
-   <source>(3 V / 4π)^(1/3)</source>
-   <translation>(3 V / 4π)^(1/3)</translation>
-  </message>
-  <message>
-   <source>(D_min D_int / D_max²)^(1/3) (Krumbein)</source>
-   <translation>(D_min D_int / D_max²)^(1/3) (Krumbein)</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/statistics.py" />
-   <source>(no group)</source>
-   <translation>(ohne Gruppe)</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/help.py" />
-   <source>(not installed)</source>
-   <translation>(nicht installiert)</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/studies/band_plot.py" />
-   <source>({low:.4g} to {high:.4g})</source>
-   <translation>({low:.4g} bis {high:.4g})</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/setup.py" />
-   <source>* not given in the paper: a choice, yours to change.</source>
-   <translation>* im Artikel nicht angegeben: eine Wahl, die Sie ändern können.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/words.py" />
-   <source>, one that bounds no facet at the moment</source>
-   <translation>, eine, die gerade keine Facette begrenzt</translation>
-  </message>
-  <message>
-   <source>0 for the best number by Bayes' criterion.</source>
-   <translation>0 für die beste Anzahl nach dem Kriterium von Bayes.</translation>
-  </message>
-  <message>
-   <source>0: whole pile</source>
-   <translation>0: der ganze Kegel</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/controls.py" />
-   <source>1  Representatives</source>
-   <translation>1  Repräsentanten</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/steps.py" />
-   <source>1  Volume</source>
-   <translation>1  Volumen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/degrees.py" />
-   <source>1 coefficient</source>
-   <translation>1 Koeffizient</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/health_sentences.py" />
-   <source>1 face has no area.</source>
-   <translation>1 Fläche hat keinen Inhalt.</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/health_sentences.py" />
-   <source>1 face is there twice.</source>
-   <translation>1 Fläche ist doppelt vorhanden.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/page.py" />
-   <source>1 format is written.</source>
-   <translation>1 Format ist geschrieben.</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/sentences.py" />
-   <source>1 grain from 1 connected body</source>
-   <translation>1 Korn aus 1 zusammenhängenden Körper</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/sentences.py" />
-   <source>1 grain from {bodies} connected bodies</source>
-   <translation>1 Korn aus {bodies} zusammenhängenden Körpern</translation>
-  </message>
-  <message>
-   <source>1 m in the file is 1 mm of the particles, coarse graining applied; y up</source>
-   <translation>1 m in der Datei ist 1 mm der Partikel, mit Vergröberungsfaktor; y zeigt nach oben</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/health_sentences.py" />
-   <source>1 pair of faces crosses each other.</source>
-   <translation>1 Paar von Flächen kreuzt sich.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/scatter.py" />
-   <location filename="ui/pages/studies/variation_panel.py" />
-   <location filename="ui/panels/lmax_study.py" />
-   <source>1 particle</source>
-   <translation>1 Partikel</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/controls.py" />
-   <source>1 particle is open.</source>
-   <translation>1 Partikel ist geöffnet.</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/sentences.py" />
-   <source>1 particle; left out: {border} at the border, {small} too small.</source>
-   <translation>1 Partikel; weggelassen: {border} am Rand, {small} zu klein.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/page.py" />
-   <source>1 representative</source>
-   <translation>1 Repräsentant</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/batch.py" />
-   <source>1 worker</source>
-   <translation>1 Arbeitsprozess</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/steps.py" />
-   <source>2  Grains</source>
-   <translation>2  Körner</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/controls.py" />
-   <source>2  Sizes</source>
-   <translation>2  Größen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/health.py" />
-   <source>2 for a closed body without tunnels</source>
-   <translation>2 bei einem geschlossenen Körper ohne Tunnel</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/controls.py" />
-   <source>3  Dataset</source>
-   <translation>3  Datensatz</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/steps.py" />
-   <source>3  Particles</source>
-   <translation>3  Partikel</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/targets.py" />
-   <source>4  Export to</source>
-   <translation>4  Exportieren nach</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/table_view.py" />
-   <source>5th</source>
-   <translation>5.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/table_view.py" />
-   <source>95th</source>
-   <translation>95.</translation>
-  </message>
-  <message>
-   <location filename="ui/views/triptych.py" />
-   <source>; {count} facets were asked for</source>
-   <translation>; {count} Facetten waren verlangt</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/words.py" />
-   <source>&lt;b&gt;Angle of repose {angle:.1f}°&lt;/b&gt; ({low:.1f}° to {high:.1f}°, {count} sections); the paper's two sections: asymmetric {asymmetric:.1f}°, symmetric {symmetric:.1f}°.</source>
-   <translation>&lt;b&gt;Schüttwinkel {angle:.1f}°&lt;/b&gt; ({low:.1f}° bis {high:.1f}°, {count} Schnitte); die zwei Schnitte des Artikels: asymmetrisch {asymmetric:.1f}°, symmetrisch {symmetric:.1f}°.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/targets.py" />
-   <source>&lt;b&gt;Shapes are changed:&lt;/b&gt; {how}</source>
-   <translation>&lt;b&gt;Formen werden verändert:&lt;/b&gt; {how}</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/targets.py" />
-   <source>&lt;b&gt;{label}&lt;/b&gt; does not carry: {lost}.</source>
-   <translation>&lt;b&gt;{label}&lt;/b&gt; überträgt nicht: {lost}.</translation>
-  </message>
-  <message>
-   <source>A</source>
-   <translation>A</translation>
-  </message>
-  <message>
-   <source>A / A of the hull (after Kuo and Freeman)</source>
-   <translation>A / A der Hülle (nach Kuo und Freeman)</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/batch_fields.py" />
-   <source>A Dask cluster at an address</source>
-   <translation>Ein Dask-Cluster an einer Adresse</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/batch_fields.py" />
-   <source>A Dask cluster started on this machine</source>
-   <translation>Ein auf diesem Rechner gestarteter Dask-Cluster</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/page.py" />
-   <source>A card is made of a fitted sample: fit a model to one first.</source>
-   <translation>Eine Karte entsteht aus einer Probe mit Modell: passen Sie zuerst eines an.</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/health_sentences.py" />
-   <source>A closed mesh without faults.</source>
-   <translation>Ein geschlossenes, fehlerfreies Netz.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/study.py" />
-   <source>A dataset is made of the open particles for every value.</source>
-   <translation>Für jeden Wert wird aus den geöffneten Partikeln ein Datensatz gemacht.</translation>
-  </message>
-  <message>
-   <location filename="ui/activity.py" />
-   <source>A dataset was written to {folder}.</source>
-   <translation>Ein Datensatz wurde nach {folder} geschrieben.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/page.py" />
-   <location filename="ui/pages/model/views.py" />
-   <source>A drawn particle</source>
-   <translation>Ein gezogenes Partikel</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/explore/pictures.py" />
-   <source>A figure on white, 1860 × 560 times the scale</source>
-   <translation>Eine Abbildung auf Weiß, 1860 × 560 mal der Maßstab</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/sources.py" />
-   <source>A fitted model: {name}.</source>
-   <translation>Ein angepasstes Modell: {name}.</translation>
-  </message>
-  <message>
-   <source>A of the hull / A of its ellipsoid (after Kuo and Freeman)</source>
-   <translation>A der Hülle / A ihres Ellipsoids (nach Kuo und Freeman)</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/page.py" />
-   <source>A random field has no steps: drag its bars, or draw anew.</source>
-   <translation>Ein Zufallsfeld hat keine Schritte: Balken ziehen oder neu ziehen lassen.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/volume_dialog.py" />
-   <source>A raw file says nothing about itself: how many voxels are in it, and of which type?</source>
-   <translation>Eine Rohdatei sagt nichts über sich: Wie viele Voxel hat sie, und von welchem Typ?</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/batch_fields.py" />
-   <source>A recipe file</source>
-   <translation>Eine Rezeptdatei</translation>
-  </message>
-  <message>
-   <location filename="ui/actions.py" />
-   <source>A script that does the same</source>
-   <translation>Ein Skript, das dasselbe tut</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/page.py" />
-   <source>A simulation of the angle of repose would be stopped.</source>
-   <translation>Eine Simulation des Schüttwinkels würde abgebrochen.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/study_desk.py" />
-   <source>A study of the angle of repose would be stopped; it can go on later.</source>
-   <translation>Eine Studie des Schüttwinkels würde abgebrochen; sie kann später weitergehen.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/histogram_plot.py" />
-   <source>A volume of labels has no histogram of grey values.</source>
-   <translation>Ein Labelvolumen hat kein Histogramm der Grauwerte.</translation>
-  </message>
-  <message>
-   <location filename="ui/actions.py" />
-   <source>A walk through the window</source>
-   <translation>Ein Gang durch das Fenster</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/help.py" />
-   <source>About Regolith Studio</source>
-   <translation>Über Regolith Studio</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/page.py" />
-   <source>About {time} on one core.</source>
-   <translation>Etwa {time} auf einem Kern.</translation>
-  </message>
-  <message>
-   <location filename="ui/activity.py" />
-   <source>Activity</source>
-   <translation>Vorgänge</translation>
-  </message>
-  <message>
-   <source>Adaptive step</source>
-   <translation>Angepasste Schrittweite</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/batch_fields.py" />
-   <source>Address of the scheduler</source>
-   <translation>Adresse des Schedulers</translation>
-  </message>
-  <message>
-   <source>All descriptors</source>
-   <translation>Alle Deskriptoren</translation>
-  </message>
-  <message>
-   <source>All descriptors and overlap</source>
-   <translation>Alle Deskriptoren und Überdeckung</translation>
-  </message>
-  <message>
-   <source>All descriptors of all particles: sort, filter with words such as flat S&lt;0.8, choose several rows, and see them in the scatter plot. Export the table with units.</source>
-   <translation>Alle Deskriptoren aller Partikel: sortieren, mit Wörtern wie flat S&lt;0.8 filtern, mehrere Zeilen wählen und sie im Streudiagramm sehen. Die Tabelle lässt sich mit Einheiten exportieren.</translation>
-  </message>
-  <message>
-   <location filename="ui/commands.py" />
-   <source>All files (*)</source>
-   <translation>Alle Dateien (*)</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/table.py" />
-   <source>All particles</source>
-   <translation>Alle Partikel</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/__init__.py" />
-   <source>All particles: table, scatter plot, health and statistics of groups</source>
-   <translation>Alle Partikel: Tabelle, Streudiagramm, Zustand der Netze und Statistik der Gruppen</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/shortcuts.py" />
-   <source>All usual keys</source>
-   <translation>Alle üblichen Tasten</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/export.py" />
-   <source>Also</source>
-   <translation>Außerdem</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/spectrum.py" />
-   <source>Amplitude √A&lt;sub&gt;l&lt;/sub&gt; / c&lt;sub&gt;00&lt;/sub&gt; [%]</source>
-   <translation>Amplitude √A&lt;sub&gt;l&lt;/sub&gt; / c&lt;sub&gt;00&lt;/sub&gt; [%]</translation>
-  </message>
-  <message>
-   <location filename="ui/widgets/spectrum_editor.py" />
-   <source>Amplitude √A&lt;sub&gt;l&lt;/sub&gt; / μ [%]</source>
-   <translation>Amplitude √A&lt;sub&gt;l&lt;/sub&gt; / μ [%]</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/batch_fields.py" />
-   <source>An encrypted cluster needs a folder with {names}.</source>
-   <translation>Ein verschlüsselter Cluster braucht einen Ordner mit {names}.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/__init__.py" />
-   <source>And back</source>
-   <translation>Und zurück</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/explore/__init__.py" />
-   <source>And what it cannot see</source>
-   <translation>Und was er nicht sieht</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/runs.py" />
-   <location filename="ui/pages/repose/study.py" />
-   <source>Angle</source>
-   <translation>Winkel</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/runs.py" />
-   <location filename="ui/pages/repose/study.py" />
-   <source>Angle [°]</source>
-   <translation>Winkel [°]</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/__init__.py" />
-   <source>Angle of repose</source>
-   <translation>Schüttwinkel</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/page.py" />
-   <source>Angle of repose, {count:,} particles</source>
-   <translation>Schüttwinkel, {count:,} Partikel</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/study_desk.py" />
-   <source>Angle of repose: study</source>
-   <translation>Schüttwinkel: Studie</translation>
-  </message>
-  <message>
-   <source>Angularity</source>
-   <translation>Kantigkeit</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/annealing.py" />
-   <location filename="ui/pages/lecture/page.py" />
-   <source>Annealing</source>
-   <translation>Abkühlung</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/page.py" />
-   <source>Annealing step by step</source>
-   <translation>Abkühlung Schritt für Schritt</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/__init__.py" />
-   <source>Annealing step by step, l_max growing, a random field on the sphere; large letters</source>
-   <translation>Simuliertes Abkühlen Schritt für Schritt, wachsendes l_max, ein Zufallsfeld auf der Kugel; in großer Schrift</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/annealing.py" />
-   <source>Annealing, step {number} of {count}</source>
-   <translation>Abkühlung, Schritt {number} von {count}</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/views.py" />
-   <source>Another particle</source>
-   <translation>Anderes Partikel</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/__init__.py" />
-   <location filename="ui/pages/lecture/page.py" />
-   <source>Another seed</source>
-   <translation>Anderer Startwert</translation>
-  </message>
-  <message>
-   <location filename="ui/actions.py" />
-   <source>Any command by a few letters</source>
-   <translation>Jeder Befehl nach wenigen Buchstaben</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/health.py" />
-   <source>Area of the triangles that close holes</source>
-   <translation>Fläche der Dreiecke, die Löcher schließen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/__init__.py" />
-   <source>As a CSV file</source>
-   <translation>Als CSV-Datei</translation>
-  </message>
-  <message>
-   <source>As given</source>
-   <translation>Wie vorgegeben</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/setup.py" />
-   <source>As given (experimental)</source>
-   <translation>Wie vorgegeben (experimentell)</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/controls.py" />
-   <source>As measured</source>
-   <translation>Wie gemessen</translation>
-  </message>
-  <message>
-   <location filename="ui/actions.py" />
-   <source>As the &amp;system</source>
-   <translation>Wie das &amp;System</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/volume_dialog.py" />
-   <source>As the file says, else slices first (z, y, x)</source>
-   <translation>Wie die Datei sagt, sonst Schichten zuerst (z, y, x)</translation>
-  </message>
-  <message>
-   <location filename="ui/widgets/preset_form.py" />
-   <source>As the paper gives them; a star where it gives none</source>
-   <translation>Wie im Artikel; ein Stern, wo er nichts angibt</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/preferences.py" />
-   <location filename="ui/translation/language.py" />
-   <source>As the system</source>
-   <translation>Wie das System</translation>
-  </message>
-  <message>
-   <source>Aspect ratio</source>
-   <translation>Seitenverhältnis</translation>
-  </message>
-  <message>
-   <source>Aspect ratio and overlap</source>
-   <translation>Seitenverhältnis und Überdeckung</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/particle_list.py" />
-   <source>Aspect ratio, Eq. 2</source>
-   <translation>Seitenverhältnis, Gl. 2</translation>
-  </message>
-  <message>
-   <source>At most</source>
-   <translation>Höchstens</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/words.py" />
-   <source>At {symbol} = {degree} the series has a negative radius somewhere: it is no surface.</source>
-   <translation>Bei {symbol} = {degree} hat die Reihe irgendwo einen negativen Radius: sie ist keine Oberfläche.</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/fit.py" />
-   <source>Automatic</source>
-   <translation>Automatisch</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/volume_dialog.py" />
-   <source>Axes</source>
-   <translation>Achsen</translation>
-  </message>
-  <message>
-   <location filename="ui/tour.py" />
-   <source>Back</source>
-   <translation>Zurück</translation>
-  </message>
-  <message>
-   <source>Back (from +y)</source>
-   <translation>Hinten (von +y)</translation>
-  </message>
-  <message>
-   <location filename="ui/widgets/preset_bar.py" />
-   <source>Back to the values of the preset</source>
-   <translation>Zurück zu den Werten der Vorlage</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/page.py" />
-   <source>Before the fall</source>
-   <translation>Vor dem Fall</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/health_sentences.py" />
-   <source>Being measured …</source>
-   <translation>Wird vermessen …</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/fit.py" />
-   <source>Best-fit ellipsoid</source>
-   <translation>Angepasstes Ellipsoid</translation>
-  </message>
-  <message>
-   <source>Bin width, in mean d</source>
-   <translation>Klassenbreite, in mittleren d</translation>
-  </message>
-  <message>
-   <source>Blocks of the cylinder</source>
-   <translation>Blöcke des Zylinders</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/health.py" />
-   <source>Bodies</source>
-   <translation>Körper</translation>
-  </message>
-  <message>
-   <source>Bootstrap seed</source>
-   <translation>Startwert des Bootstraps</translation>
-  </message>
-  <message>
-   <source>Bottom (from -z)</source>
-   <translation>Unten (von -z)</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/controls.py" />
-   <source>Boundary</source>
-   <translation>Grenze</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/studies/rows_bar.py" />
-   <source>Bounding box</source>
-   <translation>Hüllquader</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/studies/rows_bar.py" />
-   <source>Bounding box of the diameters</source>
-   <translation>Hüllquader der Durchmesser</translation>
-  </message>
-  <message>
-   <location filename="session/session.py" />
-   <source>Bringing particles back</source>
-   <translation>Partikel werden zurückgeholt</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/batch_fields.py" />
-   <location filename="ui/dialogs/export.py" />
-   <source>Browse …</source>
-   <translation>Durchsuchen …</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/page.py" />
-   <source>Build the dataset in this folder</source>
-   <translation>Den Datensatz in diesem Ordner bauen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/controls.py" />
-   <source>Build the dataset …</source>
-   <translation>Datensatz bauen …</translation>
-  </message>
-  <message>
-   <location filename="session/session.py" />
-   <location filename="ui/pages/dataset/page.py" />
-   <source>Building the dataset</source>
-   <translation>Datensatz wird gebaut</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/controls.py" />
-   <source>Bump that is a grain of its own, in voxels</source>
-   <translation>Höcker, der ein eigenes Korn ist, in Voxeln</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/controls.py" />
-   <source>By hand: drag the line</source>
-   <translation>Von Hand: Linie ziehen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/judgement.py" />
-   <source>By number (Fig. 4)</source>
-   <translation>Anzahl (Abb. 4)</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/judgement.py" />
-   <source>By volume (Fig. 5)</source>
-   <translation>Volumen (Abb. 5)</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/volume_dialog.py" />
-   <source>Byte order</source>
-   <translation>Bytefolge</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/volume_dialog.py" />
-   <source>Bytes before</source>
-   <translation>Bytes davor</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/volume_dialog.py" />
-   <source>Bytes before the first voxel</source>
-   <translation>Bytes vor dem ersten Voxel</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/studies/__init__.py" />
-   <source>CSV, JSON, PNG, SVG</source>
-   <translation>CSV, JSON, PNG, SVG</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/coarsening.py" />
-   <location filename="ui/views/triptych.py" />
-   <source>CT particle</source>
-   <translation>CT-Partikel</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/degrees.py" />
-   <location filename="ui/pages/sample/page.py" />
-   <location filename="ui/views/triptych.py" />
-   <source>CT particle, {name}</source>
-   <translation>CT-Partikel, {name}</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/files.py" />
-   <source>Cards (*.json)</source>
-   <translation>Karten (*.json)</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/targets.py" />
-   <source>Carries: {what}</source>
-   <translation>Überträgt: {what}</translation>
-  </message>
-  <message>
-   <source>Cement 116 (synthetic)</source>
-   <translation>Zement 116 (synthetisch)</translation>
-  </message>
-  <message>
-   <source>Cement 133 (synthetic)</source>
-   <translation>Zement 133 (synthetisch)</translation>
-  </message>
-  <message>
-   <source>Cement 141 (synthetic)</source>
-   <translation>Zement 141 (synthetisch)</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/unit.py" />
-   <source>Centimetres (cm)</source>
-   <translation>Zentimeter (cm)</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/fit.py" />
-   <source>Centre of mass</source>
-   <translation>Schwerpunkt</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/fit.py" />
-   <source>Centre of the kernel</source>
-   <translation>Mitte des Kerns</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/batch_fields.py" />
-   <source>Certificates</source>
-   <translation>Zertifikate</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/shortcuts.py" />
-   <source>Change</source>
-   <translation>Ändern</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/studies/change_table.py" />
-   <source>Changes of errors in percentage points</source>
-   <translation>Änderungen der Fehler in Prozentpunkten</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/words.py" />
-   <source>Checked: {count:,} particles, overlap at most {overlap:.1f} % of d</source>
-   <translation>Geprüft: {count:,} Partikel, Überlappung höchstens {overlap:.1f} % von d</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/page.py" />
-   <source>Checking the dataset</source>
-   <translation>Datensatz wird geprüft</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/runs.py" />
-   <source>Checks</source>
-   <translation>Prüfung</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/setup.py" />
-   <source>Choose a dataset folder</source>
-   <translation>Einen Datensatzordner wählen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/player.py" />
-   <source>Choose a dataset to see the cylinder filled.</source>
-   <translation>Wählen Sie einen Datensatz, um den gefüllten Zylinder zu sehen.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/library.py" />
-   <source>Choose a folder: the datasets below it are listed here, with what was exported and simulated from each.</source>
-   <translation>Wählen Sie einen Ordner: die Datensätze darin werden hier aufgeführt, mit allem, was aus ihnen exportiert und simuliert wurde.</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/batch_fields.py" />
-   <source>Choose a recipe file.</source>
-   <translation>Wählen Sie eine Rezeptdatei.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/study.py" />
-   <source>Choose it to see the run.</source>
-   <translation>Wählen Sie die Zeile, um den Lauf zu sehen.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/__init__.py" />
-   <source>Choose representative particles, build a dataset, export it to DEM programs</source>
-   <translation>Repräsentative Partikel wählen, einen Datensatz bauen, in DEM-Programme exportieren</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/__init__.py" />
-   <source>Choose the dataset to simulate</source>
-   <translation>Den Datensatz der Simulation wählen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/page.py" />
-   <source>Choose the rows to keep first.</source>
-   <translation>Wählen Sie zuerst die Zeilen, die bleiben sollen.</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/batch.py" />
-   <source>Choose what is to be written.</source>
-   <translation>Wählen Sie, was geschrieben werden soll.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/page.py" />
-   <source>Choosing representatives</source>
-   <translation>Repräsentanten werden gewählt</translation>
-  </message>
-  <message>
-   <source>Chosen weights</source>
-   <translation>Gewählte Gewichte</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/judgement.py" />
-   <source>Classifier</source>
-   <translation>Klassifikator</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/__init__.py" />
-   <source>Clear &amp;filter</source>
-   <translation>&amp;Filter leeren</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/steps.py" />
-   <source>Click into a slice to move the frame.</source>
-   <translation>Ein Klick in ein Schichtbild verschiebt den Rahmen.</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/closing.py" />
-   <source>Close Regolith Studio?</source>
-   <translation>Regolith Studio schließen?</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/__init__.py" />
-   <source>Close all particles but the chosen rows</source>
-   <translation>Alle Partikel außer den gewählten Zeilen schließen</translation>
-  </message>
-  <message>
-   <location filename="ui/widgets/toast.py" />
-   <source>Close this message</source>
-   <translation>Diese Meldung schließen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/health.py" />
-   <source>Closed</source>
-   <translation>Geschlossen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/controls.py" />
-   <source>Closes cracks and thin gaps, in voxels.</source>
-   <translation>Schließt Risse und schmale Lücken, in Voxeln.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/controls.py" />
-   <source>Closing</source>
-   <translation>Schließen</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/closing.py" />
-   <source>Closing the window stops it.</source>
-   <translation>Das Schließen des Fensters bricht das ab.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/targets.py" />
-   <source>Coarse graining</source>
-   <translation>Vergröberung</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/targets.py" />
-   <source>Coarse-graining factor</source>
-   <translation>Vergröberungsfaktor</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/setup.py" />
-   <source>Coarsen the open particles first</source>
-   <translation>Zuerst die geöffneten Partikel vergröbern</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/coarsening.py" />
-   <source>Coarsened polyhedron</source>
-   <translation>Vergröbertes Polyeder</translation>
-  </message>
-  <message>
-   <location filename="jobs/coarsening.py" />
-   <source>Coarsening</source>
-   <translation>Vergröberung</translation>
-  </message>
-  <message>
-   <location filename="session/solids.py" />
-   <location filename="ui/pages/studies/page.py" />
-   <source>Coarsening for the gallery</source>
-   <translation>Vergröberung für die Galerie</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/coarsening.py" />
-   <source>Coarsening method</source>
-   <translation>Verfahren der Vergröberung</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/setup.py" />
-   <location filename="ui/pages/repose/study.py" />
-   <source>Cohesion</source>
-   <translation>Kohäsion</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/health.py" />
-   <source>Colours the faults in the picture, as they were before the mesh was mended</source>
-   <translation>Färbt die Mängel im Bild, wie sie vor der Reparatur waren</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/command_palette.py" />
-   <location filename="ui/dialogs/shortcuts.py" />
-   <source>Command</source>
-   <translation>Befehl</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/command_palette.py" />
-   <source>Commands</source>
-   <translation>Befehle</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/shortcuts.py" />
-   <source>Commands and their keys</source>
-   <translation>Befehle und ihre Tasten</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/command_palette.py" />
-   <source>Commands that fit</source>
-   <translation>Passende Befehle</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/runs.py" />
-   <source>Compare the angle against</source>
-   <translation>Den Winkel vergleichen über</translation>
-  </message>
-  <message>
-   <location filename="ui/views/comparison.py" />
-   <source>Compare the fit with</source>
-   <translation>Den Fit vergleichen mit</translation>
-  </message>
-  <message>
-   <location filename="ui/views/comparison.py" />
-   <source>Compare the particle with</source>
-   <translation>Das Partikel vergleichen mit</translation>
-  </message>
-  <message>
-   <location filename="ui/views/comparison.py" />
-   <source>Compare the polyhedron with</source>
-   <translation>Das Polyeder vergleichen mit</translation>
-  </message>
-  <message>
-   <location filename="jobs/comparing.py" />
-   <location filename="ui/pages/model/page.py" />
-   <source>Comparing distributions</source>
-   <translation>Verteilungen werden verglichen</translation>
-  </message>
-  <message>
-   <source>Compiling</source>
-   <translation>Übersetzen des Programms</translation>
-  </message>
-  <message>
-   <location filename="ui/widgets/study_frame.py" />
-   <source>Compute</source>
-   <translation>Berechnen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/studies/page.py" />
-   <source>Compute a study first.</source>
-   <translation>Berechnen Sie zuerst eine Studie.</translation>
-  </message>
-  <message>
-   <location filename="ui/widgets/study_frame.py" />
-   <source>Compute for all {count} particles</source>
-   <translation>Für alle {count} Partikel berechnen</translation>
-  </message>
-  <message>
-   <location filename="ui/widgets/study_frame.py" />
-   <source>Compute for this particle</source>
-   <translation>Für dieses Partikel berechnen</translation>
-  </message>
-  <message>
-   <source>Confidence</source>
-   <translation>Vertrauensbereich</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/controls.py" />
-   <source>Constituents of the mixture, separated by commas, the most numerous first.</source>
-   <translation>Komponenten der Mischung, durch Kommas getrennt, die häufigste zuerst.</translation>
-  </message>
-  <message>
-   <source>Constituents with sizes and spectra of their own; their number by Bayes' criterion.</source>
-   <translation>Komponenten mit eigenen Größen und Spektren; ihre Anzahl nach dem Kriterium von Bayes.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/setup.py" />
-   <source>Contact (Table 1)</source>
-   <translation>Kontakt (Tabelle 1)</translation>
-  </message>
-  <message>
-   <source>Contact time in steps</source>
-   <translation>Kontaktzeit in Schritten</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/steps.py" />
-   <source>Contour each grain and open it as a particle</source>
-   <translation>Die Oberfläche jedes Korns bilden und es als Partikel öffnen</translation>
-  </message>
-  <message>
-   <source>Convex hull instead of volume</source>
-   <translation>Konvexe Hülle statt Volumen</translation>
-  </message>
-  <message>
-   <source>Convex hull volume</source>
-   <translation>Volumen der konvexen Hülle</translation>
-  </message>
-  <message>
-   <source>Convexity</source>
-   <translation>Konvexität</translation>
-  </message>
-  <message>
-   <source>Cooling γ</source>
-   <translation>Abkühlung γ</translation>
-  </message>
-  <message>
-   <location filename="ui/actions.py" />
-   <source>Copy as &amp;Python</source>
-   <translation>Als &amp;Python kopieren</translation>
-  </message>
-  <message>
-   <location filename="ui/actions.py" />
-   <source>Copy as co&amp;mmand</source>
-   <translation>Als &amp;Kommando kopieren</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/targets.py" />
-   <source>Copy load command</source>
-   <translation>Ladebefehl kopieren</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/log.py" />
-   <location filename="ui/widgets/toast.py" />
-   <source>Copy report</source>
-   <translation>Bericht kopieren</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/__init__.py" />
-   <source>Copy the rows for a spreadsheet</source>
-   <translation>Die Zeilen für eine Tabellenkalkulation kopieren</translation>
-  </message>
-  <message>
-   <source>Corey shape factor</source>
-   <translation>Formfaktor nach Corey</translation>
-  </message>
-  <message>
-   <source>Correct for grain size</source>
-   <translation>Um die Korngröße berichtigen</translation>
-  </message>
-  <message>
-   <source>Coulomb friction against rolling and spinning</source>
-   <translation>Coulomb-Reibung gegen Rollen und Bohren</translation>
-  </message>
-  <message>
-   <source>Coulomb friction in an elliptic cone, one coefficient (the static one)</source>
-   <translation>Coulomb-Reibung in elliptischem Kegel, ein Beiwert (der der Haftreibung)</translation>
-  </message>
-  <message>
-   <source>Coulomb friction while sliding, one coefficient (the static one), no memory at rest</source>
-   <translation>Coulomb-Reibung beim Gleiten, ein Beiwert (der der Haftreibung), kein Gedächtnis in Ruhe</translation>
-  </message>
-  <message>
-   <source>Counting grey values</source>
-   <translation>Grauwerte werden gezählt</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/explore/__init__.py" />
-   <source>Cross-s&amp;ection</source>
-   <translation>&amp;Querschnitt</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/explore/section_panel.py" />
-   <source>Cross-section</source>
-   <translation>Querschnitt</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/health.py" />
-   <source>Crossing pairs</source>
-   <translation>Kreuzende Paare</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/shortcuts.py" />
-   <source>Ctrl + drag</source>
-   <translation>Strg + Ziehen</translation>
-  </message>
-  <message>
-   <source>Ctrl+Shift+P finds any command by a few letters, Ctrl+Z takes back any choice, Ctrl+S keeps the project. The tour is in the Help menu. Have fun with the grains.</source>
-   <translation>Strg+Umschalt+P findet jeden Befehl nach wenigen Buchstaben, Strg+Z nimmt jede Wahl zurück, Strg+S sichert das Projekt. Der Rundgang steht im Menü Hilfe. Viel Freude mit den Körnern!</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/explore/__init__.py" />
-   <source>Cut all views</source>
-   <translation>Alle Ansichten schneiden</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/health_sentences.py" />
-   <source>Cut out {count} faces that made the surface one-sided.</source>
-   <translation>{count} Flächen, die die Oberfläche einseitig machten, wurden herausgeschnitten.</translation>
-  </message>
-  <message>
-   <source>Cylinder diameter</source>
-   <translation>Zylinderdurchmesser</translation>
-  </message>
-  <message>
-   <source>Cylinder height</source>
-   <translation>Zylinderhöhe</translation>
-  </message>
-  <message>
-   <source>D_int / D_max (Zingg)</source>
-   <translation>D_int / D_max (Zingg)</translation>
-  </message>
-  <message>
-   <source>D_max / D_min</source>
-   <translation>D_max / D_min</translation>
-  </message>
-  <message>
-   <source>D_min / D_int (Zingg)</source>
-   <translation>D_min / D_int (Zingg)</translation>
-  </message>
-  <message>
-   <source>D_min / √(D_max D_int) (Corey)</source>
-   <translation>D_min / √(D_max D_int) (Corey)</translation>
-  </message>
-  <message>
-   <source>Damping</source>
-   <translation>Dämpfung</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/preferences.py" />
-   <source>Dark</source>
-   <translation>Dunkel</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/batch.py" />
-   <location filename="ui/pages/dataset/__init__.py" />
-   <location filename="ui/pages/repose/setup.py" />
-   <source>Dataset</source>
-   <translation>Datensatz</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/fit.py" />
-   <source>Degree at which the series of Eq. 4 is cut: 0 is a sphere; the paper uses 10.</source>
-   <translation>Grad, bei dem die Reihe von Gl. 4 abbricht: 0 ist eine Kugel; der Artikel nimmt 10.</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/spectrum.py" />
-   <location filename="ui/widgets/spectrum_editor.py" />
-   <source>Degree l</source>
-   <translation>Grad l</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/degrees.py" />
-   <source>Degree l&lt;sub&gt;max&lt;/sub&gt;</source>
-   <translation>Grad l&lt;sub&gt;max&lt;/sub&gt;</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/controls.py" />
-   <source>Degree of the particles</source>
-   <translation>Grad der Partikel</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/page.py" />
-   <source>Degrees of the fit</source>
-   <translation>Grade des Fits</translation>
-  </message>
-  <message>
-   <location filename="ui/widgets/preset_bar.py" />
-   <source>Delete this preset</source>
-   <translation>Diese Vorlage löschen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/controls.py" />
-   <source>Denoise</source>
-   <translation>Entrauschen</translation>
-  </message>
-  <message>
-   <source>Denoising</source>
-   <translation>Rauschunterdrückung</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/distributions.py" />
-   <location filename="ui/pages/model/table_view.py" />
-   <location filename="ui/panels/error_bars.py" />
-   <source>Descriptor</source>
-   <translation>Deskriptor</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/statistics.py" />
-   <source>Descriptor of the statistics</source>
-   <translation>Deskriptor der Statistik</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/batch.py" />
-   <location filename="ui/pages/explore/plot_area.py" />
-   <location filename="ui/panels/descriptor_table.py" />
-   <source>Descriptors</source>
-   <translation>Deskriptoren</translation>
-  </message>
-  <message>
-   <location filename="ui/widgets/toast.py" />
-   <source>Details</source>
-   <translation>Einzelheiten</translation>
-  </message>
-  <message>
-   <location filename="ui/widgets/toast.py" />
-   <source>Details …</source>
-   <translation>Einzelheiten …</translation>
-  </message>
-  <message>
-   <source>Deviation in ln r_eq.</source>
-   <translation>Abweichung in ln r_eq.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/export.py" />
-   <source>Diameter</source>
-   <translation>Durchmesser</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/controls.py" />
-   <source>Diameter in µm = share; @volume behind it counts volume.</source>
-   <translation>Durchmesser in µm = Anteil; mit @volume dahinter zählt das Volumen.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/studies/rows_bar.py" />
-   <source>Diameters and aspect ratio come from this box. The heuristic of the paper's program is no minimum; it is here to compare numbers.</source>
-   <translation>Durchmesser und Seitenverhältnis kommen aus diesem Quader. Die Heuristik im Programm des Artikels ist kein Minimum; sie steht hier zum Vergleich der Zahlen.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/controls.py" />
-   <source>Diameters in µm; each particle moves to the nearest (Table 1 of the paper).</source>
-   <translation>Durchmesser in µm; jedes Partikel rückt zum nächsten (Tabelle 1 des Artikels).</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/explore/section_panel.py" />
-   <source>Direction of the section</source>
-   <translation>Richtung des Schnitts</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/explore/section_panel.py" />
-   <source>Distance from the middle of the particle; the frame in the views can be dragged as well.</source>
-   <translation>Abstand von der Mitte des Partikels; auch der Rahmen in den Ansichten lässt sich ziehen.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/plots.py" />
-   <source>Distance to the population [deviations]</source>
-   <translation>Abstand zur Population [Abweichungen]</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/judgement.py" />
-   <source>Distances</source>
-   <translation>Abstände</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/page.py" />
-   <source>Distributions</source>
-   <translation>Verteilungen</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/fit.py" />
-   <source>Divide by</source>
-   <translation>Bezug</translation>
-  </message>
-  <message>
-   <location filename="ui/tour.py" />
-   <source>Done</source>
-   <translation>Fertig</translation>
-  </message>
-  <message>
-   <location filename="ui/batches.py" />
-   <source>Done: {count} files in {folder}.</source>
-   <translation>Fertig: {count} Dateien in {folder}.</translation>
-  </message>
-  <message>
-   <source>Drag it. At 0 the fit is a sphere, at 10 it keeps what the paper keeps, at 30 nearly everything. The series of Eq. 4 is cut here.</source>
-   <translation>Ziehen Sie daran. Bei 0 ist der Fit eine Kugel, bei 10 behält er, was der Artikel behält, bei 30 fast alles. Hier wird die Reihe von Gl. 4 abgebrochen.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/controls.py" />
-   <source>Draw</source>
-   <translation>Ziehen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/field.py" />
-   <source>Draw anew</source>
-   <translation>Neu ziehen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/controls.py" />
-   <source>Draw particles</source>
-   <translation>Partikel ziehen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/distributions.py" />
-   <source>Draw particles: their distributions appear here, over those of the measured ones.</source>
-   <translation>Ziehen Sie Partikel: ihre Verteilungen erscheinen hier, über denen der gemessenen.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/studies/page.py" />
-   <source>Draw the polyhedra of this particle</source>
-   <translation>Die Polyeder dieses Partikels zeichnen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/studies/page.py" />
-   <source>Draw the polyhedra of {count} particles</source>
-   <translation>Die Polyeder von {count} Partikeln zeichnen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/__init__.py" />
-   <source>Draw virtual particles with the shapes and sizes of a sample</source>
-   <translation>Virtuelle Partikel mit den Formen und Größen einer Probe ziehen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/field.py" />
-   <source>Draw {number}. The radius strays by {found:.1%} from its mean; {expected:.1%} is expected over many draws. Degree {loudest} is the strongest: {share:.2g} %.</source>
-   <translation>Ziehung {number}. Der Radius weicht um {found:.1%} von seinem Mittel ab; über viele Ziehungen sind {expected:.1%} zu erwarten. Grad {loudest} ist der stärkste: {share:.2g} %.</translation>
-  </message>
-  <message>
-   <location filename="jobs/generating.py" />
-   <source>Drawing</source>
-   <translation>Ziehung läuft</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/page.py" />
-   <location filename="ui/pages/model/page.py" />
-   <location filename="ui/pages/repose/page.py" />
-   <source>Drawing particles</source>
-   <translation>Partikel werden gezogen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/explore/pictures.py" />
-   <source>Drawing the animation</source>
-   <translation>Animation wird gezeichnet</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/explore/pictures.py" />
-   <source>Drawing the figure</source>
-   <translation>Abbildung wird gezeichnet</translation>
-  </message>
-  <message>
-   <location filename="jobs/fitting.py" />
-   <source>Drawing the fit</source>
-   <translation>Fit wird gezeichnet</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/explore/pictures.py" />
-   <source>Drawing the turntable</source>
-   <translation>Drehung wird gezeichnet</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/judgement.py" />
-   <source>Draws thrown away</source>
-   <translation>Verworfene Ziehungen</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/particle_list.py" />
-   <source>Drop mesh files or folders anywhere in the window to open them.</source>
-   <translation>Netzdateien oder Ordner irgendwo im Fenster ablegen, um sie zu öffnen.</translation>
-  </message>
-  <message>
-   <source>Dynamic friction</source>
-   <translation>Gleitreibung</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/__init__.py" />
-   <source>E&amp;xport table …</source>
-   <translation>Tabelle &amp;exportieren …</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/controls.py" />
-   <location filename="ui/pages/model/distributions.py" />
-   <source>Each particle counts the same</source>
-   <translation>Jedes Partikel zählt gleich</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/study.py" />
-   <source>Each run adds a point.</source>
-   <translation>Jeder Lauf fügt einen Punkt hinzu.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/studies/rows_bar.py" />
-   <source>Each term alone</source>
-   <translation>Jeder Term allein</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/export.py" />
-   <source>Each with</source>
-   <translation>Jedes mit</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/shown.py" />
-   <source>Each with {fineness}; method: {method}; chosen on the page Explore.</source>
-   <translation>Jedes Polyeder mit {fineness}; Verfahren: {method}; gewählt auf der Seite Erkunden.</translation>
-  </message>
-  <message>
-   <source>Earth</source>
-   <translation>Erde</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/unit.py" />
-   <source>Edge of a voxel</source>
-   <translation>Kante eines Voxels</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/volume_dialog.py" />
-   <source>Edge of a voxel along {axis}</source>
-   <translation>Kante eines Voxels entlang {axis}</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/unit.py" />
-   <source>Edge of a voxel in micrometres</source>
-   <translation>Kante eines Voxels in Mikrometern</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/health.py" />
-   <source>Edges of one triangle: the rims of holes</source>
-   <translation>Kanten nur eines Dreiecks: die Ränder von Löchern</translation>
-  </message>
-  <message>
-   <source>Elongation</source>
-   <translation>Elongation</translation>
-  </message>
-  <message>
-   <location filename="ui/tour.py" />
-   <source>End tour</source>
-   <translation>Beenden</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/judgement.py" />
-   <source>Energy</source>
-   <translation>Energie</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/table_view.py" />
-   <source>Energy distance</source>
-   <translation>Energiedistanz</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/runs.py" />
-   <location filename="ui/pages/repose/setup.py" />
-   <source>Engine</source>
-   <translation>Rechenkern</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/engine_panel.py" />
-   <location filename="ui/pages/repose/page.py" />
-   <source>Engines</source>
-   <translation>Rechenkerne</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/degrees.py" />
-   <source>Eq. 4 with its numbers</source>
-   <translation>Gl. 4 mit ihren Zahlen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/annealing.py" />
-   <source>Eq. 9 of the exact method</source>
-   <translation>Gl. 9 des exakten Verfahrens</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/annealing.py" />
-   <source>Eq. 9 with its numbers</source>
-   <translation>Gl. 9 mit ihren Zahlen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/plots.py" />
-   <source>Equivalent diameter [µm]</source>
-   <translation>Äquivalentdurchmesser [µm]</translation>
-  </message>
-  <message>
-   <source>Equivalent radius</source>
-   <translation>Äquivalentradius</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/degrees.py" />
-   <source>Error [%]</source>
-   <translation>Fehler [%]</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/studies/page.py" />
-   <source>Error against l&lt;sub&gt;max&lt;/sub&gt; (Fig. 3)</source>
-   <translation>Fehler gegen l&lt;sub&gt;max&lt;/sub&gt; (Bild 3)</translation>
-  </message>
-  <message>
-   <source>Error against the number of facets</source>
-   <translation>Fehler gegen die Anzahl der Facetten</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/studies/page.py" />
-   <source>Error of coarsened particles</source>
-   <translation>Fehler vergröberter Partikel</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/coarsening.py" />
-   <source>Error ≤</source>
-   <translation>Fehler ≤</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/explore/plot_area.py" />
-   <source>Errors</source>
-   <translation>Fehler</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/studies/__init__.py" />
-   <source>Errors against l_max, facets and weights, and what the polyhedra look like</source>
-   <translation>Fehler gegen l_max, Facetten und Gewichte, und wie die Polyeder aussehen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/health.py" />
-   <source>Euler number</source>
-   <translation>Euler-Zahl</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/setup.py" />
-   <source>Evaluation (section 3.3)</source>
-   <translation>Auswertung (Abschnitt 3.3)</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/health.py" />
-   <source>Every edge belongs to exactly two triangles</source>
-   <translation>Jede Kante gehört zu genau zwei Dreiecken</translation>
-  </message>
-  <message>
-   <source>Every open particle. Click a row to put it on screen; the arrow keys walk through the list. The icon tells the health of the mesh. Drop your own files anywhere in the window.</source>
-   <translation>Alle geöffneten Partikel. Ein Klick auf eine Zeile zeigt eines davon; die Pfeiltasten wandern durch die Liste. Das Symbol sagt, wie gesund das Netz ist. Eigene Dateien lassen sich irgendwo im Fenster ablegen.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/study_desk.py" />
-   <source>Every run is kept in {folder}.</source>
-   <translation>Jeder Lauf wird in {folder} aufbewahrt.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/studies/__init__.py" />
-   <source>Every study and the gallery</source>
-   <translation>Alle Studien und die Galerie</translation>
-  </message>
-  <message>
-   <source>Exact descriptors</source>
-   <translation>Exakte Deskriptoren</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/annealing.py" />
-   <source>Exact method</source>
-   <translation>Exaktes Verfahren</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/annealing.py" />
-   <source>Exact method:</source>
-   <translation>Exaktes Verfahren:</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/explore/__init__.py" />
-   <source>Explore</source>
-   <translation>Erkunden</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/export.py" />
-   <source>Export</source>
-   <translation>Exportieren</translation>
-  </message>
-  <message>
-   <location filename="ui/actions.py" />
-   <source>Export a DEM dataset</source>
-   <translation>Einen DEM-Datensatz exportieren</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/export.py" />
-   <source>Export dataset</source>
-   <translation>Datensatz exportieren</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/export.py" />
-   <source>Export figure and JSON</source>
-   <translation>Abbildung und JSON exportieren</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/page.py" />
-   <source>Export into this folder</source>
-   <translation>In diesen Ordner exportieren</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/page.py" />
-   <source>Export table</source>
-   <translation>Tabelle exportieren</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/targets.py" />
-   <source>Export …</source>
-   <translation>Exportieren …</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/page.py" />
-   <source>Exported</source>
-   <translation>Exportiert</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/page.py" />
-   <source>Exporting</source>
-   <translation>Export</translation>
-  </message>
-  <message>
-   <location filename="jobs/extracting.py" />
-   <source>Extracting particles</source>
-   <translation>Partikel werden herausgelöst</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/__init__.py" />
-   <source>F&amp;ull screen</source>
-   <translation>Voll&amp;bild</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/studies/page.py" />
-   <location filename="ui/pages/studies/variation_panel.py" />
-   <source>Facets</source>
-   <translation>Facetten</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/health.py" />
-   <source>Faces without area</source>
-   <translation>Flächen ohne Inhalt</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/runs.py" />
-   <source>Facets a particle</source>
-   <translation>Facetten je Partikel</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/coarsening.py" />
-   <source>Facets n</source>
-   <translation>Facetten n</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/study.py" />
-   <source>Facets of the open particles</source>
-   <translation>Facetten der geöffneten Partikel</translation>
-  </message>
-  <message>
-   <source>Factors on one weight at a time</source>
-   <translation>Faktoren auf je ein Gewicht</translation>
-  </message>
-  <message>
-   <source>Factors on the weight of the overlap</source>
-   <translation>Faktoren auf das Gewicht der Überdeckung</translation>
-  </message>
-  <message>
-   <source>Fewer facets make a faster simulation. The views say how many facets, vertices and triangles the polyhedron really has, and a sentence appears here if a wish cannot be met.</source>
-   <translation>Weniger Facetten machen die Simulation schneller. Über der Ansicht steht, wie viele Facetten, Ecken und Dreiecke das Polyeder wirklich hat; hier erscheint ein Satz, wenn ein Wunsch nicht erfüllbar ist.</translation>
-  </message>
-  <message>
-   <source>Fewest particles</source>
-   <translation>Wenigste Partikel</translation>
-  </message>
-  <message>
-   <source>Field drawn to its hull</source>
-   <translation>Feld, zu seiner Hülle gezogen</translation>
-  </message>
-  <message>
-   <source>Field in log r</source>
-   <translation>Feld in log r</translation>
-  </message>
-  <message>
-   <source>Figure 7, fifth column: aspect ratio and IoU</source>
-   <translation>Bild 7, fünfte Spalte: Seitenverhältnis und IoU</translation>
-  </message>
-  <message>
-   <source>Figure 7, fourth column; the surface area enters the loss as sphericity, as Eq. 8 has it</source>
-   <translation>Bild 7, vierte Spalte; die Oberfläche geht, wie in Gl. 8, als Sphärizität in den Verlust ein</translation>
-  </message>
-  <message>
-   <source>Figure 8, first row: all weights are 0, the quadric start is the result</source>
-   <translation>Bild 8, erste Zeile: alle Gewichte sind 0, der Anfang aus der Quadrik-Dezimierung ist das Ergebnis</translation>
-  </message>
-  <message>
-   <source>Figure 8, fourth row: IoU only</source>
-   <translation>Bild 8, vierte Zeile: nur IoU</translation>
-  </message>
-  <message>
-   <source>Figure 8: every term of Eq. 9 with weight 1</source>
-   <translation>Bild 8: jeder Term von Gl. 9 mit Gewicht 1</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/export.py" />
-   <source>Figure and JSON are in {name}.</source>
-   <translation>Abbildung und JSON sind in {name}.</translation>
-  </message>
-  <message>
-   <source>Figures 7 and 8: every descriptor of section 2.2, without IoU</source>
-   <translation>Bilder 7 und 8: jeder Deskriptor von Abschnitt 2.2, ohne IoU</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/__init__.py" />
-   <source>Fill a cylinder with the particles of a dataset, lift it, measure the pile</source>
-   <translation>Einen Zylinder mit den Partikeln eines Datensatzes füllen, ihn heben, den Schüttkegel vermessen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/controls.py" />
-   <source>Fill closed pores</source>
-   <translation>Geschlossene Poren füllen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/setup.py" />
-   <source>Fill, lift, measure</source>
-   <translation>Füllen, heben, messen</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/health_sentences.py" />
-   <source>Filled 1 hole with {share} of the surface.</source>
-   <translation>1 Loch wurde mit {share} der Oberfläche gefüllt.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/health.py" />
-   <source>Filled [µm²]</source>
-   <translation>Gefüllt [µm²]</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/health_sentences.py" />
-   <source>Filled {count} holes with {share} of the surface.</source>
-   <translation>{count} Löcher wurden mit {share} der Oberfläche gefüllt.</translation>
-  </message>
-  <message>
-   <source>Filling speed</source>
-   <translation>Füllgeschwindigkeit</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/library.py" />
-   <source>Filter</source>
-   <translation>Filter</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/library.py" />
-   <source>Filter of the library</source>
-   <translation>Filter der Bibliothek</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/page.py" />
-   <source>Filter of the table</source>
-   <translation>Filter der Tabelle</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/page.py" />
-   <source>Filter: words and comparisons, such as  flat S&lt;0.8 AR&gt;1.5</source>
-   <translation>Filter: Wörter und Vergleiche, etwa  flat S&lt;0.8 AR&gt;1.5</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/steps.py" />
-   <source>Find all grains</source>
-   <translation>Alle Körner finden</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/controls.py" />
-   <source>Find representatives</source>
-   <translation>Repräsentanten finden</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/page.py" />
-   <source>Find the grains first.</source>
-   <translation>Finden Sie zuerst die Körner.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/__init__.py" />
-   <source>Find the grains in a CT volume and make particles of them</source>
-   <translation>Die Körner in einem CT-Volumen finden und Partikel daraus machen</translation>
-  </message>
-  <message>
-   <source>Finding bodies</source>
-   <translation>Körper werden gesucht</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/page.py" />
-   <source>Finding grains</source>
-   <translation>Körner werden gesucht</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/page.py" />
-   <source>Finding representatives</source>
-   <translation>Repräsentanten werden gesucht</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/setup.py" />
-   <source>Fine</source>
-   <translation>Fein</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/table_view.py" />
-   <source>First</source>
-   <translation>Erster</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/fit.py" />
-   <source>First crossing</source>
-   <translation>Erster Durchstoß</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/descriptor_table.py" />
-   <source>Fit</source>
-   <translation>Fit</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/page.py" />
-   <source>Fit a model to a sample of 20 particles or more.</source>
-   <translation>Passen Sie ein Modell an eine Probe von 20 oder mehr Partikeln an.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/__init__.py" />
-   <source>Fit the &amp;model</source>
-   <translation>&amp;Modell anpassen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/controls.py" />
-   <source>Fit the model</source>
-   <translation>Modell anpassen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/controls.py" />
-   <source>Fit to a half</source>
-   <translation>An eine Hälfte anpassen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/controls.py" />
-   <source>Fit to a random half only</source>
-   <translation>Nur an eine zufällige Hälfte anpassen</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/error_bars.py" />
-   <source>Fit vs. particle</source>
-   <translation>Fit gegen Partikel</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/degrees.py" />
-   <location filename="ui/views/triptych.py" />
-   <source>Fit, {degree}</source>
-   <translation>Fit, {degree}</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/batch.py" />
-   <source>Fits</source>
-   <translation>Fits</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/page.py" />
-   <source>Fits, models and material cards (*.json *.npz);;All files (*)</source>
-   <translation>Fits, Modelle und Materialkarten (*.json *.npz);;Alle Dateien (*)</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/page.py" />
-   <source>Fitting a model of shapes</source>
-   <translation>Formmodell wird angepasst</translation>
-  </message>
-  <message>
-   <location filename="jobs/fitting.py" />
-   <source>Fitting spherical harmonics</source>
-   <translation>Kugelflächenfunktionen werden angepasst</translation>
-  </message>
-  <message>
-   <location filename="jobs/generating.py" />
-   <source>Fitting the model</source>
-   <translation>Modell wird angepasst</translation>
-  </message>
-  <message>
-   <source>Flatness</source>
-   <translation>Abplattung</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/scatter.py" />
-   <source>Flatness against elongation, with Zingg's classes of form</source>
-   <translation>Abplattung gegen Elongation, mit den Formklassen nach Zingg</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/explore/section_panel.py" />
-   <source>Flip</source>
-   <translation>Umkehren</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/table_view.py" />
-   <source>Floor</source>
-   <translation>Rauschen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/studies/page.py" />
-   <source>Folder of figures and tables</source>
-   <translation>Ordner für Abbildungen und Tabellen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/__init__.py" />
-   <source>Folder of r&amp;uns …</source>
-   <translation>Ordner der &amp;Läufe …</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/page.py" />
-   <source>Folder of runs</source>
-   <translation>Ordner der Läufe</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/export.py" />
-   <source>Folder of the dataset</source>
-   <translation>Ordner des Datensatzes</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/batch.py" />
-   <source>Folder of the results</source>
-   <translation>Ordner der Ergebnisse</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/batch_fields.py" />
-   <source>Folder with {names}</source>
-   <translation>Ordner mit {names}</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/library.py" />
-   <source>Folder …</source>
-   <translation>Ordner …</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/folder.py" />
-   <source>Folder, may be new:</source>
-   <translation>Ordner, auch ein neuer:</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/export.py" />
-   <source>Folder:</source>
-   <translation>Ordner:</translation>
-  </message>
-  <message>
-   <source>For each number.</source>
-   <translation>Für jede Anzahl.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/targets.py" />
-   <source>For formats that list single bodies.</source>
-   <translation>Für Formate, die einzelne Körper aufführen.</translation>
-  </message>
-  <message>
-   <location filename="ui/actions.py" />
-   <source>For regolith-studio run</source>
-   <translation>Für regolith-studio run</translation>
-  </message>
-  <message>
-   <location filename="ui/actions.py" />
-   <source>Forget sizes and borders</source>
-   <translation>Größen und Grenzen vergessen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/table.py" />
-   <source>Form</source>
-   <translation>Form</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/engine_panel.py" />
-   <source>Found</source>
-   <translation>Gefunden</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/runs.py" />
-   <source>Friction</source>
-   <translation>Reibung</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/histogram_plot.py" />
-   <source>From</source>
-   <translation>Von</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/help.py" />
-   <source>From X-ray micro-CT to DEM-ready regolith particles whose geometry is right.</source>
-   <translation>Von der Röntgen-Mikro-CT zu DEM-fertigen Regolithpartikeln, deren Geometrie stimmt.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/setup.py" />
-   <source>From open particles</source>
-   <translation>Aus den Partikeln</translation>
-  </message>
-  <message>
-   <source>From scan to heap</source>
-   <translation>Vom Scan zum Schüttkegel</translation>
-  </message>
-  <message>
-   <source>Front (from -y)</source>
-   <translation>Vorne (von -y)</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/explore/__init__.py" />
-   <source>GIF of l_max 0 to 30</source>
-   <translation>GIF von l_max 0 bis 30</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/page.py" />
-   <location filename="ui/pages/model/views.py" />
-   <source>Gallery</source>
-   <translation>Galerie</translation>
-  </message>
-  <message>
-   <source>Gap, in mean d</source>
-   <translation>Lücke, in mittleren d</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/controls.py" />
-   <source>Gaussian (fast)</source>
-   <translation>Gauß (schnell)</translation>
-  </message>
-  <message>
-   <source>Gaussian field (the paper's)</source>
-   <translation>Gaußfeld (des Artikels)</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/batch.py" />
-   <source>Go on with the run that has not ended</source>
-   <translation>Den nicht beendeten Lauf fortsetzen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/steps.py" />
-   <source>Go to the table of particles</source>
-   <translation>Zur Tabelle der Partikel</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/controls.py" />
-   <source>Grains are dark</source>
-   <translation>Körner sind dunkel</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/controls.py" />
-   <source>Grains are darker than what is between them.</source>
-   <translation>Körner sind dunkler als das, was zwischen ihnen ist.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/steps.py" />
-   <source>Grains fill most of it and hang together: if the grains are dark, tick that below; else move the level or make h smaller.</source>
-   <translation>Körner füllen das meiste und hängen zusammen: Sind die Körner dunkel, haken Sie das unten an; sonst verschieben Sie den Schwellwert oder verkleinern h.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/controls.py" />
-   <source>Grains of fewer voxels are left out; below 12 voxels in diameter shapes are coarse.</source>
-   <translation>Körner mit weniger Voxeln entfallen; unter 12 Voxeln Durchmesser sind Formen grob.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/statistics.py" />
-   <source>Grains that the border of the scan cuts were left out, large ones more often than small ones. Each of the others counts a little more for it (weights of Miles and Lantuéjoul).</source>
-   <translation>Körner, die der Rand des Scans schneidet, fielen weg, große öfter als kleine. Jedes der übrigen zählt dafür etwas mehr (Gewichte nach Miles und Lantuéjoul).</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/runs.py" />
-   <source>Gravity</source>
-   <translation>Schwerkraft</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/runs.py" />
-   <location filename="ui/pages/repose/study.py" />
-   <source>Gravity [m/s²]</source>
-   <translation>Schwerkraft [m/s²]</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/setup.py" />
-   <source>Gravity of</source>
-   <translation>Schwerkraft</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/controls.py" />
-   <source>Grey level at which grains begin</source>
-   <translation>Grauwert, ab dem Körner beginnen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/histogram_plot.py" />
-   <source>Grey value</source>
-   <translation>Grauwert</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/histogram_plot.py" />
-   <source>Grey value {value:g}</source>
-   <translation>Grauwert {value:g}</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/controls.py" />
-   <location filename="ui/pages/scan/volume_dialog.py" />
-   <source>Grey values</source>
-   <translation>Grauwerte</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/histogram_plot.py" />
-   <source>Grey values {low:.4g} to {high:.4g}</source>
-   <translation>Grauwerte {low:.4g} bis {high:.4g}</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/table.py" />
-   <location filename="ui/panels/particle_list.py" />
-   <source>Group</source>
-   <translation>Gruppe</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/page.py" />
-   <source>Growing the fit</source>
-   <translation>Fit wächst</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/coarsening.py" />
-   <source>Half-spaces of Eq. 5; n facets in general position have 2n−4 vertices and 4n−12 triangles.</source>
-   <translation>Halbräume von Gl. 5; n Facetten in allgemeiner Lage haben 2n−4 Ecken und 4n−12 Dreiecke.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/__init__.py" />
-   <source>Hand the grains to all other pages</source>
-   <translation>Die Körner an alle anderen Seiten geben</translation>
-  </message>
-  <message>
-   <location filename="ui/views/triptych.py" />
-   <source>Harmonics fit, {degree}</source>
-   <translation>Kugelflächen-Fit, {degree}</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/table.py" />
-   <source>Health</source>
-   <translation>Zustand</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/health.py" />
-   <location filename="ui/pages/sample/page.py" />
-   <source>Health of the mesh</source>
-   <translation>Zustand des Netzes</translation>
-  </message>
-  <message>
-   <location filename="ui/actions.py" />
-   <source>Here or on a cluster</source>
-   <translation>Hier oder auf einem Cluster</translation>
-  </message>
-  <message>
-   <source>Hertz and Mindlin stiffness, restitution, friction of rest apart from friction of motion</source>
-   <translation>Steifigkeit nach Hertz und Mindlin, Stoßzahl, Haftreibung getrennt von Gleitreibung</translation>
-  </message>
-  <message>
-   <source>Hertz from Young's modulus (softened, recorded) with restitution, approximate with cohesion</source>
-   <translation>Hertz aus dem Elastizitätsmodul (erweicht, vermerkt) mit Stoßzahl, mit Kohäsion genähert</translation>
-  </message>
-  <message>
-   <source>Hertz, Mindlin, restitution, cohesion, rolling resistance: qualitative; some 200 particles</source>
-   <translation>Hertz, Mindlin, Stoßzahl, Kohäsion, Rollwiderstand: qualitativ; etwa 200 Partikel</translation>
-  </message>
-  <message>
-   <source>Hertz, Mindlin-Deresiewicz, JKR, restitution: the law is volumetric</source>
-   <translation>Hertz, Mindlin-Deresiewicz, JKR, Stoßzahl: das Gesetz ist volumetrisch</translation>
-  </message>
-  <message>
-   <source>Hertz, Mindlin-Deresiewicz, JKR: MuJoCo's contacts are soft constraints</source>
-   <translation>Hertz, Mindlin-Deresiewicz, JKR: MuJoCos Kontakte sind weiche Zwangsbedingungen</translation>
-  </message>
-  <message>
-   <source>Hertz, Mindlin-Deresiewicz, JKR: the pair style is linear</source>
-   <translation>Hertz, Mindlin-Deresiewicz, JKR: das Paarpotential ist linear</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/health.py" />
-   <source>Hidden from the star point, so that no radius function can represent it</source>
-   <translation>Vom Sternpunkt aus verdeckt, sodass keine Radiusfunktion es darstellen kann</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/health.py" />
-   <source>Hidden surface</source>
-   <translation>Verdeckte Fläche</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/health.py" />
-   <source>Hidden volume</source>
-   <translation>Verdecktes Volumen</translation>
-  </message>
-  <message>
-   <source>Highest number tried.</source>
-   <translation>Höchste Anzahl, die versucht wird.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/histogram_plot.py" />
-   <source>Histogram</source>
-   <translation>Histogramm</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/histogram_plot.py" />
-   <source>Histogram of grey values with the threshold</source>
-   <translation>Histogramm der Grauwerte mit dem Schwellwert</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/task_list.py" />
-   <source>Hold it back after the step that it is at, or let it go on</source>
-   <translation>Nach dem laufenden Schritt anhalten oder weiterlaufen lassen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/volume_dialog.py" />
-   <source>Holds</source>
-   <translation>Inhalt</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/scatter.py" />
-   <source>Horizontal axis</source>
-   <translation>Waagerechte Achse</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/controls.py" />
-   <source>How far a bump must stand out to be a grain of its own. Grains cut in two: larger. Grains that stick together: smaller.</source>
-   <translation>Wie weit ein Höcker vorstehen muss, um ein eigenes Korn zu sein. Werden Körner zerteilt: größer. Bleiben Körner verbunden: kleiner.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/plots.py" />
-   <source>How many are enough? Press Find: the curve falls to the sampling noise of the population.</source>
-   <translation>Wie viele genügen? Drücken Sie „Repräsentanten finden“: die Kurve fällt bis zum Stichprobenrauschen der Population.</translation>
-  </message>
-  <message>
-   <source>How many facets</source>
-   <translation>Wie viele Facetten</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/table.py" />
-   <source>How many grains it stands for, since large ones were lost at the border of the scan</source>
-   <translation>Für wie viele Körner es steht, weil am Rand des Scans große verloren gingen</translation>
-  </message>
-  <message>
-   <source>How much detail: l_max</source>
-   <translation>Wie viele Einzelheiten: l_max</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/fit.py" />
-   <source>How radii are taken</source>
-   <translation>Wie Radien bestimmt werden</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/coarsening.py" />
-   <source>Imitate</source>
-   <translation>Vorbild</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/export.py" />
-   <source>Imitating</source>
-   <translation>Vorbild</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/page.py" />
-   <source>Imported particles</source>
-   <translation>Importierte Partikel</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/controls.py" />
-   <source>In size classes</source>
-   <translation>In Größenklassen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/steps.py" />
-   <source>In the frame: {counts}.</source>
-   <translation>Im Rahmen: {counts}.</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/unit.py" />
-   <source>In which unit are the numbers of these {count} files and folders?</source>
-   <translation>In welcher Einheit sind die Zahlen dieser {count} Dateien und Ordner?</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/unit.py" />
-   <source>In which unit are the numbers of {name}?</source>
-   <translation>In welcher Einheit sind die Zahlen von {name}?</translation>
-  </message>
-  <message>
-   <source>Independent normal coefficients; draws with a negative radius are thrown away.</source>
-   <translation>Unabhängige normalverteilte Koeffizienten; Ziehungen mit negativem Radius werden verworfen.</translation>
-  </message>
-  <message>
-   <source>Intermediate diameter</source>
-   <translation>Mittlerer Durchmesser</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/runs.py" />
-   <location filename="ui/pages/repose/study.py" />
-   <source>Interval</source>
-   <translation>Bereich</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/batch.py" />
-   <source>Into:</source>
-   <translation>Nach:</translation>
-  </message>
-  <message>
-   <source>Isometric</source>
-   <translation>Isometrisch</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/health_sentences.py" />
-   <source>It consists of {count} separate bodies.</source>
-   <translation>Es besteht aus {count} getrennten Körpern.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/volume_dialog.py" />
-   <source>It does not say how large a voxel is.</source>
-   <translation>Sie sagt nicht, wie groß ein Voxel ist.</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/health_sentences.py" />
-   <source>It encloses no volume.</source>
-   <translation>Es umschließt kein Volumen.</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/health_sentences.py" />
-   <source>It has 1 tunnel through it (Euler number {euler}).</source>
-   <translation>Es hat 1 Tunnel (Euler-Zahl {euler}).</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/health_sentences.py" />
-   <source>It has {count} tunnels through it (Euler number {euler}).</source>
-   <translation>Es hat {count} Tunnel (Euler-Zahl {euler}).</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/health_sentences.py" />
-   <source>It is inside out: its faces look inwards.</source>
-   <translation>Es ist umgestülpt: seine Flächen zeigen nach innen.</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/health_sentences.py" />
-   <source>It is not a simple surface: 1 edge belongs to three faces or more.</source>
-   <translation>Es ist keine einfache Oberfläche: 1 Kante gehört zu drei oder mehr Flächen.</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/health_sentences.py" />
-   <source>It is not a simple surface: {count} edges belong to three faces or more.</source>
-   <translation>Es ist keine einfache Oberfläche: {count} Kanten gehören zu drei oder mehr Flächen.</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/health_sentences.py" />
-   <source>It is not closed: 1 edge belongs to one face only.</source>
-   <translation>Es ist nicht geschlossen: 1 Kante gehört zu nur einer Fläche.</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/health_sentences.py" />
-   <source>It is not closed: {count} edges belong to one face only.</source>
-   <translation>Es ist nicht geschlossen: {count} Kanten gehören zu nur einer Fläche.</translation>
-  </message>
-  <message>
-   <location filename="ui/projects.py" />
-   <source>It was kept at {moment}.</source>
-   <translation>Er wurde {moment} festgehalten.</translation>
-  </message>
-  <message>
-   <source>Iterations</source>
-   <translation>Iterationen</translation>
-  </message>
-  <message>
-   <source>Iterations k_max</source>
-   <translation>Iterationen k_max</translation>
-  </message>
-  <message>
-   <location filename="ui/commands.py" />
-   <source>Its choices are taken; it is too large to be opened: use Run as a batch.</source>
-   <translation>Seine Einstellungen sind übernommen; zum Öffnen ist es zu groß: nehmen Sie „Als Stapel ausführen“.</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/health_sentences.py" />
-   <source>Its faces do not all look the same way: some are turned round.</source>
-   <translation>Seine Flächen zeigen nicht alle zur selben Seite: einige sind verdreht.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/volume_dialog.py" />
-   <source>Its name says how many voxels are in it, and its size agrees.</source>
-   <translation>Ihr Name sagt, wie viele Voxel sie hat, und ihre Größe stimmt damit überein.</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/health_sentences.py" />
-   <source>Its surface touches itself in 1 corner.</source>
-   <translation>Seine Oberfläche berührt sich selbst in 1 Ecke.</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/health_sentences.py" />
-   <source>Its surface touches itself in {count} corners.</source>
-   <translation>Seine Oberfläche berührt sich selbst in {count} Ecken.</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/loss.py" />
-   <source>Jaccard distance</source>
-   <translation>Jaccard-Distanz</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/loss.py" />
-   <source>Jaccard distance, Eq. 7 (paper: IoU)</source>
-   <translation>Jaccard-Distanz, Gl. 7 (im Artikel: IoU)</translation>
-  </message>
-  <message>
-   <source>Johnson, Kendall and Roberts between spheres</source>
-   <translation>Johnson, Kendall und Roberts zwischen Kugeln</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/health_sentences.py" />
-   <source>Joined {count} vertices with another at the same place.</source>
-   <translation>{count} Ecken wurden mit einer anderen an derselben Stelle vereinigt.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/judgement.py" />
-   <source>Judge</source>
-   <translation>Beurteilen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/judgement.py" />
-   <source>Judge every model, not only the chosen one.</source>
-   <translation>Jedes Modell beurteilen, nicht nur das gewählte.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/page.py" />
-   <source>Judgement</source>
-   <translation>Beurteilung</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/page.py" />
-   <source>Judging models</source>
-   <translation>Modelle werden beurteilt</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/judgement.py" />
-   <location filename="ui/pages/model/table_view.py" />
-   <source>KS / floor</source>
-   <translation>KS / Rauschen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/table_view.py" />
-   <source>KS floor</source>
-   <translation>KS-Rauschen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/table_view.py" />
-   <source>KS from</source>
-   <translation>KS von</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/table_view.py" />
-   <source>KS to</source>
-   <translation>KS bis</translation>
-  </message>
-  <message>
-   <source>Keep the best so far</source>
-   <translation>Das bisher Beste behalten</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/fit.py" />
-   <source>Keep the volume</source>
-   <translation>Volumen erhalten</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/closing.py" />
-   <source>Keep working</source>
-   <translation>Weiterarbeiten</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/health_sentences.py" />
-   <source>Kept the largest of {count} bodies, with {share} of their volume.</source>
-   <translation>Der größte von {count} Körpern wurde behalten, mit {share} ihres Volumens.</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/shortcuts.py" />
-   <source>Keyboard and mouse</source>
-   <translation>Tastatur und Maus</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/shortcuts.py" />
-   <source>Keys</source>
-   <translation>Tasten</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/shortcuts.py" />
-   <source>Keys:</source>
-   <translation>Tasten:</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/controls.py" />
-   <source>Kind of model</source>
-   <translation>Art des Modells</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/explore/pictures.py" />
-   <source>Kind of picture</source>
-   <translation>Art des Bildes</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/controls.py" />
-   <source>Kind of size distribution</source>
-   <translation>Art der Größenverteilung</translation>
-  </message>
-  <message>
-   <source>Krumbein sphericity</source>
-   <translation>Sphärizität nach Krumbein</translation>
-  </message>
-  <message>
-   <location filename="ui/actions.py" />
-   <source>L&amp;og</source>
-   <translation>&amp;Protokoll</translation>
-  </message>
-  <message>
-   <source>LAMMPS rounds edges; facets stay in their planes, corners are lost.</source>
-   <translation>LAMMPS rundet Kanten; Facetten bleiben in ihren Ebenen, Ecken gehen verloren.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/volume_dialog.py" />
-   <source>Labels of grains</source>
-   <translation>Labels von Körnern</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/preferences.py" />
-   <source>Language</source>
-   <translation>Sprache</translation>
-  </message>
-  <message>
-   <location filename="ui/actions.py" />
-   <source>Language, theme, size of letters</source>
-   <translation>Sprache, Farbschema, Schriftgröße</translation>
-  </message>
-  <message>
-   <source>Largest Feret diameter</source>
-   <translation>Größter Feret-Durchmesser</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/controls.py" />
-   <source>Largest equivalent radius</source>
-   <translation>Größter Äquivalentradius</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/coarsening.py" />
-   <source>Largest error</source>
-   <translation>Größter Fehler</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/lmax_study.py" />
-   <source>Largest error in percent</source>
-   <translation>Größter Fehler in Prozent</translation>
-  </message>
-  <message>
-   <source>Largest moment of inertia</source>
-   <translation>Größtes Trägheitsmoment</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/fit.py" />
-   <source>Last crossing</source>
-   <translation>Letzter Durchstoß</translation>
-  </message>
-  <message>
-   <source>Law of sizes</source>
-   <translation>Größengesetz</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/fit.py" />
-   <source>Least hidden volume</source>
-   <translation>Kleinstes verdecktes Volumen</translation>
-  </message>
-  <message>
-   <source>Least moment of inertia</source>
-   <translation>Kleinstes Trägheitsmoment</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/controls.py" />
-   <source>Least voxels of a grain</source>
-   <translation>Kleinste Voxelzahl eines Korns</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/controls.py" />
-   <source>Leave out grains at the border</source>
-   <translation>Körner am Rand weglassen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/__init__.py" />
-   <source>Lecture</source>
-   <translation>Vorlesung</translation>
-  </message>
-  <message>
-   <source>Left (from -x)</source>
-   <translation>Links (von -x)</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/shortcuts.py" />
-   <source>Left drag</source>
-   <translation>Linke Taste ziehen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/health.py" />
-   <source>Left out</source>
-   <translation>Weggelassen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/page.py" />
-   <source>Left out: {names}.</source>
-   <translation>Ausgelassen: {names}.</translation>
-  </message>
-  <message>
-   <source>Left: the particle as the CT scan measured it. Middle: its spherical-harmonics fit. Right: the convex polyhedron that a DEM solver will roll. Drag to turn: all three turn together.</source>
-   <translation>Links: das Partikel, wie die CT es gemessen hat. Mitte: sein Fit mit Kugelflächenfunktionen. Rechts: das konvexe Polyeder, das ein DEM-Programm rollen lässt. Zum Drehen ziehen: alle drei drehen sich gemeinsam.</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/unit.py" />
-   <source>Length unit</source>
-   <translation>Längeneinheit</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/export.py" />
-   <source>Length unit of the file:</source>
-   <translation>Längeneinheit der Datei:</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/controls.py" />
-   <source>Level</source>
-   <translation>Schwelle</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/library.py" />
-   <location filename="ui/pages/dataset/page.py" />
-   <source>Library</source>
-   <translation>Bibliothek</translation>
-  </message>
-  <message>
-   <source>Lift speed</source>
-   <translation>Hubgeschwindigkeit</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/runs.py" />
-   <location filename="ui/pages/repose/study.py" />
-   <source>Lift speed [m/s]</source>
-   <translation>Hubgeschwindigkeit [m/s]</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/player.py" />
-   <source>Lifting cylinder</source>
-   <translation>Hubzylinder</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/preferences.py" />
-   <source>Light</source>
-   <translation>Hell</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/controls.py" />
-   <source>Limit the sizes</source>
-   <translation>Größen begrenzen</translation>
-  </message>
-  <message>
-   <location filename="ui/activity.py" />
-   <location filename="ui/panels/log.py" />
-   <source>Log</source>
-   <translation>Protokoll</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/controls.py" />
-   <source>Log-normal, fitted to each class</source>
-   <translation>Lognormal, an jede Klasse angepasst</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/controls.py" />
-   <source>Log-normal, the same for all</source>
-   <translation>Lognormal, für alle gleich</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/scatter.py" />
-   <source>Logarithmic</source>
-   <translation>Logarithmisch</translation>
-  </message>
-  <message>
-   <source>Longest wait</source>
-   <translation>Längste Wartezeit</translation>
-  </message>
-  <message>
-   <location filename="ui/actions.py" />
-   <location filename="ui/pages/explore/__init__.py" />
-   <source>Look &amp;from</source>
-   <translation>&amp;Blickrichtung</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/library.py" />
-   <source>Look again</source>
-   <translation>Nochmals suchen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/page.py" />
-   <source>Looking at the volume</source>
-   <translation>Volumen wird angesehen</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/sentences.py" />
-   <source>Looking at {name}</source>
-   <translation>{name} wird angesehen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/library.py" />
-   <source>Looking for datasets</source>
-   <translation>Datensätze werden gesucht</translation>
-  </message>
-  <message>
-   <location filename="jobs/examining.py" />
-   <location filename="ui/pages/sample/page.py" />
-   <source>Looking for faults</source>
-   <translation>Mängel werden gesucht</translation>
-  </message>
-  <message>
-   <source>Looking for the cluster</source>
-   <translation>Cluster wird gesucht</translation>
-  </message>
-  <message>
-   <source>Looking through the slices</source>
-   <translation>Schichten werden durchgesehen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/targets.py" />
-   <source>Loses: {what}</source>
-   <translation>Verliert: {what}</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/explore/plot_area.py" />
-   <source>Loss</source>
-   <translation>Verlust</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/loss_curve.py" />
-   <source>Loss (Eq. 9)</source>
-   <translation>Verlust (Gl. 9)</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/annealing.py" />
-   <source>Loss L (Eq. 9)</source>
-   <translation>Verlust L (Gl. 9)</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/studies/rows_bar.py" />
-   <source>Losses</source>
-   <translation>Verluste</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/studies/page.py" />
-   <source>Losses (Fig. 8)</source>
-   <translation>Verluste (Bild 8)</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/studies/rows_bar.py" />
-   <source>Losses can be compared at equal numbers of facets only; choose the number beside Facets n.</source>
-   <translation>Verluste lassen sich nur bei gleich vielen Facetten vergleichen; die Zahl wird neben Facetten n gewählt.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/studies/rows_bar.py" />
-   <source>Losses of figures 7 and 8</source>
-   <translation>Verluste der Bilder 7 und 8</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/studies/rows_bar.py" />
-   <source>Losses that are the rows of figures 7 and 8</source>
-   <translation>Verluste, die die Zeilen der Bilder 7 und 8 sind</translation>
-  </message>
-  <message>
-   <source>Lower cut</source>
-   <translation>Unterer Schnitt</translation>
-  </message>
-  <message>
-   <source>Lowest cut, in mean d</source>
-   <translation>Tiefster Schnitt, in mittleren d</translation>
-  </message>
-  <message>
-   <source>Lowest pile, in mean d</source>
-   <translation>Niedrigster Kegel, in mittleren d</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/steps.py" />
-   <source>Make particles</source>
-   <translation>Partikel erzeugen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/page.py" />
-   <source>Making a dataset</source>
-   <translation>Datensatz wird gemacht</translation>
-  </message>
-  <message>
-   <location filename="jobs/generating.py" />
-   <source>Making meshes</source>
-   <translation>Netze werden erzeugt</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/page.py" />
-   <source>Making particles</source>
-   <translation>Partikel werden erzeugt</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/page.py" />
-   <source>Making virtual particles</source>
-   <translation>Virtuelle Partikel werden erzeugt</translation>
-  </message>
-  <message>
-   <source>Mars</source>
-   <translation>Mars</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/controls.py" />
-   <source>Mask</source>
-   <translation>Maske</translation>
-  </message>
-  <message>
-   <source>Matched to the sample</source>
-   <translation>Der Probe nachgebildet</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/field.py" />
-   <source>Material</source>
-   <translation>Material</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/targets.py" />
-   <source>Material and cylinder</source>
-   <translation>Material und Zylinder</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/fit.py" />
-   <source>Maximum degree</source>
-   <translation>Höchster Grad</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/lmax_study.py" />
-   <source>Maximum degree l&lt;sub&gt;max&lt;/sub&gt;</source>
-   <translation>Höchster Grad l&lt;sub&gt;max&lt;/sub&gt;</translation>
-  </message>
-  <message>
-   <source>Maximum diameter</source>
-   <translation>Größter Durchmesser</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/studies/variation_panel.py" />
-   <source>Mean Jaccard distance [%]</source>
-   <translation>Mittlere Jaccard-Distanz [%]</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/studies/variation_panel.py" />
-   <source>Mean RMSRE of six descriptors [%]</source>
-   <translation>Mittl. RMSRE der Deskriptoren [%]</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/judgement.py" />
-   <source>Mean Wasserstein distance to the half that was held out, over that between random halves: 1 is noise</source>
-   <translation>Mittlere Wasserstein-Distanz zur zurückgehaltenen Hälfte, geteilt durch die zwischen zufälligen Hälften: 1 ist Rauschen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/judgement.py" />
-   <source>Mean energy distance of pairs of descriptors: 0 for equal distributions</source>
-   <translation>Mittlere Energiedistanz von Paaren von Deskriptoren: 0 bei gleichen Verteilungen</translation>
-  </message>
-  <message>
-   <source>Mean rotation of a round particle; long ones are turned less.</source>
-   <translation>Mittlere Drehung eines runden Partikels; lange werden weniger gedreht.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/export.py" />
-   <source>Measure positions</source>
-   <translation>Positionen vermessen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/__init__.py" />
-   <source>Measure the pile of another program</source>
-   <translation>Den Schüttkegel eines anderen Programms vermessen</translation>
-  </message>
-  <message>
-   <source>Measured surfaces turned within their ellipsoids: sizes and shapes as in the sample, bodies new.</source>
-   <translation>Gemessene Oberflächen, in ihren Ellipsoiden gedreht: Größen und Formen wie in der Probe, Körper neu.</translation>
-  </message>
-  <message>
-   <location filename="jobs/examining.py" />
-   <source>Measuring</source>
-   <translation>Vermessung</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/explore/page.py" />
-   <source>Measuring distances</source>
-   <translation>Abstände werden gemessen</translation>
-  </message>
-  <message>
-   <location filename="jobs/examining.py" />
-   <source>Measuring particles</source>
-   <translation>Partikel werden vermessen</translation>
-  </message>
-  <message>
-   <source>Measuring the fit</source>
-   <translation>Fit wird vermessen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/page.py" />
-   <source>Measuring the pile</source>
-   <translation>Schüttkegel wird vermessen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/judgement.py" />
-   <source>Median distance to the nearest measured particle, over that between measured ones: 0 is a copy</source>
-   <translation>Mediane Distanz zum nächsten gemessenen Partikel, geteilt durch die zwischen gemessenen: 0 ist eine Kopie</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/controls.py" />
-   <source>Median in µm, deviation of ln d; @volume behind it counts volume.</source>
-   <translation>Median in µm, Abweichung von ln d; mit @volume dahinter zählt das Volumen.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/controls.py" />
-   <source>Median of 27 voxels</source>
-   <translation>Median von 27 Voxeln</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/health.py" />
-   <source>Mesh</source>
-   <translation>Netz</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/unit.py" />
-   <source>Mesh files carry no unit. The answer is kept for their folder.</source>
-   <translation>Netzdateien tragen keine Einheit. Die Antwort wird für ihren Ordner gemerkt.</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/export.py" />
-   <location filename="ui/panels/coarsening.py" />
-   <source>Method</source>
-   <translation>Verfahren</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/unit.py" />
-   <source>Metres (m)</source>
-   <translation>Meter (m)</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/unit.py" />
-   <source>Micrometres (µm)</source>
-   <translation>Mikrometer (µm)</translation>
-  </message>
-  <message>
-   <source>Middle moment of inertia</source>
-   <translation>Mittleres Trägheitsmoment</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/unit.py" />
-   <source>Millimetres (mm)</source>
-   <translation>Millimeter (mm)</translation>
-  </message>
-  <message>
-   <source>Mindlin with history and Coulomb friction, one coefficient (the static one)</source>
-   <translation>Mindlin mit Gedächtnis und Coulomb-Reibung, ein Beiwert (der der Haftreibung)</translation>
-  </message>
-  <message>
-   <source>Minimum diameter</source>
-   <translation>Kleinster Durchmesser</translation>
-  </message>
-  <message>
-   <source>Mixture of fields</source>
-   <translation>Mischung von Feldern</translation>
-  </message>
-  <message>
-   <source>Mixture of the paper's fields</source>
-   <translation>Mischung von Feldern des Artikels</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/controls.py" />
-   <location filename="ui/pages/model/judgement.py" />
-   <location filename="ui/pages/model/table_view.py" />
-   <source>Model</source>
-   <translation>Modell</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/files.py" />
-   <source>Models (*.json)</source>
-   <translation>Modelle (*.json)</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/judgement.py" />
-   <source>Models are fitted to one half of the sample and judged on the other, beside the noise of sampling.</source>
-   <translation>Modelle werden an eine Hälfte der Probe angepasst und an der anderen beurteilt, neben dem Rauschen der Stichprobe.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/page.py" />
-   <source>Models are judged on measured particles: fit one to a sample first.</source>
-   <translation>Modelle werden an gemessenen Partikeln beurteilt: passen Sie zuerst eines an eine Probe an.</translation>
-  </message>
-  <message>
-   <source>Moon</source>
-   <translation>Mond</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/page.py" />
-   <source>More than {count:,} particles are for other programs: export the dataset.</source>
-   <translation>Mehr als {count:,} Partikel sind Sache anderer Programme: exportieren Sie den Datensatz.</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/coarsening.py" />
-   <source>Most triangles</source>
-   <translation>Meiste Dreiecke</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/shortcuts.py" />
-   <source>Mouse in the views</source>
-   <translation>Maus in den Ansichten</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/controls.py" />
-   <source>Multi-Otsu, three classes</source>
-   <translation>Multi-Otsu, drei Klassen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/library.py" />
-   <source>Name</source>
-   <translation>Name</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/batch.py" />
-   <source>Name a folder for the results.</source>
-   <translation>Nennen Sie einen Ordner für die Ergebnisse.</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/export.py" />
-   <source>Name a folder, new or empty.</source>
-   <translation>Nennen Sie einen neuen oder leeren Ordner.</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/particle_list.py" />
-   <source>Name and health of the mesh</source>
-   <translation>Name und Zustand des Netzes</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/export.py" />
-   <location filename="ui/pages/dataset/controls.py" />
-   <source>Name of the dataset</source>
-   <translation>Name des Datensatzes</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/table.py" />
-   <source>Name of the file or of the grain</source>
-   <translation>Name der Datei oder des Korns</translation>
-  </message>
-  <message>
-   <location filename="ui/widgets/preset_bar.py" />
-   <source>Name of the preset:</source>
-   <translation>Name der Vorlage:</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/export.py" />
-   <source>Name:</source>
-   <translation>Name:</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/study.py" />
-   <source>Names of presets: {names}</source>
-   <translation>Namen der Vorlagen: {names}</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/controls.py" />
-   <source>Names of the parts, the most numerous first</source>
-   <translation>Namen der Komponenten, die häufigste zuerst</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/unit.py" />
-   <source>Nanometres (nm)</source>
-   <translation>Nanometer (nm)</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/health.py" />
-   <source>Negative where the mesh is inside out</source>
-   <translation>Negativ, wo das Netz umgestülpt ist</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/health.py" />
-   <source>Neighbouring triangles look the same way</source>
-   <translation>Benachbarte Dreiecke zeigen zur selben Seite</translation>
-  </message>
-  <message>
-   <source>Neighbours</source>
-   <translation>Nachbarn</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/shortcuts.py" />
-   <source>New keys of the chosen command</source>
-   <translation>Neue Tasten des gewählten Befehls</translation>
-  </message>
-  <message>
-   <location filename="ui/tour.py" />
-   <source>Next</source>
-   <translation>Weiter</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/coarsening.py" />
-   <source>Next seed</source>
-   <translation>Nächster Startwert</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/coarsening.py" />
-   <source>Next seed: the same method with other random numbers</source>
-   <translation>Nächster Startwert: dasselbe Verfahren mit anderen Zufallszahlen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/setup.py" />
-   <source>No dataset yet</source>
-   <translation>Noch kein Datensatz</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/controls.py" />
-   <source>No dataset yet.</source>
-   <translation>Noch kein Datensatz.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/page.py" />
-   <source>No grain became a particle: {border} touch the border of the volume, {small} are too small.</source>
-   <translation>Kein Korn wurde zum Partikel: {border} berühren den Rand des Volumens, {small} sind zu klein.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/steps.py" />
-   <source>No grain in the frame so far. Move the level, or click into a slice to move the frame.</source>
-   <translation>Noch kein Korn im Rahmen. Verschieben Sie den Schwellwert, oder klicken Sie in ein Schichtbild, um den Rahmen zu verschieben.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/field.py" />
-   <source>No material.</source>
-   <translation>Kein Material.</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/batch_fields.py" />
-   <source>No open particle comes from a file: open some, or choose a recipe file.</source>
-   <translation>Kein geöffnetes Partikel stammt aus einer Datei: öffnen Sie welche oder wählen Sie eine Rezeptdatei.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/sources.py" />
-   <source>No particle is open: open some, or choose a material.</source>
-   <translation>Kein Partikel ist geöffnet: öffnen Sie welche oder wählen Sie ein Material.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/studies/desk.py" />
-   <location filename="ui/pages/studies/page.py" />
-   <source>No particle is open; open a mesh first.</source>
-   <translation>Kein Partikel ist geöffnet; öffnen Sie zuerst ein Netz.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/controls.py" />
-   <source>No particles are open: open files, the sample, or draw some on the page Shape model.</source>
-   <translation>Keine Partikel sind geöffnet: öffnen Sie Dateien oder die Probe, oder ziehen Sie welche auf der Seite Formmodell.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/page.py" />
-   <source>No particles are open; open some, or the shipped sample.</source>
-   <translation>Keine Partikel sind geöffnet; öffnen Sie welche oder die mitgelieferte Probe.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/page.py" />
-   <source>No pile yet.</source>
-   <translation>Noch kein Schüttkegel.</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/sentences.py" />
-   <source>No polyhedron with {faces} facets was found that meets all descriptors: {name} is off by {error} %; a convex shape with the other descriptors has less surface, so a weight of 0 would free it.</source>
-   <translation>Es fand sich kein Polyeder mit {faces} Facetten, das alle Deskriptoren trifft: {name} weicht um {error} % ab; ein konvexer Körper mit den übrigen Deskriptoren hat weniger Oberfläche, also gäbe ein Gewicht von 0 Raum.</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/sentences.py" />
-   <source>No polyhedron with {faces} facets was found that meets all descriptors: {name} is off by {error} %; more facets or a weight of 0 would free it.</source>
-   <translation>Es fand sich kein Polyeder mit {faces} Facetten, das alle Deskriptoren trifft: {name} weicht um {error} % ab; mehr Facetten oder ein Gewicht von 0 gäben Raum.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/steps.py" />
-   <source>No volume is open.</source>
-   <translation>Kein Volumen ist geöffnet.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/controls.py" />
-   <source>Non-local means (slow)</source>
-   <translation>Non-local Means (langsam)</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/setup.py" />
-   <location filename="ui/pages/scan/controls.py" />
-   <source>None</source>
-   <translation>Keine</translation>
-  </message>
-  <message>
-   <source>Normal force</source>
-   <translation>Normalkraft</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/sentences.py" />
-   <source>Not even {faces} facets bring all errors below {limit} %: the least is {error} %, with {count} facets.</source>
-   <translation>Nicht einmal {faces} Facetten bringen alle Fehler unter {limit} %: Der kleinste ist {error} %, mit {count} Facetten.</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/fit.py" />
-   <source>Not fitted yet.</source>
-   <translation>Noch nicht angepasst.</translation>
-  </message>
-  <message>
-   <source>Not represented</source>
-   <translation>Nicht abgebildet</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/task_list.py" />
-   <source>Nothing is running.</source>
-   <translation>Nichts ist in Arbeit.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/health.py" />
-   <source>Nothing to show: no faults, and all of the surface is seen from the star point.</source>
-   <translation>Nichts zu zeigen: keine Mängel, und die ganze Oberfläche ist vom Sternpunkt aus zu sehen.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/judgement.py" />
-   <source>Novelty</source>
-   <translation>Neuheit</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/setup.py" />
-   <source>Number</source>
-   <translation>Anzahl</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/coarsening.py" />
-   <source>Number of facets</source>
-   <translation>Anzahl der Facetten</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/controls.py" />
-   <location filename="ui/pages/repose/runs.py" />
-   <location filename="ui/pages/repose/setup.py" />
-   <location filename="ui/pages/repose/study.py" />
-   <source>Number of particles</source>
-   <translation>Anzahl der Partikel</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/batch_fields.py" />
-   <source>Number of processes</source>
-   <translation>Anzahl der Prozesse</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/controls.py" />
-   <location filename="ui/pages/dataset/plots.py" />
-   <source>Number of representatives</source>
-   <translation>Anzahl der Repräsentanten</translation>
-  </message>
-  <message>
-   <source>Numbering grains</source>
-   <translation>Körner werden nummeriert</translation>
-  </message>
-  <message>
-   <source>Numbers of facets</source>
-   <translation>Anzahlen der Facetten</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/controls.py" />
-   <source>Numbers of the size distribution</source>
-   <translation>Zahlen der Größenverteilung</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/studies/variation_panel.py" />
-   <source>Numbers with commas between them; Return starts the study</source>
-   <translation>Zahlen mit Kommas dazwischen; Eingabe startet die Studie</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/setup.py" />
-   <source>Numerics of the engine</source>
-   <translation>Numerik des Rechenkerns</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/coarsening.py" />
-   <source>Of all random numbers: the same seed gives the same polyhedron.</source>
-   <translation>Aller Zufallszahlen: derselbe Startwert ergibt dasselbe Polyeder.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/table.py" />
-   <source>Of the mesh; the tool tip of a cell says what was found and mended</source>
-   <translation>Des Netzes; der Hinweis einer Zelle sagt, was gefunden und ausgebessert wurde</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/explore/__init__.py" />
-   <source>One after the other, then all</source>
-   <translation>Eine nach der anderen, dann alle</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/explore/__init__.py" />
-   <source>One body over another</source>
-   <translation>Ein Körper über einem anderen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/explore/__init__.py" />
-   <source>One particle, its spherical-harmonics fit and its polyhedron side by side</source>
-   <translation>Ein Partikel, sein Fit mit Kugelflächenfunktionen und sein Polyeder nebeneinander</translation>
-  </message>
-  <message>
-   <source>One particle, three ways to see it</source>
-   <translation>Ein Partikel, dreimal gesehen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/__init__.py" />
-   <location filename="ui/pages/lecture/transport.py" />
-   <source>One step</source>
-   <translation>Ein Schritt</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/transport.py" />
-   <source>One step back</source>
-   <translation>Ein Schritt zurück</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/explore/__init__.py" />
-   <source>One turn: GIF, WebP, PNG files</source>
-   <translation>Eine Umdrehung: GIF, WebP, PNG-Dateien</translation>
-  </message>
-  <message>
-   <source>One weight for each term of the loss (Eq. 9), with the presets of the paper. A weight of 0 lets a descriptor go. Reset brings the preset back.</source>
-   <translation>Ein Gewicht für jeden Term der Verlustfunktion (Gl. 9), mit den Vorlagen des Artikels. Das Gewicht 0 gibt einen Deskriptor frei. Zurücksetzen bringt die Vorlage zurück.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/controls.py" />
-   <source>Only equivalent radii from … to …</source>
-   <translation>Nur Äquivalentradien von … bis …</translation>
-  </message>
-  <message>
-   <location filename="ui/actions.py" />
-   <source>Open &amp;folder …</source>
-   <translation>&amp;Ordner öffnen …</translation>
-  </message>
-  <message>
-   <location filename="ui/actions.py" />
-   <source>Open &amp;recent</source>
-   <translation>&amp;Zuletzt geöffnet</translation>
-  </message>
-  <message>
-   <location filename="ui/actions.py" />
-   <source>Open &amp;sample</source>
-   <translation>&amp;Probe öffnen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/__init__.py" />
-   <source>Open &amp;volume …</source>
-   <translation>&amp;Volumen öffnen …</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/__init__.py" />
-   <source>Open a &amp;dataset …</source>
-   <translation>&amp;Datensatz öffnen …</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/__init__.py" />
-   <source>Open a &amp;fit, model or card …</source>
-   <translation>&amp;Fit, Modell oder Karte öffnen …</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/__init__.py" />
-   <source>Open a CT volume</source>
-   <translation>Ein CT-Volumen öffnen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/steps.py" />
-   <source>Open a CT volume of grey values or labels</source>
-   <translation>Ein CT-Volumen mit Grauwerten oder Labels öffnen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/overview.py" />
-   <source>Open a CT volume: TIFF stack, folder of slices, HDF5, NRRD, MetaImage, NIfTI, NPY or raw. Drop it here, or begin with the sample scan.</source>
-   <translation>Öffnen Sie ein CT-Volumen: TIFF-Stapel, Ordner mit Schichtbildern, HDF5, NRRD, MetaImage, NIfTI, NPY oder Rohdaten. Legen Sie es hier ab, oder beginnen Sie mit dem Beispielscan.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/page.py" />
-   <location filename="ui/pages/repose/page.py" />
-   <source>Open a dataset</source>
-   <translation>Datensatz öffnen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/controls.py" />
-   <source>Open a dataset …</source>
-   <translation>Datensatz öffnen …</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/page.py" />
-   <source>Open a dataset, or make one from the open particles.</source>
-   <translation>Öffnen Sie einen Datensatz, oder machen Sie einen aus den geöffneten Partikeln.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/page.py" />
-   <source>Open a fit, model or card</source>
-   <translation>Fit, Modell oder Karte öffnen</translation>
-  </message>
-  <message>
-   <location filename="ui/commands.py" />
-   <source>Open a folder of meshes</source>
-   <translation>Einen Ordner mit Netzen öffnen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/__init__.py" />
-   <source>Open a folder of s&amp;lices …</source>
-   <translation>Ordner mit &amp;Schichtbildern öffnen …</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/page.py" />
-   <source>Open a folder of slices</source>
-   <translation>Ordner mit Schichtbildern öffnen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/page.py" />
-   <source>Open a particle first.</source>
-   <translation>Öffnen Sie zuerst ein Partikel.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/page.py" />
-   <location filename="ui/pages/scan/volume_dialog.py" />
-   <source>Open a volume</source>
-   <translation>Volumen öffnen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/page.py" />
-   <source>Open a volume of grey values first.</source>
-   <translation>Öffnen Sie zuerst ein Volumen mit Grauwerten.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/histogram_plot.py" />
-   <source>Open a volume of grey values to see its histogram.</source>
-   <translation>Öffnen Sie ein Volumen mit Grauwerten, um sein Histogramm zu sehen.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/health.py" />
-   <source>Open edges</source>
-   <translation>Offene Kanten</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/library.py" />
-   <location filename="ui/pages/dataset/targets.py" />
-   <source>Open folder</source>
-   <translation>Ordner öffnen</translation>
-  </message>
-  <message>
-   <location filename="ui/actions.py" />
-   <source>Open mesh files</source>
-   <translation>Netzdateien öffnen</translation>
-  </message>
-  <message>
-   <location filename="ui/commands.py" />
-   <source>Open particles</source>
-   <translation>Partikel öffnen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/sources.py" />
-   <source>Open particles ({count})</source>
-   <translation>Geöffnete Partikel ({count})</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/__init__.py" />
-   <source>Open se&amp;ttings …</source>
-   <translation>&amp;Einstellungen öffnen …</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/page.py" />
-   <source>Open settings</source>
-   <translation>Einstellungen öffnen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/controls.py" />
-   <source>Open the drawn particles: to be coarsened and made a dataset.</source>
-   <translation>Die gezogenen Partikel öffnen: um sie zu vergröbern und einen Datensatz zu bauen.</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/batch.py" />
-   <source>Open the results</source>
-   <translation>Ergebnisse öffnen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/__init__.py" />
-   <source>Open the sample &amp;scan</source>
-   <translation>&amp;Beispielscan öffnen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/steps.py" />
-   <source>Open the scan that ships with the program</source>
-   <translation>Den mitgelieferten Scan öffnen</translation>
-  </message>
-  <message>
-   <location filename="ui/actions.py" />
-   <source>Open the shipped particles</source>
-   <translation>Die mitgelieferten Partikel öffnen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/steps.py" />
-   <source>Open volume …</source>
-   <translation>Volumen öffnen …</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/__init__.py" />
-   <source>Open what to draw from</source>
-   <translation>Öffnen, woraus gezogen wird</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/controls.py" />
-   <location filename="ui/pages/repose/setup.py" />
-   <source>Open …</source>
-   <translation>Öffnen …</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/controls.py" />
-   <source>Opening</source>
-   <translation>Öffnen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/controls.py" />
-   <source>Openings in µm = shares between them; @volume behind it counts volume.</source>
-   <translation>Maschenweiten in µm = Anteile dazwischen; mit @volume dahinter zählt das Volumen.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/volume_dialog.py" />
-   <source>Order of the array's axes</source>
-   <translation>Reihenfolge der Achsen des Feldes</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/setup.py" />
-   <source>Other</source>
-   <translation>Andere</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/controls.py" />
-   <source>Otherwise each connected body is one grain.</source>
-   <translation>Sonst ist jeder zusammenhängende Körper ein Korn.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/controls.py" />
-   <source>Otsu</source>
-   <translation>Otsu</translation>
-  </message>
-  <message>
-   <source>Our own: mass and sieve size, the rest by overlap</source>
-   <translation>Eigene: Masse und Siebgröße, das Übrige durch Überdeckung</translation>
-  </message>
-  <message>
-   <source>Our own: the outer size counts and the volume gives way, since a convex body has only one of the two</source>
-   <translation>Eigene: die äußere Größe zählt und das Volumen gibt nach, denn ein konvexer Körper hat nur eines von beiden</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/sentences.py" />
-   <source>Overlap + {symbols}</source>
-   <translation>Überdeckung + {symbols}</translation>
-  </message>
-  <message>
-   <source>Overlap against descriptors</source>
-   <translation>Überdeckung gegen Deskriptoren</translation>
-  </message>
-  <message>
-   <source>Overlap only</source>
-   <translation>Nur Überdeckung</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/studies/page.py" />
-   <source>Overlap or descriptors</source>
-   <translation>Überdeckung oder Deskriptoren</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/loss.py" />
-   <location filename="ui/widgets/preset_form.py" />
-   <source>Own preset</source>
-   <translation>Eigene Vorlage</translation>
-  </message>
-  <message>
-   <location filename="ui/actions.py" />
-   <source>P&amp;references …</source>
-   <translation>&amp;Einstellungen …</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/explore/__init__.py" />
-   <source>PNG</source>
-   <translation>PNG</translation>
-  </message>
-  <message>
-   <location filename="ui/sidebar.py" />
-   <source>Page {title}</source>
-   <translation>Seite {title}</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/judgement.py" />
-   <source>Pairs (Fig. 6)</source>
-   <translation>Paare (Abb. 6)</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/judgement.py" />
-   <source>Pairs in numbers</source>
-   <translation>Paarwerte</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/health.py" />
-   <source>Pairs of triangles that cross each other</source>
-   <translation>Paare von Dreiecken, die sich kreuzen</translation>
-  </message>
-  <message>
-   <source>Parametric, with facets: size, form, roughness and hull ratio go together as in the sample.</source>
-   <translation>Parametrisch, mit Facetten: Größe, Form, Rauheit und Hüllenverhältnis hängen zusammen wie in der Probe.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/controls.py" />
-   <source>Part touching grains</source>
-   <translation>Berührende Körner trennen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/page.py" />
-   <location filename="ui/pages/sample/table.py" />
-   <location filename="ui/panels/descriptor_table.py" />
-   <location filename="ui/panels/particle_list.py" />
-   <source>Particle</source>
-   <translation>Partikel</translation>
-  </message>
-  <message>
-   <source>Particle density</source>
-   <translation>Dichte der Partikel</translation>
-  </message>
-  <message>
-   <source>Particle mass</source>
-   <translation>Masse der Partikel</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/export.py" />
-   <location filename="ui/pages/model/controls.py" />
-   <location filename="ui/pages/repose/setup.py" />
-   <location filename="ui/panels/particle_list.py" />
-   <source>Particles</source>
-   <translation>Partikel</translation>
-  </message>
-  <message>
-   <location filename="ui/commands.py" />
-   <source>Particles (*.stl *.ply *.obj *.off *.glb *.gltf *.3mf *.anm *.sh *.shc)</source>
-   <translation>Partikel (*.stl *.ply *.obj *.off *.glb *.gltf *.3mf *.anm *.sh *.shc)</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/particle_list.py" />
-   <source>Particles ({count})</source>
-   <translation>Partikel ({count})</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/controls.py" />
-   <location filename="ui/pages/model/distributions.py" />
-   <source>Particles count by their volume</source>
-   <translation>Partikel zählen nach Volumen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/targets.py" />
-   <source>Particles drawn</source>
-   <translation>Gezogene Partikel</translation>
-  </message>
-  <message>
-   <source>Particles that may lend their ellipsoid.</source>
-   <translation>Partikel, die ihr Ellipsoid leihen dürfen.</translation>
-  </message>
-  <message>
-   <source>Parting touching grains</source>
-   <translation>Berührende Körner werden getrennt</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/controls.py" />
-   <location filename="ui/pages/model/judgement.py" />
-   <source>Parts</source>
-   <translation>Komponenten</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/health.py" />
-   <source>Parts that hang together; a particle has one</source>
-   <translation>Zusammenhängende Teile; ein Partikel hat einen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/transport.py" />
-   <location filename="ui/pages/repose/player.py" />
-   <location filename="ui/panels/task_list.py" />
-   <source>Pause</source>
-   <translation>Anhalten</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/explore/pictures.py" />
-   <source>Picture</source>
-   <translation>Bild</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/explore/pictures.py" />
-   <source>Pictures (*.png)</source>
-   <translation>Bilder (*.png)</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/explore/section_panel.py" />
-   <source>Place of the section</source>
-   <translation>Ort des Schnitts</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/words.py" />
-   <source>Plane {number} of {count} is moved by {distance:.3g} µm</source>
-   <translation>Ebene {number} von {count} wird um {distance:.3g} µm verschoben</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/study.py" />
-   <source>Plate friction</source>
-   <translation>Reibung der Platte</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/transport.py" />
-   <location filename="ui/pages/repose/player.py" />
-   <source>Play</source>
-   <translation>Abspielen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/transport.py" />
-   <source>Play or pause</source>
-   <translation>Abspielen oder anhalten</translation>
-  </message>
-  <message>
-   <source>Points a flank</source>
-   <translation>Punkte je Flanke</translation>
-  </message>
-  <message>
-   <source>Poisson's ratio</source>
-   <translation>Querkontraktionszahl</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/batch.py" />
-   <source>Polyhedra (STL)</source>
-   <translation>Polyeder (STL)</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/studies/gallery.py" />
-   <source>Polyhedra by loss function and particle</source>
-   <translation>Polyeder nach Verlustfunktion und Partikel</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/descriptor_table.py" />
-   <location filename="ui/views/triptych.py" />
-   <source>Polyhedron</source>
-   <translation>Polyeder</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/error_bars.py" />
-   <source>Polyhedron vs. fit</source>
-   <translation>Polyeder gegen Fit</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/error_bars.py" />
-   <source>Polyhedron vs. particle</source>
-   <translation>Polyeder gegen Partikel</translation>
-  </message>
-  <message>
-   <location filename="ui/views/triptych.py" />
-   <source>Polyhedron, {count} facets</source>
-   <translation>Polyeder, {count} Facetten</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/controls.py" />
-   <source>Pores without a way out become grain.</source>
-   <translation>Poren ohne Ausgang werden zum Korn gezählt.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/export.py" />
-   <source>Positions (*.npz *.csv *.txt *.dat *.xyz *.dump *.lammpstrj *.vtk *.vtp *.vtu);;All files (*)</source>
-   <translation>Positionen (*.npz *.csv *.txt *.dat *.xyz *.dump *.lammpstrj *.vtk *.vtp *.vtu);;Alle Dateien (*)</translation>
-  </message>
-  <message>
-   <source>Positive by construction; sizes and spectrum apart, so that it extrapolates.</source>
-   <translation>Stets positiv; Größen und Spektrum getrennt, sodass es extrapoliert.</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/preferences.py" />
-   <source>Preferences</source>
-   <translation>Einstellungen</translation>
-  </message>
-  <message>
-   <location filename="jobs/scanning.py" />
-   <source>Preparing the view</source>
-   <translation>Ansicht wird vorbereitet</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/loss.py" />
-   <source>Preset of weights</source>
-   <translation>Vorlage der Gewichte</translation>
-  </message>
-  <message>
-   <location filename="ui/widgets/preset_form.py" />
-   <source>Preset of {label}</source>
-   <translation>Vorlage: {label}</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/gallery.py" />
-   <source>Press Find: the particles that stand for all appear here, with their weights.</source>
-   <translation>Drücken Sie „Repräsentanten finden“: die Partikel, die für alle stehen, erscheinen hier mit ihren Gewichten.</translation>
-  </message>
-  <message>
-   <location filename="jobs/scanning.py" />
-   <location filename="ui/pages/scan/page.py" />
-   <source>Preview</source>
-   <translation>Vorschau</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/annealing.py" />
-   <source>Probability</source>
-   <translation>Wahrscheinlichkeit</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/controls.py" />
-   <source>Probability map</source>
-   <translation>Wahrscheinlichkeitskarte</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/batch_fields.py" />
-   <source>Processes</source>
-   <translation>Prozesse</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/batch_fields.py" />
-   <source>Processes of this machine</source>
-   <translation>Prozesse dieses Rechners</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/task_list.py" />
-   <location filename="ui/panels/tasks.py" />
-   <source>Progress</source>
-   <translation>Fortschritt</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/batch.py" />
-   <source>Progress of the batch</source>
-   <translation>Fortschritt des Stapels</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/export.py" />
-   <source>Progress of the export</source>
-   <translation>Fortschritt des Exports</translation>
-  </message>
-  <message>
-   <location filename="ui/widgets/study_frame.py" />
-   <source>Progress of the study</source>
-   <translation>Fortschritt der Studie</translation>
-  </message>
-  <message>
-   <location filename="ui/commands.py" />
-   <location filename="ui/projects.py" />
-   <source>Projects (*.regolith)</source>
-   <translation>Projekte (*.regolith)</translation>
-  </message>
-  <message>
-   <source>Quadric decimation</source>
-   <translation>Quadrik-Dezimierung</translation>
-  </message>
-  <message>
-   <source>Quadric decimation (no loss)</source>
-   <translation>Quadrik-Dezimierung (ohne Verlust)</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/judgement.py" />
-   <source>Quantiles</source>
-   <translation>Quantile</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/coarsening_study.py" />
-   <source>RMSRE [%], 1 particle</source>
-   <translation>RMSRE [%], 1 Partikel</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/studies/variation_panel.py" />
-   <source>RMSRE [%], at least {least:g}</source>
-   <translation>RMSRE [%], mindestens {least:g}</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/coarsening_study.py" />
-   <source>RMSRE [%], {count} particles</source>
-   <translation>RMSRE [%], {count} Partikel</translation>
-  </message>
-  <message>
-   <location filename="session/studies.py" />
-   <source>RMSRE against l_max</source>
-   <translation>RMSRE gegen l_max</translation>
-  </message>
-  <message>
-   <location filename="session/studies.py" />
-   <source>RMSRE against loss weights</source>
-   <translation>RMSRE gegen die Gewichte des Verlusts</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/fit.py" />
-   <source>Radius</source>
-   <translation>Radius</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/fit.py" />
-   <source>Radius rule</source>
-   <translation>Regel für Radien</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/page.py" />
-   <source>Random field</source>
-   <translation>Zufallsfeld</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/judgement.py" />
-   <source>Ranking</source>
-   <translation>Rangliste</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/judgement.py" />
-   <source>Ranking of the models</source>
-   <translation>Rangliste der Modelle</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/table_view.py" />
-   <source>Reached</source>
-   <translation>Erreicht</translation>
-  </message>
-  <message>
-   <location filename="jobs/loading.py" />
-   <source>Reading particles</source>
-   <translation>Partikel werden gelesen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/page.py" />
-   <source>Reading the dataset</source>
-   <translation>Datensatz wird gelesen</translation>
-  </message>
-  <message>
-   <location filename="jobs/loading.py" />
-   <source>Reading the sample</source>
-   <translation>Probe wird gelesen</translation>
-  </message>
-  <message>
-   <location filename="jobs/scanning.py" />
-   <location filename="ui/pages/scan/page.py" />
-   <source>Reading the sample scan</source>
-   <translation>Beispielscan wird gelesen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/page.py" />
-   <source>Reading the volume</source>
-   <translation>Volumen wird gelesen</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/sentences.py" />
-   <source>Reading {name}</source>
-   <translation>{name} wird gelesen</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/tasks.py" />
-   <source>Ready</source>
-   <translation>Bereit</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/batch_fields.py" />
-   <source>Recipe</source>
-   <translation>Rezept</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/batch.py" />
-   <source>Recipe:</source>
-   <translation>Rezept:</translation>
-  </message>
-  <message>
-   <location filename="ui/commands.py" />
-   <location filename="ui/dialogs/batch_fields.py" />
-   <source>Recipes (*.json)</source>
-   <translation>Rezepte (*.json)</translation>
-  </message>
-  <message>
-   <location filename="ui/projects.py" />
-   <source>Recover</source>
-   <translation>Wiederherstellen</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/fit.py" />
-   <source>Reference of the radius</source>
-   <translation>Bezug der Radien</translation>
-  </message>
-  <message>
-   <location filename="ui/projects.py" />
-   <source>Regolith Studio was not closed properly the last time. Bring its state back?</source>
-   <translation>Regolith Studio wurde zuletzt nicht ordentlich geschlossen. Den Stand zurückholen?</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/judgement.py" />
-   <source>Rejected</source>
-   <translation>Verworfen</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/error_bars.py" />
-   <source>Relative error [%]</source>
-   <translation>Relativer Fehler [%]</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/loss.py" />
-   <source>Relative error of {symbol}, Eq. 8: {name}, {formula}</source>
-   <translation>Relativer Fehler von {symbol}, Gl. 8: {name}, {formula}</translation>
-  </message>
-  <message>
-   <source>Relative errors of volume, sphericity, diameters, aspect ratio and hull (Eq. 8): blue for the fit, orange for the polyhedron. The second tab has the numbers with their units.</source>
-   <translation>Relative Fehler von Volumen, Sphärizität, Durchmessern, Seitenverhältnis und Hülle (Gl. 8): blau für den Fit, orange für das Polyeder. Der zweite Reiter hat die Zahlen mit ihren Einheiten.</translation>
-  </message>
-  <message>
-   <location filename="ui/widgets/steady_texts.py" />
-   <source>Remarks</source>
-   <translation>Anmerkungen</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/health_sentences.py" />
-   <source>Removed 1 double face.</source>
-   <translation>1 doppelte Fläche wurde entfernt.</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/health_sentences.py" />
-   <source>Removed 1 face without area.</source>
-   <translation>1 Fläche ohne Inhalt wurde entfernt.</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/health_sentences.py" />
-   <source>Removed {count} double faces.</source>
-   <translation>{count} doppelte Flächen wurden entfernt.</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/health_sentences.py" />
-   <source>Removed {count} faces without area.</source>
-   <translation>{count} Flächen ohne Inhalt wurden entfernt.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/controls.py" />
-   <source>Removes specks and thin bridges, in voxels.</source>
-   <translation>Entfernt Flecken und dünne Brücken, in Voxeln.</translation>
-  </message>
-  <message>
-   <source>Repair lost facets</source>
-   <translation>Verlorene Facetten ersetzen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/page.py" />
-   <source>Replace the dataset</source>
-   <translation>Datensatz ersetzen</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/export.py" />
-   <source>Replace the dataset that is there</source>
-   <translation>Den vorhandenen Datensatz ersetzen</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/batch.py" />
-   <source>Report (HTML)</source>
-   <translation>Bericht (HTML)</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/gallery.py" />
-   <source>Representative particles</source>
-   <translation>Repräsentative Partikel</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/gallery.py" />
-   <location filename="ui/pages/dataset/page.py" />
-   <source>Representatives</source>
-   <translation>Repräsentanten</translation>
-  </message>
-  <message>
-   <location filename="ui/widgets/preset_bar.py" />
-   <source>Reset</source>
-   <translation>Zurücksetzen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/field.py" />
-   <location filename="ui/pages/model/views.py" />
-   <source>Reset the spectrum</source>
-   <translation>Spektrum zurücksetzen</translation>
-  </message>
-  <message>
-   <source>Rest: energy</source>
-   <translation>Ruhe: Energie</translation>
-  </message>
-  <message>
-   <source>Rest: time</source>
-   <translation>Ruhe: Zeit</translation>
-  </message>
-  <message>
-   <source>Restarts</source>
-   <translation>Neustarts</translation>
-  </message>
-  <message>
-   <source>Resting time</source>
-   <translation>Ruhezeit</translation>
-  </message>
-  <message>
-   <source>Restitution</source>
-   <translation>Stoßzahl</translation>
-  </message>
-  <message>
-   <source>Restore the volume</source>
-   <translation>Volumen wiederherstellen</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/task_list.py" />
-   <source>Resume</source>
-   <translation>Fortsetzen</translation>
-  </message>
-  <message>
-   <source>Retries</source>
-   <translation>Neue Versuche</translation>
-  </message>
-  <message>
-   <source>Right (from +x)</source>
-   <translation>Rechts (von +x)</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/shortcuts.py" />
-   <source>Right or middle drag, Shift + drag</source>
-   <translation>Rechte oder mittlere Taste ziehen, Umschalt + Ziehen</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/shortcuts.py" />
-   <source>Roll the picture</source>
-   <translation>Das Bild rollen</translation>
-  </message>
-  <message>
-   <source>Rolling</source>
-   <translation>Rollen</translation>
-  </message>
-  <message>
-   <source>Rolling median</source>
-   <translation>Gleitender Median</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/runs.py" />
-   <location filename="ui/pages/repose/study.py" />
-   <source>Rolling resistance</source>
-   <translation>Rollwiderstand</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/lmax_study.py" />
-   <source>Root mean squared relative error of each descriptor against l&lt;sub&gt;max&lt;/sub&gt;, as in Fig. 3 of the paper.</source>
-   <translation>Wurzel des mittleren quadratischen relativen Fehlers jedes Deskriptors gegen l&lt;sub&gt;max&lt;/sub&gt;, wie in Bild 3 des Artikels.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/studies/variation_panel.py" />
-   <source>Root mean squared relative error of each descriptor against the number of facets.</source>
-   <translation>Wurzel des mittleren quadratischen relativen Fehlers jedes Deskriptors gegen die Anzahl der Facetten.</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/coarsening_study.py" />
-   <source>Root mean squared relative error of each descriptor, one row a loss function, as in Fig. 8 of the paper.</source>
-   <translation>Wurzel des mittleren quadratischen relativen Fehlers jedes Deskriptors, eine Zeile je Verlustfunktion, wie in Bild 8 des Artikels.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/controls.py" />
-   <source>Rosin-Rammler, the same for all</source>
-   <translation>Rosin-Rammler, für alle gleich</translation>
-  </message>
-  <message>
-   <source>Roughness</source>
-   <translation>Rauheit</translation>
-  </message>
-  <message>
-   <source>Roundness</source>
-   <translation>Rundheit</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/studies/rows_bar.py" />
-   <source>Rows of Fig. 8</source>
-   <translation>Zeilen von Bild 8</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/batch.py" />
-   <location filename="ui/pages/repose/runs.py" />
-   <source>Run</source>
-   <translation>Ausführen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/section_plot.py" />
-   <source>Run a test or open positions to see its section.</source>
-   <translation>Führen Sie einen Versuch durch oder öffnen Sie Positionen, um den Schnitt zu sehen.</translation>
-  </message>
-  <message>
-   <location filename="ui/actions.py" />
-   <source>Run as a &amp;batch …</source>
-   <translation>Als S&amp;tapel ausführen …</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/batch.py" />
-   <source>Run as a batch</source>
-   <translation>Als Stapel ausführen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/page.py" />
-   <location filename="ui/pages/repose/setup.py" />
-   <source>Run the test</source>
-   <translation>Versuch durchführen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/__init__.py" />
-   <source>Run the values of the study, or go on</source>
-   <translation>Die Werte der Studie rechnen oder fortfahren</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/page.py" />
-   <source>Running</source>
-   <translation>In Arbeit</translation>
-  </message>
-  <message>
-   <location filename="ui/batches.py" />
-   <source>Running the recipe</source>
-   <translation>Rezept wird ausgeführt</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/page.py" />
-   <source>Running …</source>
-   <translation>In Arbeit …</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/page.py" />
-   <location filename="ui/pages/repose/runs.py" />
-   <source>Runs</source>
-   <translation>Läufe</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/study.py" />
-   <source>Runs of each</source>
-   <translation>Läufe je Wert</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/study.py" />
-   <source>Runs of each value, with other seeds</source>
-   <translation>Läufe je Wert, mit anderen Startwerten</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/study.py" />
-   <source>Runs of the study</source>
-   <translation>Läufe der Studie</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/study.py" />
-   <source>Runs that are there already are not run again</source>
-   <translation>Vorhandene Läufe werden nicht wiederholt</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/runs.py" />
-   <source>Runs that became piles are compared here.</source>
-   <translation>Läufe, die zu Schüttkegeln wurden, werden hier verglichen.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/__init__.py" />
-   <source>S&amp;maller letters</source>
-   <translation>&amp;Kleinere Schrift</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/library.py" />
-   <source>SHA-256 of the dataset: {hash} …</source>
-   <translation>SHA-256 des Datensatzes: {hash} …</translation>
-  </message>
-  <message>
-   <source>SI; coarse graining applied</source>
-   <translation>SI; mit Vergröberungsfaktor</translation>
-  </message>
-  <message>
-   <source>SI; sizes are equivalent diameters in metres before coarse graining, which Rocky applies itself</source>
-   <translation>SI; Größen sind Äquivalentdurchmesser in Metern vor der Vergröberung, die Rocky selbst anwendet</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/__init__.py" />
-   <source>Sa&amp;ve settings …</source>
-   <translation>Einstellungen spei&amp;chern …</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/__init__.py" />
-   <location filename="ui/pages/sample/page.py" />
-   <source>Sample</source>
-   <translation>Probe</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/page.py" />
-   <source>Sample ({seen} of {total})</source>
-   <translation>Probe ({seen} von {total})</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/page.py" />
-   <source>Sample ({total})</source>
-   <translation>Probe ({total})</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/controls.py" />
-   <source>Sample or material</source>
-   <translation>Probe oder Material</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/table.py" />
-   <location filename="ui/panels/particle_list.py" />
-   <source>Sample or size fraction</source>
-   <translation>Probe oder Größenklasse</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/steps.py" />
-   <source>Sample scan</source>
-   <translation>Beispielscan</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/explore/__init__.py" />
-   <source>Save &amp;animation of l_max …</source>
-   <translation>&amp;Animation von l_max speichern …</translation>
-  </message>
-  <message>
-   <location filename="ui/widgets/plot.py" />
-   <source>Save &amp;figure …</source>
-   <translation>&amp;Abbildung speichern …</translation>
-  </message>
-  <message>
-   <location filename="ui/widgets/plot.py" />
-   <source>Save &amp;numbers …</source>
-   <translation>&amp;Zahlen speichern …</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/explore/__init__.py" />
-   <source>Save &amp;picture …</source>
-   <translation>&amp;Bild speichern …</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/explore/__init__.py" />
-   <source>Save &amp;turntable …</source>
-   <translation>&amp;Drehung speichern …</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/files.py" />
-   <source>Save a material card</source>
-   <translation>Materialkarte speichern</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/explore/pictures.py" />
-   <source>Save animation</source>
-   <translation>Animation speichern</translation>
-  </message>
-  <message>
-   <location filename="ui/widgets/preset_bar.py" />
-   <source>Save as own preset</source>
-   <translation>Als eigene Vorlage speichern</translation>
-  </message>
-  <message>
-   <location filename="ui/widgets/preset_bar.py" />
-   <source>Save as own preset …</source>
-   <translation>Als eigene Vorlage speichern …</translation>
-  </message>
-  <message>
-   <location filename="ui/widgets/plot.py" />
-   <source>Save figure</source>
-   <translation>Abbildung speichern</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/__init__.py" />
-   <source>Save material &amp;card …</source>
-   <translation>Material&amp;karte speichern …</translation>
-  </message>
-  <message>
-   <location filename="ui/widgets/plot.py" />
-   <source>Save numbers</source>
-   <translation>Zahlen speichern</translation>
-  </message>
-  <message>
-   <location filename="ui/widgets/preset_bar.py" />
-   <source>Save or delete a preset</source>
-   <translation>Vorlage speichern oder löschen</translation>
-  </message>
-  <message>
-   <location filename="ui/widgets/preset_bar.py" />
-   <source>Save or delete a preset of your own</source>
-   <translation>Eine eigene Vorlage speichern oder löschen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/explore/pictures.py" />
-   <source>Save picture</source>
-   <translation>Bild speichern</translation>
-  </message>
-  <message>
-   <location filename="ui/projects.py" />
-   <source>Save project</source>
-   <translation>Projekt speichern</translation>
-  </message>
-  <message>
-   <location filename="ui/actions.py" />
-   <source>Save project &amp;as …</source>
-   <translation>Projekt speichern &amp;unter …</translation>
-  </message>
-  <message>
-   <location filename="ui/actions.py" />
-   <source>Save re&amp;cipe …</source>
-   <translation>&amp;Rezept speichern …</translation>
-  </message>
-  <message>
-   <location filename="ui/commands.py" />
-   <source>Save recipe</source>
-   <translation>Rezept speichern</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/page.py" />
-   <source>Save settings</source>
-   <translation>Einstellungen speichern</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/files.py" />
-   <source>Save the model</source>
-   <translation>Modell speichern</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/explore/pictures.py" />
-   <source>Save turntable</source>
-   <translation>Drehung speichern</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/files.py" />
-   <source>Saved {first} and {second}.</source>
-   <translation>{first} und {second} sind gespeichert.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/files.py" />
-   <source>Saved {name}.</source>
-   <translation>{name} ist gespeichert.</translation>
-  </message>
-  <message>
-   <location filename="ui/commands.py" />
-   <source>Saved {name}; run it with: {command}</source>
-   <translation>{name} ist gespeichert; ausführen mit: {command}</translation>
-  </message>
-  <message>
-   <location filename="ui/projects.py" />
-   <source>Saved {path}.</source>
-   <translation>{path} ist gespeichert.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/page.py" />
-   <source>Saved; use it with: {command}</source>
-   <translation>Gespeichert; verwenden mit: {command}</translation>
-  </message>
-  <message>
-   <location filename="ui/actions.py" />
-   <source>Say, and mend, what is wrong</source>
-   <translation>Sagen und ausbessern, was nicht stimmt</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/explore/pictures.py" />
-   <source>Scale</source>
-   <translation>Maßstab</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/explore/pictures.py" />
-   <source>Scale of the picture</source>
-   <translation>Maßstab des Bildes</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/controls.py" />
-   <source>Scale, shape, smallest, largest; @volume behind it counts volume.</source>
-   <translation>Skala, Form, kleinster, größter; mit @volume dahinter zählt das Volumen.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/setup.py" />
-   <source>Scaled with the size (experimental)</source>
-   <translation>Mit der Größe skaliert (experimentell)</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/__init__.py" />
-   <source>Scan</source>
-   <translation>Scan</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/batch_fields.py" />
-   <source>Scheduler</source>
-   <translation>Scheduler</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/shortcuts.py" />
-   <source>Search commands</source>
-   <translation>Befehle suchen</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/shortcuts.py" />
-   <source>Search commands and keys</source>
-   <translation>Befehle und Tasten suchen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/table_view.py" />
-   <source>Second</source>
-   <translation>Zweiter</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/explore/plot_area.py" />
-   <source>Section</source>
-   <translation>Schnitt</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/page.py" />
-   <source>Sections</source>
-   <translation>Schnitte</translation>
-  </message>
-  <message>
-   <source>See why it works</source>
-   <translation>Sehen, warum es geht</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/controls.py" />
-   <location filename="ui/pages/repose/runs.py" />
-   <location filename="ui/pages/repose/setup.py" />
-   <location filename="ui/pages/repose/study.py" />
-   <location filename="ui/panels/coarsening.py" />
-   <source>Seed</source>
-   <translation>Startwert</translation>
-  </message>
-  <message>
-   <source>Seed of starts</source>
-   <translation>Startwert dafür</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/controls.py" />
-   <source>Seed of the draws</source>
-   <translation>Startwert der Ziehungen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/__init__.py" />
-   <source>Segment the whole volume</source>
-   <translation>Das ganze Volumen segmentieren</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/steps.py" />
-   <source>Segment the whole volume with these settings</source>
-   <translation>Das ganze Volumen mit diesen Einstellungen segmentieren</translation>
-  </message>
-  <message>
-   <source>Sensitivity to the weights</source>
-   <translation>Empfindlichkeit gegen die Gewichte</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/explore/pictures.py" />
-   <source>Sequence of PNG files (*.png)</source>
-   <translation>Folge von PNG-Dateien (*.png)</translation>
-  </message>
-  <message>
-   <source>Set MA160 (synthetic)</source>
-   <translation>Satz MA160 (synthetisch)</translation>
-  </message>
-  <message>
-   <source>Set MA165 (synthetic)</source>
-   <translation>Satz MA165 (synthetisch)</translation>
-  </message>
-  <message>
-   <source>Set SACCI 425 (synthetic)</source>
-   <translation>Satz SACCI 425 (synthetisch)</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/page.py" />
-   <source>Settings (*.json);;All files (*)</source>
-   <translation>Einstellungen (*.json);;Alle Dateien (*)</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/coarsening.py" />
-   <source>Settings of the method</source>
-   <translation>Einstellungen des Verfahrens</translation>
-  </message>
-  <message>
-   <source>Settling time</source>
-   <translation>Absetzzeit</translation>
-  </message>
-  <message>
-   <source>Shape</source>
-   <translation>Form</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/__init__.py" />
-   <source>Shape model</source>
-   <translation>Formmodell</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/runs.py" />
-   <location filename="ui/pages/repose/setup.py" />
-   <location filename="ui/pages/repose/study.py" />
-   <source>Shapes</source>
-   <translation>Formen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/targets.py" />
-   <source>Shapes are changed: {how}</source>
-   <translation>Formen werden verändert: {how}</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/targets.py" />
-   <source>Shapes may be changed</source>
-   <translation>Formen dürfen verändert werden</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/plots.py" />
-   <location filename="ui/pages/model/distributions.py" />
-   <source>Share at or below [%]</source>
-   <translation>Anteil bis hierher [%]</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/health.py" />
-   <source>Share of the volume in bodies that were left out</source>
-   <translation>Anteil des Volumens in weggelassenen Körpern</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/judgement.py" />
-   <source>Share that a classifier tells right: 0.5 cannot be told apart</source>
-   <translation>Anteil, den ein Klassifikator richtig zuordnet: bei 0.5 nicht zu unterscheiden</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/shortcuts.py" />
-   <source>Shift the picture</source>
-   <translation>Das Bild verschieben</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/explore/__init__.py" />
-   <source>Show fitting errors</source>
-   <translation>Fehler des Fits zeigen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/__init__.py" />
-   <source>Show in &amp;Explore</source>
-   <translation>In Er&amp;kunden zeigen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/steps.py" />
-   <source>Show particles</source>
-   <translation>Partikel zeigen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/__init__.py" />
-   <source>Show the &amp;library</source>
-   <translation>Bib&amp;liothek zeigen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/explore/__init__.py" />
-   <source>Show the whole particle</source>
-   <translation>Das ganze Partikel zeigen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/explore/__init__.py" />
-   <source>Show triangles</source>
-   <translation>Dreiecke zeigen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/health.py" />
-   <source>Show where</source>
-   <translation>Zeigen, wo</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/controls.py" />
-   <source>Sieve classes, the same for all</source>
-   <translation>Siebklassen, für alle gleich</translation>
-  </message>
-  <message>
-   <source>Simulated annealing (paper)</source>
-   <translation>Simuliertes Abkühlen (Artikel)</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/controls.py" />
-   <source>Single diameters, the same for all</source>
-   <translation>Einzelne Durchmesser, für alle gleich</translation>
-  </message>
-  <message>
-   <source>Size jitter</source>
-   <translation>Größenstreuung</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/preferences.py" />
-   <source>Size of letters</source>
-   <translation>Schriftgröße</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/slice_view.py" />
-   <source>Slice along {axis}</source>
-   <translation>Schicht entlang {axis}</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/slice_view.py" />
-   <source>Slice along {axis}, picture</source>
-   <translation>Schicht entlang {axis}, Bild</translation>
-  </message>
-  <message>
-   <source>Slice, in mean d</source>
-   <translation>Scheibe, in mittleren d</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/controls.py" />
-   <source>Smallest</source>
-   <translation>Kleinste</translation>
-  </message>
-  <message>
-   <source>Smallest Feret diameter</source>
-   <translation>Kleinster Feret-Durchmesser</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/controls.py" />
-   <source>Smallest equivalent radius</source>
-   <translation>Kleinster Äquivalentradius</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/explore/__init__.py" />
-   <source>Smallest in volume</source>
-   <translation>Der kleinste dem Volumen nach</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/lmax_study.py" />
-   <source>Smallest l&lt;sub&gt;max&lt;/sub&gt; with every error below</source>
-   <translation>Kleinstes l&lt;sub&gt;max&lt;/sub&gt; mit allen Fehlern unter</translation>
-  </message>
-  <message>
-   <source>Snapshots</source>
-   <translation>Momentaufnahmen</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/descriptor_table.py" />
-   <source>Solid</source>
-   <translation>Körper</translation>
-  </message>
-  <message>
-   <location filename="ui/app.py" />
-   <source>Something went wrong in the program ({name}); the work goes on.</source>
-   <translation>Im Programm ist etwas schiefgegangen ({name}); die Arbeit geht weiter.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/explore/plot_area.py" />
-   <source>Spectrum</source>
-   <translation>Spektrum</translation>
-  </message>
-  <message>
-   <source>Spectrum depends on size</source>
-   <translation>Spektrum hängt von der Größe ab</translation>
-  </message>
-  <message>
-   <location filename="ui/widgets/spectrum_editor.py" />
-   <source>Spectrum of the model; left and right choose a degree, up and down change it</source>
-   <translation>Spektrum des Modells; links und rechts wählen einen Grad, auf und ab ändern ihn</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/transport.py" />
-   <source>Speed</source>
-   <translation>Tempo</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/fit.py" />
-   <source>Sphere</source>
-   <translation>Kugel</translation>
-  </message>
-  <message>
-   <source>Spheres a particle</source>
-   <translation>Kugeln je Partikel</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/setup.py" />
-   <source>Spheres of the same volumes</source>
-   <translation>Kugeln gleicher Volumen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/degrees.py" />
-   <location filename="ui/panels/coarsening.py" />
-   <location filename="ui/panels/fit.py" />
-   <location filename="ui/views/triptych.py" />
-   <source>Spherical-harmonics fit</source>
-   <translation>Fit mit Kugelflächenfunktionen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/degrees.py" />
-   <location filename="ui/views/triptych.py" />
-   <source>Spherical-harmonics fit, {degree}</source>
-   <translation>Fit mit Kugelflächenfunktionen, {degree}</translation>
-  </message>
-  <message>
-   <source>Sphericity</source>
-   <translation>Sphärizität</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/sentences.py" />
-   <source>Sphericity {sphericity} needs at least {needed} facets; with {faces} the most is {most}.</source>
-   <translation>Die Sphärizität {sphericity} braucht mindestens {needed} Facetten; mit {faces} sind höchstens {most} möglich.</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/sentences.py" />
-   <source>Sphericity {sphericity} needs more than 100,000 facets; with {faces} the most is {most}.</source>
-   <translation>Die Sphärizität {sphericity} braucht mehr als 100,000 Facetten; mit {faces} sind höchstens {most} möglich.</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/particle_list.py" />
-   <source>Sphericity, Eq. 1 (Wadell)</source>
-   <translation>Sphärizität, Gl. 1 (Wadell)</translation>
-  </message>
-  <message>
-   <location filename="ui/actions.py" />
-   <source>Standard la&amp;yout</source>
-   <translation>&amp;Standardanordnung</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/explore/__init__.py" />
-   <source>Star &amp;point</source>
-   <translation>S&amp;ternpunkt</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/fit.py" />
-   <source>Star point</source>
-   <translation>Sternpunkt</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/fit.py" />
-   <source>Star-shaped: no part of the surface is hidden from the star point.</source>
-   <translation>Sternförmig: kein Teil der Oberfläche ist vom Sternpunkt aus verdeckt.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/study.py" />
-   <source>Start or go on</source>
-   <translation>Starten oder fortfahren</translation>
-  </message>
-  <message>
-   <source>Start temperature T₀</source>
-   <translation>Anfangstemperatur T₀</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/__init__.py" />
-   <source>Start the &amp;study</source>
-   <translation>&amp;Studie starten</translation>
-  </message>
-  <message>
-   <source>Starting the workers</source>
-   <translation>Arbeitsprozesse werden gestartet</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/batch.py" />
-   <location filename="ui/dialogs/export.py" />
-   <source>Starting …</source>
-   <translation>Beginnt …</translation>
-  </message>
-  <message>
-   <source>Starts</source>
-   <translation>Starts</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/runs.py" />
-   <location filename="ui/pages/repose/study.py" />
-   <source>Static friction</source>
-   <translation>Haftreibung</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/page.py" />
-   <source>Statistics</source>
-   <translation>Statistik</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/statistics.py" />
-   <source>Statistics of</source>
-   <translation>Statistik:</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/statistics.py" />
-   <source>Statistics of groups</source>
-   <translation>Statistik der Gruppen</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/sentences.py" />
-   <source>Statistics of {count} particles of {name}, made by Regolith Studio.</source>
-   <translation>Statistik von {count} Partikeln aus {name}, erstellt mit Regolith Studio.</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/loss_curve.py" />
-   <source>Step</source>
-   <translation>Schritt</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/__init__.py" />
-   <source>Step &amp;back</source>
-   <translation>Schritt &amp;zurück</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/__init__.py" />
-   <source>Step &amp;forward</source>
-   <translation>Schritt &amp;vor</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/__init__.py" />
-   <source>Step by step</source>
-   <translation>Schritt für Schritt</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/annealing.py" />
-   <source>Step k</source>
-   <translation>Schritt k</translation>
-  </message>
-  <message>
-   <source>Step, in Rayleigh's time</source>
-   <translation>Schritt, in Rayleigh-Zeiten</translation>
-  </message>
-  <message>
-   <source>Step, in mean |p|</source>
-   <translation>Schrittweite in mittleren |p|</translation>
-  </message>
-  <message>
-   <source>Step, share of a swing</source>
-   <translation>Schritt, Anteil einer Schwingung</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/transport.py" />
-   <source>Steps a second</source>
-   <translation>Schritte je Sekunde</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/transport.py" />
-   <source>Steps a second while it plays by itself.</source>
-   <translation>Schritte je Sekunde, während es von selbst läuft.</translation>
-  </message>
-  <message>
-   <source>Stiffness, in m g / d³</source>
-   <translation>Steifigkeit, in m g / d³</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/batch.py" />
-   <location filename="ui/pages/repose/study.py" />
-   <location filename="ui/panels/task_list.py" />
-   <location filename="ui/panels/tasks.py" />
-   <location filename="ui/widgets/study_frame.py" />
-   <source>Stop</source>
-   <translation>Abbrechen</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/closing.py" />
-   <source>Stop and close</source>
-   <translation>Abbrechen und schließen</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/tasks.py" />
-   <source>Stop what is running</source>
-   <translation>Abbrechen, was in Arbeit ist</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/page.py" />
-   <source>Stopped. Choose another seed, or come back to this page, to begin again.</source>
-   <translation>Abgebrochen. Wählen Sie einen anderen Startwert oder kehren Sie zu dieser Seite zurück, um neu zu beginnen.</translation>
-  </message>
-  <message>
-   <location filename="ui/batches.py" />
-   <source>Stopped. What was done is kept: run again into the same folder to go on.</source>
-   <translation>Abgebrochen. Was fertig ist, bleibt: noch einmal in denselben Ordner ausführen setzt es fort.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/study_desk.py" />
-   <source>Stopped; what is finished is kept, and the start button goes on there.</source>
-   <translation>Abgebrochen; was fertig ist, bleibt, und der Startknopf fährt dort fort.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/judgement.py" />
-   <source>Stopping …</source>
-   <translation>Wird abgebrochen …</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/studies/__init__.py" />
-   <source>Studies</source>
-   <translation>Studien</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/page.py" />
-   <source>Study</source>
-   <translation>Studie</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/batch.py" />
-   <source>Study of the coarsening</source>
-   <translation>Studie der Vergröberung</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/batch.py" />
-   <source>Study of the degree</source>
-   <translation>Studie des Grades</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/controls.py" />
-   <source>Surface</source>
-   <translation>Oberfläche</translation>
-  </message>
-  <message>
-   <source>Surface area</source>
-   <translation>Oberfläche</translation>
-  </message>
-  <message>
-   <source>Surface energy</source>
-   <translation>Oberflächenenergie</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/sentences.py" />
-   <source>Synthesised by Regolith Studio from the angular power spectrum and size spread of {count} particles of the published micro-CT set {name}, rounded to two digits; the length unit is taken as micrometres and no measured particle is contained.</source>
-   <translation>Von Regolith Studio synthetisiert aus dem Leistungsspektrum und der Größenstreuung von {count} Partikeln des veröffentlichten Mikro-CT-Satzes {name}, auf zwei Stellen gerundet; als Längeneinheit gelten Mikrometer, und kein gemessenes Partikel ist enthalten.</translation>
-  </message>
-  <message>
-   <source>Table 1</source>
-   <translation>Tabelle 1</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/targets.py" />
-   <location filename="ui/pages/repose/setup.py" />
-   <source>Table 1 of the paper</source>
-   <translation>Tabelle 1 des Artikels</translation>
-  </message>
-  <message>
-   <source>Table 2</source>
-   <translation>Tabelle 2</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/targets.py" />
-   <location filename="ui/pages/repose/setup.py" />
-   <source>Table 2 of the paper</source>
-   <translation>Tabelle 2 des Artikels</translation>
-  </message>
-  <message>
-   <location filename="ui/widgets/heat_table.py" />
-   <source>Table of errors</source>
-   <translation>Tabelle der Fehler</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/page.py" />
-   <source>Tables (*.csv)</source>
-   <translation>Tabellen (*.csv)</translation>
-  </message>
-  <message>
-   <location filename="ui/commands.py" />
-   <source>Tables of coefficients (*.anm *.sh *.shc *.txt *.dat *.csv)</source>
-   <translation>Tabellen von Koeffizienten (*.anm *.sh *.shc *.txt *.dat *.csv)</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/__init__.py" />
-   <source>Take settings from a file</source>
-   <translation>Einstellungen aus einer Datei nehmen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/explore/section_panel.py" />
-   <source>Take the other half away</source>
-   <translation>Die andere Hälfte wegnehmen</translation>
-  </message>
-  <message>
-   <source>Tangential force</source>
-   <translation>Tangentialkraft</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/table_view.py" />
-   <source>Target</source>
-   <translation>Ziel</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/judgement.py" />
-   <source>Targets</source>
-   <translation>Ziele</translation>
-  </message>
-  <message>
-   <location filename="ui/activity.py" />
-   <source>Tasks</source>
-   <translation>Aufgaben</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/setup.py" />
-   <source>Teaching</source>
-   <translation>Lehre</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/annealing.py" />
-   <source>Term of Eq. 9</source>
-   <translation>Term von Gl. 9</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/setup.py" />
-   <source>Test (Table 2)</source>
-   <translation>Versuch (Tabelle 2)</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/volume_dialog.py" />
-   <source>That is all of the file's {count:,} bytes.</source>
-   <translation>Das sind alle {count:,} Bytes der Datei.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/explore/pictures.py" />
-   <source>The animation is in {path}.</source>
-   <translation>Die Animation ist in {path}.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/files.py" />
-   <source>The card {name} cannot be written ({reason}).</source>
-   <translation>Die Karte {name} lässt sich nicht schreiben ({reason}).</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/sentences.py" />
-   <source>The centre of mass lies outside the particle; the point with the least hidden volume is used.</source>
-   <translation>Der Schwerpunkt liegt außerhalb des Partikels; genommen wird der Punkt mit dem kleinsten verdeckten Volumen.</translation>
-  </message>
-  <message>
-   <location filename="ui/commands.py" />
-   <source>The command is on the clipboard.</source>
-   <translation>Das Kommando ist in der Zwischenablage.</translation>
-  </message>
-  <message>
-   <location filename="ui/actions.py" />
-   <source>The command line that does the same</source>
-   <translation>Die Kommandozeile, die dasselbe tut</translation>
-  </message>
-  <message>
-   <location filename="ui/commands.py" />
-   <source>The dataset is in {folder}.</source>
-   <translation>Der Datensatz ist in {folder}.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/page.py" />
-   <source>The dataset is not sound: {problem}</source>
-   <translation>Der Datensatz ist fehlerhaft: {problem}</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/page.py" />
-   <source>The dataset is sound.</source>
-   <translation>Der Datensatz ist fehlerfrei.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/setup.py" />
-   <source>The dataset's polyhedra</source>
-   <translation>Polyeder des Datensatzes</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/error_bars.py" />
-   <source>The errors appear when the fit is measured.</source>
-   <translation>Die Fehler erscheinen, sobald der Fit vermessen ist.</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/sentences.py" />
-   <source>The expansion up to l = {degree} misses the radius by {error} in the root mean square, at most {most}; a higher l_max comes closer, and on flat or long grains so does an ellipsoid as reference.</source>
-   <translation>Die Entwicklung bis l = {degree} verfehlt den Radius im quadratischen Mittel um {error}, höchstens um {most}; ein höheres l_max kommt näher, bei flachen oder länglichen Körnern auch ein Ellipsoid als Bezug.</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/sentences.py" />
-   <source>The expansion up to l = {degree} misses the radius by {error} in the root mean square; a higher l_max comes closer, and on flat or long grains so does an ellipsoid as reference.</source>
-   <translation>Die Entwicklung bis l = {degree} verfehlt den Radius im quadratischen Mittel um {error}; ein höheres l_max kommt näher, bei flachen oder länglichen Körnern auch ein Ellipsoid als Bezug.</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/coarsening.py" />
-   <source>The fewest facets are sought whose weighted descriptors are all off by no more than this; of V and CH, which cannot both be met, beyond what none can avoid.</source>
-   <translation>Gesucht werden die wenigsten Facetten, deren gewichtete Deskriptoren alle höchstens um so viel abweichen; bei V und CH, die nicht beide zu treffen sind, über das Unvermeidliche hinaus.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/field.py" />
-   <source>The field on the sphere</source>
-   <translation>Das Feld auf der Kugel</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/field.py" />
-   <source>The field with its amplitudes</source>
-   <translation>Das Feld mit seinen Amplituden</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/sentences.py" />
-   <source>The file calls its {count} images channels; they were interpreted as slices.</source>
-   <translation>Die Datei nennt ihre {count} Bilder Kanäle; sie wurden als Schichten genommen.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/export.py" />
-   <source>The file has no diameters; one for all, in mm:</source>
-   <translation>Die Datei hat keine Durchmesser; einer für alle, in mm:</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/volume_dialog.py" />
-   <source>The file has {count:,} bytes more than that.</source>
-   <translation>Die Datei hat {count:,} Bytes mehr als das.</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/sentences.py" />
-   <source>The file holds {count} series of images; the largest was read.</source>
-   <translation>Die Datei enthält {count} Bildserien; gelesen wurde die größte.</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/sentences.py" />
-   <source>The file holds {count} volumes; {name} was read.</source>
-   <translation>Die Datei enthält {count} Volumen; gelesen wurde {name}.</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/sentences.py" />
-   <source>The file is named {suffix} but is {format}.</source>
-   <translation>Die Datei heißt {suffix}, ist aber {format}.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/volume_dialog.py" />
-   <source>The file is {count:,} bytes too short for that.</source>
-   <translation>Die Datei ist dafür um {count:,} Bytes zu kurz.</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/sentences.py" />
-   <source>The file states a voxel of {size}, which is implausible; give the size of a voxel.</source>
-   <translation>Laut Datei ist ein Voxel {size} groß, was kein Scan hat; geben Sie die Größe eines Voxels an.</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/sentences.py" />
-   <source>The file states the width of a pixel only; the slices were assumed to be the same distance apart.</source>
-   <translation>Die Datei nennt nur die Breite eines Pixels; als Abstand der Schichten wurde dieselbe Länge genommen.</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/sentences.py" />
-   <source>The file states voxel edges in different units; they were ignored.</source>
-   <translation>Die Datei nennt Voxelkanten in verschiedenen Einheiten; sie wurden übergangen.</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/batch_fields.py" />
-   <source>The files of the {count} open particles, as chosen now</source>
-   <translation>Die Dateien der {count} geöffneten Partikel, wie jetzt eingestellt</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/batch.py" />
-   <source>The folder holds a run that has not ended: go on with it, or choose another folder.</source>
-   <translation>Im Ordner liegt ein nicht beendeter Lauf: setzen Sie ihn fort oder wählen Sie einen anderen Ordner.</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/export.py" />
-   <source>The folder is not empty: choose another one, or replace the dataset in it.</source>
-   <translation>Der Ordner ist nicht leer: wählen Sie einen anderen oder ersetzen Sie den Datensatz darin.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/library.py" />
-   <source>The folder of your datasets</source>
-   <translation>Der Ordner Ihrer Datensätze</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/controls.py" />
-   <source>The grey values about a grain tell its volume better than its mask, however blurred the scan.</source>
-   <translation>Die Grauwerte um ein Korn sagen sein Volumen besser als seine Maske, wie unscharf der Scan auch ist.</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/preferences.py" />
-   <source>The language takes effect when the program starts again.</source>
-   <translation>Die Sprache gilt ab dem nächsten Start des Programms.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/page.py" />
-   <source>The lesson is still being computed.</source>
-   <translation>Die Lektion wird noch berechnet.</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/loss_curve.py" />
-   <source>The loss appears when the coarsening begins.</source>
-   <translation>Der Verlust erscheint, sobald die Vergröberung beginnt.</translation>
-  </message>
-  <message>
-   <source>The loss falls while the coarsening runs; the spectrum shows which degrees are kept. Nothing here blocks the window: what runs is in the status bar and can be stopped there.</source>
-   <translation>Der Verlust fällt, während die Vergröberung läuft; das Spektrum zeigt, welche Grade erhalten bleiben. Nichts davon blockiert das Fenster: was in Arbeit ist, steht in der Statuszeile und lässt sich dort abbrechen.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/studies/variation_panel.py" />
-   <source>The method keeps descriptors exactly: each is asked for or not, whatever its weight.</source>
-   <translation>Das Verfahren hält Deskriptoren genau ein: jeder wird verlangt oder nicht, gleich mit welchem Gewicht.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/files.py" />
-   <source>The model {name} cannot be written ({reason}).</source>
-   <translation>Das Modell {name} lässt sich nicht schreiben ({reason}).</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/judgement.py" />
-   <source>The nearest to the sample first</source>
-   <translation>Das der Probe nächste zuerst</translation>
-  </message>
-  <message>
-   <location filename="ui/main_window.py" />
-   <source>The next window stands as a new one.</source>
-   <translation>Das nächste Fenster steht wie ein neues.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/controls.py" />
-   <source>The other half is then new to the model, as in its judgement.</source>
-   <translation>Die andere Hälfte ist dem Modell dann neu, wie bei seiner Beurteilung.</translation>
-  </message>
-  <message>
-   <source>The page Lecture shows the ideas one step at a time, each formula with its numbers: the annealing, the degrees of the fit, a random field. Ctrl+Space plays, the page keys step, Ctrl++ enlarges the letters, F11 fills the screen.</source>
-   <translation>Die Seite Vorlesung zeigt die Gedanken Schritt für Schritt, jede Formel mit ihren Zahlen: das simulierte Abkühlen, die Grade des Fits, ein Zufallsfeld. Strg+Leertaste spielt ab, die Bildtasten gehen einen Schritt, Strg++ vergrößert die Schrift, F11 füllt den Bildschirm.</translation>
-  </message>
-  <message>
-   <source>The pages follow the work: find grains in a scan, model their shape and draw new ones, build a dataset for Rocky, YADE or LAMMPS, and measure the angle of repose.</source>
-   <translation>Die Seiten folgen der Arbeit: Körner in einem Scan finden, ihre Form modellieren und neue ziehen, einen Datensatz für Rocky, YADE oder LAMMPS bauen und den Schüttwinkel messen.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/controls.py" />
-   <location filename="ui/pages/dataset/targets.py" />
-   <source>The paper has 10.</source>
-   <translation>Im Artikel sind es 10.</translation>
-  </message>
-  <message>
-   <source>The paper's outlook: constituents with sizes and spectra of their own, in the radius itself.</source>
-   <translation>Der Ausblick des Artikels: Komponenten mit eigenen Größen und Spektren, im Radius selbst.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/controls.py" />
-   <source>The paper's virtual particles have 10.</source>
-   <translation>Die virtuellen Partikel des Artikels haben 10.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/field.py" />
-   <source>The particle</source>
-   <translation>Das Partikel</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/annealing.py" />
-   <source>The particle is annealed …</source>
-   <translation>Das Partikel wird abgekühlt …</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/degrees.py" />
-   <source>The particle is fitted …</source>
-   <translation>Das Partikel wird angepasst …</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/explore/pictures.py" />
-   <source>The picture is in {path}.</source>
-   <translation>Das Bild ist in {path}.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/explore/pictures.py" />
-   <source>The picture {path} cannot be written.</source>
-   <translation>Das Bild {path} lässt sich nicht schreiben.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/scatter.py" />
-   <source>The plot appears when the particles are measured.</source>
-   <translation>Die Darstellung erscheint, sobald die Partikel vermessen sind.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/studies/gallery.py" />
-   <source>The polyhedra of six particles as each loss function makes them, as in Fig. 7 of the paper.</source>
-   <translation>Die Polyeder von sechs Partikeln, wie jede Verlustfunktion sie macht, wie in Bild 7 des Artikels.</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/coarsening.py" />
-   <source>The polyhedron has as many facets as surely have no more triangles than this.</source>
-   <translation>Das Polyeder hat so viele Facetten, wie sicher nicht mehr Dreiecke als diese haben.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/annealing.py" />
-   <source>The proposal, T(k) and the decision with their numbers</source>
-   <translation>Der Vorschlag, T(k) und die Entscheidung mit ihren Zahlen</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/sentences.py" />
-   <source>The result has {real} facets instead of {faces}.</source>
-   <translation>Das Ergebnis hat {real} statt {faces} Facetten.</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/sentences.py" />
-   <source>The result has {real} facets instead of {faces}: no place was found where the other half-spaces bound a facet and all descriptors are met.</source>
-   <translation>Das Ergebnis hat {real} statt {faces} Facetten: Es fand sich kein Ort, wo die übrigen Halbräume eine Facette begrenzen und alle Deskriptoren getroffen sind.</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/sentences.py" />
-   <source>The result has {real} facets instead of {faces}: the particle is convex and has {facets} facets itself, and no other polyhedron was found that meets all descriptors.</source>
-   <translation>Das Ergebnis hat {real} statt {faces} Facetten: Das Partikel ist konvex und hat selbst {facets} Facetten, und es fand sich kein anderes Polyeder, das alle Deskriptoren trifft.</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/batch.py" />
-   <source>The results are the same bytes whoever works, and a run that was stopped can go on.</source>
-   <translation>Die Ergebnisse sind Byte für Byte dieselben, wer auch arbeitet, und ein abgebrochener Lauf lässt sich fortsetzen.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/judgement.py" />
-   <source>The same for the Kolmogorov-Smirnov distance</source>
-   <translation>Dasselbe für die Kolmogorow-Smirnow-Distanz</translation>
-  </message>
-  <message>
-   <source>The sample</source>
-   <translation>Die Probe</translation>
-  </message>
-  <message>
-   <location filename="ui/commands.py" />
-   <source>The script is on the clipboard.</source>
-   <translation>Das Skript ist in der Zwischenablage.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/page.py" />
-   <source>The series of a fit has no random numbers.</source>
-   <translation>Die Reihe einer Anpassung hat keine Zufallszahlen.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/plots.py" />
-   <source>The sizes of the classes appear here.</source>
-   <translation>Die Größen der Klassen erscheinen hier.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/controls.py" />
-   <source>The smallest radius must be below the largest, got {low:g} and {high:g}.</source>
-   <translation>Der kleinste Radius muss unter dem größten liegen, nicht {low:g} und {high:g}.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/distributions.py" />
-   <source>The source holds no measured particles.</source>
-   <translation>Die Quelle enthält keine gemessenen Partikel.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/views.py" />
-   <source>The spectrum appears when a model is fitted.</source>
-   <translation>Das Spektrum erscheint, sobald ein Modell angepasst ist.</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/spectrum.py" />
-   <source>The spectrum appears when the particle is fitted.</source>
-   <translation>Das Spektrum erscheint, sobald das Partikel angepasst ist.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/words.py" />
-   <source>The start: the convex hull, decimated to {count} planes. In each step one plane is moved at random, and the move is taken or not.</source>
-   <translation>Der Anfang: die konvexe Hülle, auf {count} Ebenen dezimiert. In jedem Schritt wird eine Ebene zufällig verschoben, und der Zug wird angenommen oder nicht.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/page.py" />
-   <source>The table is on the clipboard.</source>
-   <translation>Die Tabelle ist in der Zwischenablage.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/explore/pictures.py" />
-   <source>The turntable is in {path}.</source>
-   <translation>Die Drehung ist in {path}.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/explore/pictures.py" />
-   <source>The views as they are seen</source>
-   <translation>Die Ansichten, wie man sie sieht</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/steps.py" />
-   <source>The volume holds labels: its grains have been found already.</source>
-   <translation>Das Volumen enthält Labels: Seine Körner sind schon gefunden.</translation>
-  </message>
-  <message>
-   <source>The whole sample</source>
-   <translation>Die ganze Probe</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/preferences.py" />
-   <source>Theme</source>
-   <translation>Farbschema</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/page.py" />
-   <source>There are no drawn particles yet: draw some first.</source>
-   <translation>Es gibt noch keine gezogenen Partikel: ziehen Sie zuerst welche.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/page.py" />
-   <source>There are no particles to choose from: open some first.</source>
-   <translation>Es gibt keine Partikel zur Auswahl: öffnen Sie zuerst welche.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/page.py" />
-   <source>There are no representatives yet: press Find first.</source>
-   <translation>Es gibt noch keine Repräsentanten: drücken Sie zuerst „Repräsentanten finden“.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/page.py" />
-   <source>There is a folder {folder} already. Replace the dataset in it?</source>
-   <translation>Den Ordner {folder} gibt es schon. Den Datensatz darin ersetzen?</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/page.py" />
-   <source>There is no angle of repose.</source>
-   <translation>Es gibt keinen Schüttwinkel.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/library.py" />
-   <source>There is no dataset below this folder.</source>
-   <translation>Unter diesem Ordner gibt es keinen Datensatz.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/page.py" />
-   <source>There is no dataset to check: build or open one first.</source>
-   <translation>Es gibt keinen Datensatz zu prüfen: bauen oder öffnen Sie zuerst einen.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/page.py" />
-   <source>There is no dataset to export: build or open one first.</source>
-   <translation>Es gibt keinen Datensatz zu exportieren: bauen oder öffnen Sie zuerst einen.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/page.py" />
-   <source>There is no dataset yet: open one, or make one first.</source>
-   <translation>Es gibt noch keinen Datensatz: öffnen oder machen Sie zuerst einen.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/page.py" />
-   <source>There is no measured pile to export yet.</source>
-   <translation>Es gibt noch keinen vermessenen Schüttkegel zu exportieren.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/page.py" />
-   <source>There is no model to draw from: fit one first.</source>
-   <translation>Es gibt kein Modell, aus dem zu ziehen wäre: passen Sie zuerst eines an.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/page.py" />
-   <source>There is no model to save: fit one first.</source>
-   <translation>Es gibt kein Modell zu speichern: passen Sie zuerst eines an.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/player.py" />
-   <source>There is no run to play: make one, or choose one of the list.</source>
-   <translation>Es gibt keinen Lauf zum Abspielen: einen machen oder einen der Liste wählen.</translation>
-  </message>
-  <message>
-   <location filename="ui/commands.py" />
-   <source>There is nothing to export: open a particle first.</source>
-   <translation>Es gibt nichts zu exportieren: öffnen Sie zuerst ein Partikel.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/controls.py" />
-   <source>They are cut. Each of the others then counts a little more (Miles-Lantuéjoul weights).</source>
-   <translation>Sie sind angeschnitten. Jedes der anderen zählt dann etwas mehr (Gewichte nach Miles und Lantuéjoul).</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/sources.py" />
-   <source>They are expanded in spherical harmonics first.</source>
-   <translation>Sie werden zuerst nach Kugelflächenfunktionen entwickelt.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/studies/change_table.py" />
-   <source>This may be chance.</source>
-   <translation>Das kann Zufall sein.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/page.py" />
-   <source>This run was not finished: {state}.</source>
-   <translation>Dieser Lauf wurde nicht beendet: {state}.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/studies/rows_bar.py" />
-   <source>Those of Fig. 8</source>
-   <translation>Die von Bild 8</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/help.py" />
-   <source>Three-dimensional views: {how}</source>
-   <translation>Dreidimensionale Ansichten: {how}</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/controls.py" />
-   <source>Threshold</source>
-   <translation>Schwellwert</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/health.py" />
-   <source>Through the body, of a closed mesh</source>
-   <translation>Durch den Körper, bei einem geschlossenen Netz</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/targets.py" />
-   <source>Tick a format to see what it carries and what it loses.</source>
-   <translation>Kreuzen Sie ein Format an, um zu sehen, was es überträgt und was es verliert.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/player.py" />
-   <source>Time of the run</source>
-   <translation>Zeit des Laufs</translation>
-  </message>
-  <message>
-   <source>Time step</source>
-   <translation>Zeitschritt</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/histogram_plot.py" />
-   <source>To</source>
-   <translation>Bis</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/transport.py" />
-   <source>To the beginning</source>
-   <translation>An den Anfang</translation>
-  </message>
-  <message>
-   <source>Tolerance</source>
-   <translation>Toleranz</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/health_sentences.py" />
-   <source>Took the surface apart along 1 edge where more than two faces met.</source>
-   <translation>Die Oberfläche wurde entlang 1 Kante getrennt, an der mehr als zwei Flächen zusammenkamen.</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/health_sentences.py" />
-   <source>Took the surface apart along {count} edges where more than two faces met.</source>
-   <translation>Die Oberfläche wurde entlang {count} Kanten getrennt, an denen mehr als zwei Flächen zusammenkamen.</translation>
-  </message>
-  <message>
-   <location filename="ui/actions.py" />
-   <source>Tools</source>
-   <translation>Werkzeuge</translation>
-  </message>
-  <message>
-   <source>Top (from +z)</source>
-   <translation>Oben (von +z)</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/explore/pictures.py" />
-   <source>Transparent background</source>
-   <translation>Durchsichtiger Hintergrund</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/coarsening.py" />
-   <source>Triangles</source>
-   <translation>Dreiecke</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/health.py" />
-   <source>Triangles that are a line or a point</source>
-   <translation>Dreiecke, die nur eine Linie oder ein Punkt sind</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/health.py" />
-   <source>Tunnels</source>
-   <translation>Tunnel</translation>
-  </message>
-  <message>
-   <source>Turn [rad]</source>
-   <translation>Drehung [rad]</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/explore/__init__.py" />
-   <source>Turn all views together</source>
-   <translation>Alle Ansichten gemeinsam drehen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/explore/section_panel.py" />
-   <source>Turn the cross-section on in the tool bar.</source>
-   <translation>Schalten Sie den Querschnitt in der Werkzeugleiste ein.</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/shortcuts.py" />
-   <source>Turn the particle</source>
-   <translation>Das Partikel drehen</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/health_sentences.py" />
-   <source>Turned 1 face that looked the wrong way.</source>
-   <translation>1 Fläche, die zur falschen Seite zeigte, wurde gedreht.</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/health_sentences.py" />
-   <source>Turned all faces: the mesh was inside out.</source>
-   <translation>Alle Flächen wurden gedreht: das Netz war umgestülpt.</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/health_sentences.py" />
-   <source>Turned {count} faces that looked the wrong way.</source>
-   <translation>{count} Flächen, die zur falschen Seite zeigten, wurden gedreht.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/explore/__init__.py" />
-   <source>Two bodies beside a line</source>
-   <translation>Zwei Körper beiderseits einer Linie</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/volume_dialog.py" />
-   <source>Type</source>
-   <translation>Typ</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/command_palette.py" />
-   <source>Type a command</source>
-   <translation>Befehl eintippen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/volume_dialog.py" />
-   <source>Type of a voxel</source>
-   <translation>Typ eines Voxels</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/unit.py" />
-   <location filename="ui/pages/repose/export.py" />
-   <source>Unit</source>
-   <translation>Einheit</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/volume_dialog.py" />
-   <source>Unit of the voxel size</source>
-   <translation>Einheit der Voxelgröße</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/targets.py" />
-   <source>Units: {units}</source>
-   <translation>Einheiten: {units}</translation>
-  </message>
-  <message>
-   <source>Unpacking into a temporary file</source>
-   <translation>In eine temporäre Datei wird entpackt</translation>
-  </message>
-  <message>
-   <source>Upper cut</source>
-   <translation>Oberer Schnitt</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/controls.py" />
-   <source>Use as population</source>
-   <translation>Als Population übernehmen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/controls.py" />
-   <source>Use the drawn particles as population</source>
-   <translation>Die gezogenen Partikel als Population übernehmen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/controls.py" />
-   <source>Use the model</source>
-   <translation>Modell übernehmen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/library.py" />
-   <source>Use this dataset</source>
-   <translation>Diesen Datensatz verwenden</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/setup.py" />
-   <source>Usual</source>
-   <translation>Üblich</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/shortcuts.py" />
-   <source>Usual keys</source>
-   <translation>Übliche Tasten</translation>
-  </message>
-  <message>
-   <source>V</source>
-   <translation>V</translation>
-  </message>
-  <message>
-   <source>V / CH</source>
-   <translation>V / CH</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/health.py" />
-   <source>V [µm³]</source>
-   <translation>V [µm³]</translation>
-  </message>
-  <message>
-   <source>V of the hull</source>
-   <translation>V der Hülle</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/sentences.py" />
-   <source>V/CH: Kolmogorov-Smirnov distance in floors</source>
-   <translation>V/CH: Kolmogorow-Smirnow-Distanz in Einheiten des Rauschens</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/table_view.py" />
-   <location filename="ui/pages/repose/study.py" />
-   <source>Value</source>
-   <translation>Wert</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/study.py" />
-   <source>Values</source>
-   <translation>Werte</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/study.py" />
-   <source>Values, with commas between them</source>
-   <translation>Werte, mit Kommas dazwischen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/study.py" />
-   <source>Vary</source>
-   <translation>Verändert</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/scatter.py" />
-   <source>Vertical axis</source>
-   <translation>Senkrechte Achse</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/controls.py" />
-   <source>Virtual particles</source>
-   <translation>Virtuelle Partikel</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/volume_dialog.py" />
-   <location filename="ui/panels/particle_list.py" />
-   <source>Volume</source>
-   <translation>Volumen</translation>
-  </message>
-  <message>
-   <source>Volume and box</source>
-   <translation>Volumen und Hüllquader</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/volume_dialog.py" />
-   <source>Volume in the file</source>
-   <translation>Volumen in der Datei</translation>
-  </message>
-  <message>
-   <source>Volume, surface area, aspect ratio</source>
-   <translation>Volumen, Oberfläche, Seitenverhältnis</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/page.py" />
-   <source>Volumes (*.tif *.tiff *.h5 *.hdf5 *.nrrd *.nhdr *.mha *.mhd *.nii *.nii.gz *.npy *.raw);;All files (*)</source>
-   <translation>Volumen (*.tif *.tiff *.h5 *.hdf5 *.nrrd *.nhdr *.mha *.mhd *.nii *.nii.gz *.npy *.raw);;Alle Dateien (*)</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/volume_dialog.py" />
-   <source>Voxel size x, y, z</source>
-   <translation>Voxelgröße x, y, z</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/histogram_plot.py" />
-   <source>Voxels</source>
-   <translation>Voxel</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/histogram_plot.py" />
-   <source>Voxels [%]</source>
-   <translation>Voxel [%]</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/volume_dialog.py" />
-   <source>Voxels along {axis}</source>
-   <translation>Voxel entlang {axis}</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/unit.py" />
-   <source>Voxels of a CT volume</source>
-   <translation>Voxel eines CT-Volumens</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/volume_dialog.py" />
-   <source>Voxels x, y, z</source>
-   <translation>Voxel x, y, z</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/judgement.py" />
-   <location filename="ui/pages/model/table_view.py" />
-   <source>W / floor</source>
-   <translation>W / Rauschen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/explore/pictures.py" />
-   <source>Wait until the particle is fitted.</source>
-   <translation>Warten Sie, bis das Partikel angepasst ist.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/explore/pictures.py" />
-   <source>Wait until the three views are drawn.</source>
-   <translation>Warten Sie, bis die drei Ansichten gezeichnet sind.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/explore/pictures.py" />
-   <source>Wait until the views are drawn.</source>
-   <translation>Warten Sie, bis die Ansichten gezeichnet sind.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/runs.py" />
-   <location filename="ui/pages/repose/study.py" />
-   <source>Wall friction</source>
-   <translation>Reibung der Wand</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/table_view.py" />
-   <source>Wanted</source>
-   <translation>Verlangt</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/distributions.py" />
-   <source>Wasserstein distance {apart:.1%} of the mean, Kolmogorov-Smirnov distance {gap:.2f}; means {measured} measured, {drawn} drawn</source>
-   <translation>Wasserstein-Distanz {apart:.1%} des Mittels, Kolmogorow-Smirnow-Distanz {gap:.2f}; Mittel {measured} gemessen, {drawn} gezogen</translation>
-  </message>
-  <message>
-   <source>Watch it work</source>
-   <translation>Bei der Arbeit zusehen</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/loss.py" />
-   <source>Weight of {name}</source>
-   <translation>Gewicht: {name}</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/table_view.py" />
-   <source>Weighting</source>
-   <translation>Gewichtung</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/statistics.py" />
-   <source>Weighting of the statistics</source>
-   <translation>Gewichtung der Statistik</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/export.py" />
-   <location filename="ui/pages/studies/page.py" />
-   <source>Weights</source>
-   <translation>Gewichte</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/loss.py" />
-   <source>Weights of the loss (Eq. 9)</source>
-   <translation>Gewichte der Verlustfunktion (Gl. 9)</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/study.py" />
-   <source>Weights of the loss, open particles</source>
-   <translation>Gewichte des Verlusts, geöffnete Partikel</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/studies/variation_panel.py" />
-   <source>What each error becomes when one weight of the loss is changed: which weights matter.</source>
-   <translation>Was aus jedem Fehler wird, wenn ein Gewicht des Verlusts geändert wird: auf welche Gewichte es ankommt.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/page.py" />
-   <source>What formats lose</source>
-   <translation>Was Formate verlieren</translation>
-  </message>
-  <message>
-   <location filename="ui/widgets/toast.py" />
-   <source>What happened</source>
-   <translation>Was geschehen ist</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/targets.py" />
-   <source>What has been exported is listed here, with the command that loads it.</source>
-   <translation>Was exportiert wurde, steht hier, mit dem Befehl, der es lädt.</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/coarsening.py" />
-   <source>What is imitated</source>
-   <translation>Was nachgebildet wird</translation>
-  </message>
-  <message>
-   <location filename="ui/views/view_frame.py" />
-   <source>What is laid over it, or shown to the right of the line</source>
-   <translation>Was darübergelegt oder rechts der Linie gezeigt wird</translation>
-  </message>
-  <message>
-   <location filename="ui/actions.py" />
-   <source>What is running</source>
-   <translation>Was in Arbeit ist</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/study.py" />
-   <source>What is varied</source>
-   <translation>Was verändert wird</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/library.py" />
-   <source>What it holds</source>
-   <translation>Was er enthält</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/volume_dialog.py" />
-   <source>What it looks like: {looks}</source>
-   <translation>Wonach es aussieht: {looks}</translation>
-  </message>
-  <message>
-   <source>What matters to you</source>
-   <translation>Worauf es Ihnen ankommt</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/studies/variation_panel.py" />
-   <source>What overlap costs in descriptors, and descriptors in overlap: lower left is better.</source>
-   <translation>Was Überdeckung an Deskriptoren kostet, und Deskriptoren an Überdeckung: links unten ist besser.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/distributions.py" />
-   <source>What particles count</source>
-   <translation>Was Partikel zählen</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/fit.py" />
-   <source>What radii are divided by before they are expanded. An ellipsoid lowers the oscillation on flat and elongated grains.</source>
-   <translation>Wodurch Radien geteilt werden, bevor sie entwickelt werden. Ein Ellipsoid mindert das Schwingen bei flachen und länglichen Körnern.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/controls.py" />
-   <source>What representatives count</source>
-   <translation>Wonach Repräsentanten zählen</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/coarsening.py" />
-   <source>What says how fine the polyhedron is</source>
-   <translation>Wonach sich richtet, wie fein das Polyeder ist</translation>
-  </message>
-  <message>
-   <source>What the fit and the polyhedron keep</source>
-   <translation>Was Fit und Polyeder bewahren</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/studies/page.py" />
-   <source>What the polyhedra look like (Fig. 7)</source>
-   <translation>Wie die Polyeder aussehen (Bild 7)</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/volume_dialog.py" />
-   <source>What the volume holds</source>
-   <translation>Was das Volumen enthält</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/controls.py" />
-   <source>What to draw from</source>
-   <translation>Woraus gezogen wird</translation>
-  </message>
-  <message>
-   <location filename="ui/actions.py" />
-   <source>What was said</source>
-   <translation>Was gesagt wurde</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/volume_dialog.py" />
-   <source>Whatever it looks like</source>
-   <translation>Wonach es aussieht</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/shortcuts.py" />
-   <source>Wheel</source>
-   <translation>Rad</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/fit.py" />
-   <source>Where radii begin. Automatic: the centre of mass or, where that is not inside, the point that hides the least volume.</source>
-   <translation>Wo Radien beginnen. Automatisch: der Schwerpunkt oder, wo dieser nicht im Inneren liegt, der Punkt, der am wenigsten Volumen verdeckt.</translation>
-  </message>
-  <message>
-   <source>Where to go from here</source>
-   <translation>Wie es weitergeht</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/controls.py" />
-   <source>Which grain they belong to</source>
-   <translation>Zu welchem Korn sie gehören</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/controls.py" />
-   <source>Which grains become particles</source>
-   <translation>Welche Körner Partikel werden</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/fit.py" />
-   <source>Which radius counts where a ray crosses the surface more than once. Keep the volume: the cube root of the signed sum of r³ over all crossings.</source>
-   <translation>Welcher Radius zählt, wo ein Strahl die Oberfläche mehrmals durchstößt. Volumen erhalten: die Kubikwurzel der vorzeichenbehafteten Summe von r³ über alle Durchstöße.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/controls.py" />
-   <source>Which voxels are grain</source>
-   <translation>Welche Voxel Korn sind</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/transport.py" />
-   <source>Which {noun}</source>
-   <translation>Welcher {noun}</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/explore/__init__.py" />
-   <source>Wi&amp;pe</source>
-   <translation>&amp;Wischblende</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/batch_fields.py" />
-   <source>Work done by</source>
-   <translation>Ausführung durch</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/batch.py" />
-   <source>Work done by:</source>
-   <translation>Ausführung durch:</translation>
-  </message>
-  <message>
-   <location filename="session/performing.py" />
-   <source>Working on particles</source>
-   <translation>Partikel werden bearbeitet</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/health.py" />
-   <source>Wound alike</source>
-   <translation>Einheitlich orientiert</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/__init__.py" />
-   <source>Write settings for the next scan</source>
-   <translation>Einstellungen für den nächsten Scan schreiben</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/batch.py" />
-   <source>Write:</source>
-   <translation>Schreiben:</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/studies/page.py" />
-   <source>Writing figures</source>
-   <translation>Abbildungen werden geschrieben</translation>
-  </message>
-  <message>
-   <location filename="jobs/generating.py" />
-   <source>Writing particles</source>
-   <translation>Partikel werden geschrieben</translation>
-  </message>
-  <message>
-   <source>Writing the dataset</source>
-   <translation>Datensatz wird geschrieben</translation>
-  </message>
-  <message>
-   <location filename="session/performing.py" />
-   <source>Writing the results</source>
-   <translation>Ergebnisse werden geschrieben</translation>
-  </message>
-  <message>
-   <source>Young's modulus</source>
-   <translation>Elastizitätsmodul</translation>
-  </message>
-  <message>
-   <source>Young's modulus / ρgd</source>
-   <translation>Elastizitätsmodul / ρgd</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/table.py" />
-   <source>Zingg's class: equant, disc, rod or blade</source>
-   <translation>Klasse nach Zingg: isometrisch, scheibig, stabförmig oder klingenförmig</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/shortcuts.py" />
-   <source>Zoom</source>
-   <translation>Vergrößern und verkleinern</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/words.py" />
-   <source>a sphere</source>
-   <translation>eine Kugel</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/words.py" />
-   <source>a sphere that is shifted a little</source>
-   <translation>eine etwas verschobene Kugel</translation>
-  </message>
-  <message>
-   <source>about the centroid</source>
-   <translation>um den Schwerpunkt</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/task_list.py" />
-   <source>about {hours:.1f} h left</source>
-   <translation>noch etwa {hours:.1f} h</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/task_list.py" />
-   <source>about {minutes} min left</source>
-   <translation>noch etwa {minutes} min</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/task_list.py" />
-   <source>about {seconds} s left</source>
-   <translation>noch etwa {seconds} s</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/words.py" />
-   <source>accept</source>
-   <translation>annehmen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/explore/section_panel.py" />
-   <source>across</source>
-   <translation>quer</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/scatter.py" />
-   <source>against</source>
-   <translation>gegen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/statistics.py" />
-   <source>all</source>
-   <translation>alle</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/plots.py" />
-   <source>all classes, by {kinds}</source>
-   <translation>alle Klassen, nach {kinds}</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/judgement.py" />
-   <source>all models</source>
-   <translation>alle Modelle</translation>
-  </message>
-  <message>
-   <location filename="ui/views/comparison.py" />
-   <source>alone</source>
-   <translation>allein</translation>
-  </message>
-  <message>
-   <source>along Dint</source>
-   <translation>entlang Dint</translation>
-  </message>
-  <message>
-   <source>along Dmax</source>
-   <translation>entlang Dmax</translation>
-  </message>
-  <message>
-   <source>along Dmin</source>
-   <translation>entlang Dmin</translation>
-  </message>
-  <message>
-   <source>along x</source>
-   <translation>entlang x</translation>
-  </message>
-  <message>
-   <source>along y</source>
-   <translation>entlang y</translation>
-  </message>
-  <message>
-   <source>along z</source>
-   <translation>entlang z</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/spectrum.py" />
-   <location filename="ui/widgets/spectrum_editor.py" />
-   <source>amplitude [%]</source>
-   <translation>Amplitude [%]</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/plots.py" />
-   <source>and</source>
-   <translation>und</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/tasks.py" />
-   <source>and {count} more</source>
-   <translation>und {count} weitere</translation>
-  </message>
-  <message>
-   <location filename="ui/widgets/spectrum_editor.py" />
-   <source>as fitted</source>
-   <translation>wie angepasst</translation>
-  </message>
-  <message>
-   <location filename="ui/widgets/spectrum_editor.py" />
-   <source>as fitted [%]</source>
-   <translation>wie angepasst [%]</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/health.py" />
-   <source>as it came</source>
-   <translation>wie gelesen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/histogram_plot.py" />
-   <source>as scanned</source>
-   <translation>wie gescannt</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/plots.py" />
-   <source>as small as the sampling noise from N = {count} on</source>
-   <translation>ab N = {count} so klein wie das Stichprobenrauschen</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/export.py" />
-   <source>as the folder</source>
-   <translation>wie der Ordner</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/sentences.py" />
-   <source>aspect ratio, times nearer than the paper's model</source>
-   <translation>Seitenverhältnis, wievielmal näher als das Modell des Artikels</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/sentences.py" />
-   <source>at least {limit}</source>
-   <translation>mindestens {limit}</translation>
-  </message>
-  <message>
-   <location filename="ui/fineness.py" />
-   <source>at most {faces} facets, {triangles} triangles</source>
-   <translation>höchstens {faces} Facetten, {triangles} Dreiecken</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/sentences.py" />
-   <source>at most {limit}</source>
-   <translation>höchstens {limit}</translation>
-  </message>
-  <message>
-   <location filename="ui/views/triptych.py" />
-   <source>at most {reach:.3g} µm from the particle</source>
-   <translation>höchstens {reach:.3g} µm vom Partikel entfernt</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/annealing.py" />
-   <source>before</source>
-   <translation>vorher</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/annealing.py" />
-   <source>being found …</source>
-   <translation>wird gesucht …</translation>
-  </message>
-  <message>
-   <source>best</source>
-   <translation>beste</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/loss_curve.py" />
-   <source>best so far</source>
-   <translation>bisher bester</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/annealing.py" />
-   <source>better</source>
-   <translation>besser</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/section_plot.py" />
-   <source>between the cuts</source>
-   <translation>zwischen den Schnitten</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/volume_dialog.py" />
-   <source>big endian</source>
-   <translation>Big Endian</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/scatter.py" />
-   <location filename="ui/pages/sample/table.py" />
-   <source>blade</source>
-   <translation>klingenförmig</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/health.py" />
-   <source>bodies left out</source>
-   <translation>weggelassene Körper</translation>
-  </message>
-  <message>
-   <source>both programs need rounded edges; facets stay in their planes, corners are lost.</source>
-   <translation>beide Programme brauchen gerundete Kanten; Facetten bleiben in ihren Ebenen, Ecken gehen verloren.</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/sentences.py" />
-   <source>box</source>
-   <translation>Quader</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/studies/variation_panel.py" />
-   <location filename="ui/panels/coarsening_study.py" />
-   <source>box of {name}</source>
-   <translation>Quader von {name}</translation>
-  </message>
-  <message>
-   <source>by size</source>
-   <translation>über die Größe</translation>
-  </message>
-  <message>
-   <source>by size; scaling the surface energy keeps cohesion over weight</source>
-   <translation>über die Größe; das Skalieren der Oberflächenenergie erhält Kohäsion zu Gewicht</translation>
-  </message>
-  <message>
-   <location filename="ui/widgets/bar_plot.py" />
-   <source>category</source>
-   <translation>Kategorie</translation>
-  </message>
-  <message>
-   <source>class weights as shares of the mass</source>
-   <translation>Klassengewichte als Massenanteile</translation>
-  </message>
-  <message>
-   <source>class weights by number and mass</source>
-   <translation>Klassengewichte nach Anzahl und Masse</translation>
-  </message>
-  <message>
-   <source>class weights by number and mass, sizes (sizes.csv)</source>
-   <translation>Klassengewichte nach Anzahl und Masse, Größen (sizes.csv)</translation>
-  </message>
-  <message>
-   <source>class weights, sizes</source>
-   <translation>Klassengewichte, Größen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/health.py" />
-   <source>closed holes</source>
-   <translation>geschlossene Löcher</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/table.py" />
-   <source>coarse</source>
-   <translation>grob</translation>
-  </message>
-  <message>
-   <source>coarse graining, lifting cylinder</source>
-   <translation>Vergröberung, Hubzylinder</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/words.py" />
-   <source>coefficients</source>
-   <translation>Koeffizienten</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/studies/rows_bar.py" />
-   <source>compared at {count} facets each, not at an error</source>
-   <translation>verglichen bei je {count} Facetten, nicht bei einem Fehler</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/studies/variation_panel.py" />
-   <location filename="ui/panels/coarsening_study.py" />
-   <location filename="ui/panels/lmax_study.py" />
-   <source>computed with other choices</source>
-   <translation>mit anderen Einstellungen berechnet</translation>
-  </message>
-  <message>
-   <source>contact parameters</source>
-   <translation>Kontaktparameter</translation>
-  </message>
-  <message>
-   <source>contact parameters: damped Hertzian, Mindlin-Deresiewicz, JKR</source>
-   <translation>Kontaktparameter: gedämpft nach Hertz, Mindlin-Deresiewicz, JKR</translation>
-  </message>
-  <message>
-   <source>continuous size distributions: at most 16 sizes a class</source>
-   <translation>stetige Größenverteilungen: höchstens 16 Größen je Klasse</translation>
-  </message>
-  <message>
-   <source>continuous size distributions: at most 16 sizes a shape</source>
-   <translation>stetige Größenverteilungen: höchstens 16 Größen je Form</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/statistics.py" />
-   <source>count</source>
-   <translation>Anzahl</translation>
-  </message>
-  <message>
-   <location filename="ui/widgets/curve_plot.py" />
-   <source>curve</source>
-   <translation>Kurve</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/spectrum.py" />
-   <source>cut off</source>
-   <translation>abgeschnitten</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/controls.py" />
-   <source>dark | middle</source>
-   <translation>dunkel | mittel</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/degrees.py" />
-   <source>degree</source>
-   <translation>Grad</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/table_view.py" />
-   <source>descriptor</source>
-   <translation>Deskriptor</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/scatter.py" />
-   <location filename="ui/pages/sample/table.py" />
-   <source>disc</source>
-   <translation>scheibig</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/table.py" />
-   <source>doubtful</source>
-   <translation>zweifelhaft</translation>
-  </message>
-  <message>
-   <location filename="ui/widgets/spectrum_editor.py" />
-   <source>drag the bars</source>
-   <translation>Balken ziehen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/judgement.py" />
-   <source>drawings from each fit</source>
-   <translation>Ziehungen je Fit</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/help.py" />
-   <source>drawn by OpenGL in the window</source>
-   <translation>von OpenGL im Fenster gezeichnet</translation>
-  </message>
-  <message>
-   <source>drawn particles: shape, size, orientation</source>
-   <translation>gezogene Partikel: Form, Größe, Lage</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/annealing.py" />
-   <source>drawn u</source>
-   <translation>gezogenes u</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/views.py" />
-   <source>drawn; the source holds no measured particles</source>
-   <translation>gezogen; die Quelle enthält keine gemessenen Partikel</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/sentences.py" />
-   <source>draws thrown away [%]</source>
-   <translation>verworfene Ziehungen [%]</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/statistics.py" />
-   <source>each counts once</source>
-   <translation>jedes zählt einmal</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/health.py" />
-   <source>edges of more than two faces</source>
-   <translation>Kanten von mehr als zwei Flächen</translation>
-  </message>
-  <message>
-   <source>edges, corners and flat faces; friction of rest apart from friction of motion</source>
-   <translation>Kanten, Ecken und ebene Flächen; Haftreibung getrennt von Gleitreibung</translation>
-  </message>
-  <message>
-   <source>elastic constants, friction</source>
-   <translation>elastische Konstanten, Reibung</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/views.py" />
-   <source>empty until a model is fitted</source>
-   <translation>leer, bis ein Modell angepasst ist</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/table_view.py" />
-   <source>energy distance</source>
-   <translation>Energiedistanz</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/scatter.py" />
-   <location filename="ui/pages/sample/table.py" />
-   <source>equant</source>
-   <translation>isometrisch</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/field.py" />
-   <location filename="ui/pages/model/page.py" />
-   <source>equivalent radius {radius:.3g} µm</source>
-   <translation>Äquivalentradius {radius:.3g} µm</translation>
-  </message>
-  <message>
-   <source>exact half-spaces: float32 triangles</source>
-   <translation>genaue Halbräume: Dreiecke in float32</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/annealing.py" />
-   <source>exact method</source>
-   <translation>exaktes Verfahren</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/studies/rows_bar.py" />
-   <source>exact minimum volume</source>
-   <translation>kleinstes Volumen (exakt)</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/health.py" />
-   <source>faces that cross</source>
-   <translation>Flächen, die sich kreuzen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/health.py" />
-   <source>faces there twice</source>
-   <translation>doppelte Flächen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/health.py" />
-   <source>faces turned round</source>
-   <translation>verdrehte Flächen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/health.py" />
-   <source>faces without area</source>
-   <translation>Flächen ohne Inhalt</translation>
-  </message>
-  <message>
-   <location filename="ui/views/facet_pointer.py" />
-   <source>facet {number} of {count}: {area:,.4g} µm² ({share:.1%}), normal ({x:.2f}, {y:.2f}, {z:.2f}), {offset:.4g} µm from the centre, {corners} corners</source>
-   <translation>Facette {number} von {count}: {area:,.4g} µm² ({share:.1%}), Normale ({x:.2f}, {y:.2f}, {z:.2f}), {offset:.4g} µm von der Mitte, {corners} Ecken</translation>
-  </message>
-  <message>
-   <source>facets: they are those of the vertices' hull</source>
-   <translation>Facetten: es sind die der Hülle der Ecken</translation>
-  </message>
-  <message>
-   <source>fast</source>
-   <translation>schnell</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/sentences.py" />
-   <source>figures</source>
-   <translation>Abbildungen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/words.py" />
-   <source>finer and finer bumps</source>
-   <translation>immer feinere Höcker</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/table_view.py" />
-   <source>first</source>
-   <translation>erster Deskriptor</translation>
-  </message>
-  <message>
-   <source>flat facets and edges</source>
-   <translation>ebene Facetten und Kanten</translation>
-  </message>
-  <message>
-   <source>flat shading of facets</source>
-   <translation>flache Schattierung der Facetten</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/table_view.py" />
-   <source>floor</source>
-   <translation>Rauschen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/table_view.py" />
-   <source>floor p5</source>
-   <translation>Rauschen, 5. Perzentil</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/table_view.py" />
-   <source>floor p95</source>
-   <translation>Rauschen, 95. Perzentil</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/batch_fields.py" />
-   <source>folder with {names}</source>
-   <translation>Ordner mit {names}</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/studies/gallery.py" />
-   <source>for the particle on screen and those after it, one row a loss function</source>
-   <translation>für das gezeigte Partikel und die danach, eine Zeile je Verlustfunktion</translation>
-  </message>
-  <message>
-   <source>force in proportion to the overlapping volume: neither Hertz nor restitution</source>
-   <translation>Kraft im Verhältnis zum Überlappungsvolumen: weder Hertz noch Stoßzahl</translation>
-  </message>
-  <message>
-   <source>friction</source>
-   <translation>Reibung</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/table_view.py" />
-   <source>from</source>
-   <translation>von</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/section_plot.py" />
-   <source>grain {number}: {size:.3g} mm at {x:.3g}, {z:.3g} mm</source>
-   <translation>Korn {number}: {size:.3g} mm bei {x:.3g}, {z:.3g} mm</translation>
-  </message>
-  <message>
-   <source>greatest distance of two points</source>
-   <translation>größter Abstand zweier Punkte</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/steps.py" />
-   <location filename="ui/pages/scan/volume_dialog.py" />
-   <source>grey values</source>
-   <translation>Grauwerte</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/statistics.py" />
-   <source>group</source>
-   <translation>Gruppe</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/task_list.py" />
-   <location filename="ui/panels/tasks.py" />
-   <source>held back</source>
-   <translation>angehalten</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/health.py" />
-   <source>hidden from the star point</source>
-   <translation>vom Sternpunkt aus verdeckt</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/section_plot.py" />
-   <source>in the regression</source>
-   <translation>in der Regression</translation>
-  </message>
-  <message>
-   <source>kernel</source>
-   <translation>Kerndichte</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/table_view.py" />
-   <source>kolmogorov smirnov</source>
-   <translation>Kolmogorow-Smirnow-Distanz</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/table_view.py" />
-   <source>kolmogorov smirnov floor</source>
-   <translation>Kolmogorow-Smirnow-Distanz des Rauschens</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/table_view.py" />
-   <source>kolmogorov smirnov high</source>
-   <translation>Kolmogorow-Smirnow-Distanz, oberes Ende</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/table_view.py" />
-   <source>kolmogorov smirnov in floors</source>
-   <translation>Kolmogorow-Smirnow-Distanz in Einheiten des Rauschens</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/table_view.py" />
-   <source>kolmogorov smirnov low</source>
-   <translation>Kolmogorow-Smirnow-Distanz, unteres Ende</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/steps.py" />
-   <source>labels</source>
-   <translation>Labels</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/volume_dialog.py" />
-   <source>labels of grains</source>
-   <translation>Labels von Körnern</translation>
-  </message>
-  <message>
-   <source>least distance of two parallel tangent planes</source>
-   <translation>kleinster Abstand zweier paralleler Tangentialebenen</translation>
-  </message>
-  <message>
-   <location filename="ui/widgets/bar_plot.py" />
-   <source>least possible</source>
-   <translation>kleinstmöglich</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/section_plot.py" />
-   <source>left flank: {z:.3g} mm, {angle:.1f}°</source>
-   <translation>linke Flanke: {z:.3g} mm, {angle:.1f}°</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/section_plot.py" />
-   <source>left {angle:.1f}°</source>
-   <translation>links {angle:.1f}°</translation>
-  </message>
-  <message>
-   <source>lifting cylinder</source>
-   <translation>Hubzylinder</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/volume_dialog.py" />
-   <source>little endian</source>
-   <translation>Little Endian</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/field.py" />
-   <source>ln(r / mean), blue inwards, red outwards</source>
-   <translation>ln(r / Mittel), blau nach innen, rot nach außen</translation>
-  </message>
-  <message>
-   <source>log_normal</source>
-   <translation>lognormal</translation>
-  </message>
-  <message>
-   <source>log_normal_mixture</source>
-   <translation>lognormale Mischung</translation>
-  </message>
-  <message>
-   <source>longest edge of the bounding box</source>
-   <translation>längste Kante des Hüllquaders</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/error_bars.py" />
-   <source>loss (Eq. 9): {loss:.4g}</source>
-   <translation>Verlust (Gl. 9): {loss:.4g}</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/annealing.py" />
-   <source>loss {loss:.4g}; {facets} facets of {planes} planes</source>
-   <translation>Verlust {loss:.4g}; {facets} Facetten aus {planes} Ebenen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/annealing.py" />
-   <source>loss {loss:.4g}; {facets} facets; veil: what is imitated</source>
-   <translation>Verlust {loss:.4g}; {facets} Facetten; Schleier: das Vorbild</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/loss_curve.py" />
-   <source>lowest {loss:.3g}</source>
-   <translation>kleinster {loss:.3g}</translation>
-  </message>
-  <message>
-   <source>mass and inertia</source>
-   <translation>Masse und Trägheit</translation>
-  </message>
-  <message>
-   <source>mass fractions (as comments)</source>
-   <translation>Massenanteile (als Kommentare)</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/plots.py" />
-   <location filename="ui/pages/repose/study.py" />
-   <location filename="ui/pages/sample/statistics.py" />
-   <source>mean</source>
-   <translation>Mittel</translation>
-  </message>
-  <message>
-   <source>mean of |n·x|/|x| over the surface (Bullard and Garboczi)</source>
-   <translation>Mittel von |n·x|/|x| über die Oberfläche (Bullard und Garboczi)</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/views.py" />
-   <source>measured above, drawn below</source>
-   <translation>oben gemessen, unten gezogen</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/sentences.py" />
-   <source>measured particles</source>
-   <translation>gemessene Partikel</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/views.py" />
-   <source>measured; draw particles to compare</source>
-   <translation>gemessen; ziehen Sie Partikel zum Vergleich</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/sentences.py" />
-   <source>median novelty</source>
-   <translation>mediane Neuheit</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/table.py" />
-   <source>mended</source>
-   <translation>ausgebessert</translation>
-  </message>
-  <message>
-   <source>middle edge of the bounding box</source>
-   <translation>mittlere Kante des Hüllquaders</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/controls.py" />
-   <source>middle | bright</source>
-   <translation>mittel | hell</translation>
-  </message>
-  <message>
-   <source>mm, mg, ms; coarse graining applied</source>
-   <translation>mm, mg, ms; mit Vergröberungsfaktor</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/table_view.py" />
-   <source>model</source>
-   <translation>Modell</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/words.py" />
-   <source>nearly an ellipsoid</source>
-   <translation>fast ein Ellipsoid</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/controls.py" />
-   <source>needs no numbers</source>
-   <translation>braucht keine Zahlen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/health.py" />
-   <location filename="ui/translation/sentences.py" />
-   <source>no</source>
-   <translation>nein</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/words.py" />
-   <source>no polyhedron</source>
-   <translation>kein Polyeder</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/plots.py" />
-   <source>noise</source>
-   <translation>Rauschen</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/sentences.py" />
-   <source>noise of sampling, split {split}</source>
-   <translation>Rauschen der Stichprobe, Teilung {split}</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/export.py" />
-   <source>none</source>
-   <translation>keine</translation>
-  </message>
-  <message>
-   <source>none besides what edges and faces do</source>
-   <translation>keines außer dem, was Kanten und Flächen bewirken</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/studies/variation_panel.py" />
-   <source>none is better in both</source>
-   <translation>keiner ist in beidem besser</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/lmax_study.py" />
-   <source>none of these</source>
-   <translation>keines davon</translation>
-  </message>
-  <message>
-   <location filename="ui/widgets/bar_plot.py" />
-   <source>not below {bound:.3g} {unit} (line)</source>
-   <translation>nicht unter {bound:.3g} {unit} (Linie)</translation>
-  </message>
-  <message>
-   <source>not given in the paper</source>
-   <translation>im Artikel nicht angegeben</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/section_plot.py" />
-   <source>not used: outside the cuts</source>
-   <translation>nicht verwendet: außerhalb der Schnitte</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/log.py" />
-   <source>note</source>
-   <translation>Hinweis</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/health.py" />
-   <source>now</source>
-   <translation>jetzt</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/plots.py" />
-   <location filename="ui/translation/sentences.py" />
-   <source>number</source>
-   <translation>Anzahl</translation>
-  </message>
-  <message>
-   <location filename="ui/views/triptych.py" />
-   <source>on its way; the very first one takes longer …</source>
-   <translation>unterwegs; das allererste dauert länger …</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/sentences.py" />
-   <source>pairs of r_eq, A, AR: the largest energy distance [%]</source>
-   <translation>Paare aus r_eq, A, AR: die größte Energiedistanz [%]</translation>
-  </message>
-  <message>
-   <source>part of the volume</source>
-   <translation>ein Teil des Volumens</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/runs.py" />
-   <source>passed</source>
-   <translation>bestanden</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/help.py" />
-   <source>pictures, drawn off-screen</source>
-   <translation>Bilder, im Speicher gezeichnet</translation>
-  </message>
-  <message>
-   <source>polygonal facets, edges, vertices</source>
-   <translation>polygonale Facetten, Kanten, Ecken</translation>
-  </message>
-  <message>
-   <source>polygonal facets: they are cut into triangles</source>
-   <translation>polygonale Facetten: sie werden in Dreiecke zerlegt</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/runs.py" />
-   <source>polyhedra</source>
-   <translation>Polyeder</translation>
-  </message>
-  <message>
-   <source>pooled</source>
-   <translation>gemeinsam</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/annealing.py" />
-   <location filename="ui/panels/loss_curve.py" />
-   <source>present</source>
-   <translation>aktuell</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/log.py" />
-   <source>problem</source>
-   <translation>Problem</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/annealing.py" />
-   <source>proposed</source>
-   <translation>vorgeschlagen</translation>
-  </message>
-  <message>
-   <source>pull-off force 3/2 π w R*, shared by the contact points; hardly steepens a heap: take LAMMPS</source>
-   <translation>Abreißkraft 3/2 π w R*, auf die Kontaktpunkte verteilt; macht einen Kegel kaum steiler: nehmen Sie LAMMPS</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/page.py" />
-   <source>r_eq {low:.3g} to {high:.3g} µm</source>
-   <translation>r_eq {low:.3g} bis {high:.3g} µm</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/sentences.py" />
-   <source>r_eq, A, AR, S: the worst, over the 95th percentile of noise</source>
-   <translation>r_eq, A, AR, S: das schlechteste, geteilt durch das 95. Perzentil des Rauschens</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/degrees.py" />
-   <source>radius (rms)</source>
-   <translation>Radius (quadr. Mittel)</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/table_view.py" />
-   <source>reached</source>
-   <translation>erreicht</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/words.py" />
-   <source>refuse</source>
-   <translation>ablehnen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/annealing.py" />
-   <source>refused</source>
-   <translation>abgelehnt</translation>
-  </message>
-  <message>
-   <source>resampled</source>
-   <translation>neu gezogen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/section_plot.py" />
-   <source>right flank: {z:.3g} mm, {angle:.1f}°</source>
-   <translation>rechte Flanke: {z:.3g} mm, {angle:.1f}°</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/section_plot.py" />
-   <source>right {angle:.1f}°</source>
-   <translation>rechts {angle:.1f}°</translation>
-  </message>
-  <message>
-   <source>rigid clumps of inscribed spheres (8 by default) with the polyhedra's mass and inertia: rounder</source>
-   <translation>starre Gruppen einbeschriebener Kugeln (sonst 8) mit Masse und Trägheit der Polyeder: runder</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/health.py" />
-   <source>rims of holes</source>
-   <translation>Ränder von Löchern</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/words.py" />
-   <source>rises from {before} to {after}</source>
-   <translation>steigt von {before} auf {after}</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/scatter.py" />
-   <location filename="ui/pages/sample/table.py" />
-   <source>rod</source>
-   <translation>stabförmig</translation>
-  </message>
-  <message>
-   <source>rolling resistance</source>
-   <translation>Rollwiderstand</translation>
-  </message>
-  <message>
-   <source>rosin_rammler</source>
-   <translation>Rosin-Rammler</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/table_view.py" />
-   <source>second</source>
-   <translation>zweiter Deskriptor</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/runs.py" />
-   <source>see tip</source>
-   <translation>siehe Hinweis</translation>
-  </message>
-  <message>
-   <source>shapes</source>
-   <translation>Formen</translation>
-  </message>
-  <message>
-   <source>shapes approximately</source>
-   <translation>Formen näherungsweise</translation>
-  </message>
-  <message>
-   <source>shapes as triangles</source>
-   <translation>Formen als Dreiecke</translation>
-  </message>
-  <message>
-   <source>shapes by their vertices</source>
-   <translation>Formen durch ihre Ecken</translation>
-  </message>
-  <message>
-   <source>shapes exactly</source>
-   <translation>Formen genau</translation>
-  </message>
-  <message>
-   <source>shapes of volume 1 (before rounding) without a length unit; diameters in micrometres</source>
-   <translation>Formen vom Volumen 1 (vor dem Runden) ohne Längeneinheit; Durchmesser in Mikrometern</translation>
-  </message>
-  <message>
-   <source>shapes of volume 1 without a length unit; diameters in micrometres</source>
-   <translation>Formen vom Volumen 1 ohne Längeneinheit; Durchmesser in Mikrometern</translation>
-  </message>
-  <message>
-   <source>shapes of volume 1; scales in metres, coarse graining applied</source>
-   <translation>Formen vom Volumen 1; Maße in Metern, mit Vergröberungsfaktor</translation>
-  </message>
-  <message>
-   <source>shapes of volume 1; scales in metres, coarse graining applied; SI material</source>
-   <translation>Formen vom Volumen 1; Maße in Metern, mit Vergröberungsfaktor; Material in SI</translation>
-  </message>
-  <message>
-   <source>shortest edge of the bounding box</source>
-   <translation>kürzeste Kante des Hüllquaders</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/sentences.py" />
-   <source>size</source>
-   <translation>Größe</translation>
-  </message>
-  <message>
-   <source>size distributions inside the .shp: give each particle its homothety</source>
-   <translation>Größenverteilungen in der .shp-Datei: geben Sie jedem Partikel seine Streckung</translation>
-  </message>
-  <message>
-   <source>sizes</source>
-   <translation>Größen</translation>
-  </message>
-  <message>
-   <source>sizes as cumulative percentages by mass</source>
-   <translation>Größen als Summenprozente nach Masse</translation>
-  </message>
-  <message>
-   <source>sizes, one template each</source>
-   <translation>Größen, je eine Vorlage</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/table.py" />
-   <source>sound</source>
-   <translation>fehlerfrei</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/runs.py" />
-   <source>spheres</source>
-   <translation>Kugeln</translation>
-  </message>
-  <message>
-   <source>spheres in the frame of a shape of volume 1; diameters in micrometres</source>
-   <translation>Kugeln im Bezug einer Form vom Volumen 1; Durchmesser in Mikrometern</translation>
-  </message>
-  <message>
-   <source>spheres inside each polyhedron stand for it; facets become bumpy and some volume is missing.</source>
-   <translation>Kugeln in jedem Polyeder stehen für es; Facetten werden höckerig, und etwas Volumen fehlt.</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/sentences.py" />
-   <source>sphericity</source>
-   <translation>Sphärizität</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/sentences.py" />
-   <source>split</source>
-   <translation>Teilung</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/sentences.py" />
-   <source>split {split} of {total}</source>
-   <translation>Teilung {split} von {total}</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/judgement.py" />
-   <location filename="ui/translation/sentences.py" />
-   <source>splits</source>
-   <translation>Teilungen</translation>
-  </message>
-  <message>
-   <source>spring, dashpot and slider (where resistance is above 0)</source>
-   <translation>Feder, Dämpfer und Gleiter (wo der Widerstand über 0 ist)</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/words.py" />
-   <source>stays what it is</source>
-   <translation>bleibt, was er ist</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/statistics.py" />
-   <source>std. dev.</source>
-   <translation>Std.-Abw.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/annealing.py" />
-   <source>step</source>
-   <translation>Schritt</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/loss_curve.py" />
-   <source>step {at} of {total}</source>
-   <translation>Schritt {at} von {total}</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/section_plot.py" />
-   <source>surface at {x:.3g} mm: {z:.3g} mm ({taken})</source>
-   <translation>Oberfläche bei {x:.3g} mm: {z:.3g} mm ({taken})</translation>
-  </message>
-  <message>
-   <source>surface energy (JKR)</source>
-   <translation>Oberflächenenergie (JKR)</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/section_plot.py" />
-   <source>surface z [mm]</source>
-   <translation>Oberfläche z [mm]</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/section_plot.py" />
-   <source>symmetric model: {z:.3g} mm, {angle:.1f}°</source>
-   <translation>symmetrisches Modell: {z:.3g} mm, {angle:.1f}°</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/section_plot.py" />
-   <source>symmetric {angle:.1f}°</source>
-   <translation>symmetrisch {angle:.1f}°</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/table_view.py" />
-   <source>target</source>
-   <translation>Ziel</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/batch_fields.py" />
-   <source>tcp://HOST:8786 or tls://HOST:8786</source>
-   <translation>tcp://HOST:8786 oder tls://HOST:8786</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/export.py" />
-   <source>the CT particle itself</source>
-   <translation>das CT-Partikel selbst</translation>
-  </message>
-  <message>
-   <source>the convex polyhedra themselves</source>
-   <translation>die konvexen Polyeder selbst</translation>
-  </message>
-  <message>
-   <location filename="ui/fineness.py" />
-   <source>the fewest facets with all errors below {limit} %</source>
-   <translation>den wenigsten Facetten, deren Fehler alle unter {limit} % liegen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/page.py" />
-   <source>the fit at l&lt;sub&gt;max&lt;/sub&gt; = {degree}</source>
-   <translation>der Fit bei l&lt;sub&gt;max&lt;/sub&gt; = {degree}</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/page.py" />
-   <source>the particle</source>
-   <translation>das Partikel</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/export.py" />
-   <source>the surface of the spherical-harmonics fit at l&lt;sub&gt;max&lt;/sub&gt; = {l_max}</source>
-   <translation>die Oberfläche des Fits mit Kugelflächenfunktionen bei l&lt;sub&gt;max&lt;/sub&gt; = {l_max}</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/table_view.py" />
-   <source>to</source>
-   <translation>bis</translation>
-  </message>
-  <message>
-   <source>to the eye</source>
-   <translation>zum Auge</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/studies/rows_bar.py" />
-   <source>trimesh's heuristic (paper)</source>
-   <translation>Heuristik von trimesh (Artikel)</translation>
-  </message>
-  <message>
-   <source>true moments of inertia (fit.csv)</source>
-   <translation>wahre Trägheitsmomente (fit.csv)</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/statistics.py" />
-   <source>undo the loss at the border</source>
-   <translation>Verlust am Rand ausgleichen</translation>
-  </message>
-  <message>
-   <source>unilateral constraint, no bounce; penetration is reported, stiffness has no part</source>
-   <translation>einseitige Zwangsbedingung, kein Rückprall; die Durchdringung wird gemeldet, die Steifigkeit spielt keine Rolle</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/table.py" />
-   <source>unknown</source>
-   <translation>unbekannt</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/table.py" />
-   <source>unsound</source>
-   <translation>fehlerhaft</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/explore/section_panel.py" />
-   <source>up</source>
-   <translation>hoch</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/spectrum.py" />
-   <source>up to l&lt;sub&gt;max&lt;/sub&gt; = {l_max}</source>
-   <translation>bis l&lt;sub&gt;max&lt;/sub&gt; = {l_max}</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/table_view.py" />
-   <source>value</source>
-   <translation>Wert</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/plots.py" />
-   <location filename="ui/translation/sentences.py" />
-   <source>volume</source>
-   <translation>Volumen</translation>
-  </message>
-  <message>
-   <source>volume and inertia</source>
-   <translation>Volumen und Trägheit</translation>
-  </message>
-  <message>
-   <location filename="ui/views/triptych.py" />
-   <source>waiting for the coefficients …</source>
-   <translation>wartet auf die Koeffizienten …</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/table_view.py" />
-   <source>wanted</source>
-   <translation>verlangt</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/table_view.py" />
-   <source>wasserstein</source>
-   <translation>Wasserstein-Distanz</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/table_view.py" />
-   <source>wasserstein high</source>
-   <translation>Wasserstein-Distanz, oberes Ende</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/table_view.py" />
-   <source>wasserstein in floors</source>
-   <translation>Wasserstein-Distanz in Einheiten des Rauschens</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/table_view.py" />
-   <source>wasserstein low</source>
-   <translation>Wasserstein-Distanz, unteres Ende</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/table.py" />
-   <source>weight</source>
-   <translation>Gewicht</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/statistics.py" />
-   <source>weighted by volume</source>
-   <translation>nach Volumen gewichtet</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/table_view.py" />
-   <source>weighting</source>
-   <translation>Gewichtung</translation>
-  </message>
-  <message>
-   <source>weights and size distributions: only a sample is drawn</source>
-   <translation>Gewichte und Größenverteilungen: nur eine Stichprobe wird gezogen</translation>
-  </message>
-  <message>
-   <source>weights and size distributions: only a sample is drawn (sizes.csv has them)</source>
-   <translation>Gewichte und Größenverteilungen: nur eine Stichprobe wird gezogen (sizes.csv hat sie)</translation>
-  </message>
-  <message>
-   <source>weights and sizes (sizes.csv)</source>
-   <translation>Gewichte und Größen (sizes.csv)</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/export.py" />
-   <source>weights, size distribution, descriptors, provenance (JSON)</source>
-   <translation>Gewichte, Größenverteilung, Deskriptoren, Herkunft (JSON)</translation>
-  </message>
-  <message>
-   <source>where the particles come from (dataset.json has it)</source>
-   <translation>woher die Partikel kommen (steht in dataset.json)</translation>
-  </message>
-  <message>
-   <location filename="ui/views/comparison.py" />
-   <source>with fit</source>
-   <translation>mit Fit</translation>
-  </message>
-  <message>
-   <location filename="ui/views/comparison.py" />
-   <source>with particle</source>
-   <translation>mit Partikel</translation>
-  </message>
-  <message>
-   <location filename="ui/views/comparison.py" />
-   <source>with polyhedron</source>
-   <translation>mit Polyeder</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/histogram_plot.py" />
-   <source>without noise</source>
-   <translation>ohne Rauschen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/annealing.py" />
-   <source>worse, accepted</source>
-   <translation>schlechter, angenommen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/volume_dialog.py" />
-   <source>x, y, z: slices last</source>
-   <translation>x, y, z: Schichten zuletzt</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/volume_dialog.py" />
-   <source>y, x, z: as MATLAB has pictures</source>
-   <translation>y, x, z: wie Bilder in MATLAB</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/health.py" />
-   <location filename="ui/translation/sentences.py" />
-   <source>yes</source>
-   <translation>ja</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/batch.py" />
-   <source>{at:,} of {total:,}</source>
-   <translation>{at:,} von {total:,}</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/export.py" />
-   <location filename="ui/panels/tasks.py" />
-   <location filename="ui/tour.py" />
-   <source>{at} of {total}</source>
-   <translation>{at} von {total}</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/degrees.py" />
-   <source>{count:,} coefficients</source>
-   <translation>{count:,} Koeffizienten</translation>
-  </message>
-  <message>
-   <location filename="ui/views/triptych.py" />
-   <source>{count:,} coefficients, {triangles:,} triangles</source>
-   <translation>{count:,} Koeffizienten, {triangles:,} Dreiecke</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/distributions.py" />
-   <source>{count:,} drawn</source>
-   <translation>{count:,} gezogen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/page.py" />
-   <source>{count:,} draws thrown away</source>
-   <translation>{count:,} Ziehungen verworfen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/distributions.py" />
-   <source>{count:,} measured</source>
-   <translation>{count:,} gemessen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/page.py" />
-   <location filename="ui/pages/repose/page.py" />
-   <location filename="ui/pages/repose/setup.py" />
-   <source>{count:,} particles</source>
-   <translation>{count:,} Partikel</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/controls.py" />
-   <source>{count:,} particles are open.</source>
-   <translation>{count:,} Partikel sind geöffnet.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/page.py" />
-   <source>{count:,} particles are too many to open; at most {most:,}. For more use: regolith-studio generate.</source>
-   <translation>{count:,} Partikel sind zum Öffnen zu viele, höchstens {most:,}. Für mehr: regolith-studio generate.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/page.py" />
-   <source>{count:,} particles of {name}</source>
-   <translation>{count:,} Partikel aus {name}</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/page.py" />
-   <source>{count:,} virtual particles are open now.</source>
-   <translation>{count:,} virtuelle Partikel sind jetzt geöffnet.</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/sentences.py" />
-   <source>{counts} at grey level {level}; {small} too small.</source>
-   <translation>{counts} beim Grauwert {level}; {small} zu klein.</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/sentences.py" />
-   <source>{count} facets</source>
-   <translation>{count} Facetten</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/health_sentences.py" />
-   <source>{count} faces are there twice.</source>
-   <translation>{count} Flächen sind doppelt vorhanden.</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/health_sentences.py" />
-   <source>{count} faces have no area.</source>
-   <translation>{count} Flächen haben keinen Inhalt.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/shown.py" />
-   <location filename="ui/views/triptych.py" />
-   <source>{count} facets</source>
-   <translation>{count} Facetten</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/studies/gallery.py" />
-   <source>{count} facets, Jaccard distance J = {distance:.3f}, loss of this row {loss:.3g}</source>
-   <translation>{count} Facetten, Jaccard-Distanz J = {distance:.3f}, Verlust dieser Zeile {loss:.3g}</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/studies/page.py" />
-   <source>{count} files were written to {folder}.</source>
-   <translation>{count} Dateien wurden nach {folder} geschrieben.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/page.py" />
-   <source>{count} formats are written.</source>
-   <translation>{count} Formate sind geschrieben.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/studies/variation_panel.py" />
-   <source>{count} left out</source>
-   <translation>{count} ausgelassen</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/studies/rows_bar.py" />
-   <source>{count} losses</source>
-   <translation>{count} Verluste</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/sentences.py" />
-   <source>{count} measured particles at l_max = {degree}, {left} left out; fitted to one half, judged on the other; {splits} {split}, {draws} draws once from each fit, seed {seed}.</source>
-   <translation>{count} gemessene Partikel bei l_max = {degree}, {left} ausgelassen; an eine Hälfte angepasst, an der anderen beurteilt; {splits} {split}, einmal {draws} Ziehungen je Fit, Startwert {seed}.</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/sentences.py" />
-   <source>{count} measured particles at l_max = {degree}, {left} left out; fitted to one half, judged on the other; {splits} {split}, {draws} draws {repeats} times from each fit, seed {seed}.</source>
-   <translation>{count} gemessene Partikel bei l_max = {degree}, {left} ausgelassen; an eine Hälfte angepasst, an der anderen beurteilt; {splits} {split}, {repeats}-mal {draws} Ziehungen je Fit, Startwert {seed}.</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/batch_fields.py" />
-   <source>{count} of the open particles come from no file and cannot be part of a batch.</source>
-   <translation>{count} der geöffneten Partikel stammen aus keiner Datei und können nicht Teil eines Stapels sein.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/steps.py" />
-   <source>{count} of them has fewer than {least} voxels and will be left out.</source>
-   <translation>{count} davon hat weniger als {least} Voxel und entfällt.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/steps.py" />
-   <source>{count} of them have fewer than {least} voxels and will be left out.</source>
-   <translation>{count} davon haben weniger als {least} Voxel und entfallen.</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/health_sentences.py" />
-   <source>{count} pairs of faces cross each other.</source>
-   <translation>{count} Paare von Flächen kreuzen sich.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/scatter.py" />
-   <location filename="ui/pages/studies/variation_panel.py" />
-   <location filename="ui/panels/lmax_study.py" />
-   <source>{count} particles</source>
-   <translation>{count} Partikel</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/page.py" />
-   <source>{count} particles are in {name}.</source>
-   <translation>{count} Partikel sind in {name}.</translation>
-  </message>
-  <message>
-   <location filename="ui/commands.py" />
-   <source>{count} particles came from no file and are not in it ({names}); export them.</source>
-   <translation>{count} Partikel stammen aus keiner Datei und sind nicht darin ({names}); exportieren Sie sie.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/model/sources.py" />
-   <source>{count} particles up to l = {degree}.</source>
-   <translation>{count} Partikel bis l = {degree}.</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/sentences.py" />
-   <source>{count} particles; left out: {border} at the border, {small} too small.</source>
-   <translation>{count} Partikel; weggelassen: {border} am Rand, {small} zu klein.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/page.py" />
-   <source>{count} planes, imitating {imitated}, seed {seed}</source>
-   <translation>{count} Ebenen, Vorbild: {imitated}, Startwert {seed}</translation>
-  </message>
-  <message>
-   <location filename="ui/batches.py" />
-   <source>{count} problems are listed in failed.csv.</source>
-   <translation>{count} Probleme stehen in failed.csv.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/page.py" />
-   <source>{count} representatives</source>
-   <translation>{count} Repräsentanten</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/study_desk.py" />
-   <source>{count} runs; tables and figure are in {folder}.</source>
-   <translation>{count} Läufe; Tabellen und Abbildung sind in {folder}.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/page.py" />
-   <source>{count} shapes in {folder}.</source>
-   <translation>{count} Formen in {folder}.</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/health_sentences.py" />
-   <source>{count} vertices lie exactly on another: seams cut the surface.</source>
-   <translation>{count} Ecken liegen genau auf einer anderen: Nähte zerschneiden die Oberfläche.</translation>
-  </message>
-  <message>
-   <location filename="ui/views/triptych.py" />
-   <source>{count} vertices, {triangles} triangles</source>
-   <translation>{count} Ecken, {triangles} Dreiecke</translation>
-  </message>
-  <message>
-   <location filename="ui/refusals.py" />
-   <source>{count} were left out. The first: {sentence}</source>
-   <translation>{count} wurden ausgelassen. Die erste: {sentence}</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/batch.py" />
-   <source>{count} workers</source>
-   <translation>{count} Arbeitsprozesse</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/export.py" />
-   <source>{count}, as unit-volume STL files</source>
-   <translation>{count}, als STL-Dateien vom Volumen eins</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/export.py" />
-   <source>{count}, as unit-volume STL files, {size:,.0f} KiB in all</source>
-   <translation>{count}, als STL-Dateien mit Einheitsvolumen, zusammen {size:,.0f} KiB</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/volume_dialog.py" />
-   <source>{edges} voxels, {dtype}.</source>
-   <translation>{edges} Voxel, {dtype}.</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/sentences.py" />
-   <source>{grains} grains from 1 connected body</source>
-   <translation>{grains} Körner aus 1 zusammenhängenden Körper</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/sentences.py" />
-   <source>{grains} grains from {bodies} connected bodies</source>
-   <translation>{grains} Körner aus {bodies} zusammenhängenden Körpern</translation>
-  </message>
-  <message>
-   <location filename="ui/shortcuts.py" />
-   <source>{keys} already runs “{command}”.</source>
-   <translation>{keys} gehört schon zu „{command}“.</translation>
-  </message>
-  <message>
-   <location filename="ui/shortcuts.py" />
-   <source>{keys} is needed for typing and for moving about; add Ctrl or Alt.</source>
-   <translation>{keys} wird zum Tippen und Bewegen gebraucht; nehmen Sie Strg oder Alt dazu.</translation>
-  </message>
-  <message>
-   <location filename="ui/shortcuts.py" />
-   <source>{keys} is no key that a command can have.</source>
-   <translation>{keys} ist keine Taste, die ein Befehl haben kann.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/histogram_plot.py" />
-   <source>{label}: {share:.3g} % of voxels</source>
-   <translation>{label}: {share:.3g} % der Voxel</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/controls.py" />
-   <source>{least} voxels are a ball of {diameter:.1f} voxels in diameter.</source>
-   <translation>{least} Voxel sind eine Kugel von {diameter:.1f} Voxeln Durchmesser.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/repose/runs.py" />
-   <location filename="ui/pages/repose/study.py" />
-   <source>{low:.1f} to {high:.1f}</source>
-   <translation>{low:.1f} bis {high:.1f}</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/export.py" />
-   <source>{method}, seed {seed}</source>
-   <translation>{method}, Startwert {seed}</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/words.py" />
-   <source>{moved}: the half-spaces bound no polyhedron any more. Refused without asking T(k).</source>
-   <translation>{moved}: die Halbräume begrenzen kein Polyeder mehr. Abgelehnt, ohne T(k) zu fragen.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/words.py" />
-   <source>{moved}: the loss falls from {before} to {after}. Better, so it is accepted.</source>
-   <translation>{moved}: der Verlust fällt von {before} auf {after}. Besser, also angenommen.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/words.py" />
-   <source>{moved}: the loss {how}. Accepted all the same: luck, of which there was {chance}.</source>
-   <translation>{moved}: der Verlust {how}. Trotzdem angenommen: Glück, das es mit {chance} gab.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/words.py" />
-   <source>{moved}: the loss {how}. Refused; there was a chance of {chance} that it would have been taken.</source>
-   <translation>{moved}: der Verlust {how}. Abgelehnt; mit einer Wahrscheinlichkeit von {chance} wäre es angenommen worden.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/studies/variation_panel.py" />
-   <source>{name} (mean)</source>
-   <translation>{name} (Mittel)</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/page.py" />
-   <source>{name} and {count} more</source>
-   <translation>{name} und {count} weitere</translation>
-  </message>
-  <message>
-   <location filename="ui/projects.py" />
-   <source>{name} has changes that are not saved.</source>
-   <translation>{name} hat Änderungen, die nicht gespeichert sind.</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/sentences.py" />
-   <source>{name} only</source>
-   <translation>Nur {name}</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/shown.py" />
-   <source>{name} stands for 1 particle ({share})</source>
-   <translation>{name} steht für 1 Partikel ({share})</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/shown.py" />
-   <source>{name} stands for {count} particles ({share})</source>
-   <translation>{name} steht für {count} Partikel ({share})</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/sentences.py" />
-   <source>{name} × {factor}</source>
-   <translation>{name} × {factor}</translation>
-  </message>
-  <message>
-   <location filename="ui/widgets/bar_plot.py" />
-   <source>{name}, not below</source>
-   <translation>{name}, nicht unter</translation>
-  </message>
-  <message>
-   <location filename="ui/widgets/number_slider.py" />
-   <source>{name}, slider</source>
-   <translation>{name}, Schieberegler</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/sentences.py" />
-   <source>{name}, split {split}, draw {draw}</source>
-   <translation>{name}, Teilung {split}, Ziehung {draw}</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/sentences.py" />
-   <source>{name}, split {split}, fit</source>
-   <translation>{name}, Teilung {split}, Fit</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/shown.py" />
-   <source>{name}: {count} shapes, by {weighting}</source>
-   <translation>{name}: {count} Formen, nach {weighting}</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/steps.py" />
-   <source>{name}: {edges} voxels of {voxel}, {what} ({dtype}).</source>
-   <translation>{name}: {edges} Voxel zu {voxel}, {what} ({dtype}).</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/dataset/shown.py" />
-   <source>{name}: {faces} facets, {vertices} vertices, stands for {count} particles</source>
-   <translation>{name}: {faces} Facetten, {vertices} Ecken, steht für {count} Partikel</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/transport.py" />
-   <source>{noun} {at} of {last}</source>
-   <translation>{noun} {at} von {last}</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/scan/slice_view.py" />
-   <source>{plane}, {axis} = {number} of {count}</source>
-   <translation>{plane}, {axis} = {number} von {count}</translation>
-  </message>
-  <message>
-   <location filename="ui/widgets/preset_bar.py" />
-   <source>{preset} (modified)</source>
-   <translation>{preset} (geändert)</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/export.py" />
-   <source>{preset}, modified</source>
-   <translation>{preset}, geändert</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/studies/change_table.py" />
-   <source>{row}, {column}: {before:.3g} % becomes {after:.3g} %</source>
-   <translation>{row}, {column}: aus {before:.3g} % werden {after:.3g} %</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/coarsening_study.py" />
-   <source>{row}, {column}: {value:.3g} % ({low:.3g} to {high:.3g}; {share:.0%} bootstrap interval)</source>
-   <translation>{row}, {column}: {value:.3g} % ({low:.3g} bis {high:.3g}; {share:.0%}-Bootstrap-Bereich)</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/coarsening_study.py" />
-   <source>{share:.0%} bootstrap intervals</source>
-   <translation>{share:.0%}-Bootstrap-Intervalle</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/sample/statistics.py" />
-   <source>{share} quant.</source>
-   <translation>{share}-Quant.</translation>
-  </message>
-  <message>
-   <location filename="ui/views/triptych.py" />
-   <source>{size}, {count:,} triangles</source>
-   <translation>{size}, {count:,} Dreiecke</translation>
-  </message>
-  <message>
-   <location filename="ui/panels/fit.py" />
-   <source>{surface:.2%} of the surface is hidden from the star point; {volume:.2%} of the volume cannot be represented.</source>
-   <translation>{surface:.2%} der Oberfläche sind vom Sternpunkt aus verdeckt; {volume:.2%} des Volumens lassen sich nicht darstellen.</translation>
-  </message>
-  <message>
-   <location filename="ui/translation/sentences.py" />
-   <source>{surface} of the surface and {volume} of the volume are hidden from the star point and cannot be kept by a radius function.</source>
-   <translation>{surface} der Oberfläche und {volume} des Volumens sind vom Sternpunkt aus verdeckt und lassen sich durch keine Radiusfunktion wiedergeben.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/lecture/words.py" />
-   <source>{symbol} = {degree}: {shape}. The radius is missed by {missed:.1%} in the root mean square; errors against the particle: {errors}.</source>
-   <translation>{symbol} = {degree}: {shape}. Der Radius wird im quadratischen Mittel um {missed:.1%} verfehlt; Fehler gegen das Partikel: {errors}.</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/closing.py" />
-   <source>{task} is running.</source>
-   <translation>In Arbeit: {task}.</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/studies/variation_panel.py" />
-   <source>{unmet} of {total} requests not met exactly</source>
-   <translation>{unmet} von {total} Wünschen nicht genau erfüllt</translation>
-  </message>
-  <message>
-   <location filename="ui/pages/studies/change_table.py" />
-   <source>{value:+.3g} percentage points ({low:+.3g} to {high:+.3g})</source>
-   <translation>{value:+.3g} Prozentpunkte ({low:+.3g} bis {high:+.3g})</translation>
-  </message>
-  <message>
-   <location filename="ui/dialogs/batch.py" />
-   <source>{who}, watched at {link}</source>
-   <translation>{who}, zu beobachten unter {link}</translation>
-  </message>
-  <message>
-   <source>π^(1/3) (6V)^(2/3) / A (Wadell, true sphericity)</source>
-   <translation>π^(1/3) (6V)^(2/3) / A (Wadell, wahre Sphärizität)</translation>
-  </message>
- </context>
+<context>
+    <name></name>
+    <message>
+        <source>&amp;About Regolith Studio</source>
+        <translation>&amp;Über Regolith Studio</translation>
+    </message>
+    <message>
+        <source>&amp;Another one</source>
+        <translation>&amp;Ein anderes</translation>
+    </message>
+    <message>
+        <source>&amp;Another particle in the view</source>
+        <translation>&amp;Ein anderes Partikel zeigen</translation>
+    </message>
+    <message>
+        <source>&amp;Bounding box</source>
+        <translation>&amp;Hüllquader</translation>
+    </message>
+    <message>
+        <source>&amp;Build the dataset …</source>
+        <translation>Datensatz &amp;bauen …</translation>
+    </message>
+    <message>
+        <source>&amp;Check the dataset</source>
+        <translation>Datensatz &amp;prüfen</translation>
+    </message>
+    <message>
+        <source>&amp;Commands …</source>
+        <translation>&amp;Befehle …</translation>
+    </message>
+    <message>
+        <source>&amp;Compute all</source>
+        <translation>Alles &amp;berechnen</translation>
+    </message>
+    <message>
+        <source>&amp;Copy table</source>
+        <translation>Tabelle k&amp;opieren</translation>
+    </message>
+    <message>
+        <source>&amp;Dark</source>
+        <translation>&amp;Dunkel</translation>
+    </message>
+    <message>
+        <source>&amp;Distance map</source>
+        <translation>&amp;Abstandskarte</translation>
+    </message>
+    <message>
+        <source>&amp;Draw particles</source>
+        <translation>Partikel &amp;ziehen</translation>
+    </message>
+    <message>
+        <source>&amp;Edit</source>
+        <translation>&amp;Bearbeiten</translation>
+    </message>
+    <message>
+        <source>&amp;Enlarge one view</source>
+        <translation>Eine Ansicht &amp;vergrößern</translation>
+    </message>
+    <message>
+        <source>&amp;Export dataset …</source>
+        <translation>Datensatz &amp;exportieren …</translation>
+    </message>
+    <message>
+        <source>&amp;Export figure and JSON …</source>
+        <translation>Abbildung und JSON &amp;exportieren …</translation>
+    </message>
+    <message>
+        <source>&amp;Export to DEM programs …</source>
+        <translation>In DEM-Programme &amp;exportieren …</translation>
+    </message>
+    <message>
+        <source>&amp;File</source>
+        <translation>&amp;Datei</translation>
+    </message>
+    <message>
+        <source>&amp;Find grains</source>
+        <translation>Körner &amp;finden</translation>
+    </message>
+    <message>
+        <source>&amp;Find representatives</source>
+        <translation>&amp;Repräsentanten finden</translation>
+    </message>
+    <message>
+        <source>&amp;Go</source>
+        <translation>&amp;Gehe zu</translation>
+    </message>
+    <message>
+        <source>&amp;Help</source>
+        <translation>&amp;Hilfe</translation>
+    </message>
+    <message>
+        <source>&amp;Judge models</source>
+        <translation>Modelle &amp;beurteilen</translation>
+    </message>
+    <message>
+        <source>&amp;Keep only these</source>
+        <translation>Nur diese &amp;behalten</translation>
+    </message>
+    <message>
+        <source>&amp;Keyboard and mouse</source>
+        <translation>&amp;Tastatur und Maus</translation>
+    </message>
+    <message>
+        <source>&amp;Larger letters</source>
+        <translation>&amp;Größere Schrift</translation>
+    </message>
+    <message>
+        <source>&amp;Light</source>
+        <translation>&amp;Hell</translation>
+    </message>
+    <message>
+        <source>&amp;Link cameras</source>
+        <translation>&amp;Kameras koppeln</translation>
+    </message>
+    <message>
+        <source>&amp;Make particles</source>
+        <translation>&amp;Partikel erzeugen</translation>
+    </message>
+    <message>
+        <source>&amp;Measure positions …</source>
+        <translation>Positionen &amp;vermessen …</translation>
+    </message>
+    <message>
+        <source>&amp;Mend meshes on opening</source>
+        <translation>Netze beim Öffnen &amp;ausbessern</translation>
+    </message>
+    <message>
+        <source>&amp;Next page</source>
+        <translation>&amp;Nächste Seite</translation>
+    </message>
+    <message>
+        <source>&amp;Open a dataset …</source>
+        <translation>Datensatz &amp;öffnen …</translation>
+    </message>
+    <message>
+        <source>&amp;Open …</source>
+        <translation>Ö&amp;ffnen …</translation>
+    </message>
+    <message>
+        <source>&amp;Overlay</source>
+        <translation>Überla&amp;gern</translation>
+    </message>
+    <message>
+        <source>&amp;Page</source>
+        <translation>&amp;Seite</translation>
+    </message>
+    <message>
+        <source>&amp;Play or pause</source>
+        <translation>&amp;Abspielen oder anhalten</translation>
+    </message>
+    <message>
+        <source>&amp;Play the run</source>
+        <translation>Lauf &amp;abspielen</translation>
+    </message>
+    <message>
+        <source>&amp;Previous page</source>
+        <translation>&amp;Vorherige Seite</translation>
+    </message>
+    <message>
+        <source>&amp;Quit</source>
+        <translation>&amp;Beenden</translation>
+    </message>
+    <message>
+        <source>&amp;Redo</source>
+        <translation>&amp;Wiederholen</translation>
+    </message>
+    <message>
+        <source>&amp;Reset cameras</source>
+        <translation>Kameras &amp;zurücksetzen</translation>
+    </message>
+    <message>
+        <source>&amp;Run the test</source>
+        <translation>Versuch durch&amp;führen</translation>
+    </message>
+    <message>
+        <source>&amp;Save figures and tables …</source>
+        <translation>Abbildungen und Tabellen &amp;speichern …</translation>
+    </message>
+    <message>
+        <source>&amp;Save model …</source>
+        <translation>Modell &amp;speichern …</translation>
+    </message>
+    <message>
+        <source>&amp;Save project</source>
+        <translation>Projekt &amp;speichern</translation>
+    </message>
+    <message>
+        <source>&amp;Tasks</source>
+        <translation>A&amp;ufgaben</translation>
+    </message>
+    <message>
+        <source>&amp;Theme</source>
+        <translation>&amp;Farbschema</translation>
+    </message>
+    <message>
+        <source>&amp;Tour</source>
+        <translation>&amp;Rundgang</translation>
+    </message>
+    <message>
+        <source>&amp;Undo</source>
+        <translation>&amp;Rückgängig</translation>
+    </message>
+    <message>
+        <source>&amp;Use as population</source>
+        <translation>Als Population &amp;verwenden</translation>
+    </message>
+    <message>
+        <source>&amp;View</source>
+        <translation>&amp;Ansicht</translation>
+    </message>
+    <message>
+        <source>&amp;Wireframe</source>
+        <translation>&amp;Drahtgitter</translation>
+    </message>
+    <message>
+        <source>(3 V / 4π)^(1/3)</source>
+        <translation>(3 V / 4π)^(1/3)</translation>
+    </message>
+    <message>
+        <source>(D_min D_int / D_max²)^(1/3) (Krumbein)</source>
+        <translation>(D_min D_int / D_max²)^(1/3) (Krumbein)</translation>
+    </message>
+    <message>
+        <source>(no group)</source>
+        <translation>(ohne Gruppe)</translation>
+    </message>
+    <message>
+        <source>(not installed)</source>
+        <translation>(nicht installiert)</translation>
+    </message>
+    <message>
+        <source>({low:.4g} to {high:.4g})</source>
+        <translation>({low:.4g} bis {high:.4g})</translation>
+    </message>
+    <message>
+        <source>* not given in the paper: a choice, yours to change.</source>
+        <translation>* im Artikel nicht angegeben: eine Wahl, die Sie ändern können.</translation>
+    </message>
+    <message>
+        <source>, one that bounds no facet at the moment</source>
+        <translation>, eine, die gerade keine Facette begrenzt</translation>
+    </message>
+    <message>
+        <source>0 for the best number by Bayes&apos; criterion.</source>
+        <translation>0 für die beste Anzahl nach dem Kriterium von Bayes.</translation>
+    </message>
+    <message>
+        <source>0: whole pile</source>
+        <translation>0: der ganze Kegel</translation>
+    </message>
+    <message>
+        <source>1  Representatives</source>
+        <translation>1  Repräsentanten</translation>
+    </message>
+    <message>
+        <source>1  Volume</source>
+        <translation>1  Volumen</translation>
+    </message>
+    <message>
+        <source>1 coefficient</source>
+        <translation>1 Koeffizient</translation>
+    </message>
+    <message>
+        <source>1 face has no area.</source>
+        <translation>1 Fläche hat keinen Inhalt.</translation>
+    </message>
+    <message>
+        <source>1 face is there twice.</source>
+        <translation>1 Fläche ist doppelt vorhanden.</translation>
+    </message>
+    <message>
+        <source>1 format is written.</source>
+        <translation>1 Format ist geschrieben.</translation>
+    </message>
+    <message>
+        <source>1 grain from 1 connected body</source>
+        <translation>1 Korn aus 1 zusammenhängenden Körper</translation>
+    </message>
+    <message>
+        <source>1 grain from {bodies} connected bodies</source>
+        <translation>1 Korn aus {bodies} zusammenhängenden Körpern</translation>
+    </message>
+    <message>
+        <source>1 m in the file is 1 mm of the particles, coarse graining applied; y up</source>
+        <translation>1 m in der Datei ist 1 mm der Partikel, mit Vergröberungsfaktor; y zeigt nach oben</translation>
+    </message>
+    <message>
+        <source>1 pair of faces crosses each other.</source>
+        <translation>1 Paar von Flächen kreuzt sich.</translation>
+    </message>
+    <message>
+        <source>1 particle</source>
+        <translation>1 Partikel</translation>
+    </message>
+    <message>
+        <source>1 particle is open.</source>
+        <translation>1 Partikel ist geöffnet.</translation>
+    </message>
+    <message>
+        <source>1 particle; left out: {border} at the border, {small} too small.</source>
+        <translation>1 Partikel; weggelassen: {border} am Rand, {small} zu klein.</translation>
+    </message>
+    <message>
+        <source>1 representative</source>
+        <translation>1 Repräsentant</translation>
+    </message>
+    <message>
+        <source>1 worker</source>
+        <translation>1 Arbeitsprozess</translation>
+    </message>
+    <message>
+        <source>2  Grains</source>
+        <translation>2  Körner</translation>
+    </message>
+    <message>
+        <source>2  Sizes</source>
+        <translation>2  Größen</translation>
+    </message>
+    <message>
+        <source>2 for a closed body without tunnels</source>
+        <translation>2 bei einem geschlossenen Körper ohne Tunnel</translation>
+    </message>
+    <message>
+        <source>3  Dataset</source>
+        <translation>3  Datensatz</translation>
+    </message>
+    <message>
+        <source>3  Particles</source>
+        <translation>3  Partikel</translation>
+    </message>
+    <message>
+        <source>4  Export to</source>
+        <translation>4  Exportieren nach</translation>
+    </message>
+    <message>
+        <source>5th</source>
+        <translation>5.</translation>
+    </message>
+    <message>
+        <source>95th</source>
+        <translation>95.</translation>
+    </message>
+    <message>
+        <source>; {count} facets were asked for</source>
+        <translation>; {count} Facetten waren verlangt</translation>
+    </message>
+    <message>
+        <source>&lt;b&gt;Angle of repose {angle:.1f}°&lt;/b&gt; ({low:.1f}° to {high:.1f}°, {count} sections); the paper&apos;s two sections: asymmetric {asymmetric:.1f}°, symmetric {symmetric:.1f}°.</source>
+        <translation>&lt;b&gt;Schüttwinkel {angle:.1f}°&lt;/b&gt; ({low:.1f}° bis {high:.1f}°, {count} Schnitte); die zwei Schnitte des Artikels: asymmetrisch {asymmetric:.1f}°, symmetrisch {symmetric:.1f}°.</translation>
+    </message>
+    <message>
+        <source>&lt;b&gt;Shapes are changed:&lt;/b&gt; {how}</source>
+        <translation>&lt;b&gt;Formen werden verändert:&lt;/b&gt; {how}</translation>
+    </message>
+    <message>
+        <source>&lt;b&gt;{label}&lt;/b&gt; does not carry: {lost}.</source>
+        <translation>&lt;b&gt;{label}&lt;/b&gt; überträgt nicht: {lost}.</translation>
+    </message>
+    <message>
+        <source>A</source>
+        <translation>A</translation>
+    </message>
+    <message>
+        <source>A / A of the hull (after Kuo and Freeman)</source>
+        <translation>A / A der Hülle (nach Kuo und Freeman)</translation>
+    </message>
+    <message>
+        <source>A Dask cluster at an address</source>
+        <translation>Ein Dask-Cluster an einer Adresse</translation>
+    </message>
+    <message>
+        <source>A Dask cluster started on this machine</source>
+        <translation>Ein auf diesem Rechner gestarteter Dask-Cluster</translation>
+    </message>
+    <message>
+        <source>A card is made of a fitted sample: fit a model to one first.</source>
+        <translation>Eine Karte entsteht aus einer Probe mit Modell: passen Sie zuerst eines an.</translation>
+    </message>
+    <message>
+        <source>A closed mesh without faults.</source>
+        <translation>Ein geschlossenes, fehlerfreies Netz.</translation>
+    </message>
+    <message>
+        <source>A dataset is made of the open particles for every value.</source>
+        <translation>Für jeden Wert wird aus den geöffneten Partikeln ein Datensatz gemacht.</translation>
+    </message>
+    <message>
+        <source>A dataset was written to {folder}.</source>
+        <translation>Ein Datensatz wurde nach {folder} geschrieben.</translation>
+    </message>
+    <message>
+        <source>A drawn particle</source>
+        <translation>Ein gezogenes Partikel</translation>
+    </message>
+    <message>
+        <source>A figure on white, 1860 × 560 times the scale</source>
+        <translation>Eine Abbildung auf Weiß, 1860 × 560 mal der Maßstab</translation>
+    </message>
+    <message>
+        <source>A fitted model: {name}.</source>
+        <translation>Ein angepasstes Modell: {name}.</translation>
+    </message>
+    <message>
+        <source>A of the hull / A of its ellipsoid (after Kuo and Freeman)</source>
+        <translation>A der Hülle / A ihres Ellipsoids (nach Kuo und Freeman)</translation>
+    </message>
+    <message>
+        <source>A random field has no steps: drag its bars, or draw anew.</source>
+        <translation>Ein Zufallsfeld hat keine Schritte: Balken ziehen oder neu ziehen lassen.</translation>
+    </message>
+    <message>
+        <source>A raw file says nothing about itself: how many voxels are in it, and of which type?</source>
+        <translation>Eine Rohdatei sagt nichts über sich: Wie viele Voxel hat sie, und von welchem Typ?</translation>
+    </message>
+    <message>
+        <source>A recipe file</source>
+        <translation>Eine Rezeptdatei</translation>
+    </message>
+    <message>
+        <source>A script that does the same</source>
+        <translation>Ein Skript, das dasselbe tut</translation>
+    </message>
+    <message>
+        <source>A simulation of the angle of repose would be stopped.</source>
+        <translation>Eine Simulation des Schüttwinkels würde abgebrochen.</translation>
+    </message>
+    <message>
+        <source>A study of the angle of repose would be stopped; it can go on later.</source>
+        <translation>Eine Studie des Schüttwinkels würde abgebrochen; sie kann später weitergehen.</translation>
+    </message>
+    <message>
+        <source>A volume of labels has no histogram of grey values.</source>
+        <translation>Ein Labelvolumen hat kein Histogramm der Grauwerte.</translation>
+    </message>
+    <message>
+        <source>A walk through the window</source>
+        <translation>Ein Gang durch das Fenster</translation>
+    </message>
+    <message>
+        <source>About Regolith Studio</source>
+        <translation>Über Regolith Studio</translation>
+    </message>
+    <message>
+        <source>About {time} on one core.</source>
+        <translation>Etwa {time} auf einem Kern.</translation>
+    </message>
+    <message>
+        <source>Activity</source>
+        <translation>Vorgänge</translation>
+    </message>
+    <message>
+        <source>Adaptive step</source>
+        <translation>Angepasste Schrittweite</translation>
+    </message>
+    <message>
+        <source>Address of the scheduler</source>
+        <translation>Adresse des Schedulers</translation>
+    </message>
+    <message>
+        <source>All descriptors</source>
+        <translation>Alle Deskriptoren</translation>
+    </message>
+    <message>
+        <source>All descriptors and overlap</source>
+        <translation>Alle Deskriptoren und Überdeckung</translation>
+    </message>
+    <message>
+        <source>All descriptors of all particles: sort, filter with words such as flat S&lt;0.8, choose several rows, and see them in the scatter plot. Export the table with units.</source>
+        <translation>Alle Deskriptoren aller Partikel: sortieren, mit Wörtern wie flat S&lt;0.8 filtern, mehrere Zeilen wählen und sie im Streudiagramm sehen. Die Tabelle lässt sich mit Einheiten exportieren.</translation>
+    </message>
+    <message>
+        <source>All files (*)</source>
+        <translation>Alle Dateien (*)</translation>
+    </message>
+    <message>
+        <source>All particles</source>
+        <translation>Alle Partikel</translation>
+    </message>
+    <message>
+        <source>All particles: table, scatter plot, health and statistics of groups</source>
+        <translation>Alle Partikel: Tabelle, Streudiagramm, Zustand der Netze und Statistik der Gruppen</translation>
+    </message>
+    <message>
+        <source>All usual keys</source>
+        <translation>Alle üblichen Tasten</translation>
+    </message>
+    <message>
+        <source>Also</source>
+        <translation>Außerdem</translation>
+    </message>
+    <message>
+        <source>Amplitude √A&lt;sub&gt;l&lt;/sub&gt; / c&lt;sub&gt;00&lt;/sub&gt; [%]</source>
+        <translation>Amplitude √A&lt;sub&gt;l&lt;/sub&gt; / c&lt;sub&gt;00&lt;/sub&gt; [%]</translation>
+    </message>
+    <message>
+        <source>Amplitude √A&lt;sub&gt;l&lt;/sub&gt; / μ [%]</source>
+        <translation>Amplitude √A&lt;sub&gt;l&lt;/sub&gt; / μ [%]</translation>
+    </message>
+    <message>
+        <source>An encrypted cluster needs a folder with {names}.</source>
+        <translation>Ein verschlüsselter Cluster braucht einen Ordner mit {names}.</translation>
+    </message>
+    <message>
+        <source>And back</source>
+        <translation>Und zurück</translation>
+    </message>
+    <message>
+        <source>And what it cannot see</source>
+        <translation>Und was er nicht sieht</translation>
+    </message>
+    <message>
+        <source>Angle</source>
+        <translation>Winkel</translation>
+    </message>
+    <message>
+        <source>Angle [°]</source>
+        <translation>Winkel [°]</translation>
+    </message>
+    <message>
+        <source>Angle of repose</source>
+        <translation>Schüttwinkel</translation>
+    </message>
+    <message>
+        <source>Angle of repose, {count:,} particles</source>
+        <translation>Schüttwinkel, {count:,} Partikel</translation>
+    </message>
+    <message>
+        <source>Angle of repose: study</source>
+        <translation>Schüttwinkel: Studie</translation>
+    </message>
+    <message>
+        <source>Angularity</source>
+        <translation>Kantigkeit</translation>
+    </message>
+    <message>
+        <source>Annealing</source>
+        <translation>Abkühlung</translation>
+    </message>
+    <message>
+        <source>Annealing step by step</source>
+        <translation>Abkühlung Schritt für Schritt</translation>
+    </message>
+    <message>
+        <source>Annealing step by step, l_max growing, a random field on the sphere; large letters</source>
+        <translation>Simuliertes Abkühlen Schritt für Schritt, wachsendes l_max, ein Zufallsfeld auf der Kugel; in großer Schrift</translation>
+    </message>
+    <message>
+        <source>Annealing, step {number} of {count}</source>
+        <translation>Abkühlung, Schritt {number} von {count}</translation>
+    </message>
+    <message>
+        <source>Another particle</source>
+        <translation>Anderes Partikel</translation>
+    </message>
+    <message>
+        <source>Another seed</source>
+        <translation>Anderer Startwert</translation>
+    </message>
+    <message>
+        <source>Any command by a few letters</source>
+        <translation>Jeder Befehl nach wenigen Buchstaben</translation>
+    </message>
+    <message>
+        <source>Area of the triangles that close holes</source>
+        <translation>Fläche der Dreiecke, die Löcher schließen</translation>
+    </message>
+    <message>
+        <source>As a CSV file</source>
+        <translation>Als CSV-Datei</translation>
+    </message>
+    <message>
+        <source>As given</source>
+        <translation>Wie vorgegeben</translation>
+    </message>
+    <message>
+        <source>As given (experimental)</source>
+        <translation>Wie vorgegeben (experimentell)</translation>
+    </message>
+    <message>
+        <source>As measured</source>
+        <translation>Wie gemessen</translation>
+    </message>
+    <message>
+        <source>As the &amp;system</source>
+        <translation>Wie das &amp;System</translation>
+    </message>
+    <message>
+        <source>As the file says, else slices first (z, y, x)</source>
+        <translation>Wie die Datei sagt, sonst Schichten zuerst (z, y, x)</translation>
+    </message>
+    <message>
+        <source>As the paper gives them; a star where it gives none</source>
+        <translation>Wie im Artikel; ein Stern, wo er nichts angibt</translation>
+    </message>
+    <message>
+        <source>As the system</source>
+        <translation>Wie das System</translation>
+    </message>
+    <message>
+        <source>Aspect ratio</source>
+        <translation>Seitenverhältnis</translation>
+    </message>
+    <message>
+        <source>Aspect ratio and overlap</source>
+        <translation>Seitenverhältnis und Überdeckung</translation>
+    </message>
+    <message>
+        <source>Aspect ratio, Eq. 2</source>
+        <translation>Seitenverhältnis, Gl. 2</translation>
+    </message>
+    <message>
+        <source>At most</source>
+        <translation>Höchstens</translation>
+    </message>
+    <message>
+        <source>At {symbol} = {degree} the series has a negative radius somewhere: it is no surface.</source>
+        <translation>Bei {symbol} = {degree} hat die Reihe irgendwo einen negativen Radius: sie ist keine Oberfläche.</translation>
+    </message>
+    <message>
+        <source>Automatic</source>
+        <translation>Automatisch</translation>
+    </message>
+    <message>
+        <source>Axes</source>
+        <translation>Achsen</translation>
+    </message>
+    <message>
+        <source>Back</source>
+        <translation>Zurück</translation>
+    </message>
+    <message>
+        <source>Back (from +y)</source>
+        <translation>Hinten (von +y)</translation>
+    </message>
+    <message>
+        <source>Back to the values of the preset</source>
+        <translation>Zurück zu den Werten der Vorlage</translation>
+    </message>
+    <message>
+        <source>Before the fall</source>
+        <translation>Vor dem Fall</translation>
+    </message>
+    <message>
+        <source>Being measured …</source>
+        <translation>Wird vermessen …</translation>
+    </message>
+    <message>
+        <source>Best-fit ellipsoid</source>
+        <translation>Angepasstes Ellipsoid</translation>
+    </message>
+    <message>
+        <source>Bin width, in mean d</source>
+        <translation>Klassenbreite, in mittleren d</translation>
+    </message>
+    <message>
+        <source>Blocks of the cylinder</source>
+        <translation>Blöcke des Zylinders</translation>
+    </message>
+    <message>
+        <source>Bodies</source>
+        <translation>Körper</translation>
+    </message>
+    <message>
+        <source>Bootstrap seed</source>
+        <translation>Startwert des Bootstraps</translation>
+    </message>
+    <message>
+        <source>Bottom (from -z)</source>
+        <translation>Unten (von -z)</translation>
+    </message>
+    <message>
+        <source>Boundary</source>
+        <translation>Grenze</translation>
+    </message>
+    <message>
+        <source>Bounding box</source>
+        <translation>Hüllquader</translation>
+    </message>
+    <message>
+        <source>Bounding box of the diameters</source>
+        <translation>Hüllquader der Durchmesser</translation>
+    </message>
+    <message>
+        <source>Bringing particles back</source>
+        <translation>Partikel werden zurückgeholt</translation>
+    </message>
+    <message>
+        <source>Browse …</source>
+        <translation>Durchsuchen …</translation>
+    </message>
+    <message>
+        <source>Build the dataset in this folder</source>
+        <translation>Den Datensatz in diesem Ordner bauen</translation>
+    </message>
+    <message>
+        <source>Build the dataset …</source>
+        <translation>Datensatz bauen …</translation>
+    </message>
+    <message>
+        <source>Building the dataset</source>
+        <translation>Datensatz wird gebaut</translation>
+    </message>
+    <message>
+        <source>Bump that is a grain of its own, in voxels</source>
+        <translation>Höcker, der ein eigenes Korn ist, in Voxeln</translation>
+    </message>
+    <message>
+        <source>By hand: drag the line</source>
+        <translation>Von Hand: Linie ziehen</translation>
+    </message>
+    <message>
+        <source>By number (Fig. 4)</source>
+        <translation>Anzahl (Abb. 4)</translation>
+    </message>
+    <message>
+        <source>By volume (Fig. 5)</source>
+        <translation>Volumen (Abb. 5)</translation>
+    </message>
+    <message>
+        <source>Byte order</source>
+        <translation>Bytefolge</translation>
+    </message>
+    <message>
+        <source>Bytes before</source>
+        <translation>Bytes davor</translation>
+    </message>
+    <message>
+        <source>Bytes before the first voxel</source>
+        <translation>Bytes vor dem ersten Voxel</translation>
+    </message>
+    <message>
+        <source>CSV, JSON, PNG, SVG</source>
+        <translation>CSV, JSON, PNG, SVG</translation>
+    </message>
+    <message>
+        <source>CT particle</source>
+        <translation>CT-Partikel</translation>
+    </message>
+    <message>
+        <source>CT particle, {name}</source>
+        <translation>CT-Partikel, {name}</translation>
+    </message>
+    <message>
+        <source>Cards (*.json)</source>
+        <translation>Karten (*.json)</translation>
+    </message>
+    <message>
+        <source>Carries: {what}</source>
+        <translation>Überträgt: {what}</translation>
+    </message>
+    <message>
+        <source>Cement 116 (synthetic)</source>
+        <translation>Zement 116 (synthetisch)</translation>
+    </message>
+    <message>
+        <source>Cement 133 (synthetic)</source>
+        <translation>Zement 133 (synthetisch)</translation>
+    </message>
+    <message>
+        <source>Cement 141 (synthetic)</source>
+        <translation>Zement 141 (synthetisch)</translation>
+    </message>
+    <message>
+        <source>Centimetres (cm)</source>
+        <translation>Zentimeter (cm)</translation>
+    </message>
+    <message>
+        <source>Centre of mass</source>
+        <translation>Schwerpunkt</translation>
+    </message>
+    <message>
+        <source>Centre of the kernel</source>
+        <translation>Mitte des Kerns</translation>
+    </message>
+    <message>
+        <source>Certificates</source>
+        <translation>Zertifikate</translation>
+    </message>
+    <message>
+        <source>Change</source>
+        <translation>Ändern</translation>
+    </message>
+    <message>
+        <source>Changes of errors in percentage points</source>
+        <translation>Änderungen der Fehler in Prozentpunkten</translation>
+    </message>
+    <message>
+        <source>Checked: {count:,} particles, overlap at most {overlap:.1f} % of d</source>
+        <translation>Geprüft: {count:,} Partikel, Überlappung höchstens {overlap:.1f} % von d</translation>
+    </message>
+    <message>
+        <source>Checking the dataset</source>
+        <translation>Datensatz wird geprüft</translation>
+    </message>
+    <message>
+        <source>Checks</source>
+        <translation>Prüfung</translation>
+    </message>
+    <message>
+        <source>Choose a dataset folder</source>
+        <translation>Einen Datensatzordner wählen</translation>
+    </message>
+    <message>
+        <source>Choose a dataset to see the cylinder filled.</source>
+        <translation>Wählen Sie einen Datensatz, um den gefüllten Zylinder zu sehen.</translation>
+    </message>
+    <message>
+        <source>Choose a folder: the datasets below it are listed here, with what was exported and simulated from each.</source>
+        <translation>Wählen Sie einen Ordner: die Datensätze darin werden hier aufgeführt, mit allem, was aus ihnen exportiert und simuliert wurde.</translation>
+    </message>
+    <message>
+        <source>Choose a recipe file.</source>
+        <translation>Wählen Sie eine Rezeptdatei.</translation>
+    </message>
+    <message>
+        <source>Choose it to see the run.</source>
+        <translation>Wählen Sie die Zeile, um den Lauf zu sehen.</translation>
+    </message>
+    <message>
+        <source>Choose representative particles, build a dataset, export it to DEM programs</source>
+        <translation>Repräsentative Partikel wählen, einen Datensatz bauen, in DEM-Programme exportieren</translation>
+    </message>
+    <message>
+        <source>Choose the dataset to simulate</source>
+        <translation>Den Datensatz der Simulation wählen</translation>
+    </message>
+    <message>
+        <source>Choose the rows to keep first.</source>
+        <translation>Wählen Sie zuerst die Zeilen, die bleiben sollen.</translation>
+    </message>
+    <message>
+        <source>Choose what is to be written.</source>
+        <translation>Wählen Sie, was geschrieben werden soll.</translation>
+    </message>
+    <message>
+        <source>Choosing representatives</source>
+        <translation>Repräsentanten werden gewählt</translation>
+    </message>
+    <message>
+        <source>Chosen weights</source>
+        <translation>Gewählte Gewichte</translation>
+    </message>
+    <message>
+        <source>Classifier</source>
+        <translation>Klassifikator</translation>
+    </message>
+    <message>
+        <source>Clear &amp;filter</source>
+        <translation>&amp;Filter leeren</translation>
+    </message>
+    <message>
+        <source>Click into a slice to move the frame.</source>
+        <translation>Ein Klick in ein Schichtbild verschiebt den Rahmen.</translation>
+    </message>
+    <message>
+        <source>Close Regolith Studio?</source>
+        <translation>Regolith Studio schließen?</translation>
+    </message>
+    <message>
+        <source>Close all particles but the chosen rows</source>
+        <translation>Alle Partikel außer den gewählten Zeilen schließen</translation>
+    </message>
+    <message>
+        <source>Close this message</source>
+        <translation>Diese Meldung schließen</translation>
+    </message>
+    <message>
+        <source>Closed</source>
+        <translation>Geschlossen</translation>
+    </message>
+    <message>
+        <source>Closes cracks and thin gaps, in voxels.</source>
+        <translation>Schließt Risse und schmale Lücken, in Voxeln.</translation>
+    </message>
+    <message>
+        <source>Closing</source>
+        <translation>Schließen</translation>
+    </message>
+    <message>
+        <source>Closing the window stops it.</source>
+        <translation>Das Schließen des Fensters bricht das ab.</translation>
+    </message>
+    <message>
+        <source>Coarse graining</source>
+        <translation>Vergröberung</translation>
+    </message>
+    <message>
+        <source>Coarse-graining factor</source>
+        <translation>Vergröberungsfaktor</translation>
+    </message>
+    <message>
+        <source>Coarsen the open particles first</source>
+        <translation>Zuerst die geöffneten Partikel vergröbern</translation>
+    </message>
+    <message>
+        <source>Coarsened polyhedron</source>
+        <translation>Vergröbertes Polyeder</translation>
+    </message>
+    <message>
+        <source>Coarsening</source>
+        <translation>Vergröberung</translation>
+    </message>
+    <message>
+        <source>Coarsening for the gallery</source>
+        <translation>Vergröberung für die Galerie</translation>
+    </message>
+    <message>
+        <source>Coarsening method</source>
+        <translation>Verfahren der Vergröberung</translation>
+    </message>
+    <message>
+        <source>Cohesion</source>
+        <translation>Kohäsion</translation>
+    </message>
+    <message>
+        <source>Colours the faults in the picture, as they were before the mesh was mended</source>
+        <translation>Färbt die Mängel im Bild, wie sie vor der Reparatur waren</translation>
+    </message>
+    <message>
+        <source>Command</source>
+        <translation>Befehl</translation>
+    </message>
+    <message>
+        <source>Commands</source>
+        <translation>Befehle</translation>
+    </message>
+    <message>
+        <source>Commands and their keys</source>
+        <translation>Befehle und ihre Tasten</translation>
+    </message>
+    <message>
+        <source>Commands that fit</source>
+        <translation>Passende Befehle</translation>
+    </message>
+    <message>
+        <source>Compare the angle against</source>
+        <translation>Den Winkel vergleichen über</translation>
+    </message>
+    <message>
+        <source>Compare the fit with</source>
+        <translation>Den Fit vergleichen mit</translation>
+    </message>
+    <message>
+        <source>Compare the particle with</source>
+        <translation>Das Partikel vergleichen mit</translation>
+    </message>
+    <message>
+        <source>Compare the polyhedron with</source>
+        <translation>Das Polyeder vergleichen mit</translation>
+    </message>
+    <message>
+        <source>Comparing distributions</source>
+        <translation>Verteilungen werden verglichen</translation>
+    </message>
+    <message>
+        <source>Compiling</source>
+        <translation>Übersetzen des Programms</translation>
+    </message>
+    <message>
+        <source>Compute</source>
+        <translation>Berechnen</translation>
+    </message>
+    <message>
+        <source>Compute a study first.</source>
+        <translation>Berechnen Sie zuerst eine Studie.</translation>
+    </message>
+    <message>
+        <source>Compute for all {count} particles</source>
+        <translation>Für alle {count} Partikel berechnen</translation>
+    </message>
+    <message>
+        <source>Compute for this particle</source>
+        <translation>Für dieses Partikel berechnen</translation>
+    </message>
+    <message>
+        <source>Confidence</source>
+        <translation>Vertrauensbereich</translation>
+    </message>
+    <message>
+        <source>Constituents of the mixture, separated by commas, the most numerous first.</source>
+        <translation>Komponenten der Mischung, durch Kommas getrennt, die häufigste zuerst.</translation>
+    </message>
+    <message>
+        <source>Constituents with sizes and spectra of their own; their number by Bayes&apos; criterion.</source>
+        <translation>Komponenten mit eigenen Größen und Spektren; ihre Anzahl nach dem Kriterium von Bayes.</translation>
+    </message>
+    <message>
+        <source>Contact (Table 1)</source>
+        <translation>Kontakt (Tabelle 1)</translation>
+    </message>
+    <message>
+        <source>Contact time in steps</source>
+        <translation>Kontaktzeit in Schritten</translation>
+    </message>
+    <message>
+        <source>Contour each grain and open it as a particle</source>
+        <translation>Die Oberfläche jedes Korns bilden und es als Partikel öffnen</translation>
+    </message>
+    <message>
+        <source>Convex hull instead of volume</source>
+        <translation>Konvexe Hülle statt Volumen</translation>
+    </message>
+    <message>
+        <source>Convex hull volume</source>
+        <translation>Volumen der konvexen Hülle</translation>
+    </message>
+    <message>
+        <source>Convexity</source>
+        <translation>Konvexität</translation>
+    </message>
+    <message>
+        <source>Cooling γ</source>
+        <translation>Abkühlung γ</translation>
+    </message>
+    <message>
+        <source>Copy as &amp;Python</source>
+        <translation>Als &amp;Python kopieren</translation>
+    </message>
+    <message>
+        <source>Copy as co&amp;mmand</source>
+        <translation>Als &amp;Kommando kopieren</translation>
+    </message>
+    <message>
+        <source>Copy load command</source>
+        <translation>Ladebefehl kopieren</translation>
+    </message>
+    <message>
+        <source>Copy report</source>
+        <translation>Bericht kopieren</translation>
+    </message>
+    <message>
+        <source>Copy the rows for a spreadsheet</source>
+        <translation>Die Zeilen für eine Tabellenkalkulation kopieren</translation>
+    </message>
+    <message>
+        <source>Corey shape factor</source>
+        <translation>Formfaktor nach Corey</translation>
+    </message>
+    <message>
+        <source>Correct for grain size</source>
+        <translation>Um die Korngröße berichtigen</translation>
+    </message>
+    <message>
+        <source>Coulomb friction against rolling and spinning</source>
+        <translation>Coulomb-Reibung gegen Rollen und Bohren</translation>
+    </message>
+    <message>
+        <source>Coulomb friction in an elliptic cone, one coefficient (the static one)</source>
+        <translation>Coulomb-Reibung in elliptischem Kegel, ein Beiwert (der der Haftreibung)</translation>
+    </message>
+    <message>
+        <source>Coulomb friction while sliding, one coefficient (the static one), no memory at rest</source>
+        <translation>Coulomb-Reibung beim Gleiten, ein Beiwert (der der Haftreibung), kein Gedächtnis in Ruhe</translation>
+    </message>
+    <message>
+        <source>Counting grey values</source>
+        <translation>Grauwerte werden gezählt</translation>
+    </message>
+    <message>
+        <source>Cross-s&amp;ection</source>
+        <translation>&amp;Querschnitt</translation>
+    </message>
+    <message>
+        <source>Cross-section</source>
+        <translation>Querschnitt</translation>
+    </message>
+    <message>
+        <source>Crossing pairs</source>
+        <translation>Kreuzende Paare</translation>
+    </message>
+    <message>
+        <source>Ctrl + drag</source>
+        <translation>Strg + Ziehen</translation>
+    </message>
+    <message>
+        <source>Ctrl+Shift+P finds any command by a few letters, Ctrl+Z takes back any choice, Ctrl+S keeps the project. The tour is in the Help menu. Have fun with the grains.</source>
+        <translation>Strg+Umschalt+P findet jeden Befehl nach wenigen Buchstaben, Strg+Z nimmt jede Wahl zurück, Strg+S sichert das Projekt. Der Rundgang steht im Menü Hilfe. Viel Freude mit den Körnern!</translation>
+    </message>
+    <message>
+        <source>Cut all views</source>
+        <translation>Alle Ansichten schneiden</translation>
+    </message>
+    <message>
+        <source>Cut out {count} faces that made the surface one-sided.</source>
+        <translation>{count} Flächen, die die Oberfläche einseitig machten, wurden herausgeschnitten.</translation>
+    </message>
+    <message>
+        <source>Cylinder diameter</source>
+        <translation>Zylinderdurchmesser</translation>
+    </message>
+    <message>
+        <source>Cylinder height</source>
+        <translation>Zylinderhöhe</translation>
+    </message>
+    <message>
+        <source>D_int / D_max (Zingg)</source>
+        <translation>D_int / D_max (Zingg)</translation>
+    </message>
+    <message>
+        <source>D_max / D_min</source>
+        <translation>D_max / D_min</translation>
+    </message>
+    <message>
+        <source>D_min / D_int (Zingg)</source>
+        <translation>D_min / D_int (Zingg)</translation>
+    </message>
+    <message>
+        <source>D_min / √(D_max D_int) (Corey)</source>
+        <translation>D_min / √(D_max D_int) (Corey)</translation>
+    </message>
+    <message>
+        <source>Damping</source>
+        <translation>Dämpfung</translation>
+    </message>
+    <message>
+        <source>Dark</source>
+        <translation>Dunkel</translation>
+    </message>
+    <message>
+        <source>Dataset</source>
+        <translation>Datensatz</translation>
+    </message>
+    <message>
+        <source>Degree at which the series of Eq. 4 is cut: 0 is a sphere; the paper uses 10.</source>
+        <translation>Grad, bei dem die Reihe von Gl. 4 abbricht: 0 ist eine Kugel; der Artikel nimmt 10.</translation>
+    </message>
+    <message>
+        <source>Degree l</source>
+        <translation>Grad l</translation>
+    </message>
+    <message>
+        <source>Degree l&lt;sub&gt;max&lt;/sub&gt;</source>
+        <translation>Grad l&lt;sub&gt;max&lt;/sub&gt;</translation>
+    </message>
+    <message>
+        <source>Degree of the particles</source>
+        <translation>Grad der Partikel</translation>
+    </message>
+    <message>
+        <source>Degrees of the fit</source>
+        <translation>Grade des Fits</translation>
+    </message>
+    <message>
+        <source>Delete this preset</source>
+        <translation>Diese Vorlage löschen</translation>
+    </message>
+    <message>
+        <source>Denoise</source>
+        <translation>Entrauschen</translation>
+    </message>
+    <message>
+        <source>Denoising</source>
+        <translation>Rauschunterdrückung</translation>
+    </message>
+    <message>
+        <source>Descriptor</source>
+        <translation>Deskriptor</translation>
+    </message>
+    <message>
+        <source>Descriptor of the statistics</source>
+        <translation>Deskriptor der Statistik</translation>
+    </message>
+    <message>
+        <source>Descriptors</source>
+        <translation>Deskriptoren</translation>
+    </message>
+    <message>
+        <source>Details</source>
+        <translation>Einzelheiten</translation>
+    </message>
+    <message>
+        <source>Details …</source>
+        <translation>Einzelheiten …</translation>
+    </message>
+    <message>
+        <source>Deviation in ln r_eq.</source>
+        <translation>Abweichung in ln r_eq.</translation>
+    </message>
+    <message>
+        <source>Diameter</source>
+        <translation>Durchmesser</translation>
+    </message>
+    <message>
+        <source>Diameter in µm = share; @volume behind it counts volume.</source>
+        <translation>Durchmesser in µm = Anteil; mit @volume dahinter zählt das Volumen.</translation>
+    </message>
+    <message>
+        <source>Diameters and aspect ratio come from this box. The heuristic of the paper&apos;s program is no minimum; it is here to compare numbers.</source>
+        <translation>Durchmesser und Seitenverhältnis kommen aus diesem Quader. Die Heuristik im Programm des Artikels ist kein Minimum; sie steht hier zum Vergleich der Zahlen.</translation>
+    </message>
+    <message>
+        <source>Diameters in µm; each particle moves to the nearest (Table 1 of the paper).</source>
+        <translation>Durchmesser in µm; jedes Partikel rückt zum nächsten (Tabelle 1 des Artikels).</translation>
+    </message>
+    <message>
+        <source>Direction of the section</source>
+        <translation>Richtung des Schnitts</translation>
+    </message>
+    <message>
+        <source>Distance from the middle of the particle; the frame in the views can be dragged as well.</source>
+        <translation>Abstand von der Mitte des Partikels; auch der Rahmen in den Ansichten lässt sich ziehen.</translation>
+    </message>
+    <message>
+        <source>Distance to the population [deviations]</source>
+        <translation>Abstand zur Population [Abweichungen]</translation>
+    </message>
+    <message>
+        <source>Distances</source>
+        <translation>Abstände</translation>
+    </message>
+    <message>
+        <source>Distributions</source>
+        <translation>Verteilungen</translation>
+    </message>
+    <message>
+        <source>Divide by</source>
+        <translation>Bezug</translation>
+    </message>
+    <message>
+        <source>Done</source>
+        <translation>Fertig</translation>
+    </message>
+    <message>
+        <source>Done: {count} files in {folder}.</source>
+        <translation>Fertig: {count} Dateien in {folder}.</translation>
+    </message>
+    <message>
+        <source>Drag it. At 0 the fit is a sphere, at 10 it keeps what the paper keeps, at 30 nearly everything. The series of Eq. 4 is cut here.</source>
+        <translation>Ziehen Sie daran. Bei 0 ist der Fit eine Kugel, bei 10 behält er, was der Artikel behält, bei 30 fast alles. Hier wird die Reihe von Gl. 4 abgebrochen.</translation>
+    </message>
+    <message>
+        <source>Draw</source>
+        <translation>Ziehen</translation>
+    </message>
+    <message>
+        <source>Draw anew</source>
+        <translation>Neu ziehen</translation>
+    </message>
+    <message>
+        <source>Draw particles</source>
+        <translation>Partikel ziehen</translation>
+    </message>
+    <message>
+        <source>Draw particles: their distributions appear here, over those of the measured ones.</source>
+        <translation>Ziehen Sie Partikel: ihre Verteilungen erscheinen hier, über denen der gemessenen.</translation>
+    </message>
+    <message>
+        <source>Draw the polyhedra of this particle</source>
+        <translation>Die Polyeder dieses Partikels zeichnen</translation>
+    </message>
+    <message>
+        <source>Draw the polyhedra of {count} particles</source>
+        <translation>Die Polyeder von {count} Partikeln zeichnen</translation>
+    </message>
+    <message>
+        <source>Draw virtual particles with the shapes and sizes of a sample</source>
+        <translation>Virtuelle Partikel mit den Formen und Größen einer Probe ziehen</translation>
+    </message>
+    <message>
+        <source>Draw {number}. The radius strays by {found:.1%} from its mean; {expected:.1%} is expected over many draws. Degree {loudest} is the strongest: {share:.2g} %.</source>
+        <translation>Ziehung {number}. Der Radius weicht um {found:.1%} von seinem Mittel ab; über viele Ziehungen sind {expected:.1%} zu erwarten. Grad {loudest} ist der stärkste: {share:.2g} %.</translation>
+    </message>
+    <message>
+        <source>Drawing</source>
+        <translation>Ziehung läuft</translation>
+    </message>
+    <message>
+        <source>Drawing particles</source>
+        <translation>Partikel werden gezogen</translation>
+    </message>
+    <message>
+        <source>Drawing the animation</source>
+        <translation>Animation wird gezeichnet</translation>
+    </message>
+    <message>
+        <source>Drawing the figure</source>
+        <translation>Abbildung wird gezeichnet</translation>
+    </message>
+    <message>
+        <source>Drawing the fit</source>
+        <translation>Fit wird gezeichnet</translation>
+    </message>
+    <message>
+        <source>Drawing the turntable</source>
+        <translation>Drehung wird gezeichnet</translation>
+    </message>
+    <message>
+        <source>Draws thrown away</source>
+        <translation>Verworfene Ziehungen</translation>
+    </message>
+    <message>
+        <source>Drop mesh files or folders anywhere in the window to open them.</source>
+        <translation>Netzdateien oder Ordner irgendwo im Fenster ablegen, um sie zu öffnen.</translation>
+    </message>
+    <message>
+        <source>Dynamic friction</source>
+        <translation>Gleitreibung</translation>
+    </message>
+    <message>
+        <source>E&amp;xport table …</source>
+        <translation>Tabelle &amp;exportieren …</translation>
+    </message>
+    <message>
+        <source>Each particle counts the same</source>
+        <translation>Jedes Partikel zählt gleich</translation>
+    </message>
+    <message>
+        <source>Each run adds a point.</source>
+        <translation>Jeder Lauf fügt einen Punkt hinzu.</translation>
+    </message>
+    <message>
+        <source>Each term alone</source>
+        <translation>Jeder Term allein</translation>
+    </message>
+    <message>
+        <source>Each with</source>
+        <translation>Jedes mit</translation>
+    </message>
+    <message>
+        <source>Each with {fineness}; method: {method}; chosen on the page Explore.</source>
+        <translation>Jedes Polyeder mit {fineness}; Verfahren: {method}; gewählt auf der Seite Erkunden.</translation>
+    </message>
+    <message>
+        <source>Earth</source>
+        <translation>Erde</translation>
+    </message>
+    <message>
+        <source>Edge of a voxel</source>
+        <translation>Kante eines Voxels</translation>
+    </message>
+    <message>
+        <source>Edge of a voxel along {axis}</source>
+        <translation>Kante eines Voxels entlang {axis}</translation>
+    </message>
+    <message>
+        <source>Edge of a voxel in micrometres</source>
+        <translation>Kante eines Voxels in Mikrometern</translation>
+    </message>
+    <message>
+        <source>Edges of one triangle: the rims of holes</source>
+        <translation>Kanten nur eines Dreiecks: die Ränder von Löchern</translation>
+    </message>
+    <message>
+        <source>Elongation</source>
+        <translation>Elongation</translation>
+    </message>
+    <message>
+        <source>End tour</source>
+        <translation>Beenden</translation>
+    </message>
+    <message>
+        <source>Energy</source>
+        <translation>Energie</translation>
+    </message>
+    <message>
+        <source>Energy distance</source>
+        <translation>Energiedistanz</translation>
+    </message>
+    <message>
+        <source>Engine</source>
+        <translation>Rechenkern</translation>
+    </message>
+    <message>
+        <source>Engines</source>
+        <translation>Rechenkerne</translation>
+    </message>
+    <message>
+        <source>Eq. 4 with its numbers</source>
+        <translation>Gl. 4 mit ihren Zahlen</translation>
+    </message>
+    <message>
+        <source>Eq. 9 of the exact method</source>
+        <translation>Gl. 9 des exakten Verfahrens</translation>
+    </message>
+    <message>
+        <source>Eq. 9 with its numbers</source>
+        <translation>Gl. 9 mit ihren Zahlen</translation>
+    </message>
+    <message>
+        <source>Equivalent diameter [µm]</source>
+        <translation>Äquivalentdurchmesser [µm]</translation>
+    </message>
+    <message>
+        <source>Equivalent radius</source>
+        <translation>Äquivalentradius</translation>
+    </message>
+    <message>
+        <source>Error [%]</source>
+        <translation>Fehler [%]</translation>
+    </message>
+    <message>
+        <source>Error against l&lt;sub&gt;max&lt;/sub&gt; (Fig. 3)</source>
+        <translation>Fehler gegen l&lt;sub&gt;max&lt;/sub&gt; (Bild 3)</translation>
+    </message>
+    <message>
+        <source>Error against the number of facets</source>
+        <translation>Fehler gegen die Anzahl der Facetten</translation>
+    </message>
+    <message>
+        <source>Error of coarsened particles</source>
+        <translation>Fehler vergröberter Partikel</translation>
+    </message>
+    <message>
+        <source>Error ≤</source>
+        <translation>Fehler ≤</translation>
+    </message>
+    <message>
+        <source>Errors</source>
+        <translation>Fehler</translation>
+    </message>
+    <message>
+        <source>Errors against l_max, facets and weights, and what the polyhedra look like</source>
+        <translation>Fehler gegen l_max, Facetten und Gewichte, und wie die Polyeder aussehen</translation>
+    </message>
+    <message>
+        <source>Euler number</source>
+        <translation>Euler-Zahl</translation>
+    </message>
+    <message>
+        <source>Evaluation (section 3.3)</source>
+        <translation>Auswertung (Abschnitt 3.3)</translation>
+    </message>
+    <message>
+        <source>Every edge belongs to exactly two triangles</source>
+        <translation>Jede Kante gehört zu genau zwei Dreiecken</translation>
+    </message>
+    <message>
+        <source>Every open particle. Click a row to put it on screen; the arrow keys walk through the list. The icon tells the health of the mesh. Drop your own files anywhere in the window.</source>
+        <translation>Alle geöffneten Partikel. Ein Klick auf eine Zeile zeigt eines davon; die Pfeiltasten wandern durch die Liste. Das Symbol sagt, wie gesund das Netz ist. Eigene Dateien lassen sich irgendwo im Fenster ablegen.</translation>
+    </message>
+    <message>
+        <source>Every run is kept in {folder}.</source>
+        <translation>Jeder Lauf wird in {folder} aufbewahrt.</translation>
+    </message>
+    <message>
+        <source>Every study and the gallery</source>
+        <translation>Alle Studien und die Galerie</translation>
+    </message>
+    <message>
+        <source>Exact descriptors</source>
+        <translation>Exakte Deskriptoren</translation>
+    </message>
+    <message>
+        <source>Exact method</source>
+        <translation>Exaktes Verfahren</translation>
+    </message>
+    <message>
+        <source>Exact method:</source>
+        <translation>Exaktes Verfahren:</translation>
+    </message>
+    <message>
+        <source>Explore</source>
+        <translation>Erkunden</translation>
+    </message>
+    <message>
+        <source>Export</source>
+        <translation>Exportieren</translation>
+    </message>
+    <message>
+        <source>Export a DEM dataset</source>
+        <translation>Einen DEM-Datensatz exportieren</translation>
+    </message>
+    <message>
+        <source>Export dataset</source>
+        <translation>Datensatz exportieren</translation>
+    </message>
+    <message>
+        <source>Export figure and JSON</source>
+        <translation>Abbildung und JSON exportieren</translation>
+    </message>
+    <message>
+        <source>Export into this folder</source>
+        <translation>In diesen Ordner exportieren</translation>
+    </message>
+    <message>
+        <source>Export table</source>
+        <translation>Tabelle exportieren</translation>
+    </message>
+    <message>
+        <source>Export …</source>
+        <translation>Exportieren …</translation>
+    </message>
+    <message>
+        <source>Exported</source>
+        <translation>Exportiert</translation>
+    </message>
+    <message>
+        <source>Exporting</source>
+        <translation>Export</translation>
+    </message>
+    <message>
+        <source>Extracting particles</source>
+        <translation>Partikel werden herausgelöst</translation>
+    </message>
+    <message>
+        <source>F&amp;ull screen</source>
+        <translation>Voll&amp;bild</translation>
+    </message>
+    <message>
+        <source>Faces without area</source>
+        <translation>Flächen ohne Inhalt</translation>
+    </message>
+    <message>
+        <source>Facets</source>
+        <translation>Facetten</translation>
+    </message>
+    <message>
+        <source>Facets a particle</source>
+        <translation>Facetten je Partikel</translation>
+    </message>
+    <message>
+        <source>Facets n</source>
+        <translation>Facetten n</translation>
+    </message>
+    <message>
+        <source>Facets of the open particles</source>
+        <translation>Facetten der geöffneten Partikel</translation>
+    </message>
+    <message>
+        <source>Factors on one weight at a time</source>
+        <translation>Faktoren auf je ein Gewicht</translation>
+    </message>
+    <message>
+        <source>Factors on the weight of the overlap</source>
+        <translation>Faktoren auf das Gewicht der Überdeckung</translation>
+    </message>
+    <message>
+        <source>Fewer facets make a faster simulation. The views say how many facets, vertices and triangles the polyhedron really has, and a sentence appears here if a wish cannot be met.</source>
+        <translation>Weniger Facetten machen die Simulation schneller. Über der Ansicht steht, wie viele Facetten, Ecken und Dreiecke das Polyeder wirklich hat; hier erscheint ein Satz, wenn ein Wunsch nicht erfüllbar ist.</translation>
+    </message>
+    <message>
+        <source>Fewest particles</source>
+        <translation>Wenigste Partikel</translation>
+    </message>
+    <message>
+        <source>Field drawn to its hull</source>
+        <translation>Feld, zu seiner Hülle gezogen</translation>
+    </message>
+    <message>
+        <source>Field in log r</source>
+        <translation>Feld in log r</translation>
+    </message>
+    <message>
+        <source>Figure 7, fifth column: aspect ratio and IoU</source>
+        <translation>Bild 7, fünfte Spalte: Seitenverhältnis und IoU</translation>
+    </message>
+    <message>
+        <source>Figure 7, fourth column; the surface area enters the loss as sphericity, as Eq. 8 has it</source>
+        <translation>Bild 7, vierte Spalte; die Oberfläche geht, wie in Gl. 8, als Sphärizität in den Verlust ein</translation>
+    </message>
+    <message>
+        <source>Figure 8, first row: all weights are 0, the quadric start is the result</source>
+        <translation>Bild 8, erste Zeile: alle Gewichte sind 0, der Anfang aus der Quadrik-Dezimierung ist das Ergebnis</translation>
+    </message>
+    <message>
+        <source>Figure 8, fourth row: IoU only</source>
+        <translation>Bild 8, vierte Zeile: nur IoU</translation>
+    </message>
+    <message>
+        <source>Figure 8: every term of Eq. 9 with weight 1</source>
+        <translation>Bild 8: jeder Term von Gl. 9 mit Gewicht 1</translation>
+    </message>
+    <message>
+        <source>Figure and JSON are in {name}.</source>
+        <translation>Abbildung und JSON sind in {name}.</translation>
+    </message>
+    <message>
+        <source>Figures 7 and 8: every descriptor of section 2.2, without IoU</source>
+        <translation>Bilder 7 und 8: jeder Deskriptor von Abschnitt 2.2, ohne IoU</translation>
+    </message>
+    <message>
+        <source>Fill a cylinder with the particles of a dataset, lift it, measure the pile</source>
+        <translation>Einen Zylinder mit den Partikeln eines Datensatzes füllen, ihn heben, den Schüttkegel vermessen</translation>
+    </message>
+    <message>
+        <source>Fill closed pores</source>
+        <translation>Geschlossene Poren füllen</translation>
+    </message>
+    <message>
+        <source>Fill, lift, measure</source>
+        <translation>Füllen, heben, messen</translation>
+    </message>
+    <message>
+        <source>Filled 1 hole with {share} of the surface.</source>
+        <translation>1 Loch wurde mit {share} der Oberfläche gefüllt.</translation>
+    </message>
+    <message>
+        <source>Filled [µm²]</source>
+        <translation>Gefüllt [µm²]</translation>
+    </message>
+    <message>
+        <source>Filled {count} holes with {share} of the surface.</source>
+        <translation>{count} Löcher wurden mit {share} der Oberfläche gefüllt.</translation>
+    </message>
+    <message>
+        <source>Filling speed</source>
+        <translation>Füllgeschwindigkeit</translation>
+    </message>
+    <message>
+        <source>Filter</source>
+        <translation>Filter</translation>
+    </message>
+    <message>
+        <source>Filter of the library</source>
+        <translation>Filter der Bibliothek</translation>
+    </message>
+    <message>
+        <source>Filter of the table</source>
+        <translation>Filter der Tabelle</translation>
+    </message>
+    <message>
+        <source>Filter: words and comparisons, such as  flat S&lt;0.8 AR&gt;1.5</source>
+        <translation>Filter: Wörter und Vergleiche, etwa  flat S&lt;0.8 AR&gt;1.5</translation>
+    </message>
+    <message>
+        <source>Find all grains</source>
+        <translation>Alle Körner finden</translation>
+    </message>
+    <message>
+        <source>Find representatives</source>
+        <translation>Repräsentanten finden</translation>
+    </message>
+    <message>
+        <source>Find the grains first.</source>
+        <translation>Finden Sie zuerst die Körner.</translation>
+    </message>
+    <message>
+        <source>Find the grains in a CT volume and make particles of them</source>
+        <translation>Die Körner in einem CT-Volumen finden und Partikel daraus machen</translation>
+    </message>
+    <message>
+        <source>Finding bodies</source>
+        <translation>Körper werden gesucht</translation>
+    </message>
+    <message>
+        <source>Finding grains</source>
+        <translation>Körner werden gesucht</translation>
+    </message>
+    <message>
+        <source>Finding representatives</source>
+        <translation>Repräsentanten werden gesucht</translation>
+    </message>
+    <message>
+        <source>Fine</source>
+        <translation>Fein</translation>
+    </message>
+    <message>
+        <source>First</source>
+        <translation>Erster</translation>
+    </message>
+    <message>
+        <source>First crossing</source>
+        <translation>Erster Durchstoß</translation>
+    </message>
+    <message>
+        <source>Fit</source>
+        <translation>Fit</translation>
+    </message>
+    <message>
+        <source>Fit a model to a sample of 20 particles or more.</source>
+        <translation>Passen Sie ein Modell an eine Probe von 20 oder mehr Partikeln an.</translation>
+    </message>
+    <message>
+        <source>Fit the &amp;model</source>
+        <translation>&amp;Modell anpassen</translation>
+    </message>
+    <message>
+        <source>Fit the model</source>
+        <translation>Modell anpassen</translation>
+    </message>
+    <message>
+        <source>Fit to a half</source>
+        <translation>An eine Hälfte anpassen</translation>
+    </message>
+    <message>
+        <source>Fit to a random half only</source>
+        <translation>Nur an eine zufällige Hälfte anpassen</translation>
+    </message>
+    <message>
+        <source>Fit vs. particle</source>
+        <translation>Fit gegen Partikel</translation>
+    </message>
+    <message>
+        <source>Fit, {degree}</source>
+        <translation>Fit, {degree}</translation>
+    </message>
+    <message>
+        <source>Fits</source>
+        <translation>Fits</translation>
+    </message>
+    <message>
+        <source>Fits, models and material cards (*.json *.npz);;All files (*)</source>
+        <translation>Fits, Modelle und Materialkarten (*.json *.npz);;Alle Dateien (*)</translation>
+    </message>
+    <message>
+        <source>Fitting a model of shapes</source>
+        <translation>Formmodell wird angepasst</translation>
+    </message>
+    <message>
+        <source>Fitting spherical harmonics</source>
+        <translation>Kugelflächenfunktionen werden angepasst</translation>
+    </message>
+    <message>
+        <source>Fitting the model</source>
+        <translation>Modell wird angepasst</translation>
+    </message>
+    <message>
+        <source>Flatness</source>
+        <translation>Abplattung</translation>
+    </message>
+    <message>
+        <source>Flatness against elongation, with Zingg&apos;s classes of form</source>
+        <translation>Abplattung gegen Elongation, mit den Formklassen nach Zingg</translation>
+    </message>
+    <message>
+        <source>Flip</source>
+        <translation>Umkehren</translation>
+    </message>
+    <message>
+        <source>Floor</source>
+        <translation>Rauschen</translation>
+    </message>
+    <message>
+        <source>Folder of figures and tables</source>
+        <translation>Ordner für Abbildungen und Tabellen</translation>
+    </message>
+    <message>
+        <source>Folder of r&amp;uns …</source>
+        <translation>Ordner der &amp;Läufe …</translation>
+    </message>
+    <message>
+        <source>Folder of runs</source>
+        <translation>Ordner der Läufe</translation>
+    </message>
+    <message>
+        <source>Folder of the dataset</source>
+        <translation>Ordner des Datensatzes</translation>
+    </message>
+    <message>
+        <source>Folder of the results</source>
+        <translation>Ordner der Ergebnisse</translation>
+    </message>
+    <message>
+        <source>Folder with {names}</source>
+        <translation>Ordner mit {names}</translation>
+    </message>
+    <message>
+        <source>Folder …</source>
+        <translation>Ordner …</translation>
+    </message>
+    <message>
+        <source>Folder, may be new:</source>
+        <translation>Ordner, auch ein neuer:</translation>
+    </message>
+    <message>
+        <source>Folder:</source>
+        <translation>Ordner:</translation>
+    </message>
+    <message>
+        <source>For each number.</source>
+        <translation>Für jede Anzahl.</translation>
+    </message>
+    <message>
+        <source>For formats that list single bodies.</source>
+        <translation>Für Formate, die einzelne Körper aufführen.</translation>
+    </message>
+    <message>
+        <source>For regolith-studio run</source>
+        <translation>Für regolith-studio run</translation>
+    </message>
+    <message>
+        <source>Forget sizes and borders</source>
+        <translation>Größen und Grenzen vergessen</translation>
+    </message>
+    <message>
+        <source>Form</source>
+        <translation>Form</translation>
+    </message>
+    <message>
+        <source>Found</source>
+        <translation>Gefunden</translation>
+    </message>
+    <message>
+        <source>Friction</source>
+        <translation>Reibung</translation>
+    </message>
+    <message>
+        <source>From</source>
+        <translation>Von</translation>
+    </message>
+    <message>
+        <source>From X-ray micro-CT to DEM-ready regolith particles whose geometry is right.</source>
+        <translation>Von der Röntgen-Mikro-CT zu DEM-fertigen Regolithpartikeln, deren Geometrie stimmt.</translation>
+    </message>
+    <message>
+        <source>From open particles</source>
+        <translation>Aus den Partikeln</translation>
+    </message>
+    <message>
+        <source>From scan to heap</source>
+        <translation>Vom Scan zum Schüttkegel</translation>
+    </message>
+    <message>
+        <source>Front (from -y)</source>
+        <translation>Vorne (von -y)</translation>
+    </message>
+    <message>
+        <source>GIF of l_max 0 to 30</source>
+        <translation>GIF von l_max 0 bis 30</translation>
+    </message>
+    <message>
+        <source>Gallery</source>
+        <translation>Galerie</translation>
+    </message>
+    <message>
+        <source>Gap, in mean d</source>
+        <translation>Lücke, in mittleren d</translation>
+    </message>
+    <message>
+        <source>Gaussian (fast)</source>
+        <translation>Gauß (schnell)</translation>
+    </message>
+    <message>
+        <source>Gaussian field (the paper&apos;s)</source>
+        <translation>Gaußfeld (des Artikels)</translation>
+    </message>
+    <message>
+        <source>Go on with the run that has not ended</source>
+        <translation>Den nicht beendeten Lauf fortsetzen</translation>
+    </message>
+    <message>
+        <source>Go to the table of particles</source>
+        <translation>Zur Tabelle der Partikel</translation>
+    </message>
+    <message>
+        <source>Grains are dark</source>
+        <translation>Körner sind dunkel</translation>
+    </message>
+    <message>
+        <source>Grains are darker than what is between them.</source>
+        <translation>Körner sind dunkler als das, was zwischen ihnen ist.</translation>
+    </message>
+    <message>
+        <source>Grains fill most of it and hang together: if the grains are dark, tick that below; else move the level or make h smaller.</source>
+        <translation>Körner füllen das meiste und hängen zusammen: Sind die Körner dunkel, haken Sie das unten an; sonst verschieben Sie den Schwellwert oder verkleinern h.</translation>
+    </message>
+    <message>
+        <source>Grains of fewer voxels are left out; below 12 voxels in diameter shapes are coarse.</source>
+        <translation>Körner mit weniger Voxeln entfallen; unter 12 Voxeln Durchmesser sind Formen grob.</translation>
+    </message>
+    <message>
+        <source>Grains that the border of the scan cuts were left out, large ones more often than small ones. Each of the others counts a little more for it (weights of Miles and Lantuéjoul).</source>
+        <translation>Körner, die der Rand des Scans schneidet, fielen weg, große öfter als kleine. Jedes der übrigen zählt dafür etwas mehr (Gewichte nach Miles und Lantuéjoul).</translation>
+    </message>
+    <message>
+        <source>Gravity</source>
+        <translation>Schwerkraft</translation>
+    </message>
+    <message>
+        <source>Gravity [m/s²]</source>
+        <translation>Schwerkraft [m/s²]</translation>
+    </message>
+    <message>
+        <source>Gravity of</source>
+        <translation>Schwerkraft</translation>
+    </message>
+    <message>
+        <source>Grey level at which grains begin</source>
+        <translation>Grauwert, ab dem Körner beginnen</translation>
+    </message>
+    <message>
+        <source>Grey value</source>
+        <translation>Grauwert</translation>
+    </message>
+    <message>
+        <source>Grey value {value:g}</source>
+        <translation>Grauwert {value:g}</translation>
+    </message>
+    <message>
+        <source>Grey values</source>
+        <translation>Grauwerte</translation>
+    </message>
+    <message>
+        <source>Grey values {low:.4g} to {high:.4g}</source>
+        <translation>Grauwerte {low:.4g} bis {high:.4g}</translation>
+    </message>
+    <message>
+        <source>Group</source>
+        <translation>Gruppe</translation>
+    </message>
+    <message>
+        <source>Growing the fit</source>
+        <translation>Fit wächst</translation>
+    </message>
+    <message>
+        <source>Half-spaces of Eq. 5; n facets in general position have 2n−4 vertices and 4n−12 triangles.</source>
+        <translation>Halbräume von Gl. 5; n Facetten in allgemeiner Lage haben 2n−4 Ecken und 4n−12 Dreiecke.</translation>
+    </message>
+    <message>
+        <source>Hand the grains to all other pages</source>
+        <translation>Die Körner an alle anderen Seiten geben</translation>
+    </message>
+    <message>
+        <source>Harmonics fit, {degree}</source>
+        <translation>Kugelflächen-Fit, {degree}</translation>
+    </message>
+    <message>
+        <source>Health</source>
+        <translation>Zustand</translation>
+    </message>
+    <message>
+        <source>Health of the mesh</source>
+        <translation>Zustand des Netzes</translation>
+    </message>
+    <message>
+        <source>Here or on a cluster</source>
+        <translation>Hier oder auf einem Cluster</translation>
+    </message>
+    <message>
+        <source>Hertz and Mindlin stiffness, restitution, friction of rest apart from friction of motion</source>
+        <translation>Steifigkeit nach Hertz und Mindlin, Stoßzahl, Haftreibung getrennt von Gleitreibung</translation>
+    </message>
+    <message>
+        <source>Hertz from Young&apos;s modulus (softened, recorded) with restitution, approximate with cohesion</source>
+        <translation>Hertz aus dem Elastizitätsmodul (erweicht, vermerkt) mit Stoßzahl, mit Kohäsion genähert</translation>
+    </message>
+    <message>
+        <source>Hertz, Mindlin, restitution, cohesion, rolling resistance: qualitative; some 200 particles</source>
+        <translation>Hertz, Mindlin, Stoßzahl, Kohäsion, Rollwiderstand: qualitativ; etwa 200 Partikel</translation>
+    </message>
+    <message>
+        <source>Hertz, Mindlin-Deresiewicz, JKR, restitution: the law is volumetric</source>
+        <translation>Hertz, Mindlin-Deresiewicz, JKR, Stoßzahl: das Gesetz ist volumetrisch</translation>
+    </message>
+    <message>
+        <source>Hertz, Mindlin-Deresiewicz, JKR: MuJoCo&apos;s contacts are soft constraints</source>
+        <translation>Hertz, Mindlin-Deresiewicz, JKR: MuJoCos Kontakte sind weiche Zwangsbedingungen</translation>
+    </message>
+    <message>
+        <source>Hertz, Mindlin-Deresiewicz, JKR: the pair style is linear</source>
+        <translation>Hertz, Mindlin-Deresiewicz, JKR: das Paarpotential ist linear</translation>
+    </message>
+    <message>
+        <source>Hidden from the star point, so that no radius function can represent it</source>
+        <translation>Vom Sternpunkt aus verdeckt, sodass keine Radiusfunktion es darstellen kann</translation>
+    </message>
+    <message>
+        <source>Hidden surface</source>
+        <translation>Verdeckte Fläche</translation>
+    </message>
+    <message>
+        <source>Hidden volume</source>
+        <translation>Verdecktes Volumen</translation>
+    </message>
+    <message>
+        <source>Highest number tried.</source>
+        <translation>Höchste Anzahl, die versucht wird.</translation>
+    </message>
+    <message>
+        <source>Histogram</source>
+        <translation>Histogramm</translation>
+    </message>
+    <message>
+        <source>Histogram of grey values with the threshold</source>
+        <translation>Histogramm der Grauwerte mit dem Schwellwert</translation>
+    </message>
+    <message>
+        <source>Hold it back after the step that it is at, or let it go on</source>
+        <translation>Nach dem laufenden Schritt anhalten oder weiterlaufen lassen</translation>
+    </message>
+    <message>
+        <source>Holds</source>
+        <translation>Inhalt</translation>
+    </message>
+    <message>
+        <source>Horizontal axis</source>
+        <translation>Waagerechte Achse</translation>
+    </message>
+    <message>
+        <source>How far a bump must stand out to be a grain of its own. Grains cut in two: larger. Grains that stick together: smaller.</source>
+        <translation>Wie weit ein Höcker vorstehen muss, um ein eigenes Korn zu sein. Werden Körner zerteilt: größer. Bleiben Körner verbunden: kleiner.</translation>
+    </message>
+    <message>
+        <source>How many are enough? Press Find: the curve falls to the sampling noise of the population.</source>
+        <translation>Wie viele genügen? Drücken Sie „Repräsentanten finden“: die Kurve fällt bis zum Stichprobenrauschen der Population.</translation>
+    </message>
+    <message>
+        <source>How many facets</source>
+        <translation>Wie viele Facetten</translation>
+    </message>
+    <message>
+        <source>How many grains it stands for, since large ones were lost at the border of the scan</source>
+        <translation>Für wie viele Körner es steht, weil am Rand des Scans große verloren gingen</translation>
+    </message>
+    <message>
+        <source>How much detail: l_max</source>
+        <translation>Wie viele Einzelheiten: l_max</translation>
+    </message>
+    <message>
+        <source>How radii are taken</source>
+        <translation>Wie Radien bestimmt werden</translation>
+    </message>
+    <message>
+        <source>Imitate</source>
+        <translation>Vorbild</translation>
+    </message>
+    <message>
+        <source>Imitating</source>
+        <translation>Vorbild</translation>
+    </message>
+    <message>
+        <source>Imported particles</source>
+        <translation>Importierte Partikel</translation>
+    </message>
+    <message>
+        <source>In size classes</source>
+        <translation>In Größenklassen</translation>
+    </message>
+    <message>
+        <source>In the frame: {counts}.</source>
+        <translation>Im Rahmen: {counts}.</translation>
+    </message>
+    <message>
+        <source>In which unit are the numbers of these {count} files and folders?</source>
+        <translation>In welcher Einheit sind die Zahlen dieser {count} Dateien und Ordner?</translation>
+    </message>
+    <message>
+        <source>In which unit are the numbers of {name}?</source>
+        <translation>In welcher Einheit sind die Zahlen von {name}?</translation>
+    </message>
+    <message>
+        <source>Independent normal coefficients; draws with a negative radius are thrown away.</source>
+        <translation>Unabhängige normalverteilte Koeffizienten; Ziehungen mit negativem Radius werden verworfen.</translation>
+    </message>
+    <message>
+        <source>Intermediate diameter</source>
+        <translation>Mittlerer Durchmesser</translation>
+    </message>
+    <message>
+        <source>Interval</source>
+        <translation>Bereich</translation>
+    </message>
+    <message>
+        <source>Into:</source>
+        <translation>Nach:</translation>
+    </message>
+    <message>
+        <source>Isometric</source>
+        <translation>Isometrisch</translation>
+    </message>
+    <message>
+        <source>It consists of {count} separate bodies.</source>
+        <translation>Es besteht aus {count} getrennten Körpern.</translation>
+    </message>
+    <message>
+        <source>It does not say how large a voxel is.</source>
+        <translation>Sie sagt nicht, wie groß ein Voxel ist.</translation>
+    </message>
+    <message>
+        <source>It encloses no volume.</source>
+        <translation>Es umschließt kein Volumen.</translation>
+    </message>
+    <message>
+        <source>It has 1 tunnel through it (Euler number {euler}).</source>
+        <translation>Es hat 1 Tunnel (Euler-Zahl {euler}).</translation>
+    </message>
+    <message>
+        <source>It has {count} tunnels through it (Euler number {euler}).</source>
+        <translation>Es hat {count} Tunnel (Euler-Zahl {euler}).</translation>
+    </message>
+    <message>
+        <source>It is inside out: its faces look inwards.</source>
+        <translation>Es ist umgestülpt: seine Flächen zeigen nach innen.</translation>
+    </message>
+    <message>
+        <source>It is not a simple surface: 1 edge belongs to three faces or more.</source>
+        <translation>Es ist keine einfache Oberfläche: 1 Kante gehört zu drei oder mehr Flächen.</translation>
+    </message>
+    <message>
+        <source>It is not a simple surface: {count} edges belong to three faces or more.</source>
+        <translation>Es ist keine einfache Oberfläche: {count} Kanten gehören zu drei oder mehr Flächen.</translation>
+    </message>
+    <message>
+        <source>It is not closed: 1 edge belongs to one face only.</source>
+        <translation>Es ist nicht geschlossen: 1 Kante gehört zu nur einer Fläche.</translation>
+    </message>
+    <message>
+        <source>It is not closed: {count} edges belong to one face only.</source>
+        <translation>Es ist nicht geschlossen: {count} Kanten gehören zu nur einer Fläche.</translation>
+    </message>
+    <message>
+        <source>It was kept at {moment}.</source>
+        <translation>Er wurde {moment} festgehalten.</translation>
+    </message>
+    <message>
+        <source>Iterations</source>
+        <translation>Iterationen</translation>
+    </message>
+    <message>
+        <source>Iterations k_max</source>
+        <translation>Iterationen k_max</translation>
+    </message>
+    <message>
+        <source>Its choices are taken; it is too large to be opened: use Run as a batch.</source>
+        <translation>Seine Einstellungen sind übernommen; zum Öffnen ist es zu groß: nehmen Sie „Als Stapel ausführen“.</translation>
+    </message>
+    <message>
+        <source>Its faces do not all look the same way: some are turned round.</source>
+        <translation>Seine Flächen zeigen nicht alle zur selben Seite: einige sind verdreht.</translation>
+    </message>
+    <message>
+        <source>Its name says how many voxels are in it, and its size agrees.</source>
+        <translation>Ihr Name sagt, wie viele Voxel sie hat, und ihre Größe stimmt damit überein.</translation>
+    </message>
+    <message>
+        <source>Its surface touches itself in 1 corner.</source>
+        <translation>Seine Oberfläche berührt sich selbst in 1 Ecke.</translation>
+    </message>
+    <message>
+        <source>Its surface touches itself in {count} corners.</source>
+        <translation>Seine Oberfläche berührt sich selbst in {count} Ecken.</translation>
+    </message>
+    <message>
+        <source>Jaccard distance</source>
+        <translation>Jaccard-Distanz</translation>
+    </message>
+    <message>
+        <source>Jaccard distance, Eq. 7 (paper: IoU)</source>
+        <translation>Jaccard-Distanz, Gl. 7 (im Artikel: IoU)</translation>
+    </message>
+    <message>
+        <source>Johnson, Kendall and Roberts between spheres</source>
+        <translation>Johnson, Kendall und Roberts zwischen Kugeln</translation>
+    </message>
+    <message>
+        <source>Joined {count} vertices with another at the same place.</source>
+        <translation>{count} Ecken wurden mit einer anderen an derselben Stelle vereinigt.</translation>
+    </message>
+    <message>
+        <source>Judge</source>
+        <translation>Beurteilen</translation>
+    </message>
+    <message>
+        <source>Judge every model, not only the chosen one.</source>
+        <translation>Jedes Modell beurteilen, nicht nur das gewählte.</translation>
+    </message>
+    <message>
+        <source>Judgement</source>
+        <translation>Beurteilung</translation>
+    </message>
+    <message>
+        <source>Judging models</source>
+        <translation>Modelle werden beurteilt</translation>
+    </message>
+    <message>
+        <source>KS / floor</source>
+        <translation>KS / Rauschen</translation>
+    </message>
+    <message>
+        <source>KS floor</source>
+        <translation>KS-Rauschen</translation>
+    </message>
+    <message>
+        <source>KS from</source>
+        <translation>KS von</translation>
+    </message>
+    <message>
+        <source>KS to</source>
+        <translation>KS bis</translation>
+    </message>
+    <message>
+        <source>Keep the best so far</source>
+        <translation>Das bisher Beste behalten</translation>
+    </message>
+    <message>
+        <source>Keep the volume</source>
+        <translation>Volumen erhalten</translation>
+    </message>
+    <message>
+        <source>Keep working</source>
+        <translation>Weiterarbeiten</translation>
+    </message>
+    <message>
+        <source>Kept the largest of {count} bodies, with {share} of their volume.</source>
+        <translation>Der größte von {count} Körpern wurde behalten, mit {share} ihres Volumens.</translation>
+    </message>
+    <message>
+        <source>Keyboard and mouse</source>
+        <translation>Tastatur und Maus</translation>
+    </message>
+    <message>
+        <source>Keys</source>
+        <translation>Tasten</translation>
+    </message>
+    <message>
+        <source>Keys:</source>
+        <translation>Tasten:</translation>
+    </message>
+    <message>
+        <source>Kind of model</source>
+        <translation>Art des Modells</translation>
+    </message>
+    <message>
+        <source>Kind of picture</source>
+        <translation>Art des Bildes</translation>
+    </message>
+    <message>
+        <source>Kind of size distribution</source>
+        <translation>Art der Größenverteilung</translation>
+    </message>
+    <message>
+        <source>Krumbein sphericity</source>
+        <translation>Sphärizität nach Krumbein</translation>
+    </message>
+    <message>
+        <source>L&amp;og</source>
+        <translation>&amp;Protokoll</translation>
+    </message>
+    <message>
+        <source>LAMMPS rounds edges; facets stay in their planes, corners are lost.</source>
+        <translation>LAMMPS rundet Kanten; Facetten bleiben in ihren Ebenen, Ecken gehen verloren.</translation>
+    </message>
+    <message>
+        <source>Labels of grains</source>
+        <translation>Labels von Körnern</translation>
+    </message>
+    <message>
+        <source>Language</source>
+        <translation>Sprache</translation>
+    </message>
+    <message>
+        <source>Language, theme, size of letters</source>
+        <translation>Sprache, Farbschema, Schriftgröße</translation>
+    </message>
+    <message>
+        <source>Largest Feret diameter</source>
+        <translation>Größter Feret-Durchmesser</translation>
+    </message>
+    <message>
+        <source>Largest equivalent radius</source>
+        <translation>Größter Äquivalentradius</translation>
+    </message>
+    <message>
+        <source>Largest error</source>
+        <translation>Größter Fehler</translation>
+    </message>
+    <message>
+        <source>Largest error in percent</source>
+        <translation>Größter Fehler in Prozent</translation>
+    </message>
+    <message>
+        <source>Largest moment of inertia</source>
+        <translation>Größtes Trägheitsmoment</translation>
+    </message>
+    <message>
+        <source>Last crossing</source>
+        <translation>Letzter Durchstoß</translation>
+    </message>
+    <message>
+        <source>Law of sizes</source>
+        <translation>Größengesetz</translation>
+    </message>
+    <message>
+        <source>Least hidden volume</source>
+        <translation>Kleinstes verdecktes Volumen</translation>
+    </message>
+    <message>
+        <source>Least moment of inertia</source>
+        <translation>Kleinstes Trägheitsmoment</translation>
+    </message>
+    <message>
+        <source>Least voxels of a grain</source>
+        <translation>Kleinste Voxelzahl eines Korns</translation>
+    </message>
+    <message>
+        <source>Leave out grains at the border</source>
+        <translation>Körner am Rand weglassen</translation>
+    </message>
+    <message>
+        <source>Lecture</source>
+        <translation>Vorlesung</translation>
+    </message>
+    <message>
+        <source>Left (from -x)</source>
+        <translation>Links (von -x)</translation>
+    </message>
+    <message>
+        <source>Left drag</source>
+        <translation>Linke Taste ziehen</translation>
+    </message>
+    <message>
+        <source>Left out</source>
+        <translation>Weggelassen</translation>
+    </message>
+    <message>
+        <source>Left out: {names}.</source>
+        <translation>Ausgelassen: {names}.</translation>
+    </message>
+    <message>
+        <source>Left: the particle as the CT scan measured it. Middle: its spherical-harmonics fit. Right: the convex polyhedron that a DEM solver will roll. Drag to turn: all three turn together.</source>
+        <translation>Links: das Partikel, wie die CT es gemessen hat. Mitte: sein Fit mit Kugelflächenfunktionen. Rechts: das konvexe Polyeder, das ein DEM-Programm rollen lässt. Zum Drehen ziehen: alle drei drehen sich gemeinsam.</translation>
+    </message>
+    <message>
+        <source>Length unit</source>
+        <translation>Längeneinheit</translation>
+    </message>
+    <message>
+        <source>Length unit of the file:</source>
+        <translation>Längeneinheit der Datei:</translation>
+    </message>
+    <message>
+        <source>Level</source>
+        <translation>Schwelle</translation>
+    </message>
+    <message>
+        <source>Library</source>
+        <translation>Bibliothek</translation>
+    </message>
+    <message>
+        <source>Lift speed</source>
+        <translation>Hubgeschwindigkeit</translation>
+    </message>
+    <message>
+        <source>Lift speed [m/s]</source>
+        <translation>Hubgeschwindigkeit [m/s]</translation>
+    </message>
+    <message>
+        <source>Lifting cylinder</source>
+        <translation>Hubzylinder</translation>
+    </message>
+    <message>
+        <source>Light</source>
+        <translation>Hell</translation>
+    </message>
+    <message>
+        <source>Limit the sizes</source>
+        <translation>Größen begrenzen</translation>
+    </message>
+    <message>
+        <source>Log</source>
+        <translation>Protokoll</translation>
+    </message>
+    <message>
+        <source>Log-normal, fitted to each class</source>
+        <translation>Lognormal, an jede Klasse angepasst</translation>
+    </message>
+    <message>
+        <source>Log-normal, the same for all</source>
+        <translation>Lognormal, für alle gleich</translation>
+    </message>
+    <message>
+        <source>Logarithmic</source>
+        <translation>Logarithmisch</translation>
+    </message>
+    <message>
+        <source>Longest wait</source>
+        <translation>Längste Wartezeit</translation>
+    </message>
+    <message>
+        <source>Look &amp;from</source>
+        <translation>&amp;Blickrichtung</translation>
+    </message>
+    <message>
+        <source>Look again</source>
+        <translation>Nochmals suchen</translation>
+    </message>
+    <message>
+        <source>Looking at the volume</source>
+        <translation>Volumen wird angesehen</translation>
+    </message>
+    <message>
+        <source>Looking at {name}</source>
+        <translation>{name} wird angesehen</translation>
+    </message>
+    <message>
+        <source>Looking for datasets</source>
+        <translation>Datensätze werden gesucht</translation>
+    </message>
+    <message>
+        <source>Looking for faults</source>
+        <translation>Mängel werden gesucht</translation>
+    </message>
+    <message>
+        <source>Looking for the cluster</source>
+        <translation>Cluster wird gesucht</translation>
+    </message>
+    <message>
+        <source>Looking through the slices</source>
+        <translation>Schichten werden durchgesehen</translation>
+    </message>
+    <message>
+        <source>Loses: {what}</source>
+        <translation>Verliert: {what}</translation>
+    </message>
+    <message>
+        <source>Loss</source>
+        <translation>Verlust</translation>
+    </message>
+    <message>
+        <source>Loss (Eq. 9)</source>
+        <translation>Verlust (Gl. 9)</translation>
+    </message>
+    <message>
+        <source>Loss L (Eq. 9)</source>
+        <translation>Verlust L (Gl. 9)</translation>
+    </message>
+    <message>
+        <source>Losses</source>
+        <translation>Verluste</translation>
+    </message>
+    <message>
+        <source>Losses (Fig. 8)</source>
+        <translation>Verluste (Bild 8)</translation>
+    </message>
+    <message>
+        <source>Losses can be compared at equal numbers of facets only; choose the number beside Facets n.</source>
+        <translation>Verluste lassen sich nur bei gleich vielen Facetten vergleichen; die Zahl wird neben Facetten n gewählt.</translation>
+    </message>
+    <message>
+        <source>Losses of figures 7 and 8</source>
+        <translation>Verluste der Bilder 7 und 8</translation>
+    </message>
+    <message>
+        <source>Losses that are the rows of figures 7 and 8</source>
+        <translation>Verluste, die die Zeilen der Bilder 7 und 8 sind</translation>
+    </message>
+    <message>
+        <source>Lower cut</source>
+        <translation>Unterer Schnitt</translation>
+    </message>
+    <message>
+        <source>Lowest cut, in mean d</source>
+        <translation>Tiefster Schnitt, in mittleren d</translation>
+    </message>
+    <message>
+        <source>Lowest pile, in mean d</source>
+        <translation>Niedrigster Kegel, in mittleren d</translation>
+    </message>
+    <message>
+        <source>Make particles</source>
+        <translation>Partikel erzeugen</translation>
+    </message>
+    <message>
+        <source>Making a dataset</source>
+        <translation>Datensatz wird gemacht</translation>
+    </message>
+    <message>
+        <source>Making meshes</source>
+        <translation>Netze werden erzeugt</translation>
+    </message>
+    <message>
+        <source>Making particles</source>
+        <translation>Partikel werden erzeugt</translation>
+    </message>
+    <message>
+        <source>Making virtual particles</source>
+        <translation>Virtuelle Partikel werden erzeugt</translation>
+    </message>
+    <message>
+        <source>Mars</source>
+        <translation>Mars</translation>
+    </message>
+    <message>
+        <source>Mask</source>
+        <translation>Maske</translation>
+    </message>
+    <message>
+        <source>Matched to the sample</source>
+        <translation>Der Probe nachgebildet</translation>
+    </message>
+    <message>
+        <source>Material</source>
+        <translation>Material</translation>
+    </message>
+    <message>
+        <source>Material and cylinder</source>
+        <translation>Material und Zylinder</translation>
+    </message>
+    <message>
+        <source>Maximum degree</source>
+        <translation>Höchster Grad</translation>
+    </message>
+    <message>
+        <source>Maximum degree l&lt;sub&gt;max&lt;/sub&gt;</source>
+        <translation>Höchster Grad l&lt;sub&gt;max&lt;/sub&gt;</translation>
+    </message>
+    <message>
+        <source>Maximum diameter</source>
+        <translation>Größter Durchmesser</translation>
+    </message>
+    <message>
+        <source>Mean Jaccard distance [%]</source>
+        <translation>Mittlere Jaccard-Distanz [%]</translation>
+    </message>
+    <message>
+        <source>Mean RMSRE of six descriptors [%]</source>
+        <translation>Mittl. RMSRE der Deskriptoren [%]</translation>
+    </message>
+    <message>
+        <source>Mean Wasserstein distance to the half that was held out, over that between random halves: 1 is noise</source>
+        <translation>Mittlere Wasserstein-Distanz zur zurückgehaltenen Hälfte, geteilt durch die zwischen zufälligen Hälften: 1 ist Rauschen</translation>
+    </message>
+    <message>
+        <source>Mean energy distance of pairs of descriptors: 0 for equal distributions</source>
+        <translation>Mittlere Energiedistanz von Paaren von Deskriptoren: 0 bei gleichen Verteilungen</translation>
+    </message>
+    <message>
+        <source>Mean rotation of a round particle; long ones are turned less.</source>
+        <translation>Mittlere Drehung eines runden Partikels; lange werden weniger gedreht.</translation>
+    </message>
+    <message>
+        <source>Measure positions</source>
+        <translation>Positionen vermessen</translation>
+    </message>
+    <message>
+        <source>Measure the pile of another program</source>
+        <translation>Den Schüttkegel eines anderen Programms vermessen</translation>
+    </message>
+    <message>
+        <source>Measured surfaces turned within their ellipsoids: sizes and shapes as in the sample, bodies new.</source>
+        <translation>Gemessene Oberflächen, in ihren Ellipsoiden gedreht: Größen und Formen wie in der Probe, Körper neu.</translation>
+    </message>
+    <message>
+        <source>Measuring</source>
+        <translation>Vermessung</translation>
+    </message>
+    <message>
+        <source>Measuring distances</source>
+        <translation>Abstände werden gemessen</translation>
+    </message>
+    <message>
+        <source>Measuring particles</source>
+        <translation>Partikel werden vermessen</translation>
+    </message>
+    <message>
+        <source>Measuring the fit</source>
+        <translation>Fit wird vermessen</translation>
+    </message>
+    <message>
+        <source>Measuring the pile</source>
+        <translation>Schüttkegel wird vermessen</translation>
+    </message>
+    <message>
+        <source>Median distance to the nearest measured particle, over that between measured ones: 0 is a copy</source>
+        <translation>Mediane Distanz zum nächsten gemessenen Partikel, geteilt durch die zwischen gemessenen: 0 ist eine Kopie</translation>
+    </message>
+    <message>
+        <source>Median in µm, deviation of ln d; @volume behind it counts volume.</source>
+        <translation>Median in µm, Abweichung von ln d; mit @volume dahinter zählt das Volumen.</translation>
+    </message>
+    <message>
+        <source>Median of 27 voxels</source>
+        <translation>Median von 27 Voxeln</translation>
+    </message>
+    <message>
+        <source>Mesh</source>
+        <translation>Netz</translation>
+    </message>
+    <message>
+        <source>Mesh files carry no unit. The answer is kept for their folder.</source>
+        <translation>Netzdateien tragen keine Einheit. Die Antwort wird für ihren Ordner gemerkt.</translation>
+    </message>
+    <message>
+        <source>Method</source>
+        <translation>Verfahren</translation>
+    </message>
+    <message>
+        <source>Metres (m)</source>
+        <translation>Meter (m)</translation>
+    </message>
+    <message>
+        <source>Micrometres (µm)</source>
+        <translation>Mikrometer (µm)</translation>
+    </message>
+    <message>
+        <source>Middle moment of inertia</source>
+        <translation>Mittleres Trägheitsmoment</translation>
+    </message>
+    <message>
+        <source>Millimetres (mm)</source>
+        <translation>Millimeter (mm)</translation>
+    </message>
+    <message>
+        <source>Mindlin with history and Coulomb friction, one coefficient (the static one)</source>
+        <translation>Mindlin mit Gedächtnis und Coulomb-Reibung, ein Beiwert (der der Haftreibung)</translation>
+    </message>
+    <message>
+        <source>Minimum diameter</source>
+        <translation>Kleinster Durchmesser</translation>
+    </message>
+    <message>
+        <source>Mixture of fields</source>
+        <translation>Mischung von Feldern</translation>
+    </message>
+    <message>
+        <source>Mixture of the paper&apos;s fields</source>
+        <translation>Mischung von Feldern des Artikels</translation>
+    </message>
+    <message>
+        <source>Model</source>
+        <translation>Modell</translation>
+    </message>
+    <message>
+        <source>Models (*.json)</source>
+        <translation>Modelle (*.json)</translation>
+    </message>
+    <message>
+        <source>Models are fitted to one half of the sample and judged on the other, beside the noise of sampling.</source>
+        <translation>Modelle werden an eine Hälfte der Probe angepasst und an der anderen beurteilt, neben dem Rauschen der Stichprobe.</translation>
+    </message>
+    <message>
+        <source>Models are judged on measured particles: fit one to a sample first.</source>
+        <translation>Modelle werden an gemessenen Partikeln beurteilt: passen Sie zuerst eines an eine Probe an.</translation>
+    </message>
+    <message>
+        <source>Moon</source>
+        <translation>Mond</translation>
+    </message>
+    <message>
+        <source>More than {count:,} particles are for other programs: export the dataset.</source>
+        <translation>Mehr als {count:,} Partikel sind Sache anderer Programme: exportieren Sie den Datensatz.</translation>
+    </message>
+    <message>
+        <source>Most triangles</source>
+        <translation>Meiste Dreiecke</translation>
+    </message>
+    <message>
+        <source>Mouse in the views</source>
+        <translation>Maus in den Ansichten</translation>
+    </message>
+    <message>
+        <source>Multi-Otsu, three classes</source>
+        <translation>Multi-Otsu, drei Klassen</translation>
+    </message>
+    <message>
+        <source>Name</source>
+        <translation>Name</translation>
+    </message>
+    <message>
+        <source>Name a folder for the results.</source>
+        <translation>Nennen Sie einen Ordner für die Ergebnisse.</translation>
+    </message>
+    <message>
+        <source>Name a folder, new or empty.</source>
+        <translation>Nennen Sie einen neuen oder leeren Ordner.</translation>
+    </message>
+    <message>
+        <source>Name and health of the mesh</source>
+        <translation>Name und Zustand des Netzes</translation>
+    </message>
+    <message>
+        <source>Name of the dataset</source>
+        <translation>Name des Datensatzes</translation>
+    </message>
+    <message>
+        <source>Name of the file or of the grain</source>
+        <translation>Name der Datei oder des Korns</translation>
+    </message>
+    <message>
+        <source>Name of the preset:</source>
+        <translation>Name der Vorlage:</translation>
+    </message>
+    <message>
+        <source>Name:</source>
+        <translation>Name:</translation>
+    </message>
+    <message>
+        <source>Names of presets: {names}</source>
+        <translation>Namen der Vorlagen: {names}</translation>
+    </message>
+    <message>
+        <source>Names of the parts, the most numerous first</source>
+        <translation>Namen der Komponenten, die häufigste zuerst</translation>
+    </message>
+    <message>
+        <source>Nanometres (nm)</source>
+        <translation>Nanometer (nm)</translation>
+    </message>
+    <message>
+        <source>Negative where the mesh is inside out</source>
+        <translation>Negativ, wo das Netz umgestülpt ist</translation>
+    </message>
+    <message>
+        <source>Neighbouring triangles look the same way</source>
+        <translation>Benachbarte Dreiecke zeigen zur selben Seite</translation>
+    </message>
+    <message>
+        <source>Neighbours</source>
+        <translation>Nachbarn</translation>
+    </message>
+    <message>
+        <source>New keys of the chosen command</source>
+        <translation>Neue Tasten des gewählten Befehls</translation>
+    </message>
+    <message>
+        <source>Next</source>
+        <translation>Weiter</translation>
+    </message>
+    <message>
+        <source>Next seed</source>
+        <translation>Nächster Startwert</translation>
+    </message>
+    <message>
+        <source>Next seed: the same method with other random numbers</source>
+        <translation>Nächster Startwert: dasselbe Verfahren mit anderen Zufallszahlen</translation>
+    </message>
+    <message>
+        <source>No dataset yet</source>
+        <translation>Noch kein Datensatz</translation>
+    </message>
+    <message>
+        <source>No dataset yet.</source>
+        <translation>Noch kein Datensatz.</translation>
+    </message>
+    <message>
+        <source>No grain became a particle: {border} touch the border of the volume, {small} are too small.</source>
+        <translation>Kein Korn wurde zum Partikel: {border} berühren den Rand des Volumens, {small} sind zu klein.</translation>
+    </message>
+    <message>
+        <source>No grain in the frame so far. Move the level, or click into a slice to move the frame.</source>
+        <translation>Noch kein Korn im Rahmen. Verschieben Sie den Schwellwert, oder klicken Sie in ein Schichtbild, um den Rahmen zu verschieben.</translation>
+    </message>
+    <message>
+        <source>No material.</source>
+        <translation>Kein Material.</translation>
+    </message>
+    <message>
+        <source>No open particle comes from a file: open some, or choose a recipe file.</source>
+        <translation>Kein geöffnetes Partikel stammt aus einer Datei: öffnen Sie welche oder wählen Sie eine Rezeptdatei.</translation>
+    </message>
+    <message>
+        <source>No particle is open: open some, or choose a material.</source>
+        <translation>Kein Partikel ist geöffnet: öffnen Sie welche oder wählen Sie ein Material.</translation>
+    </message>
+    <message>
+        <source>No particle is open; open a mesh first.</source>
+        <translation>Kein Partikel ist geöffnet; öffnen Sie zuerst ein Netz.</translation>
+    </message>
+    <message>
+        <source>No particles are open: open files, the sample, or draw some on the page Shape model.</source>
+        <translation>Keine Partikel sind geöffnet: öffnen Sie Dateien oder die Probe, oder ziehen Sie welche auf der Seite Formmodell.</translation>
+    </message>
+    <message>
+        <source>No particles are open; open some, or the shipped sample.</source>
+        <translation>Keine Partikel sind geöffnet; öffnen Sie welche oder die mitgelieferte Probe.</translation>
+    </message>
+    <message>
+        <source>No pile yet.</source>
+        <translation>Noch kein Schüttkegel.</translation>
+    </message>
+    <message>
+        <source>No polyhedron with {faces} facets was found that meets all descriptors: {name} is off by {error} %; a convex shape with the other descriptors has less surface, so a weight of 0 would free it.</source>
+        <translation>Es fand sich kein Polyeder mit {faces} Facetten, das alle Deskriptoren trifft: {name} weicht um {error} % ab; ein konvexer Körper mit den übrigen Deskriptoren hat weniger Oberfläche, also gäbe ein Gewicht von 0 Raum.</translation>
+    </message>
+    <message>
+        <source>No polyhedron with {faces} facets was found that meets all descriptors: {name} is off by {error} %; more facets or a weight of 0 would free it.</source>
+        <translation>Es fand sich kein Polyeder mit {faces} Facetten, das alle Deskriptoren trifft: {name} weicht um {error} % ab; mehr Facetten oder ein Gewicht von 0 gäben Raum.</translation>
+    </message>
+    <message>
+        <source>No volume is open.</source>
+        <translation>Kein Volumen ist geöffnet.</translation>
+    </message>
+    <message>
+        <source>Non-local means (slow)</source>
+        <translation>Non-local Means (langsam)</translation>
+    </message>
+    <message>
+        <source>None</source>
+        <translation>Keine</translation>
+    </message>
+    <message>
+        <source>Normal force</source>
+        <translation>Normalkraft</translation>
+    </message>
+    <message>
+        <source>Not even {faces} facets bring all errors below {limit} %: the least is {error} %, with {count} facets.</source>
+        <translation>Nicht einmal {faces} Facetten bringen alle Fehler unter {limit} %: Der kleinste ist {error} %, mit {count} Facetten.</translation>
+    </message>
+    <message>
+        <source>Not fitted yet.</source>
+        <translation>Noch nicht angepasst.</translation>
+    </message>
+    <message>
+        <source>Not represented</source>
+        <translation>Nicht abgebildet</translation>
+    </message>
+    <message>
+        <source>Nothing is running.</source>
+        <translation>Nichts ist in Arbeit.</translation>
+    </message>
+    <message>
+        <source>Nothing to show: no faults, and all of the surface is seen from the star point.</source>
+        <translation>Nichts zu zeigen: keine Mängel, und die ganze Oberfläche ist vom Sternpunkt aus zu sehen.</translation>
+    </message>
+    <message>
+        <source>Novelty</source>
+        <translation>Neuheit</translation>
+    </message>
+    <message>
+        <source>Number</source>
+        <translation>Anzahl</translation>
+    </message>
+    <message>
+        <source>Number of facets</source>
+        <translation>Anzahl der Facetten</translation>
+    </message>
+    <message>
+        <source>Number of particles</source>
+        <translation>Anzahl der Partikel</translation>
+    </message>
+    <message>
+        <source>Number of processes</source>
+        <translation>Anzahl der Prozesse</translation>
+    </message>
+    <message>
+        <source>Number of representatives</source>
+        <translation>Anzahl der Repräsentanten</translation>
+    </message>
+    <message>
+        <source>Numbering grains</source>
+        <translation>Körner werden nummeriert</translation>
+    </message>
+    <message>
+        <source>Numbers of facets</source>
+        <translation>Anzahlen der Facetten</translation>
+    </message>
+    <message>
+        <source>Numbers of the size distribution</source>
+        <translation>Zahlen der Größenverteilung</translation>
+    </message>
+    <message>
+        <source>Numbers with commas between them; Return starts the study</source>
+        <translation>Zahlen mit Kommas dazwischen; Eingabe startet die Studie</translation>
+    </message>
+    <message>
+        <source>Numerics of the engine</source>
+        <translation>Numerik des Rechenkerns</translation>
+    </message>
+    <message>
+        <source>Of all random numbers: the same seed gives the same polyhedron.</source>
+        <translation>Aller Zufallszahlen: derselbe Startwert ergibt dasselbe Polyeder.</translation>
+    </message>
+    <message>
+        <source>Of the mesh; the tool tip of a cell says what was found and mended</source>
+        <translation>Des Netzes; der Hinweis einer Zelle sagt, was gefunden und ausgebessert wurde</translation>
+    </message>
+    <message>
+        <source>One after the other, then all</source>
+        <translation>Eine nach der anderen, dann alle</translation>
+    </message>
+    <message>
+        <source>One body over another</source>
+        <translation>Ein Körper über einem anderen</translation>
+    </message>
+    <message>
+        <source>One particle, its spherical-harmonics fit and its polyhedron side by side</source>
+        <translation>Ein Partikel, sein Fit mit Kugelflächenfunktionen und sein Polyeder nebeneinander</translation>
+    </message>
+    <message>
+        <source>One particle, three ways to see it</source>
+        <translation>Ein Partikel, dreimal gesehen</translation>
+    </message>
+    <message>
+        <source>One step</source>
+        <translation>Ein Schritt</translation>
+    </message>
+    <message>
+        <source>One step back</source>
+        <translation>Ein Schritt zurück</translation>
+    </message>
+    <message>
+        <source>One turn: GIF, WebP, PNG files</source>
+        <translation>Eine Umdrehung: GIF, WebP, PNG-Dateien</translation>
+    </message>
+    <message>
+        <source>One weight for each term of the loss (Eq. 9), with the presets of the paper. A weight of 0 lets a descriptor go. Reset brings the preset back.</source>
+        <translation>Ein Gewicht für jeden Term der Verlustfunktion (Gl. 9), mit den Vorlagen des Artikels. Das Gewicht 0 gibt einen Deskriptor frei. Zurücksetzen bringt die Vorlage zurück.</translation>
+    </message>
+    <message>
+        <source>Only equivalent radii from … to …</source>
+        <translation>Nur Äquivalentradien von … bis …</translation>
+    </message>
+    <message>
+        <source>Open &amp;folder …</source>
+        <translation>&amp;Ordner öffnen …</translation>
+    </message>
+    <message>
+        <source>Open &amp;recent</source>
+        <translation>&amp;Zuletzt geöffnet</translation>
+    </message>
+    <message>
+        <source>Open &amp;sample</source>
+        <translation>&amp;Probe öffnen</translation>
+    </message>
+    <message>
+        <source>Open &amp;volume …</source>
+        <translation>&amp;Volumen öffnen …</translation>
+    </message>
+    <message>
+        <source>Open a &amp;dataset …</source>
+        <translation>&amp;Datensatz öffnen …</translation>
+    </message>
+    <message>
+        <source>Open a &amp;fit, model or card …</source>
+        <translation>&amp;Fit, Modell oder Karte öffnen …</translation>
+    </message>
+    <message>
+        <source>Open a CT volume</source>
+        <translation>Ein CT-Volumen öffnen</translation>
+    </message>
+    <message>
+        <source>Open a CT volume of grey values or labels</source>
+        <translation>Ein CT-Volumen mit Grauwerten oder Labels öffnen</translation>
+    </message>
+    <message>
+        <source>Open a CT volume: TIFF stack, folder of slices, HDF5, NRRD, MetaImage, NIfTI, NPY or raw. Drop it here, or begin with the sample scan.</source>
+        <translation>Öffnen Sie ein CT-Volumen: TIFF-Stapel, Ordner mit Schichtbildern, HDF5, NRRD, MetaImage, NIfTI, NPY oder Rohdaten. Legen Sie es hier ab, oder beginnen Sie mit dem Beispielscan.</translation>
+    </message>
+    <message>
+        <source>Open a dataset</source>
+        <translation>Datensatz öffnen</translation>
+    </message>
+    <message>
+        <source>Open a dataset …</source>
+        <translation>Datensatz öffnen …</translation>
+    </message>
+    <message>
+        <source>Open a dataset, or make one from the open particles.</source>
+        <translation>Öffnen Sie einen Datensatz, oder machen Sie einen aus den geöffneten Partikeln.</translation>
+    </message>
+    <message>
+        <source>Open a fit, model or card</source>
+        <translation>Fit, Modell oder Karte öffnen</translation>
+    </message>
+    <message>
+        <source>Open a folder of meshes</source>
+        <translation>Einen Ordner mit Netzen öffnen</translation>
+    </message>
+    <message>
+        <source>Open a folder of s&amp;lices …</source>
+        <translation>Ordner mit &amp;Schichtbildern öffnen …</translation>
+    </message>
+    <message>
+        <source>Open a folder of slices</source>
+        <translation>Ordner mit Schichtbildern öffnen</translation>
+    </message>
+    <message>
+        <source>Open a particle first.</source>
+        <translation>Öffnen Sie zuerst ein Partikel.</translation>
+    </message>
+    <message>
+        <source>Open a volume</source>
+        <translation>Volumen öffnen</translation>
+    </message>
+    <message>
+        <source>Open a volume of grey values first.</source>
+        <translation>Öffnen Sie zuerst ein Volumen mit Grauwerten.</translation>
+    </message>
+    <message>
+        <source>Open a volume of grey values to see its histogram.</source>
+        <translation>Öffnen Sie ein Volumen mit Grauwerten, um sein Histogramm zu sehen.</translation>
+    </message>
+    <message>
+        <source>Open edges</source>
+        <translation>Offene Kanten</translation>
+    </message>
+    <message>
+        <source>Open folder</source>
+        <translation>Ordner öffnen</translation>
+    </message>
+    <message>
+        <source>Open mesh files</source>
+        <translation>Netzdateien öffnen</translation>
+    </message>
+    <message>
+        <source>Open particles</source>
+        <translation>Partikel öffnen</translation>
+    </message>
+    <message>
+        <source>Open particles ({count})</source>
+        <translation>Geöffnete Partikel ({count})</translation>
+    </message>
+    <message>
+        <source>Open se&amp;ttings …</source>
+        <translation>&amp;Einstellungen öffnen …</translation>
+    </message>
+    <message>
+        <source>Open settings</source>
+        <translation>Einstellungen öffnen</translation>
+    </message>
+    <message>
+        <source>Open the drawn particles: to be coarsened and made a dataset.</source>
+        <translation>Die gezogenen Partikel öffnen: um sie zu vergröbern und einen Datensatz zu bauen.</translation>
+    </message>
+    <message>
+        <source>Open the results</source>
+        <translation>Ergebnisse öffnen</translation>
+    </message>
+    <message>
+        <source>Open the sample &amp;scan</source>
+        <translation>&amp;Beispielscan öffnen</translation>
+    </message>
+    <message>
+        <source>Open the scan that ships with the program</source>
+        <translation>Den mitgelieferten Scan öffnen</translation>
+    </message>
+    <message>
+        <source>Open the shipped particles</source>
+        <translation>Die mitgelieferten Partikel öffnen</translation>
+    </message>
+    <message>
+        <source>Open volume …</source>
+        <translation>Volumen öffnen …</translation>
+    </message>
+    <message>
+        <source>Open what to draw from</source>
+        <translation>Öffnen, woraus gezogen wird</translation>
+    </message>
+    <message>
+        <source>Open …</source>
+        <translation>Öffnen …</translation>
+    </message>
+    <message>
+        <source>Opening</source>
+        <translation>Öffnen</translation>
+    </message>
+    <message>
+        <source>Openings in µm = shares between them; @volume behind it counts volume.</source>
+        <translation>Maschenweiten in µm = Anteile dazwischen; mit @volume dahinter zählt das Volumen.</translation>
+    </message>
+    <message>
+        <source>Order of the array&apos;s axes</source>
+        <translation>Reihenfolge der Achsen des Feldes</translation>
+    </message>
+    <message>
+        <source>Other</source>
+        <translation>Andere</translation>
+    </message>
+    <message>
+        <source>Otherwise each connected body is one grain.</source>
+        <translation>Sonst ist jeder zusammenhängende Körper ein Korn.</translation>
+    </message>
+    <message>
+        <source>Otsu</source>
+        <translation>Otsu</translation>
+    </message>
+    <message>
+        <source>Our own: mass and sieve size, the rest by overlap</source>
+        <translation>Eigene: Masse und Siebgröße, das Übrige durch Überdeckung</translation>
+    </message>
+    <message>
+        <source>Our own: the outer size counts and the volume gives way, since a convex body has only one of the two</source>
+        <translation>Eigene: die äußere Größe zählt und das Volumen gibt nach, denn ein konvexer Körper hat nur eines von beiden</translation>
+    </message>
+    <message>
+        <source>Overlap + {symbols}</source>
+        <translation>Überdeckung + {symbols}</translation>
+    </message>
+    <message>
+        <source>Overlap against descriptors</source>
+        <translation>Überdeckung gegen Deskriptoren</translation>
+    </message>
+    <message>
+        <source>Overlap only</source>
+        <translation>Nur Überdeckung</translation>
+    </message>
+    <message>
+        <source>Overlap or descriptors</source>
+        <translation>Überdeckung oder Deskriptoren</translation>
+    </message>
+    <message>
+        <source>Own preset</source>
+        <translation>Eigene Vorlage</translation>
+    </message>
+    <message>
+        <source>P&amp;references …</source>
+        <translation>&amp;Einstellungen …</translation>
+    </message>
+    <message>
+        <source>PNG</source>
+        <translation>PNG</translation>
+    </message>
+    <message>
+        <source>Page {title}</source>
+        <translation>Seite {title}</translation>
+    </message>
+    <message>
+        <source>Pairs (Fig. 6)</source>
+        <translation>Paare (Abb. 6)</translation>
+    </message>
+    <message>
+        <source>Pairs in numbers</source>
+        <translation>Paarwerte</translation>
+    </message>
+    <message>
+        <source>Pairs of triangles that cross each other</source>
+        <translation>Paare von Dreiecken, die sich kreuzen</translation>
+    </message>
+    <message>
+        <source>Parametric, with facets: size, form, roughness and hull ratio go together as in the sample.</source>
+        <translation>Parametrisch, mit Facetten: Größe, Form, Rauheit und Hüllenverhältnis hängen zusammen wie in der Probe.</translation>
+    </message>
+    <message>
+        <source>Part touching grains</source>
+        <translation>Berührende Körner trennen</translation>
+    </message>
+    <message>
+        <source>Particle</source>
+        <translation>Partikel</translation>
+    </message>
+    <message>
+        <source>Particle density</source>
+        <translation>Dichte der Partikel</translation>
+    </message>
+    <message>
+        <source>Particle mass</source>
+        <translation>Masse der Partikel</translation>
+    </message>
+    <message>
+        <source>Particles</source>
+        <translation>Partikel</translation>
+    </message>
+    <message>
+        <source>Particles (*.stl *.ply *.obj *.off *.glb *.gltf *.3mf *.anm *.sh *.shc)</source>
+        <translation>Partikel (*.stl *.ply *.obj *.off *.glb *.gltf *.3mf *.anm *.sh *.shc)</translation>
+    </message>
+    <message>
+        <source>Particles ({count})</source>
+        <translation>Partikel ({count})</translation>
+    </message>
+    <message>
+        <source>Particles count by their volume</source>
+        <translation>Partikel zählen nach Volumen</translation>
+    </message>
+    <message>
+        <source>Particles drawn</source>
+        <translation>Gezogene Partikel</translation>
+    </message>
+    <message>
+        <source>Particles that may lend their ellipsoid.</source>
+        <translation>Partikel, die ihr Ellipsoid leihen dürfen.</translation>
+    </message>
+    <message>
+        <source>Parting touching grains</source>
+        <translation>Berührende Körner werden getrennt</translation>
+    </message>
+    <message>
+        <source>Parts</source>
+        <translation>Komponenten</translation>
+    </message>
+    <message>
+        <source>Parts that hang together; a particle has one</source>
+        <translation>Zusammenhängende Teile; ein Partikel hat einen</translation>
+    </message>
+    <message>
+        <source>Pause</source>
+        <translation>Anhalten</translation>
+    </message>
+    <message>
+        <source>Picture</source>
+        <translation>Bild</translation>
+    </message>
+    <message>
+        <source>Pictures (*.png)</source>
+        <translation>Bilder (*.png)</translation>
+    </message>
+    <message>
+        <source>Place of the section</source>
+        <translation>Ort des Schnitts</translation>
+    </message>
+    <message>
+        <source>Plane {number} of {count} is moved by {distance:.3g} µm</source>
+        <translation>Ebene {number} von {count} wird um {distance:.3g} µm verschoben</translation>
+    </message>
+    <message>
+        <source>Plate friction</source>
+        <translation>Reibung der Platte</translation>
+    </message>
+    <message>
+        <source>Play</source>
+        <translation>Abspielen</translation>
+    </message>
+    <message>
+        <source>Play or pause</source>
+        <translation>Abspielen oder anhalten</translation>
+    </message>
+    <message>
+        <source>Points a flank</source>
+        <translation>Punkte je Flanke</translation>
+    </message>
+    <message>
+        <source>Poisson&apos;s ratio</source>
+        <translation>Querkontraktionszahl</translation>
+    </message>
+    <message>
+        <source>Polyhedra (STL)</source>
+        <translation>Polyeder (STL)</translation>
+    </message>
+    <message>
+        <source>Polyhedra by loss function and particle</source>
+        <translation>Polyeder nach Verlustfunktion und Partikel</translation>
+    </message>
+    <message>
+        <source>Polyhedron</source>
+        <translation>Polyeder</translation>
+    </message>
+    <message>
+        <source>Polyhedron vs. fit</source>
+        <translation>Polyeder gegen Fit</translation>
+    </message>
+    <message>
+        <source>Polyhedron vs. particle</source>
+        <translation>Polyeder gegen Partikel</translation>
+    </message>
+    <message>
+        <source>Polyhedron, {count} facets</source>
+        <translation>Polyeder, {count} Facetten</translation>
+    </message>
+    <message>
+        <source>Pores without a way out become grain.</source>
+        <translation>Poren ohne Ausgang werden zum Korn gezählt.</translation>
+    </message>
+    <message>
+        <source>Positions (*.npz *.csv *.txt *.dat *.xyz *.dump *.lammpstrj *.vtk *.vtp *.vtu);;All files (*)</source>
+        <translation>Positionen (*.npz *.csv *.txt *.dat *.xyz *.dump *.lammpstrj *.vtk *.vtp *.vtu);;Alle Dateien (*)</translation>
+    </message>
+    <message>
+        <source>Positive by construction; sizes and spectrum apart, so that it extrapolates.</source>
+        <translation>Stets positiv; Größen und Spektrum getrennt, sodass es extrapoliert.</translation>
+    </message>
+    <message>
+        <source>Preferences</source>
+        <translation>Einstellungen</translation>
+    </message>
+    <message>
+        <source>Preparing the view</source>
+        <translation>Ansicht wird vorbereitet</translation>
+    </message>
+    <message>
+        <source>Preset of weights</source>
+        <translation>Vorlage der Gewichte</translation>
+    </message>
+    <message>
+        <source>Preset of {label}</source>
+        <translation>Vorlage: {label}</translation>
+    </message>
+    <message>
+        <source>Press Find: the particles that stand for all appear here, with their weights.</source>
+        <translation>Drücken Sie „Repräsentanten finden“: die Partikel, die für alle stehen, erscheinen hier mit ihren Gewichten.</translation>
+    </message>
+    <message>
+        <source>Preview</source>
+        <translation>Vorschau</translation>
+    </message>
+    <message>
+        <source>Probability</source>
+        <translation>Wahrscheinlichkeit</translation>
+    </message>
+    <message>
+        <source>Probability map</source>
+        <translation>Wahrscheinlichkeitskarte</translation>
+    </message>
+    <message>
+        <source>Processes</source>
+        <translation>Prozesse</translation>
+    </message>
+    <message>
+        <source>Processes of this machine</source>
+        <translation>Prozesse dieses Rechners</translation>
+    </message>
+    <message>
+        <source>Progress</source>
+        <translation>Fortschritt</translation>
+    </message>
+    <message>
+        <source>Progress of the batch</source>
+        <translation>Fortschritt des Stapels</translation>
+    </message>
+    <message>
+        <source>Progress of the export</source>
+        <translation>Fortschritt des Exports</translation>
+    </message>
+    <message>
+        <source>Progress of the study</source>
+        <translation>Fortschritt der Studie</translation>
+    </message>
+    <message>
+        <source>Projects (*.regolith)</source>
+        <translation>Projekte (*.regolith)</translation>
+    </message>
+    <message>
+        <source>Quadric decimation</source>
+        <translation>Quadrik-Dezimierung</translation>
+    </message>
+    <message>
+        <source>Quadric decimation (no loss)</source>
+        <translation>Quadrik-Dezimierung (ohne Verlust)</translation>
+    </message>
+    <message>
+        <source>Quantiles</source>
+        <translation>Quantile</translation>
+    </message>
+    <message>
+        <source>RMSRE [%], 1 particle</source>
+        <translation>RMSRE [%], 1 Partikel</translation>
+    </message>
+    <message>
+        <source>RMSRE [%], at least {least:g}</source>
+        <translation>RMSRE [%], mindestens {least:g}</translation>
+    </message>
+    <message>
+        <source>RMSRE [%], {count} particles</source>
+        <translation>RMSRE [%], {count} Partikel</translation>
+    </message>
+    <message>
+        <source>RMSRE against l_max</source>
+        <translation>RMSRE gegen l_max</translation>
+    </message>
+    <message>
+        <source>RMSRE against loss weights</source>
+        <translation>RMSRE gegen die Gewichte des Verlusts</translation>
+    </message>
+    <message>
+        <source>Radius</source>
+        <translation>Radius</translation>
+    </message>
+    <message>
+        <source>Radius rule</source>
+        <translation>Regel für Radien</translation>
+    </message>
+    <message>
+        <source>Random field</source>
+        <translation>Zufallsfeld</translation>
+    </message>
+    <message>
+        <source>Ranking</source>
+        <translation>Rangliste</translation>
+    </message>
+    <message>
+        <source>Ranking of the models</source>
+        <translation>Rangliste der Modelle</translation>
+    </message>
+    <message>
+        <source>Reached</source>
+        <translation>Erreicht</translation>
+    </message>
+    <message>
+        <source>Reading particles</source>
+        <translation>Partikel werden gelesen</translation>
+    </message>
+    <message>
+        <source>Reading the dataset</source>
+        <translation>Datensatz wird gelesen</translation>
+    </message>
+    <message>
+        <source>Reading the sample</source>
+        <translation>Probe wird gelesen</translation>
+    </message>
+    <message>
+        <source>Reading the sample scan</source>
+        <translation>Beispielscan wird gelesen</translation>
+    </message>
+    <message>
+        <source>Reading the volume</source>
+        <translation>Volumen wird gelesen</translation>
+    </message>
+    <message>
+        <source>Reading {name}</source>
+        <translation>{name} wird gelesen</translation>
+    </message>
+    <message>
+        <source>Ready</source>
+        <translation>Bereit</translation>
+    </message>
+    <message>
+        <source>Recipe</source>
+        <translation>Rezept</translation>
+    </message>
+    <message>
+        <source>Recipe:</source>
+        <translation>Rezept:</translation>
+    </message>
+    <message>
+        <source>Recipes (*.json)</source>
+        <translation>Rezepte (*.json)</translation>
+    </message>
+    <message>
+        <source>Recover</source>
+        <translation>Wiederherstellen</translation>
+    </message>
+    <message>
+        <source>Reference of the radius</source>
+        <translation>Bezug der Radien</translation>
+    </message>
+    <message>
+        <source>Regolith Studio was not closed properly the last time. Bring its state back?</source>
+        <translation>Regolith Studio wurde zuletzt nicht ordentlich geschlossen. Den Stand zurückholen?</translation>
+    </message>
+    <message>
+        <source>Rejected</source>
+        <translation>Verworfen</translation>
+    </message>
+    <message>
+        <source>Relative error [%]</source>
+        <translation>Relativer Fehler [%]</translation>
+    </message>
+    <message>
+        <source>Relative error of {symbol}, Eq. 8: {name}, {formula}</source>
+        <translation>Relativer Fehler von {symbol}, Gl. 8: {name}, {formula}</translation>
+    </message>
+    <message>
+        <source>Relative errors of volume, sphericity, diameters, aspect ratio and hull (Eq. 8): blue for the fit, orange for the polyhedron. The second tab has the numbers with their units.</source>
+        <translation>Relative Fehler von Volumen, Sphärizität, Durchmessern, Seitenverhältnis und Hülle (Gl. 8): blau für den Fit, orange für das Polyeder. Der zweite Reiter hat die Zahlen mit ihren Einheiten.</translation>
+    </message>
+    <message>
+        <source>Remarks</source>
+        <translation>Anmerkungen</translation>
+    </message>
+    <message>
+        <source>Removed 1 double face.</source>
+        <translation>1 doppelte Fläche wurde entfernt.</translation>
+    </message>
+    <message>
+        <source>Removed 1 face without area.</source>
+        <translation>1 Fläche ohne Inhalt wurde entfernt.</translation>
+    </message>
+    <message>
+        <source>Removed {count} double faces.</source>
+        <translation>{count} doppelte Flächen wurden entfernt.</translation>
+    </message>
+    <message>
+        <source>Removed {count} faces without area.</source>
+        <translation>{count} Flächen ohne Inhalt wurden entfernt.</translation>
+    </message>
+    <message>
+        <source>Removes specks and thin bridges, in voxels.</source>
+        <translation>Entfernt Flecken und dünne Brücken, in Voxeln.</translation>
+    </message>
+    <message>
+        <source>Repair lost facets</source>
+        <translation>Verlorene Facetten ersetzen</translation>
+    </message>
+    <message>
+        <source>Replace the dataset</source>
+        <translation>Datensatz ersetzen</translation>
+    </message>
+    <message>
+        <source>Replace the dataset that is there</source>
+        <translation>Den vorhandenen Datensatz ersetzen</translation>
+    </message>
+    <message>
+        <source>Report (HTML)</source>
+        <translation>Bericht (HTML)</translation>
+    </message>
+    <message>
+        <source>Representative particles</source>
+        <translation>Repräsentative Partikel</translation>
+    </message>
+    <message>
+        <source>Representatives</source>
+        <translation>Repräsentanten</translation>
+    </message>
+    <message>
+        <source>Reset</source>
+        <translation>Zurücksetzen</translation>
+    </message>
+    <message>
+        <source>Reset the spectrum</source>
+        <translation>Spektrum zurücksetzen</translation>
+    </message>
+    <message>
+        <source>Rest: energy</source>
+        <translation>Ruhe: Energie</translation>
+    </message>
+    <message>
+        <source>Rest: time</source>
+        <translation>Ruhe: Zeit</translation>
+    </message>
+    <message>
+        <source>Restarts</source>
+        <translation>Neustarts</translation>
+    </message>
+    <message>
+        <source>Resting time</source>
+        <translation>Ruhezeit</translation>
+    </message>
+    <message>
+        <source>Restitution</source>
+        <translation>Stoßzahl</translation>
+    </message>
+    <message>
+        <source>Restore the volume</source>
+        <translation>Volumen wiederherstellen</translation>
+    </message>
+    <message>
+        <source>Resume</source>
+        <translation>Fortsetzen</translation>
+    </message>
+    <message>
+        <source>Retries</source>
+        <translation>Neue Versuche</translation>
+    </message>
+    <message>
+        <source>Right (from +x)</source>
+        <translation>Rechts (von +x)</translation>
+    </message>
+    <message>
+        <source>Right or middle drag, Shift + drag</source>
+        <translation>Rechte oder mittlere Taste ziehen, Umschalt + Ziehen</translation>
+    </message>
+    <message>
+        <source>Roll the picture</source>
+        <translation>Das Bild rollen</translation>
+    </message>
+    <message>
+        <source>Rolling</source>
+        <translation>Rollen</translation>
+    </message>
+    <message>
+        <source>Rolling median</source>
+        <translation>Gleitender Median</translation>
+    </message>
+    <message>
+        <source>Rolling resistance</source>
+        <translation>Rollwiderstand</translation>
+    </message>
+    <message>
+        <source>Root mean squared relative error of each descriptor against l&lt;sub&gt;max&lt;/sub&gt;, as in Fig. 3 of the paper.</source>
+        <translation>Wurzel des mittleren quadratischen relativen Fehlers jedes Deskriptors gegen l&lt;sub&gt;max&lt;/sub&gt;, wie in Bild 3 des Artikels.</translation>
+    </message>
+    <message>
+        <source>Root mean squared relative error of each descriptor against the number of facets.</source>
+        <translation>Wurzel des mittleren quadratischen relativen Fehlers jedes Deskriptors gegen die Anzahl der Facetten.</translation>
+    </message>
+    <message>
+        <source>Root mean squared relative error of each descriptor, one row a loss function, as in Fig. 8 of the paper.</source>
+        <translation>Wurzel des mittleren quadratischen relativen Fehlers jedes Deskriptors, eine Zeile je Verlustfunktion, wie in Bild 8 des Artikels.</translation>
+    </message>
+    <message>
+        <source>Rosin-Rammler, the same for all</source>
+        <translation>Rosin-Rammler, für alle gleich</translation>
+    </message>
+    <message>
+        <source>Roughness</source>
+        <translation>Rauheit</translation>
+    </message>
+    <message>
+        <source>Roundness</source>
+        <translation>Rundheit</translation>
+    </message>
+    <message>
+        <source>Rows of Fig. 8</source>
+        <translation>Zeilen von Bild 8</translation>
+    </message>
+    <message>
+        <source>Run</source>
+        <translation>Ausführen</translation>
+    </message>
+    <message>
+        <source>Run a test or open positions to see its section.</source>
+        <translation>Führen Sie einen Versuch durch oder öffnen Sie Positionen, um den Schnitt zu sehen.</translation>
+    </message>
+    <message>
+        <source>Run as a &amp;batch …</source>
+        <translation>Als S&amp;tapel ausführen …</translation>
+    </message>
+    <message>
+        <source>Run as a batch</source>
+        <translation>Als Stapel ausführen</translation>
+    </message>
+    <message>
+        <source>Run the test</source>
+        <translation>Versuch durchführen</translation>
+    </message>
+    <message>
+        <source>Run the values of the study, or go on</source>
+        <translation>Die Werte der Studie rechnen oder fortfahren</translation>
+    </message>
+    <message>
+        <source>Running</source>
+        <translation>In Arbeit</translation>
+    </message>
+    <message>
+        <source>Running the recipe</source>
+        <translation>Rezept wird ausgeführt</translation>
+    </message>
+    <message>
+        <source>Running …</source>
+        <translation>In Arbeit …</translation>
+    </message>
+    <message>
+        <source>Runs</source>
+        <translation>Läufe</translation>
+    </message>
+    <message>
+        <source>Runs of each</source>
+        <translation>Läufe je Wert</translation>
+    </message>
+    <message>
+        <source>Runs of each value, with other seeds</source>
+        <translation>Läufe je Wert, mit anderen Startwerten</translation>
+    </message>
+    <message>
+        <source>Runs of the study</source>
+        <translation>Läufe der Studie</translation>
+    </message>
+    <message>
+        <source>Runs that are there already are not run again</source>
+        <translation>Vorhandene Läufe werden nicht wiederholt</translation>
+    </message>
+    <message>
+        <source>Runs that became piles are compared here.</source>
+        <translation>Läufe, die zu Schüttkegeln wurden, werden hier verglichen.</translation>
+    </message>
+    <message>
+        <source>S&amp;maller letters</source>
+        <translation>&amp;Kleinere Schrift</translation>
+    </message>
+    <message>
+        <source>SHA-256 of the dataset: {hash} …</source>
+        <translation>SHA-256 des Datensatzes: {hash} …</translation>
+    </message>
+    <message>
+        <source>SI; coarse graining applied</source>
+        <translation>SI; mit Vergröberungsfaktor</translation>
+    </message>
+    <message>
+        <source>SI; sizes are equivalent diameters in metres before coarse graining, which Rocky applies itself</source>
+        <translation>SI; Größen sind Äquivalentdurchmesser in Metern vor der Vergröberung, die Rocky selbst anwendet</translation>
+    </message>
+    <message>
+        <source>Sa&amp;ve settings …</source>
+        <translation>Einstellungen spei&amp;chern …</translation>
+    </message>
+    <message>
+        <source>Sample</source>
+        <translation>Probe</translation>
+    </message>
+    <message>
+        <source>Sample ({seen} of {total})</source>
+        <translation>Probe ({seen} von {total})</translation>
+    </message>
+    <message>
+        <source>Sample ({total})</source>
+        <translation>Probe ({total})</translation>
+    </message>
+    <message>
+        <source>Sample or material</source>
+        <translation>Probe oder Material</translation>
+    </message>
+    <message>
+        <source>Sample or size fraction</source>
+        <translation>Probe oder Größenklasse</translation>
+    </message>
+    <message>
+        <source>Sample scan</source>
+        <translation>Beispielscan</translation>
+    </message>
+    <message>
+        <source>Save &amp;animation of l_max …</source>
+        <translation>&amp;Animation von l_max speichern …</translation>
+    </message>
+    <message>
+        <source>Save &amp;figure …</source>
+        <translation>&amp;Abbildung speichern …</translation>
+    </message>
+    <message>
+        <source>Save &amp;numbers …</source>
+        <translation>&amp;Zahlen speichern …</translation>
+    </message>
+    <message>
+        <source>Save &amp;picture …</source>
+        <translation>&amp;Bild speichern …</translation>
+    </message>
+    <message>
+        <source>Save &amp;turntable …</source>
+        <translation>&amp;Drehung speichern …</translation>
+    </message>
+    <message>
+        <source>Save a material card</source>
+        <translation>Materialkarte speichern</translation>
+    </message>
+    <message>
+        <source>Save animation</source>
+        <translation>Animation speichern</translation>
+    </message>
+    <message>
+        <source>Save as own preset</source>
+        <translation>Als eigene Vorlage speichern</translation>
+    </message>
+    <message>
+        <source>Save as own preset …</source>
+        <translation>Als eigene Vorlage speichern …</translation>
+    </message>
+    <message>
+        <source>Save figure</source>
+        <translation>Abbildung speichern</translation>
+    </message>
+    <message>
+        <source>Save material &amp;card …</source>
+        <translation>Material&amp;karte speichern …</translation>
+    </message>
+    <message>
+        <source>Save numbers</source>
+        <translation>Zahlen speichern</translation>
+    </message>
+    <message>
+        <source>Save or delete a preset</source>
+        <translation>Vorlage speichern oder löschen</translation>
+    </message>
+    <message>
+        <source>Save or delete a preset of your own</source>
+        <translation>Eine eigene Vorlage speichern oder löschen</translation>
+    </message>
+    <message>
+        <source>Save picture</source>
+        <translation>Bild speichern</translation>
+    </message>
+    <message>
+        <source>Save project</source>
+        <translation>Projekt speichern</translation>
+    </message>
+    <message>
+        <source>Save project &amp;as …</source>
+        <translation>Projekt speichern &amp;unter …</translation>
+    </message>
+    <message>
+        <source>Save re&amp;cipe …</source>
+        <translation>&amp;Rezept speichern …</translation>
+    </message>
+    <message>
+        <source>Save recipe</source>
+        <translation>Rezept speichern</translation>
+    </message>
+    <message>
+        <source>Save settings</source>
+        <translation>Einstellungen speichern</translation>
+    </message>
+    <message>
+        <source>Save the model</source>
+        <translation>Modell speichern</translation>
+    </message>
+    <message>
+        <source>Save turntable</source>
+        <translation>Drehung speichern</translation>
+    </message>
+    <message>
+        <source>Saved {first} and {second}.</source>
+        <translation>{first} und {second} sind gespeichert.</translation>
+    </message>
+    <message>
+        <source>Saved {name}.</source>
+        <translation>{name} ist gespeichert.</translation>
+    </message>
+    <message>
+        <source>Saved {name}; run it with: {command}</source>
+        <translation>{name} ist gespeichert; ausführen mit: {command}</translation>
+    </message>
+    <message>
+        <source>Saved {path}.</source>
+        <translation>{path} ist gespeichert.</translation>
+    </message>
+    <message>
+        <source>Saved; use it with: {command}</source>
+        <translation>Gespeichert; verwenden mit: {command}</translation>
+    </message>
+    <message>
+        <source>Say, and mend, what is wrong</source>
+        <translation>Sagen und ausbessern, was nicht stimmt</translation>
+    </message>
+    <message>
+        <source>Scale</source>
+        <translation>Maßstab</translation>
+    </message>
+    <message>
+        <source>Scale of the picture</source>
+        <translation>Maßstab des Bildes</translation>
+    </message>
+    <message>
+        <source>Scale, shape, smallest, largest; @volume behind it counts volume.</source>
+        <translation>Skala, Form, kleinster, größter; mit @volume dahinter zählt das Volumen.</translation>
+    </message>
+    <message>
+        <source>Scaled with the size (experimental)</source>
+        <translation>Mit der Größe skaliert (experimentell)</translation>
+    </message>
+    <message>
+        <source>Scan</source>
+        <translation>Scan</translation>
+    </message>
+    <message>
+        <source>Scheduler</source>
+        <translation>Scheduler</translation>
+    </message>
+    <message>
+        <source>Search commands</source>
+        <translation>Befehle suchen</translation>
+    </message>
+    <message>
+        <source>Search commands and keys</source>
+        <translation>Befehle und Tasten suchen</translation>
+    </message>
+    <message>
+        <source>Second</source>
+        <translation>Zweiter</translation>
+    </message>
+    <message>
+        <source>Section</source>
+        <translation>Schnitt</translation>
+    </message>
+    <message>
+        <source>Sections</source>
+        <translation>Schnitte</translation>
+    </message>
+    <message>
+        <source>See why it works</source>
+        <translation>Sehen, warum es geht</translation>
+    </message>
+    <message>
+        <source>Seed</source>
+        <translation>Startwert</translation>
+    </message>
+    <message>
+        <source>Seed of starts</source>
+        <translation>Startwert dafür</translation>
+    </message>
+    <message>
+        <source>Seed of the draws</source>
+        <translation>Startwert der Ziehungen</translation>
+    </message>
+    <message>
+        <source>Segment the whole volume</source>
+        <translation>Das ganze Volumen segmentieren</translation>
+    </message>
+    <message>
+        <source>Segment the whole volume with these settings</source>
+        <translation>Das ganze Volumen mit diesen Einstellungen segmentieren</translation>
+    </message>
+    <message>
+        <source>Sensitivity to the weights</source>
+        <translation>Empfindlichkeit gegen die Gewichte</translation>
+    </message>
+    <message>
+        <source>Sequence of PNG files (*.png)</source>
+        <translation>Folge von PNG-Dateien (*.png)</translation>
+    </message>
+    <message>
+        <source>Set MA160 (synthetic)</source>
+        <translation>Satz MA160 (synthetisch)</translation>
+    </message>
+    <message>
+        <source>Set MA165 (synthetic)</source>
+        <translation>Satz MA165 (synthetisch)</translation>
+    </message>
+    <message>
+        <source>Set SACCI 425 (synthetic)</source>
+        <translation>Satz SACCI 425 (synthetisch)</translation>
+    </message>
+    <message>
+        <source>Settings (*.json);;All files (*)</source>
+        <translation>Einstellungen (*.json);;Alle Dateien (*)</translation>
+    </message>
+    <message>
+        <source>Settings of the method</source>
+        <translation>Einstellungen des Verfahrens</translation>
+    </message>
+    <message>
+        <source>Settling time</source>
+        <translation>Absetzzeit</translation>
+    </message>
+    <message>
+        <source>Shape</source>
+        <translation>Form</translation>
+    </message>
+    <message>
+        <source>Shape model</source>
+        <translation>Formmodell</translation>
+    </message>
+    <message>
+        <source>Shapes</source>
+        <translation>Formen</translation>
+    </message>
+    <message>
+        <source>Shapes are changed: {how}</source>
+        <translation>Formen werden verändert: {how}</translation>
+    </message>
+    <message>
+        <source>Shapes may be changed</source>
+        <translation>Formen dürfen verändert werden</translation>
+    </message>
+    <message>
+        <source>Share at or below [%]</source>
+        <translation>Anteil bis hierher [%]</translation>
+    </message>
+    <message>
+        <source>Share of the volume in bodies that were left out</source>
+        <translation>Anteil des Volumens in weggelassenen Körpern</translation>
+    </message>
+    <message>
+        <source>Share that a classifier tells right: 0.5 cannot be told apart</source>
+        <translation>Anteil, den ein Klassifikator richtig zuordnet: bei 0.5 nicht zu unterscheiden</translation>
+    </message>
+    <message>
+        <source>Shift the picture</source>
+        <translation>Das Bild verschieben</translation>
+    </message>
+    <message>
+        <source>Show fitting errors</source>
+        <translation>Fehler des Fits zeigen</translation>
+    </message>
+    <message>
+        <source>Show in &amp;Explore</source>
+        <translation>In Er&amp;kunden zeigen</translation>
+    </message>
+    <message>
+        <source>Show particles</source>
+        <translation>Partikel zeigen</translation>
+    </message>
+    <message>
+        <source>Show the &amp;library</source>
+        <translation>Bib&amp;liothek zeigen</translation>
+    </message>
+    <message>
+        <source>Show the whole particle</source>
+        <translation>Das ganze Partikel zeigen</translation>
+    </message>
+    <message>
+        <source>Show triangles</source>
+        <translation>Dreiecke zeigen</translation>
+    </message>
+    <message>
+        <source>Show where</source>
+        <translation>Zeigen, wo</translation>
+    </message>
+    <message>
+        <source>Sieve classes, the same for all</source>
+        <translation>Siebklassen, für alle gleich</translation>
+    </message>
+    <message>
+        <source>Simulated annealing (paper)</source>
+        <translation>Simuliertes Abkühlen (Artikel)</translation>
+    </message>
+    <message>
+        <source>Single diameters, the same for all</source>
+        <translation>Einzelne Durchmesser, für alle gleich</translation>
+    </message>
+    <message>
+        <source>Size jitter</source>
+        <translation>Größenstreuung</translation>
+    </message>
+    <message>
+        <source>Size of letters</source>
+        <translation>Schriftgröße</translation>
+    </message>
+    <message>
+        <source>Slice along {axis}</source>
+        <translation>Schicht entlang {axis}</translation>
+    </message>
+    <message>
+        <source>Slice along {axis}, picture</source>
+        <translation>Schicht entlang {axis}, Bild</translation>
+    </message>
+    <message>
+        <source>Slice, in mean d</source>
+        <translation>Scheibe, in mittleren d</translation>
+    </message>
+    <message>
+        <source>Smallest</source>
+        <translation>Kleinste</translation>
+    </message>
+    <message>
+        <source>Smallest Feret diameter</source>
+        <translation>Kleinster Feret-Durchmesser</translation>
+    </message>
+    <message>
+        <source>Smallest equivalent radius</source>
+        <translation>Kleinster Äquivalentradius</translation>
+    </message>
+    <message>
+        <source>Smallest in volume</source>
+        <translation>Der kleinste dem Volumen nach</translation>
+    </message>
+    <message>
+        <source>Smallest l&lt;sub&gt;max&lt;/sub&gt; with every error below</source>
+        <translation>Kleinstes l&lt;sub&gt;max&lt;/sub&gt; mit allen Fehlern unter</translation>
+    </message>
+    <message>
+        <source>Snapshots</source>
+        <translation>Momentaufnahmen</translation>
+    </message>
+    <message>
+        <source>Solid</source>
+        <translation>Körper</translation>
+    </message>
+    <message>
+        <source>Something went wrong in the program ({name}); the work goes on.</source>
+        <translation>Im Programm ist etwas schiefgegangen ({name}); die Arbeit geht weiter.</translation>
+    </message>
+    <message>
+        <source>Spectrum</source>
+        <translation>Spektrum</translation>
+    </message>
+    <message>
+        <source>Spectrum depends on size</source>
+        <translation>Spektrum hängt von der Größe ab</translation>
+    </message>
+    <message>
+        <source>Spectrum of the model; left and right choose a degree, up and down change it</source>
+        <translation>Spektrum des Modells; links und rechts wählen einen Grad, auf und ab ändern ihn</translation>
+    </message>
+    <message>
+        <source>Speed</source>
+        <translation>Tempo</translation>
+    </message>
+    <message>
+        <source>Sphere</source>
+        <translation>Kugel</translation>
+    </message>
+    <message>
+        <source>Spheres a particle</source>
+        <translation>Kugeln je Partikel</translation>
+    </message>
+    <message>
+        <source>Spheres of the same volumes</source>
+        <translation>Kugeln gleicher Volumen</translation>
+    </message>
+    <message>
+        <source>Spherical-harmonics fit</source>
+        <translation>Fit mit Kugelflächenfunktionen</translation>
+    </message>
+    <message>
+        <source>Spherical-harmonics fit, {degree}</source>
+        <translation>Fit mit Kugelflächenfunktionen, {degree}</translation>
+    </message>
+    <message>
+        <source>Sphericity</source>
+        <translation>Sphärizität</translation>
+    </message>
+    <message>
+        <source>Sphericity {sphericity} needs at least {needed} facets; with {faces} the most is {most}.</source>
+        <translation>Die Sphärizität {sphericity} braucht mindestens {needed} Facetten; mit {faces} sind höchstens {most} möglich.</translation>
+    </message>
+    <message>
+        <source>Sphericity {sphericity} needs more than 100,000 facets; with {faces} the most is {most}.</source>
+        <translation>Die Sphärizität {sphericity} braucht mehr als 100,000 Facetten; mit {faces} sind höchstens {most} möglich.</translation>
+    </message>
+    <message>
+        <source>Sphericity, Eq. 1 (Wadell)</source>
+        <translation>Sphärizität, Gl. 1 (Wadell)</translation>
+    </message>
+    <message>
+        <source>Standard la&amp;yout</source>
+        <translation>&amp;Standardanordnung</translation>
+    </message>
+    <message>
+        <source>Star &amp;point</source>
+        <translation>S&amp;ternpunkt</translation>
+    </message>
+    <message>
+        <source>Star point</source>
+        <translation>Sternpunkt</translation>
+    </message>
+    <message>
+        <source>Star-shaped: no part of the surface is hidden from the star point.</source>
+        <translation>Sternförmig: kein Teil der Oberfläche ist vom Sternpunkt aus verdeckt.</translation>
+    </message>
+    <message>
+        <source>Start or go on</source>
+        <translation>Starten oder fortfahren</translation>
+    </message>
+    <message>
+        <source>Start temperature T₀</source>
+        <translation>Anfangstemperatur T₀</translation>
+    </message>
+    <message>
+        <source>Start the &amp;study</source>
+        <translation>&amp;Studie starten</translation>
+    </message>
+    <message>
+        <source>Starting the workers</source>
+        <translation>Arbeitsprozesse werden gestartet</translation>
+    </message>
+    <message>
+        <source>Starting …</source>
+        <translation>Beginnt …</translation>
+    </message>
+    <message>
+        <source>Starts</source>
+        <translation>Starts</translation>
+    </message>
+    <message>
+        <source>Static friction</source>
+        <translation>Haftreibung</translation>
+    </message>
+    <message>
+        <source>Statistics</source>
+        <translation>Statistik</translation>
+    </message>
+    <message>
+        <source>Statistics of</source>
+        <translation>Statistik:</translation>
+    </message>
+    <message>
+        <source>Statistics of groups</source>
+        <translation>Statistik der Gruppen</translation>
+    </message>
+    <message>
+        <source>Statistics of {count} particles of {name}, made by Regolith Studio.</source>
+        <translation>Statistik von {count} Partikeln aus {name}, erstellt mit Regolith Studio.</translation>
+    </message>
+    <message>
+        <source>Step</source>
+        <translation>Schritt</translation>
+    </message>
+    <message>
+        <source>Step &amp;back</source>
+        <translation>Schritt &amp;zurück</translation>
+    </message>
+    <message>
+        <source>Step &amp;forward</source>
+        <translation>Schritt &amp;vor</translation>
+    </message>
+    <message>
+        <source>Step by step</source>
+        <translation>Schritt für Schritt</translation>
+    </message>
+    <message>
+        <source>Step k</source>
+        <translation>Schritt k</translation>
+    </message>
+    <message>
+        <source>Step, in Rayleigh&apos;s time</source>
+        <translation>Schritt, in Rayleigh-Zeiten</translation>
+    </message>
+    <message>
+        <source>Step, in mean |p|</source>
+        <translation>Schrittweite in mittleren |p|</translation>
+    </message>
+    <message>
+        <source>Step, share of a swing</source>
+        <translation>Schritt, Anteil einer Schwingung</translation>
+    </message>
+    <message>
+        <source>Steps a second</source>
+        <translation>Schritte je Sekunde</translation>
+    </message>
+    <message>
+        <source>Steps a second while it plays by itself.</source>
+        <translation>Schritte je Sekunde, während es von selbst läuft.</translation>
+    </message>
+    <message>
+        <source>Stiffness, in m g / d³</source>
+        <translation>Steifigkeit, in m g / d³</translation>
+    </message>
+    <message>
+        <source>Stop</source>
+        <translation>Abbrechen</translation>
+    </message>
+    <message>
+        <source>Stop and close</source>
+        <translation>Abbrechen und schließen</translation>
+    </message>
+    <message>
+        <source>Stop what is running</source>
+        <translation>Abbrechen, was in Arbeit ist</translation>
+    </message>
+    <message>
+        <source>Stopped. Choose another seed, or come back to this page, to begin again.</source>
+        <translation>Abgebrochen. Wählen Sie einen anderen Startwert oder kehren Sie zu dieser Seite zurück, um neu zu beginnen.</translation>
+    </message>
+    <message>
+        <source>Stopped. What was done is kept: run again into the same folder to go on.</source>
+        <translation>Abgebrochen. Was fertig ist, bleibt: noch einmal in denselben Ordner ausführen setzt es fort.</translation>
+    </message>
+    <message>
+        <source>Stopped; what is finished is kept, and the start button goes on there.</source>
+        <translation>Abgebrochen; was fertig ist, bleibt, und der Startknopf fährt dort fort.</translation>
+    </message>
+    <message>
+        <source>Stopping …</source>
+        <translation>Wird abgebrochen …</translation>
+    </message>
+    <message>
+        <source>Studies</source>
+        <translation>Studien</translation>
+    </message>
+    <message>
+        <source>Study</source>
+        <translation>Studie</translation>
+    </message>
+    <message>
+        <source>Study of the coarsening</source>
+        <translation>Studie der Vergröberung</translation>
+    </message>
+    <message>
+        <source>Study of the degree</source>
+        <translation>Studie des Grades</translation>
+    </message>
+    <message>
+        <source>Surface</source>
+        <translation>Oberfläche</translation>
+    </message>
+    <message>
+        <source>Surface area</source>
+        <translation>Oberfläche</translation>
+    </message>
+    <message>
+        <source>Surface energy</source>
+        <translation>Oberflächenenergie</translation>
+    </message>
+    <message>
+        <source>Synthesised by Regolith Studio from the angular power spectrum and size spread of {count} particles of the published micro-CT set {name}, rounded to two digits; the length unit is taken as micrometres and no measured particle is contained.</source>
+        <translation>Von Regolith Studio synthetisiert aus dem Leistungsspektrum und der Größenstreuung von {count} Partikeln des veröffentlichten Mikro-CT-Satzes {name}, auf zwei Stellen gerundet; als Längeneinheit gelten Mikrometer, und kein gemessenes Partikel ist enthalten.</translation>
+    </message>
+    <message>
+        <source>Table 1</source>
+        <translation>Tabelle 1</translation>
+    </message>
+    <message>
+        <source>Table 1 of the paper</source>
+        <translation>Tabelle 1 des Artikels</translation>
+    </message>
+    <message>
+        <source>Table 2</source>
+        <translation>Tabelle 2</translation>
+    </message>
+    <message>
+        <source>Table 2 of the paper</source>
+        <translation>Tabelle 2 des Artikels</translation>
+    </message>
+    <message>
+        <source>Table of errors</source>
+        <translation>Tabelle der Fehler</translation>
+    </message>
+    <message>
+        <source>Tables (*.csv)</source>
+        <translation>Tabellen (*.csv)</translation>
+    </message>
+    <message>
+        <source>Tables of coefficients (*.anm *.sh *.shc *.txt *.dat *.csv)</source>
+        <translation>Tabellen von Koeffizienten (*.anm *.sh *.shc *.txt *.dat *.csv)</translation>
+    </message>
+    <message>
+        <source>Take settings from a file</source>
+        <translation>Einstellungen aus einer Datei nehmen</translation>
+    </message>
+    <message>
+        <source>Take the other half away</source>
+        <translation>Die andere Hälfte wegnehmen</translation>
+    </message>
+    <message>
+        <source>Tangential force</source>
+        <translation>Tangentialkraft</translation>
+    </message>
+    <message>
+        <source>Target</source>
+        <translation>Ziel</translation>
+    </message>
+    <message>
+        <source>Targets</source>
+        <translation>Ziele</translation>
+    </message>
+    <message>
+        <source>Tasks</source>
+        <translation>Aufgaben</translation>
+    </message>
+    <message>
+        <source>Teaching</source>
+        <translation>Lehre</translation>
+    </message>
+    <message>
+        <source>Term of Eq. 9</source>
+        <translation>Term von Gl. 9</translation>
+    </message>
+    <message>
+        <source>Test (Table 2)</source>
+        <translation>Versuch (Tabelle 2)</translation>
+    </message>
+    <message>
+        <source>That is all of the file&apos;s {count:,} bytes.</source>
+        <translation>Das sind alle {count:,} Bytes der Datei.</translation>
+    </message>
+    <message>
+        <source>The animation is in {path}.</source>
+        <translation>Die Animation ist in {path}.</translation>
+    </message>
+    <message>
+        <source>The card {name} cannot be written ({reason}).</source>
+        <translation>Die Karte {name} lässt sich nicht schreiben ({reason}).</translation>
+    </message>
+    <message>
+        <source>The centre of mass lies outside the particle; the point with the least hidden volume is used.</source>
+        <translation>Der Schwerpunkt liegt außerhalb des Partikels; genommen wird der Punkt mit dem kleinsten verdeckten Volumen.</translation>
+    </message>
+    <message>
+        <source>The command is on the clipboard.</source>
+        <translation>Das Kommando ist in der Zwischenablage.</translation>
+    </message>
+    <message>
+        <source>The command line that does the same</source>
+        <translation>Die Kommandozeile, die dasselbe tut</translation>
+    </message>
+    <message>
+        <source>The dataset is in {folder}.</source>
+        <translation>Der Datensatz ist in {folder}.</translation>
+    </message>
+    <message>
+        <source>The dataset is not sound: {problem}</source>
+        <translation>Der Datensatz ist fehlerhaft: {problem}</translation>
+    </message>
+    <message>
+        <source>The dataset is sound.</source>
+        <translation>Der Datensatz ist fehlerfrei.</translation>
+    </message>
+    <message>
+        <source>The dataset&apos;s polyhedra</source>
+        <translation>Polyeder des Datensatzes</translation>
+    </message>
+    <message>
+        <source>The errors appear when the fit is measured.</source>
+        <translation>Die Fehler erscheinen, sobald der Fit vermessen ist.</translation>
+    </message>
+    <message>
+        <source>The expansion up to l = {degree} misses the radius by {error} in the root mean square, at most {most}; a higher l_max comes closer, and on flat or long grains so does an ellipsoid as reference.</source>
+        <translation>Die Entwicklung bis l = {degree} verfehlt den Radius im quadratischen Mittel um {error}, höchstens um {most}; ein höheres l_max kommt näher, bei flachen oder länglichen Körnern auch ein Ellipsoid als Bezug.</translation>
+    </message>
+    <message>
+        <source>The expansion up to l = {degree} misses the radius by {error} in the root mean square; a higher l_max comes closer, and on flat or long grains so does an ellipsoid as reference.</source>
+        <translation>Die Entwicklung bis l = {degree} verfehlt den Radius im quadratischen Mittel um {error}; ein höheres l_max kommt näher, bei flachen oder länglichen Körnern auch ein Ellipsoid als Bezug.</translation>
+    </message>
+    <message>
+        <source>The fewest facets are sought whose weighted descriptors are all off by no more than this; of V and CH, which cannot both be met, beyond what none can avoid.</source>
+        <translation>Gesucht werden die wenigsten Facetten, deren gewichtete Deskriptoren alle höchstens um so viel abweichen; bei V und CH, die nicht beide zu treffen sind, über das Unvermeidliche hinaus.</translation>
+    </message>
+    <message>
+        <source>The field on the sphere</source>
+        <translation>Das Feld auf der Kugel</translation>
+    </message>
+    <message>
+        <source>The field with its amplitudes</source>
+        <translation>Das Feld mit seinen Amplituden</translation>
+    </message>
+    <message>
+        <source>The file calls its {count} images channels; they were interpreted as slices.</source>
+        <translation>Die Datei nennt ihre {count} Bilder Kanäle; sie wurden als Schichten genommen.</translation>
+    </message>
+    <message>
+        <source>The file has no diameters; one for all, in mm:</source>
+        <translation>Die Datei hat keine Durchmesser; einer für alle, in mm:</translation>
+    </message>
+    <message>
+        <source>The file has {count:,} bytes more than that.</source>
+        <translation>Die Datei hat {count:,} Bytes mehr als das.</translation>
+    </message>
+    <message>
+        <source>The file holds {count} series of images; the largest was read.</source>
+        <translation>Die Datei enthält {count} Bildserien; gelesen wurde die größte.</translation>
+    </message>
+    <message>
+        <source>The file holds {count} volumes; {name} was read.</source>
+        <translation>Die Datei enthält {count} Volumen; gelesen wurde {name}.</translation>
+    </message>
+    <message>
+        <source>The file is named {suffix} but is {format}.</source>
+        <translation>Die Datei heißt {suffix}, ist aber {format}.</translation>
+    </message>
+    <message>
+        <source>The file is {count:,} bytes too short for that.</source>
+        <translation>Die Datei ist dafür um {count:,} Bytes zu kurz.</translation>
+    </message>
+    <message>
+        <source>The file states a voxel of {size}, which is implausible; give the size of a voxel.</source>
+        <translation>Laut Datei ist ein Voxel {size} groß, was kein Scan hat; geben Sie die Größe eines Voxels an.</translation>
+    </message>
+    <message>
+        <source>The file states the width of a pixel only; the slices were assumed to be the same distance apart.</source>
+        <translation>Die Datei nennt nur die Breite eines Pixels; als Abstand der Schichten wurde dieselbe Länge genommen.</translation>
+    </message>
+    <message>
+        <source>The file states voxel edges in different units; they were ignored.</source>
+        <translation>Die Datei nennt Voxelkanten in verschiedenen Einheiten; sie wurden übergangen.</translation>
+    </message>
+    <message>
+        <source>The files of the {count} open particles, as chosen now</source>
+        <translation>Die Dateien der {count} geöffneten Partikel, wie jetzt eingestellt</translation>
+    </message>
+    <message>
+        <source>The folder holds a run that has not ended: go on with it, or choose another folder.</source>
+        <translation>Im Ordner liegt ein nicht beendeter Lauf: setzen Sie ihn fort oder wählen Sie einen anderen Ordner.</translation>
+    </message>
+    <message>
+        <source>The folder is not empty: choose another one, or replace the dataset in it.</source>
+        <translation>Der Ordner ist nicht leer: wählen Sie einen anderen oder ersetzen Sie den Datensatz darin.</translation>
+    </message>
+    <message>
+        <source>The folder of your datasets</source>
+        <translation>Der Ordner Ihrer Datensätze</translation>
+    </message>
+    <message>
+        <source>The grey values about a grain tell its volume better than its mask, however blurred the scan.</source>
+        <translation>Die Grauwerte um ein Korn sagen sein Volumen besser als seine Maske, wie unscharf der Scan auch ist.</translation>
+    </message>
+    <message>
+        <source>The language takes effect when the program starts again.</source>
+        <translation>Die Sprache gilt ab dem nächsten Start des Programms.</translation>
+    </message>
+    <message>
+        <source>The lesson is still being computed.</source>
+        <translation>Die Lektion wird noch berechnet.</translation>
+    </message>
+    <message>
+        <source>The loss appears when the coarsening begins.</source>
+        <translation>Der Verlust erscheint, sobald die Vergröberung beginnt.</translation>
+    </message>
+    <message>
+        <source>The loss falls while the coarsening runs; the spectrum shows which degrees are kept. Nothing here blocks the window: what runs is in the status bar and can be stopped there.</source>
+        <translation>Der Verlust fällt, während die Vergröberung läuft; das Spektrum zeigt, welche Grade erhalten bleiben. Nichts davon blockiert das Fenster: was in Arbeit ist, steht in der Statuszeile und lässt sich dort abbrechen.</translation>
+    </message>
+    <message>
+        <source>The method keeps descriptors exactly: each is asked for or not, whatever its weight.</source>
+        <translation>Das Verfahren hält Deskriptoren genau ein: jeder wird verlangt oder nicht, gleich mit welchem Gewicht.</translation>
+    </message>
+    <message>
+        <source>The model {name} cannot be written ({reason}).</source>
+        <translation>Das Modell {name} lässt sich nicht schreiben ({reason}).</translation>
+    </message>
+    <message>
+        <source>The nearest to the sample first</source>
+        <translation>Das der Probe nächste zuerst</translation>
+    </message>
+    <message>
+        <source>The next window stands as a new one.</source>
+        <translation>Das nächste Fenster steht wie ein neues.</translation>
+    </message>
+    <message>
+        <source>The other half is then new to the model, as in its judgement.</source>
+        <translation>Die andere Hälfte ist dem Modell dann neu, wie bei seiner Beurteilung.</translation>
+    </message>
+    <message>
+        <source>The page Lecture shows the ideas one step at a time, each formula with its numbers: the annealing, the degrees of the fit, a random field. Ctrl+Space plays, the page keys step, Ctrl++ enlarges the letters, F11 fills the screen.</source>
+        <translation>Die Seite Vorlesung zeigt die Gedanken Schritt für Schritt, jede Formel mit ihren Zahlen: das simulierte Abkühlen, die Grade des Fits, ein Zufallsfeld. Strg+Leertaste spielt ab, die Bildtasten gehen einen Schritt, Strg++ vergrößert die Schrift, F11 füllt den Bildschirm.</translation>
+    </message>
+    <message>
+        <source>The pages follow the work: find grains in a scan, model their shape and draw new ones, build a dataset for Rocky, YADE or LAMMPS, and measure the angle of repose.</source>
+        <translation>Die Seiten folgen der Arbeit: Körner in einem Scan finden, ihre Form modellieren und neue ziehen, einen Datensatz für Rocky, YADE oder LAMMPS bauen und den Schüttwinkel messen.</translation>
+    </message>
+    <message>
+        <source>The paper has 10.</source>
+        <translation>Im Artikel sind es 10.</translation>
+    </message>
+    <message>
+        <source>The paper&apos;s outlook: constituents with sizes and spectra of their own, in the radius itself.</source>
+        <translation>Der Ausblick des Artikels: Komponenten mit eigenen Größen und Spektren, im Radius selbst.</translation>
+    </message>
+    <message>
+        <source>The paper&apos;s virtual particles have 10.</source>
+        <translation>Die virtuellen Partikel des Artikels haben 10.</translation>
+    </message>
+    <message>
+        <source>The particle</source>
+        <translation>Das Partikel</translation>
+    </message>
+    <message>
+        <source>The particle is annealed …</source>
+        <translation>Das Partikel wird abgekühlt …</translation>
+    </message>
+    <message>
+        <source>The particle is fitted …</source>
+        <translation>Das Partikel wird angepasst …</translation>
+    </message>
+    <message>
+        <source>The picture is in {path}.</source>
+        <translation>Das Bild ist in {path}.</translation>
+    </message>
+    <message>
+        <source>The picture {path} cannot be written.</source>
+        <translation>Das Bild {path} lässt sich nicht schreiben.</translation>
+    </message>
+    <message>
+        <source>The plot appears when the particles are measured.</source>
+        <translation>Die Darstellung erscheint, sobald die Partikel vermessen sind.</translation>
+    </message>
+    <message>
+        <source>The polyhedra of six particles as each loss function makes them, as in Fig. 7 of the paper.</source>
+        <translation>Die Polyeder von sechs Partikeln, wie jede Verlustfunktion sie macht, wie in Bild 7 des Artikels.</translation>
+    </message>
+    <message>
+        <source>The polyhedron has as many facets as surely have no more triangles than this.</source>
+        <translation>Das Polyeder hat so viele Facetten, wie sicher nicht mehr Dreiecke als diese haben.</translation>
+    </message>
+    <message>
+        <source>The proposal, T(k) and the decision with their numbers</source>
+        <translation>Der Vorschlag, T(k) und die Entscheidung mit ihren Zahlen</translation>
+    </message>
+    <message>
+        <source>The result has {real} facets instead of {faces}.</source>
+        <translation>Das Ergebnis hat {real} statt {faces} Facetten.</translation>
+    </message>
+    <message>
+        <source>The result has {real} facets instead of {faces}: no place was found where the other half-spaces bound a facet and all descriptors are met.</source>
+        <translation>Das Ergebnis hat {real} statt {faces} Facetten: Es fand sich kein Ort, wo die übrigen Halbräume eine Facette begrenzen und alle Deskriptoren getroffen sind.</translation>
+    </message>
+    <message>
+        <source>The result has {real} facets instead of {faces}: the particle is convex and has {facets} facets itself, and no other polyhedron was found that meets all descriptors.</source>
+        <translation>Das Ergebnis hat {real} statt {faces} Facetten: Das Partikel ist konvex und hat selbst {facets} Facetten, und es fand sich kein anderes Polyeder, das alle Deskriptoren trifft.</translation>
+    </message>
+    <message>
+        <source>The results are the same bytes whoever works, and a run that was stopped can go on.</source>
+        <translation>Die Ergebnisse sind Byte für Byte dieselben, wer auch arbeitet, und ein abgebrochener Lauf lässt sich fortsetzen.</translation>
+    </message>
+    <message>
+        <source>The same for the Kolmogorov-Smirnov distance</source>
+        <translation>Dasselbe für die Kolmogorow-Smirnow-Distanz</translation>
+    </message>
+    <message>
+        <source>The sample</source>
+        <translation>Die Probe</translation>
+    </message>
+    <message>
+        <source>The script is on the clipboard.</source>
+        <translation>Das Skript ist in der Zwischenablage.</translation>
+    </message>
+    <message>
+        <source>The series of a fit has no random numbers.</source>
+        <translation>Die Reihe einer Anpassung hat keine Zufallszahlen.</translation>
+    </message>
+    <message>
+        <source>The sizes of the classes appear here.</source>
+        <translation>Die Größen der Klassen erscheinen hier.</translation>
+    </message>
+    <message>
+        <source>The smallest radius must be below the largest, got {low:g} and {high:g}.</source>
+        <translation>Der kleinste Radius muss unter dem größten liegen, nicht {low:g} und {high:g}.</translation>
+    </message>
+    <message>
+        <source>The source holds no measured particles.</source>
+        <translation>Die Quelle enthält keine gemessenen Partikel.</translation>
+    </message>
+    <message>
+        <source>The spectrum appears when a model is fitted.</source>
+        <translation>Das Spektrum erscheint, sobald ein Modell angepasst ist.</translation>
+    </message>
+    <message>
+        <source>The spectrum appears when the particle is fitted.</source>
+        <translation>Das Spektrum erscheint, sobald das Partikel angepasst ist.</translation>
+    </message>
+    <message>
+        <source>The start: the convex hull, decimated to {count} planes. In each step one plane is moved at random, and the move is taken or not.</source>
+        <translation>Der Anfang: die konvexe Hülle, auf {count} Ebenen dezimiert. In jedem Schritt wird eine Ebene zufällig verschoben, und der Zug wird angenommen oder nicht.</translation>
+    </message>
+    <message>
+        <source>The table is on the clipboard.</source>
+        <translation>Die Tabelle ist in der Zwischenablage.</translation>
+    </message>
+    <message>
+        <source>The turntable is in {path}.</source>
+        <translation>Die Drehung ist in {path}.</translation>
+    </message>
+    <message>
+        <source>The views as they are seen</source>
+        <translation>Die Ansichten, wie man sie sieht</translation>
+    </message>
+    <message>
+        <source>The volume holds labels: its grains have been found already.</source>
+        <translation>Das Volumen enthält Labels: Seine Körner sind schon gefunden.</translation>
+    </message>
+    <message>
+        <source>The whole sample</source>
+        <translation>Die ganze Probe</translation>
+    </message>
+    <message>
+        <source>Theme</source>
+        <translation>Farbschema</translation>
+    </message>
+    <message>
+        <source>There are no drawn particles yet: draw some first.</source>
+        <translation>Es gibt noch keine gezogenen Partikel: ziehen Sie zuerst welche.</translation>
+    </message>
+    <message>
+        <source>There are no particles to choose from: open some first.</source>
+        <translation>Es gibt keine Partikel zur Auswahl: öffnen Sie zuerst welche.</translation>
+    </message>
+    <message>
+        <source>There are no representatives yet: press Find first.</source>
+        <translation>Es gibt noch keine Repräsentanten: drücken Sie zuerst „Repräsentanten finden“.</translation>
+    </message>
+    <message>
+        <source>There is a folder {folder} already. Replace the dataset in it?</source>
+        <translation>Den Ordner {folder} gibt es schon. Den Datensatz darin ersetzen?</translation>
+    </message>
+    <message>
+        <source>There is no angle of repose.</source>
+        <translation>Es gibt keinen Schüttwinkel.</translation>
+    </message>
+    <message>
+        <source>There is no dataset below this folder.</source>
+        <translation>Unter diesem Ordner gibt es keinen Datensatz.</translation>
+    </message>
+    <message>
+        <source>There is no dataset to check: build or open one first.</source>
+        <translation>Es gibt keinen Datensatz zu prüfen: bauen oder öffnen Sie zuerst einen.</translation>
+    </message>
+    <message>
+        <source>There is no dataset to export: build or open one first.</source>
+        <translation>Es gibt keinen Datensatz zu exportieren: bauen oder öffnen Sie zuerst einen.</translation>
+    </message>
+    <message>
+        <source>There is no dataset yet: open one, or make one first.</source>
+        <translation>Es gibt noch keinen Datensatz: öffnen oder machen Sie zuerst einen.</translation>
+    </message>
+    <message>
+        <source>There is no measured pile to export yet.</source>
+        <translation>Es gibt noch keinen vermessenen Schüttkegel zu exportieren.</translation>
+    </message>
+    <message>
+        <source>There is no model to draw from: fit one first.</source>
+        <translation>Es gibt kein Modell, aus dem zu ziehen wäre: passen Sie zuerst eines an.</translation>
+    </message>
+    <message>
+        <source>There is no model to save: fit one first.</source>
+        <translation>Es gibt kein Modell zu speichern: passen Sie zuerst eines an.</translation>
+    </message>
+    <message>
+        <source>There is no run to play: make one, or choose one of the list.</source>
+        <translation>Es gibt keinen Lauf zum Abspielen: einen machen oder einen der Liste wählen.</translation>
+    </message>
+    <message>
+        <source>There is nothing to export: open a particle first.</source>
+        <translation>Es gibt nichts zu exportieren: öffnen Sie zuerst ein Partikel.</translation>
+    </message>
+    <message>
+        <source>They are cut. Each of the others then counts a little more (Miles-Lantuéjoul weights).</source>
+        <translation>Sie sind angeschnitten. Jedes der anderen zählt dann etwas mehr (Gewichte nach Miles und Lantuéjoul).</translation>
+    </message>
+    <message>
+        <source>They are expanded in spherical harmonics first.</source>
+        <translation>Sie werden zuerst nach Kugelflächenfunktionen entwickelt.</translation>
+    </message>
+    <message>
+        <source>This may be chance.</source>
+        <translation>Das kann Zufall sein.</translation>
+    </message>
+    <message>
+        <source>This run was not finished: {state}.</source>
+        <translation>Dieser Lauf wurde nicht beendet: {state}.</translation>
+    </message>
+    <message>
+        <source>Those of Fig. 8</source>
+        <translation>Die von Bild 8</translation>
+    </message>
+    <message>
+        <source>Three-dimensional views: {how}</source>
+        <translation>Dreidimensionale Ansichten: {how}</translation>
+    </message>
+    <message>
+        <source>Threshold</source>
+        <translation>Schwellwert</translation>
+    </message>
+    <message>
+        <source>Through the body, of a closed mesh</source>
+        <translation>Durch den Körper, bei einem geschlossenen Netz</translation>
+    </message>
+    <message>
+        <source>Tick a format to see what it carries and what it loses.</source>
+        <translation>Kreuzen Sie ein Format an, um zu sehen, was es überträgt und was es verliert.</translation>
+    </message>
+    <message>
+        <source>Time of the run</source>
+        <translation>Zeit des Laufs</translation>
+    </message>
+    <message>
+        <source>Time step</source>
+        <translation>Zeitschritt</translation>
+    </message>
+    <message>
+        <source>To</source>
+        <translation>Bis</translation>
+    </message>
+    <message>
+        <source>To the beginning</source>
+        <translation>An den Anfang</translation>
+    </message>
+    <message>
+        <source>Tolerance</source>
+        <translation>Toleranz</translation>
+    </message>
+    <message>
+        <source>Took the surface apart along 1 edge where more than two faces met.</source>
+        <translation>Die Oberfläche wurde entlang 1 Kante getrennt, an der mehr als zwei Flächen zusammenkamen.</translation>
+    </message>
+    <message>
+        <source>Took the surface apart along {count} edges where more than two faces met.</source>
+        <translation>Die Oberfläche wurde entlang {count} Kanten getrennt, an denen mehr als zwei Flächen zusammenkamen.</translation>
+    </message>
+    <message>
+        <source>Tools</source>
+        <translation>Werkzeuge</translation>
+    </message>
+    <message>
+        <source>Top (from +z)</source>
+        <translation>Oben (von +z)</translation>
+    </message>
+    <message>
+        <source>Transparent background</source>
+        <translation>Durchsichtiger Hintergrund</translation>
+    </message>
+    <message>
+        <source>Triangles</source>
+        <translation>Dreiecke</translation>
+    </message>
+    <message>
+        <source>Triangles that are a line or a point</source>
+        <translation>Dreiecke, die nur eine Linie oder ein Punkt sind</translation>
+    </message>
+    <message>
+        <source>Tunnels</source>
+        <translation>Tunnel</translation>
+    </message>
+    <message>
+        <source>Turn [rad]</source>
+        <translation>Drehung [rad]</translation>
+    </message>
+    <message>
+        <source>Turn all views together</source>
+        <translation>Alle Ansichten gemeinsam drehen</translation>
+    </message>
+    <message>
+        <source>Turn the cross-section on in the tool bar.</source>
+        <translation>Schalten Sie den Querschnitt in der Werkzeugleiste ein.</translation>
+    </message>
+    <message>
+        <source>Turn the particle</source>
+        <translation>Das Partikel drehen</translation>
+    </message>
+    <message>
+        <source>Turned 1 face that looked the wrong way.</source>
+        <translation>1 Fläche, die zur falschen Seite zeigte, wurde gedreht.</translation>
+    </message>
+    <message>
+        <source>Turned all faces: the mesh was inside out.</source>
+        <translation>Alle Flächen wurden gedreht: das Netz war umgestülpt.</translation>
+    </message>
+    <message>
+        <source>Turned {count} faces that looked the wrong way.</source>
+        <translation>{count} Flächen, die zur falschen Seite zeigten, wurden gedreht.</translation>
+    </message>
+    <message>
+        <source>Two bodies beside a line</source>
+        <translation>Zwei Körper beiderseits einer Linie</translation>
+    </message>
+    <message>
+        <source>Type</source>
+        <translation>Typ</translation>
+    </message>
+    <message>
+        <source>Type a command</source>
+        <translation>Befehl eintippen</translation>
+    </message>
+    <message>
+        <source>Type of a voxel</source>
+        <translation>Typ eines Voxels</translation>
+    </message>
+    <message>
+        <source>Unit</source>
+        <translation>Einheit</translation>
+    </message>
+    <message>
+        <source>Unit of the voxel size</source>
+        <translation>Einheit der Voxelgröße</translation>
+    </message>
+    <message>
+        <source>Units: {units}</source>
+        <translation>Einheiten: {units}</translation>
+    </message>
+    <message>
+        <source>Unpacking into a temporary file</source>
+        <translation>In eine temporäre Datei wird entpackt</translation>
+    </message>
+    <message>
+        <source>Upper cut</source>
+        <translation>Oberer Schnitt</translation>
+    </message>
+    <message>
+        <source>Use as population</source>
+        <translation>Als Population übernehmen</translation>
+    </message>
+    <message>
+        <source>Use the drawn particles as population</source>
+        <translation>Die gezogenen Partikel als Population übernehmen</translation>
+    </message>
+    <message>
+        <source>Use the model</source>
+        <translation>Modell übernehmen</translation>
+    </message>
+    <message>
+        <source>Use this dataset</source>
+        <translation>Diesen Datensatz verwenden</translation>
+    </message>
+    <message>
+        <source>Usual</source>
+        <translation>Üblich</translation>
+    </message>
+    <message>
+        <source>Usual keys</source>
+        <translation>Übliche Tasten</translation>
+    </message>
+    <message>
+        <source>V</source>
+        <translation>V</translation>
+    </message>
+    <message>
+        <source>V / CH</source>
+        <translation>V / CH</translation>
+    </message>
+    <message>
+        <source>V [µm³]</source>
+        <translation>V [µm³]</translation>
+    </message>
+    <message>
+        <source>V of the hull</source>
+        <translation>V der Hülle</translation>
+    </message>
+    <message>
+        <source>V/CH: Kolmogorov-Smirnov distance in floors</source>
+        <translation>V/CH: Kolmogorow-Smirnow-Distanz in Einheiten des Rauschens</translation>
+    </message>
+    <message>
+        <source>Value</source>
+        <translation>Wert</translation>
+    </message>
+    <message>
+        <source>Values</source>
+        <translation>Werte</translation>
+    </message>
+    <message>
+        <source>Values, with commas between them</source>
+        <translation>Werte, mit Kommas dazwischen</translation>
+    </message>
+    <message>
+        <source>Vary</source>
+        <translation>Verändert</translation>
+    </message>
+    <message>
+        <source>Vertical axis</source>
+        <translation>Senkrechte Achse</translation>
+    </message>
+    <message>
+        <source>Virtual particles</source>
+        <translation>Virtuelle Partikel</translation>
+    </message>
+    <message>
+        <source>Volume</source>
+        <translation>Volumen</translation>
+    </message>
+    <message>
+        <source>Volume and box</source>
+        <translation>Volumen und Hüllquader</translation>
+    </message>
+    <message>
+        <source>Volume in the file</source>
+        <translation>Volumen in der Datei</translation>
+    </message>
+    <message>
+        <source>Volume, surface area, aspect ratio</source>
+        <translation>Volumen, Oberfläche, Seitenverhältnis</translation>
+    </message>
+    <message>
+        <source>Volumes (*.tif *.tiff *.h5 *.hdf5 *.nrrd *.nhdr *.mha *.mhd *.nii *.nii.gz *.npy *.raw);;All files (*)</source>
+        <translation>Volumen (*.tif *.tiff *.h5 *.hdf5 *.nrrd *.nhdr *.mha *.mhd *.nii *.nii.gz *.npy *.raw);;Alle Dateien (*)</translation>
+    </message>
+    <message>
+        <source>Voxel size x, y, z</source>
+        <translation>Voxelgröße x, y, z</translation>
+    </message>
+    <message>
+        <source>Voxels</source>
+        <translation>Voxel</translation>
+    </message>
+    <message>
+        <source>Voxels [%]</source>
+        <translation>Voxel [%]</translation>
+    </message>
+    <message>
+        <source>Voxels along {axis}</source>
+        <translation>Voxel entlang {axis}</translation>
+    </message>
+    <message>
+        <source>Voxels of a CT volume</source>
+        <translation>Voxel eines CT-Volumens</translation>
+    </message>
+    <message>
+        <source>Voxels x, y, z</source>
+        <translation>Voxel x, y, z</translation>
+    </message>
+    <message>
+        <source>W / floor</source>
+        <translation>W / Rauschen</translation>
+    </message>
+    <message>
+        <source>Wait until the particle is fitted.</source>
+        <translation>Warten Sie, bis das Partikel angepasst ist.</translation>
+    </message>
+    <message>
+        <source>Wait until the three views are drawn.</source>
+        <translation>Warten Sie, bis die drei Ansichten gezeichnet sind.</translation>
+    </message>
+    <message>
+        <source>Wait until the views are drawn.</source>
+        <translation>Warten Sie, bis die Ansichten gezeichnet sind.</translation>
+    </message>
+    <message>
+        <source>Wall friction</source>
+        <translation>Reibung der Wand</translation>
+    </message>
+    <message>
+        <source>Wanted</source>
+        <translation>Verlangt</translation>
+    </message>
+    <message>
+        <source>Wasserstein distance {apart:.1%} of the mean, Kolmogorov-Smirnov distance {gap:.2f}; means {measured} measured, {drawn} drawn</source>
+        <translation>Wasserstein-Distanz {apart:.1%} des Mittels, Kolmogorow-Smirnow-Distanz {gap:.2f}; Mittel {measured} gemessen, {drawn} gezogen</translation>
+    </message>
+    <message>
+        <source>Watch it work</source>
+        <translation>Bei der Arbeit zusehen</translation>
+    </message>
+    <message>
+        <source>Weight of {name}</source>
+        <translation>Gewicht: {name}</translation>
+    </message>
+    <message>
+        <source>Weighting</source>
+        <translation>Gewichtung</translation>
+    </message>
+    <message>
+        <source>Weighting of the statistics</source>
+        <translation>Gewichtung der Statistik</translation>
+    </message>
+    <message>
+        <source>Weights</source>
+        <translation>Gewichte</translation>
+    </message>
+    <message>
+        <source>Weights of the loss (Eq. 9)</source>
+        <translation>Gewichte der Verlustfunktion (Gl. 9)</translation>
+    </message>
+    <message>
+        <source>Weights of the loss, open particles</source>
+        <translation>Gewichte des Verlusts, geöffnete Partikel</translation>
+    </message>
+    <message>
+        <source>What each error becomes when one weight of the loss is changed: which weights matter.</source>
+        <translation>Was aus jedem Fehler wird, wenn ein Gewicht des Verlusts geändert wird: auf welche Gewichte es ankommt.</translation>
+    </message>
+    <message>
+        <source>What formats lose</source>
+        <translation>Was Formate verlieren</translation>
+    </message>
+    <message>
+        <source>What happened</source>
+        <translation>Was geschehen ist</translation>
+    </message>
+    <message>
+        <source>What has been exported is listed here, with the command that loads it.</source>
+        <translation>Was exportiert wurde, steht hier, mit dem Befehl, der es lädt.</translation>
+    </message>
+    <message>
+        <source>What is imitated</source>
+        <translation>Was nachgebildet wird</translation>
+    </message>
+    <message>
+        <source>What is laid over it, or shown to the right of the line</source>
+        <translation>Was darübergelegt oder rechts der Linie gezeigt wird</translation>
+    </message>
+    <message>
+        <source>What is running</source>
+        <translation>Was in Arbeit ist</translation>
+    </message>
+    <message>
+        <source>What is varied</source>
+        <translation>Was verändert wird</translation>
+    </message>
+    <message>
+        <source>What it holds</source>
+        <translation>Was er enthält</translation>
+    </message>
+    <message>
+        <source>What it looks like: {looks}</source>
+        <translation>Wonach es aussieht: {looks}</translation>
+    </message>
+    <message>
+        <source>What matters to you</source>
+        <translation>Worauf es Ihnen ankommt</translation>
+    </message>
+    <message>
+        <source>What overlap costs in descriptors, and descriptors in overlap: lower left is better.</source>
+        <translation>Was Überdeckung an Deskriptoren kostet, und Deskriptoren an Überdeckung: links unten ist besser.</translation>
+    </message>
+    <message>
+        <source>What particles count</source>
+        <translation>Was Partikel zählen</translation>
+    </message>
+    <message>
+        <source>What radii are divided by before they are expanded. An ellipsoid lowers the oscillation on flat and elongated grains.</source>
+        <translation>Wodurch Radien geteilt werden, bevor sie entwickelt werden. Ein Ellipsoid mindert das Schwingen bei flachen und länglichen Körnern.</translation>
+    </message>
+    <message>
+        <source>What representatives count</source>
+        <translation>Wonach Repräsentanten zählen</translation>
+    </message>
+    <message>
+        <source>What says how fine the polyhedron is</source>
+        <translation>Wonach sich richtet, wie fein das Polyeder ist</translation>
+    </message>
+    <message>
+        <source>What the fit and the polyhedron keep</source>
+        <translation>Was Fit und Polyeder bewahren</translation>
+    </message>
+    <message>
+        <source>What the polyhedra look like (Fig. 7)</source>
+        <translation>Wie die Polyeder aussehen (Bild 7)</translation>
+    </message>
+    <message>
+        <source>What the volume holds</source>
+        <translation>Was das Volumen enthält</translation>
+    </message>
+    <message>
+        <source>What to draw from</source>
+        <translation>Woraus gezogen wird</translation>
+    </message>
+    <message>
+        <source>What was said</source>
+        <translation>Was gesagt wurde</translation>
+    </message>
+    <message>
+        <source>Whatever it looks like</source>
+        <translation>Wonach es aussieht</translation>
+    </message>
+    <message>
+        <source>Wheel</source>
+        <translation>Rad</translation>
+    </message>
+    <message>
+        <source>Where radii begin. Automatic: the centre of mass or, where that is not inside, the point that hides the least volume.</source>
+        <translation>Wo Radien beginnen. Automatisch: der Schwerpunkt oder, wo dieser nicht im Inneren liegt, der Punkt, der am wenigsten Volumen verdeckt.</translation>
+    </message>
+    <message>
+        <source>Where to go from here</source>
+        <translation>Wie es weitergeht</translation>
+    </message>
+    <message>
+        <source>Which grain they belong to</source>
+        <translation>Zu welchem Korn sie gehören</translation>
+    </message>
+    <message>
+        <source>Which grains become particles</source>
+        <translation>Welche Körner Partikel werden</translation>
+    </message>
+    <message>
+        <source>Which radius counts where a ray crosses the surface more than once. Keep the volume: the cube root of the signed sum of r³ over all crossings.</source>
+        <translation>Welcher Radius zählt, wo ein Strahl die Oberfläche mehrmals durchstößt. Volumen erhalten: die Kubikwurzel der vorzeichenbehafteten Summe von r³ über alle Durchstöße.</translation>
+    </message>
+    <message>
+        <source>Which voxels are grain</source>
+        <translation>Welche Voxel Korn sind</translation>
+    </message>
+    <message>
+        <source>Which {noun}</source>
+        <translation>Welcher {noun}</translation>
+    </message>
+    <message>
+        <source>Wi&amp;pe</source>
+        <translation>&amp;Wischblende</translation>
+    </message>
+    <message>
+        <source>Work done by</source>
+        <translation>Ausführung durch</translation>
+    </message>
+    <message>
+        <source>Work done by:</source>
+        <translation>Ausführung durch:</translation>
+    </message>
+    <message>
+        <source>Working on particles</source>
+        <translation>Partikel werden bearbeitet</translation>
+    </message>
+    <message>
+        <source>Wound alike</source>
+        <translation>Einheitlich orientiert</translation>
+    </message>
+    <message>
+        <source>Write settings for the next scan</source>
+        <translation>Einstellungen für den nächsten Scan schreiben</translation>
+    </message>
+    <message>
+        <source>Write:</source>
+        <translation>Schreiben:</translation>
+    </message>
+    <message>
+        <source>Writing figures</source>
+        <translation>Abbildungen werden geschrieben</translation>
+    </message>
+    <message>
+        <source>Writing particles</source>
+        <translation>Partikel werden geschrieben</translation>
+    </message>
+    <message>
+        <source>Writing the dataset</source>
+        <translation>Datensatz wird geschrieben</translation>
+    </message>
+    <message>
+        <source>Writing the results</source>
+        <translation>Ergebnisse werden geschrieben</translation>
+    </message>
+    <message>
+        <source>Young&apos;s modulus</source>
+        <translation>Elastizitätsmodul</translation>
+    </message>
+    <message>
+        <source>Young&apos;s modulus / ρgd</source>
+        <translation>Elastizitätsmodul / ρgd</translation>
+    </message>
+    <message>
+        <source>Zingg&apos;s class: equant, disc, rod or blade</source>
+        <translation>Klasse nach Zingg: isometrisch, scheibig, stabförmig oder klingenförmig</translation>
+    </message>
+    <message>
+        <source>Zoom</source>
+        <translation>Vergrößern und verkleinern</translation>
+    </message>
+    <message>
+        <source>a sphere</source>
+        <translation>eine Kugel</translation>
+    </message>
+    <message>
+        <source>a sphere that is shifted a little</source>
+        <translation>eine etwas verschobene Kugel</translation>
+    </message>
+    <message>
+        <source>about the centroid</source>
+        <translation>um den Schwerpunkt</translation>
+    </message>
+    <message>
+        <source>about {hours:.1f} h left</source>
+        <translation>noch etwa {hours:.1f} h</translation>
+    </message>
+    <message>
+        <source>about {minutes} min left</source>
+        <translation>noch etwa {minutes} min</translation>
+    </message>
+    <message>
+        <source>about {seconds} s left</source>
+        <translation>noch etwa {seconds} s</translation>
+    </message>
+    <message>
+        <source>accept</source>
+        <translation>annehmen</translation>
+    </message>
+    <message>
+        <source>across</source>
+        <translation>quer</translation>
+    </message>
+    <message>
+        <source>against</source>
+        <translation>gegen</translation>
+    </message>
+    <message>
+        <source>all</source>
+        <translation>alle</translation>
+    </message>
+    <message>
+        <source>all classes, by {kinds}</source>
+        <translation>alle Klassen, nach {kinds}</translation>
+    </message>
+    <message>
+        <source>all models</source>
+        <translation>alle Modelle</translation>
+    </message>
+    <message>
+        <source>alone</source>
+        <translation>allein</translation>
+    </message>
+    <message>
+        <source>along Dint</source>
+        <translation>entlang Dint</translation>
+    </message>
+    <message>
+        <source>along Dmax</source>
+        <translation>entlang Dmax</translation>
+    </message>
+    <message>
+        <source>along Dmin</source>
+        <translation>entlang Dmin</translation>
+    </message>
+    <message>
+        <source>along x</source>
+        <translation>entlang x</translation>
+    </message>
+    <message>
+        <source>along y</source>
+        <translation>entlang y</translation>
+    </message>
+    <message>
+        <source>along z</source>
+        <translation>entlang z</translation>
+    </message>
+    <message>
+        <source>amplitude [%]</source>
+        <translation>Amplitude [%]</translation>
+    </message>
+    <message>
+        <source>and</source>
+        <translation>und</translation>
+    </message>
+    <message>
+        <source>and {count} more</source>
+        <translation>und {count} weitere</translation>
+    </message>
+    <message>
+        <source>as fitted</source>
+        <translation>wie angepasst</translation>
+    </message>
+    <message>
+        <source>as fitted [%]</source>
+        <translation>wie angepasst [%]</translation>
+    </message>
+    <message>
+        <source>as it came</source>
+        <translation>wie gelesen</translation>
+    </message>
+    <message>
+        <source>as scanned</source>
+        <translation>wie gescannt</translation>
+    </message>
+    <message>
+        <source>as small as the sampling noise from N = {count} on</source>
+        <translation>ab N = {count} so klein wie das Stichprobenrauschen</translation>
+    </message>
+    <message>
+        <source>as the folder</source>
+        <translation>wie der Ordner</translation>
+    </message>
+    <message>
+        <source>aspect ratio, times nearer than the paper&apos;s model</source>
+        <translation>Seitenverhältnis, wievielmal näher als das Modell des Artikels</translation>
+    </message>
+    <message>
+        <source>at least {limit}</source>
+        <translation>mindestens {limit}</translation>
+    </message>
+    <message>
+        <source>at most {faces} facets, {triangles} triangles</source>
+        <translation>höchstens {faces} Facetten, {triangles} Dreiecken</translation>
+    </message>
+    <message>
+        <source>at most {limit}</source>
+        <translation>höchstens {limit}</translation>
+    </message>
+    <message>
+        <source>at most {reach:.3g} µm from the particle</source>
+        <translation>höchstens {reach:.3g} µm vom Partikel entfernt</translation>
+    </message>
+    <message>
+        <source>before</source>
+        <translation>vorher</translation>
+    </message>
+    <message>
+        <source>being found …</source>
+        <translation>wird gesucht …</translation>
+    </message>
+    <message>
+        <source>best</source>
+        <translation>beste</translation>
+    </message>
+    <message>
+        <source>best so far</source>
+        <translation>bisher bester</translation>
+    </message>
+    <message>
+        <source>better</source>
+        <translation>besser</translation>
+    </message>
+    <message>
+        <source>between the cuts</source>
+        <translation>zwischen den Schnitten</translation>
+    </message>
+    <message>
+        <source>big endian</source>
+        <translation>Big Endian</translation>
+    </message>
+    <message>
+        <source>blade</source>
+        <translation>klingenförmig</translation>
+    </message>
+    <message>
+        <source>bodies left out</source>
+        <translation>weggelassene Körper</translation>
+    </message>
+    <message>
+        <source>both programs need rounded edges; facets stay in their planes, corners are lost.</source>
+        <translation>beide Programme brauchen gerundete Kanten; Facetten bleiben in ihren Ebenen, Ecken gehen verloren.</translation>
+    </message>
+    <message>
+        <source>box</source>
+        <translation>Quader</translation>
+    </message>
+    <message>
+        <source>box of {name}</source>
+        <translation>Quader von {name}</translation>
+    </message>
+    <message>
+        <source>by size</source>
+        <translation>über die Größe</translation>
+    </message>
+    <message>
+        <source>by size; scaling the surface energy keeps cohesion over weight</source>
+        <translation>über die Größe; das Skalieren der Oberflächenenergie erhält Kohäsion zu Gewicht</translation>
+    </message>
+    <message>
+        <source>category</source>
+        <translation>Kategorie</translation>
+    </message>
+    <message>
+        <source>class weights as shares of the mass</source>
+        <translation>Klassengewichte als Massenanteile</translation>
+    </message>
+    <message>
+        <source>class weights by number and mass</source>
+        <translation>Klassengewichte nach Anzahl und Masse</translation>
+    </message>
+    <message>
+        <source>class weights by number and mass, sizes (sizes.csv)</source>
+        <translation>Klassengewichte nach Anzahl und Masse, Größen (sizes.csv)</translation>
+    </message>
+    <message>
+        <source>class weights, sizes</source>
+        <translation>Klassengewichte, Größen</translation>
+    </message>
+    <message>
+        <source>closed holes</source>
+        <translation>geschlossene Löcher</translation>
+    </message>
+    <message>
+        <source>coarse</source>
+        <translation>grob</translation>
+    </message>
+    <message>
+        <source>coarse graining, lifting cylinder</source>
+        <translation>Vergröberung, Hubzylinder</translation>
+    </message>
+    <message>
+        <source>coefficients</source>
+        <translation>Koeffizienten</translation>
+    </message>
+    <message>
+        <source>compared at {count} facets each, not at an error</source>
+        <translation>verglichen bei je {count} Facetten, nicht bei einem Fehler</translation>
+    </message>
+    <message>
+        <source>computed with other choices</source>
+        <translation>mit anderen Einstellungen berechnet</translation>
+    </message>
+    <message>
+        <source>contact parameters</source>
+        <translation>Kontaktparameter</translation>
+    </message>
+    <message>
+        <source>contact parameters: damped Hertzian, Mindlin-Deresiewicz, JKR</source>
+        <translation>Kontaktparameter: gedämpft nach Hertz, Mindlin-Deresiewicz, JKR</translation>
+    </message>
+    <message>
+        <source>continuous size distributions: at most 16 sizes a class</source>
+        <translation>stetige Größenverteilungen: höchstens 16 Größen je Klasse</translation>
+    </message>
+    <message>
+        <source>continuous size distributions: at most 16 sizes a shape</source>
+        <translation>stetige Größenverteilungen: höchstens 16 Größen je Form</translation>
+    </message>
+    <message>
+        <source>count</source>
+        <translation>Anzahl</translation>
+    </message>
+    <message>
+        <source>curve</source>
+        <translation>Kurve</translation>
+    </message>
+    <message>
+        <source>cut off</source>
+        <translation>abgeschnitten</translation>
+    </message>
+    <message>
+        <source>dark | middle</source>
+        <translation>dunkel | mittel</translation>
+    </message>
+    <message>
+        <source>degree</source>
+        <translation>Grad</translation>
+    </message>
+    <message>
+        <source>descriptor</source>
+        <translation>Deskriptor</translation>
+    </message>
+    <message>
+        <source>disc</source>
+        <translation>scheibig</translation>
+    </message>
+    <message>
+        <source>doubtful</source>
+        <translation>zweifelhaft</translation>
+    </message>
+    <message>
+        <source>drag the bars</source>
+        <translation>Balken ziehen</translation>
+    </message>
+    <message>
+        <source>drawings from each fit</source>
+        <translation>Ziehungen je Fit</translation>
+    </message>
+    <message>
+        <source>drawn by OpenGL in the window</source>
+        <translation>von OpenGL im Fenster gezeichnet</translation>
+    </message>
+    <message>
+        <source>drawn particles: shape, size, orientation</source>
+        <translation>gezogene Partikel: Form, Größe, Lage</translation>
+    </message>
+    <message>
+        <source>drawn u</source>
+        <translation>gezogenes u</translation>
+    </message>
+    <message>
+        <source>drawn; the source holds no measured particles</source>
+        <translation>gezogen; die Quelle enthält keine gemessenen Partikel</translation>
+    </message>
+    <message>
+        <source>draws thrown away [%]</source>
+        <translation>verworfene Ziehungen [%]</translation>
+    </message>
+    <message>
+        <source>each counts once</source>
+        <translation>jedes zählt einmal</translation>
+    </message>
+    <message>
+        <source>edges of more than two faces</source>
+        <translation>Kanten von mehr als zwei Flächen</translation>
+    </message>
+    <message>
+        <source>edges, corners and flat faces; friction of rest apart from friction of motion</source>
+        <translation>Kanten, Ecken und ebene Flächen; Haftreibung getrennt von Gleitreibung</translation>
+    </message>
+    <message>
+        <source>elastic constants, friction</source>
+        <translation>elastische Konstanten, Reibung</translation>
+    </message>
+    <message>
+        <source>empty until a model is fitted</source>
+        <translation>leer, bis ein Modell angepasst ist</translation>
+    </message>
+    <message>
+        <source>energy distance</source>
+        <translation>Energiedistanz</translation>
+    </message>
+    <message>
+        <source>equant</source>
+        <translation>isometrisch</translation>
+    </message>
+    <message>
+        <source>equivalent radius {radius:.3g} µm</source>
+        <translation>Äquivalentradius {radius:.3g} µm</translation>
+    </message>
+    <message>
+        <source>exact half-spaces: float32 triangles</source>
+        <translation>genaue Halbräume: Dreiecke in float32</translation>
+    </message>
+    <message>
+        <source>exact method</source>
+        <translation>exaktes Verfahren</translation>
+    </message>
+    <message>
+        <source>exact minimum volume</source>
+        <translation>kleinstes Volumen (exakt)</translation>
+    </message>
+    <message>
+        <source>faces that cross</source>
+        <translation>Flächen, die sich kreuzen</translation>
+    </message>
+    <message>
+        <source>faces there twice</source>
+        <translation>doppelte Flächen</translation>
+    </message>
+    <message>
+        <source>faces turned round</source>
+        <translation>verdrehte Flächen</translation>
+    </message>
+    <message>
+        <source>faces without area</source>
+        <translation>Flächen ohne Inhalt</translation>
+    </message>
+    <message>
+        <source>facet {number} of {count}: {area:,.4g} µm² ({share:.1%}), normal ({x:.2f}, {y:.2f}, {z:.2f}), {offset:.4g} µm from the centre, {corners} corners</source>
+        <translation>Facette {number} von {count}: {area:,.4g} µm² ({share:.1%}), Normale ({x:.2f}, {y:.2f}, {z:.2f}), {offset:.4g} µm von der Mitte, {corners} Ecken</translation>
+    </message>
+    <message>
+        <source>facets: they are those of the vertices&apos; hull</source>
+        <translation>Facetten: es sind die der Hülle der Ecken</translation>
+    </message>
+    <message>
+        <source>fast</source>
+        <translation>schnell</translation>
+    </message>
+    <message>
+        <source>figures</source>
+        <translation>Abbildungen</translation>
+    </message>
+    <message>
+        <source>finer and finer bumps</source>
+        <translation>immer feinere Höcker</translation>
+    </message>
+    <message>
+        <source>first</source>
+        <translation>erster Deskriptor</translation>
+    </message>
+    <message>
+        <source>flat facets and edges</source>
+        <translation>ebene Facetten und Kanten</translation>
+    </message>
+    <message>
+        <source>flat shading of facets</source>
+        <translation>flache Schattierung der Facetten</translation>
+    </message>
+    <message>
+        <source>floor</source>
+        <translation>Rauschen</translation>
+    </message>
+    <message>
+        <source>floor p5</source>
+        <translation>Rauschen, 5. Perzentil</translation>
+    </message>
+    <message>
+        <source>floor p95</source>
+        <translation>Rauschen, 95. Perzentil</translation>
+    </message>
+    <message>
+        <source>folder with {names}</source>
+        <translation>Ordner mit {names}</translation>
+    </message>
+    <message>
+        <source>for the particle on screen and those after it, one row a loss function</source>
+        <translation>für das gezeigte Partikel und die danach, eine Zeile je Verlustfunktion</translation>
+    </message>
+    <message>
+        <source>force in proportion to the overlapping volume: neither Hertz nor restitution</source>
+        <translation>Kraft im Verhältnis zum Überlappungsvolumen: weder Hertz noch Stoßzahl</translation>
+    </message>
+    <message>
+        <source>friction</source>
+        <translation>Reibung</translation>
+    </message>
+    <message>
+        <source>from</source>
+        <translation>von</translation>
+    </message>
+    <message>
+        <source>grain {number}: {size:.3g} mm at {x:.3g}, {z:.3g} mm</source>
+        <translation>Korn {number}: {size:.3g} mm bei {x:.3g}, {z:.3g} mm</translation>
+    </message>
+    <message>
+        <source>greatest distance of two points</source>
+        <translation>größter Abstand zweier Punkte</translation>
+    </message>
+    <message>
+        <source>grey values</source>
+        <translation>Grauwerte</translation>
+    </message>
+    <message>
+        <source>group</source>
+        <translation>Gruppe</translation>
+    </message>
+    <message>
+        <source>held back</source>
+        <translation>angehalten</translation>
+    </message>
+    <message>
+        <source>hidden from the star point</source>
+        <translation>vom Sternpunkt aus verdeckt</translation>
+    </message>
+    <message>
+        <source>in the regression</source>
+        <translation>in der Regression</translation>
+    </message>
+    <message>
+        <source>kernel</source>
+        <translation>Kerndichte</translation>
+    </message>
+    <message>
+        <source>kolmogorov smirnov</source>
+        <translation>Kolmogorow-Smirnow-Distanz</translation>
+    </message>
+    <message>
+        <source>kolmogorov smirnov floor</source>
+        <translation>Kolmogorow-Smirnow-Distanz des Rauschens</translation>
+    </message>
+    <message>
+        <source>kolmogorov smirnov high</source>
+        <translation>Kolmogorow-Smirnow-Distanz, oberes Ende</translation>
+    </message>
+    <message>
+        <source>kolmogorov smirnov in floors</source>
+        <translation>Kolmogorow-Smirnow-Distanz in Einheiten des Rauschens</translation>
+    </message>
+    <message>
+        <source>kolmogorov smirnov low</source>
+        <translation>Kolmogorow-Smirnow-Distanz, unteres Ende</translation>
+    </message>
+    <message>
+        <source>labels</source>
+        <translation>Labels</translation>
+    </message>
+    <message>
+        <source>labels of grains</source>
+        <translation>Labels von Körnern</translation>
+    </message>
+    <message>
+        <source>least distance of two parallel tangent planes</source>
+        <translation>kleinster Abstand zweier paralleler Tangentialebenen</translation>
+    </message>
+    <message>
+        <source>least possible</source>
+        <translation>kleinstmöglich</translation>
+    </message>
+    <message>
+        <source>left flank: {z:.3g} mm, {angle:.1f}°</source>
+        <translation>linke Flanke: {z:.3g} mm, {angle:.1f}°</translation>
+    </message>
+    <message>
+        <source>left {angle:.1f}°</source>
+        <translation>links {angle:.1f}°</translation>
+    </message>
+    <message>
+        <source>lifting cylinder</source>
+        <translation>Hubzylinder</translation>
+    </message>
+    <message>
+        <source>little endian</source>
+        <translation>Little Endian</translation>
+    </message>
+    <message>
+        <source>ln(r / mean), blue inwards, red outwards</source>
+        <translation>ln(r / Mittel), blau nach innen, rot nach außen</translation>
+    </message>
+    <message>
+        <source>log_normal</source>
+        <translation>lognormal</translation>
+    </message>
+    <message>
+        <source>log_normal_mixture</source>
+        <translation>lognormale Mischung</translation>
+    </message>
+    <message>
+        <source>longest edge of the bounding box</source>
+        <translation>längste Kante des Hüllquaders</translation>
+    </message>
+    <message>
+        <source>loss (Eq. 9): {loss:.4g}</source>
+        <translation>Verlust (Gl. 9): {loss:.4g}</translation>
+    </message>
+    <message>
+        <source>loss {loss:.4g}; {facets} facets of {planes} planes</source>
+        <translation>Verlust {loss:.4g}; {facets} Facetten aus {planes} Ebenen</translation>
+    </message>
+    <message>
+        <source>loss {loss:.4g}; {facets} facets; veil: what is imitated</source>
+        <translation>Verlust {loss:.4g}; {facets} Facetten; Schleier: das Vorbild</translation>
+    </message>
+    <message>
+        <source>lowest {loss:.3g}</source>
+        <translation>kleinster {loss:.3g}</translation>
+    </message>
+    <message>
+        <source>mass and inertia</source>
+        <translation>Masse und Trägheit</translation>
+    </message>
+    <message>
+        <source>mass fractions (as comments)</source>
+        <translation>Massenanteile (als Kommentare)</translation>
+    </message>
+    <message>
+        <source>mean</source>
+        <translation>Mittel</translation>
+    </message>
+    <message>
+        <source>mean of |n·x|/|x| over the surface (Bullard and Garboczi)</source>
+        <translation>Mittel von |n·x|/|x| über die Oberfläche (Bullard und Garboczi)</translation>
+    </message>
+    <message>
+        <source>measured above, drawn below</source>
+        <translation>oben gemessen, unten gezogen</translation>
+    </message>
+    <message>
+        <source>measured particles</source>
+        <translation>gemessene Partikel</translation>
+    </message>
+    <message>
+        <source>measured; draw particles to compare</source>
+        <translation>gemessen; ziehen Sie Partikel zum Vergleich</translation>
+    </message>
+    <message>
+        <source>median novelty</source>
+        <translation>mediane Neuheit</translation>
+    </message>
+    <message>
+        <source>mended</source>
+        <translation>ausgebessert</translation>
+    </message>
+    <message>
+        <source>middle edge of the bounding box</source>
+        <translation>mittlere Kante des Hüllquaders</translation>
+    </message>
+    <message>
+        <source>middle | bright</source>
+        <translation>mittel | hell</translation>
+    </message>
+    <message>
+        <source>mm, mg, ms; coarse graining applied</source>
+        <translation>mm, mg, ms; mit Vergröberungsfaktor</translation>
+    </message>
+    <message>
+        <source>model</source>
+        <translation>Modell</translation>
+    </message>
+    <message>
+        <source>nearly an ellipsoid</source>
+        <translation>fast ein Ellipsoid</translation>
+    </message>
+    <message>
+        <source>needs no numbers</source>
+        <translation>braucht keine Zahlen</translation>
+    </message>
+    <message>
+        <source>no</source>
+        <translation>nein</translation>
+    </message>
+    <message>
+        <source>no polyhedron</source>
+        <translation>kein Polyeder</translation>
+    </message>
+    <message>
+        <source>noise</source>
+        <translation>Rauschen</translation>
+    </message>
+    <message>
+        <source>noise of sampling, split {split}</source>
+        <translation>Rauschen der Stichprobe, Teilung {split}</translation>
+    </message>
+    <message>
+        <source>none</source>
+        <translation>keine</translation>
+    </message>
+    <message>
+        <source>none besides what edges and faces do</source>
+        <translation>keines außer dem, was Kanten und Flächen bewirken</translation>
+    </message>
+    <message>
+        <source>none is better in both</source>
+        <translation>keiner ist in beidem besser</translation>
+    </message>
+    <message>
+        <source>none of these</source>
+        <translation>keines davon</translation>
+    </message>
+    <message>
+        <source>not below {bound:.3g} {unit} (line)</source>
+        <translation>nicht unter {bound:.3g} {unit} (Linie)</translation>
+    </message>
+    <message>
+        <source>not given in the paper</source>
+        <translation>im Artikel nicht angegeben</translation>
+    </message>
+    <message>
+        <source>not used: outside the cuts</source>
+        <translation>nicht verwendet: außerhalb der Schnitte</translation>
+    </message>
+    <message>
+        <source>note</source>
+        <translation>Hinweis</translation>
+    </message>
+    <message>
+        <source>now</source>
+        <translation>jetzt</translation>
+    </message>
+    <message>
+        <source>number</source>
+        <translation>Anzahl</translation>
+    </message>
+    <message>
+        <source>on its way; the very first one takes longer …</source>
+        <translation>unterwegs; das allererste dauert länger …</translation>
+    </message>
+    <message>
+        <source>pairs of r_eq, A, AR: the largest energy distance [%]</source>
+        <translation>Paare aus r_eq, A, AR: die größte Energiedistanz [%]</translation>
+    </message>
+    <message>
+        <source>part of the volume</source>
+        <translation>ein Teil des Volumens</translation>
+    </message>
+    <message>
+        <source>passed</source>
+        <translation>bestanden</translation>
+    </message>
+    <message>
+        <source>pictures, drawn off-screen</source>
+        <translation>Bilder, im Speicher gezeichnet</translation>
+    </message>
+    <message>
+        <source>polygonal facets, edges, vertices</source>
+        <translation>polygonale Facetten, Kanten, Ecken</translation>
+    </message>
+    <message>
+        <source>polygonal facets: they are cut into triangles</source>
+        <translation>polygonale Facetten: sie werden in Dreiecke zerlegt</translation>
+    </message>
+    <message>
+        <source>polyhedra</source>
+        <translation>Polyeder</translation>
+    </message>
+    <message>
+        <source>pooled</source>
+        <translation>gemeinsam</translation>
+    </message>
+    <message>
+        <source>present</source>
+        <translation>aktuell</translation>
+    </message>
+    <message>
+        <source>problem</source>
+        <translation>Problem</translation>
+    </message>
+    <message>
+        <source>proposed</source>
+        <translation>vorgeschlagen</translation>
+    </message>
+    <message>
+        <source>pull-off force 3/2 π w R*, shared by the contact points; hardly steepens a heap: take LAMMPS</source>
+        <translation>Abreißkraft 3/2 π w R*, auf die Kontaktpunkte verteilt; macht einen Kegel kaum steiler: nehmen Sie LAMMPS</translation>
+    </message>
+    <message>
+        <source>r_eq {low:.3g} to {high:.3g} µm</source>
+        <translation>r_eq {low:.3g} bis {high:.3g} µm</translation>
+    </message>
+    <message>
+        <source>r_eq, A, AR, S: the worst, over the 95th percentile of noise</source>
+        <translation>r_eq, A, AR, S: das schlechteste, geteilt durch das 95. Perzentil des Rauschens</translation>
+    </message>
+    <message>
+        <source>radius (rms)</source>
+        <translation>Radius (quadr. Mittel)</translation>
+    </message>
+    <message>
+        <source>reached</source>
+        <translation>erreicht</translation>
+    </message>
+    <message>
+        <source>refuse</source>
+        <translation>ablehnen</translation>
+    </message>
+    <message>
+        <source>refused</source>
+        <translation>abgelehnt</translation>
+    </message>
+    <message>
+        <source>resampled</source>
+        <translation>neu gezogen</translation>
+    </message>
+    <message>
+        <source>right flank: {z:.3g} mm, {angle:.1f}°</source>
+        <translation>rechte Flanke: {z:.3g} mm, {angle:.1f}°</translation>
+    </message>
+    <message>
+        <source>right {angle:.1f}°</source>
+        <translation>rechts {angle:.1f}°</translation>
+    </message>
+    <message>
+        <source>rigid clumps of inscribed spheres (8 by default) with the polyhedra&apos;s mass and inertia: rounder</source>
+        <translation>starre Gruppen einbeschriebener Kugeln (sonst 8) mit Masse und Trägheit der Polyeder: runder</translation>
+    </message>
+    <message>
+        <source>rims of holes</source>
+        <translation>Ränder von Löchern</translation>
+    </message>
+    <message>
+        <source>rises from {before} to {after}</source>
+        <translation>steigt von {before} auf {after}</translation>
+    </message>
+    <message>
+        <source>rod</source>
+        <translation>stabförmig</translation>
+    </message>
+    <message>
+        <source>rolling resistance</source>
+        <translation>Rollwiderstand</translation>
+    </message>
+    <message>
+        <source>rosin_rammler</source>
+        <translation>Rosin-Rammler</translation>
+    </message>
+    <message>
+        <source>second</source>
+        <translation>zweiter Deskriptor</translation>
+    </message>
+    <message>
+        <source>see tip</source>
+        <translation>siehe Hinweis</translation>
+    </message>
+    <message>
+        <source>shapes</source>
+        <translation>Formen</translation>
+    </message>
+    <message>
+        <source>shapes approximately</source>
+        <translation>Formen näherungsweise</translation>
+    </message>
+    <message>
+        <source>shapes as triangles</source>
+        <translation>Formen als Dreiecke</translation>
+    </message>
+    <message>
+        <source>shapes by their vertices</source>
+        <translation>Formen durch ihre Ecken</translation>
+    </message>
+    <message>
+        <source>shapes exactly</source>
+        <translation>Formen genau</translation>
+    </message>
+    <message>
+        <source>shapes of volume 1 (before rounding) without a length unit; diameters in micrometres</source>
+        <translation>Formen vom Volumen 1 (vor dem Runden) ohne Längeneinheit; Durchmesser in Mikrometern</translation>
+    </message>
+    <message>
+        <source>shapes of volume 1 without a length unit; diameters in micrometres</source>
+        <translation>Formen vom Volumen 1 ohne Längeneinheit; Durchmesser in Mikrometern</translation>
+    </message>
+    <message>
+        <source>shapes of volume 1; scales in metres, coarse graining applied</source>
+        <translation>Formen vom Volumen 1; Maße in Metern, mit Vergröberungsfaktor</translation>
+    </message>
+    <message>
+        <source>shapes of volume 1; scales in metres, coarse graining applied; SI material</source>
+        <translation>Formen vom Volumen 1; Maße in Metern, mit Vergröberungsfaktor; Material in SI</translation>
+    </message>
+    <message>
+        <source>shortest edge of the bounding box</source>
+        <translation>kürzeste Kante des Hüllquaders</translation>
+    </message>
+    <message>
+        <source>size</source>
+        <translation>Größe</translation>
+    </message>
+    <message>
+        <source>size distributions inside the .shp: give each particle its homothety</source>
+        <translation>Größenverteilungen in der .shp-Datei: geben Sie jedem Partikel seine Streckung</translation>
+    </message>
+    <message>
+        <source>sizes</source>
+        <translation>Größen</translation>
+    </message>
+    <message>
+        <source>sizes as cumulative percentages by mass</source>
+        <translation>Größen als Summenprozente nach Masse</translation>
+    </message>
+    <message>
+        <source>sizes, one template each</source>
+        <translation>Größen, je eine Vorlage</translation>
+    </message>
+    <message>
+        <source>sound</source>
+        <translation>fehlerfrei</translation>
+    </message>
+    <message>
+        <source>spheres</source>
+        <translation>Kugeln</translation>
+    </message>
+    <message>
+        <source>spheres in the frame of a shape of volume 1; diameters in micrometres</source>
+        <translation>Kugeln im Bezug einer Form vom Volumen 1; Durchmesser in Mikrometern</translation>
+    </message>
+    <message>
+        <source>spheres inside each polyhedron stand for it; facets become bumpy and some volume is missing.</source>
+        <translation>Kugeln in jedem Polyeder stehen für es; Facetten werden höckerig, und etwas Volumen fehlt.</translation>
+    </message>
+    <message>
+        <source>sphericity</source>
+        <translation>Sphärizität</translation>
+    </message>
+    <message>
+        <source>split</source>
+        <translation>Teilung</translation>
+    </message>
+    <message>
+        <source>split {split} of {total}</source>
+        <translation>Teilung {split} von {total}</translation>
+    </message>
+    <message>
+        <source>splits</source>
+        <translation>Teilungen</translation>
+    </message>
+    <message>
+        <source>spring, dashpot and slider (where resistance is above 0)</source>
+        <translation>Feder, Dämpfer und Gleiter (wo der Widerstand über 0 ist)</translation>
+    </message>
+    <message>
+        <source>stays what it is</source>
+        <translation>bleibt, was er ist</translation>
+    </message>
+    <message>
+        <source>std. dev.</source>
+        <translation>Std.-Abw.</translation>
+    </message>
+    <message>
+        <source>step</source>
+        <translation>Schritt</translation>
+    </message>
+    <message>
+        <source>step {at} of {total}</source>
+        <translation>Schritt {at} von {total}</translation>
+    </message>
+    <message>
+        <source>surface at {x:.3g} mm: {z:.3g} mm ({taken})</source>
+        <translation>Oberfläche bei {x:.3g} mm: {z:.3g} mm ({taken})</translation>
+    </message>
+    <message>
+        <source>surface energy (JKR)</source>
+        <translation>Oberflächenenergie (JKR)</translation>
+    </message>
+    <message>
+        <source>surface z [mm]</source>
+        <translation>Oberfläche z [mm]</translation>
+    </message>
+    <message>
+        <source>symmetric model: {z:.3g} mm, {angle:.1f}°</source>
+        <translation>symmetrisches Modell: {z:.3g} mm, {angle:.1f}°</translation>
+    </message>
+    <message>
+        <source>symmetric {angle:.1f}°</source>
+        <translation>symmetrisch {angle:.1f}°</translation>
+    </message>
+    <message>
+        <source>target</source>
+        <translation>Ziel</translation>
+    </message>
+    <message>
+        <source>tcp://HOST:8786 or tls://HOST:8786</source>
+        <translation>tcp://HOST:8786 oder tls://HOST:8786</translation>
+    </message>
+    <message>
+        <source>the CT particle itself</source>
+        <translation>das CT-Partikel selbst</translation>
+    </message>
+    <message>
+        <source>the convex polyhedra themselves</source>
+        <translation>die konvexen Polyeder selbst</translation>
+    </message>
+    <message>
+        <source>the fewest facets with all errors below {limit} %</source>
+        <translation>den wenigsten Facetten, deren Fehler alle unter {limit} % liegen</translation>
+    </message>
+    <message>
+        <source>the fit at l&lt;sub&gt;max&lt;/sub&gt; = {degree}</source>
+        <translation>der Fit bei l&lt;sub&gt;max&lt;/sub&gt; = {degree}</translation>
+    </message>
+    <message>
+        <source>the particle</source>
+        <translation>das Partikel</translation>
+    </message>
+    <message>
+        <source>the surface of the spherical-harmonics fit at l&lt;sub&gt;max&lt;/sub&gt; = {l_max}</source>
+        <translation>die Oberfläche des Fits mit Kugelflächenfunktionen bei l&lt;sub&gt;max&lt;/sub&gt; = {l_max}</translation>
+    </message>
+    <message>
+        <source>to</source>
+        <translation>bis</translation>
+    </message>
+    <message>
+        <source>to the eye</source>
+        <translation>zum Auge</translation>
+    </message>
+    <message>
+        <source>trimesh&apos;s heuristic (paper)</source>
+        <translation>Heuristik von trimesh (Artikel)</translation>
+    </message>
+    <message>
+        <source>true moments of inertia (fit.csv)</source>
+        <translation>wahre Trägheitsmomente (fit.csv)</translation>
+    </message>
+    <message>
+        <source>undo the loss at the border</source>
+        <translation>Verlust am Rand ausgleichen</translation>
+    </message>
+    <message>
+        <source>unilateral constraint, no bounce; penetration is reported, stiffness has no part</source>
+        <translation>einseitige Zwangsbedingung, kein Rückprall; die Durchdringung wird gemeldet, die Steifigkeit spielt keine Rolle</translation>
+    </message>
+    <message>
+        <source>unknown</source>
+        <translation>unbekannt</translation>
+    </message>
+    <message>
+        <source>unsound</source>
+        <translation>fehlerhaft</translation>
+    </message>
+    <message>
+        <source>up</source>
+        <translation>hoch</translation>
+    </message>
+    <message>
+        <source>up to l&lt;sub&gt;max&lt;/sub&gt; = {l_max}</source>
+        <translation>bis l&lt;sub&gt;max&lt;/sub&gt; = {l_max}</translation>
+    </message>
+    <message>
+        <source>value</source>
+        <translation>Wert</translation>
+    </message>
+    <message>
+        <source>volume</source>
+        <translation>Volumen</translation>
+    </message>
+    <message>
+        <source>volume and inertia</source>
+        <translation>Volumen und Trägheit</translation>
+    </message>
+    <message>
+        <source>waiting for the coefficients …</source>
+        <translation>wartet auf die Koeffizienten …</translation>
+    </message>
+    <message>
+        <source>wanted</source>
+        <translation>verlangt</translation>
+    </message>
+    <message>
+        <source>wasserstein</source>
+        <translation>Wasserstein-Distanz</translation>
+    </message>
+    <message>
+        <source>wasserstein high</source>
+        <translation>Wasserstein-Distanz, oberes Ende</translation>
+    </message>
+    <message>
+        <source>wasserstein in floors</source>
+        <translation>Wasserstein-Distanz in Einheiten des Rauschens</translation>
+    </message>
+    <message>
+        <source>wasserstein low</source>
+        <translation>Wasserstein-Distanz, unteres Ende</translation>
+    </message>
+    <message>
+        <source>weight</source>
+        <translation>Gewicht</translation>
+    </message>
+    <message>
+        <source>weighted by volume</source>
+        <translation>nach Volumen gewichtet</translation>
+    </message>
+    <message>
+        <source>weighting</source>
+        <translation>Gewichtung</translation>
+    </message>
+    <message>
+        <source>weights and size distributions: only a sample is drawn</source>
+        <translation>Gewichte und Größenverteilungen: nur eine Stichprobe wird gezogen</translation>
+    </message>
+    <message>
+        <source>weights and size distributions: only a sample is drawn (sizes.csv has them)</source>
+        <translation>Gewichte und Größenverteilungen: nur eine Stichprobe wird gezogen (sizes.csv hat sie)</translation>
+    </message>
+    <message>
+        <source>weights and sizes (sizes.csv)</source>
+        <translation>Gewichte und Größen (sizes.csv)</translation>
+    </message>
+    <message>
+        <source>weights, size distribution, descriptors, provenance (JSON)</source>
+        <translation>Gewichte, Größenverteilung, Deskriptoren, Herkunft (JSON)</translation>
+    </message>
+    <message>
+        <source>where the particles come from (dataset.json has it)</source>
+        <translation>woher die Partikel kommen (steht in dataset.json)</translation>
+    </message>
+    <message>
+        <source>with fit</source>
+        <translation>mit Fit</translation>
+    </message>
+    <message>
+        <source>with particle</source>
+        <translation>mit Partikel</translation>
+    </message>
+    <message>
+        <source>with polyhedron</source>
+        <translation>mit Polyeder</translation>
+    </message>
+    <message>
+        <source>without noise</source>
+        <translation>ohne Rauschen</translation>
+    </message>
+    <message>
+        <source>worse, accepted</source>
+        <translation>schlechter, angenommen</translation>
+    </message>
+    <message>
+        <source>x, y, z: slices last</source>
+        <translation>x, y, z: Schichten zuletzt</translation>
+    </message>
+    <message>
+        <source>y, x, z: as MATLAB has pictures</source>
+        <translation>y, x, z: wie Bilder in MATLAB</translation>
+    </message>
+    <message>
+        <source>yes</source>
+        <translation>ja</translation>
+    </message>
+    <message>
+        <source>{at:,} of {total:,}</source>
+        <translation>{at:,} von {total:,}</translation>
+    </message>
+    <message>
+        <source>{at} of {total}</source>
+        <translation>{at} von {total}</translation>
+    </message>
+    <message>
+        <source>{count:,} coefficients</source>
+        <translation>{count:,} Koeffizienten</translation>
+    </message>
+    <message>
+        <source>{count:,} coefficients, {triangles:,} triangles</source>
+        <translation>{count:,} Koeffizienten, {triangles:,} Dreiecke</translation>
+    </message>
+    <message>
+        <source>{count:,} drawn</source>
+        <translation>{count:,} gezogen</translation>
+    </message>
+    <message>
+        <source>{count:,} draws thrown away</source>
+        <translation>{count:,} Ziehungen verworfen</translation>
+    </message>
+    <message>
+        <source>{count:,} measured</source>
+        <translation>{count:,} gemessen</translation>
+    </message>
+    <message>
+        <source>{count:,} particles</source>
+        <translation>{count:,} Partikel</translation>
+    </message>
+    <message>
+        <source>{count:,} particles are open.</source>
+        <translation>{count:,} Partikel sind geöffnet.</translation>
+    </message>
+    <message>
+        <source>{count:,} particles are too many to open; at most {most:,}. For more use: regolith-studio generate.</source>
+        <translation>{count:,} Partikel sind zum Öffnen zu viele, höchstens {most:,}. Für mehr: regolith-studio generate.</translation>
+    </message>
+    <message>
+        <source>{count:,} particles of {name}</source>
+        <translation>{count:,} Partikel aus {name}</translation>
+    </message>
+    <message>
+        <source>{count:,} virtual particles are open now.</source>
+        <translation>{count:,} virtuelle Partikel sind jetzt geöffnet.</translation>
+    </message>
+    <message>
+        <source>{counts} at grey level {level}; {small} too small.</source>
+        <translation>{counts} beim Grauwert {level}; {small} zu klein.</translation>
+    </message>
+    <message>
+        <source>{count} faces are there twice.</source>
+        <translation>{count} Flächen sind doppelt vorhanden.</translation>
+    </message>
+    <message>
+        <source>{count} faces have no area.</source>
+        <translation>{count} Flächen haben keinen Inhalt.</translation>
+    </message>
+    <message>
+        <source>{count} facets</source>
+        <translation>{count} Facetten</translation>
+    </message>
+    <message>
+        <source>{count} facets, Jaccard distance J = {distance:.3f}, loss of this row {loss:.3g}</source>
+        <translation>{count} Facetten, Jaccard-Distanz J = {distance:.3f}, Verlust dieser Zeile {loss:.3g}</translation>
+    </message>
+    <message>
+        <source>{count} files were written to {folder}.</source>
+        <translation>{count} Dateien wurden nach {folder} geschrieben.</translation>
+    </message>
+    <message>
+        <source>{count} formats are written.</source>
+        <translation>{count} Formate sind geschrieben.</translation>
+    </message>
+    <message>
+        <source>{count} left out</source>
+        <translation>{count} ausgelassen</translation>
+    </message>
+    <message>
+        <source>{count} losses</source>
+        <translation>{count} Verluste</translation>
+    </message>
+    <message>
+        <source>{count} measured particles at l_max = {degree}, {left} left out; fitted to one half, judged on the other; {splits} {split}, {draws} draws once from each fit, seed {seed}.</source>
+        <translation>{count} gemessene Partikel bei l_max = {degree}, {left} ausgelassen; an eine Hälfte angepasst, an der anderen beurteilt; {splits} {split}, einmal {draws} Ziehungen je Fit, Startwert {seed}.</translation>
+    </message>
+    <message>
+        <source>{count} measured particles at l_max = {degree}, {left} left out; fitted to one half, judged on the other; {splits} {split}, {draws} draws {repeats} times from each fit, seed {seed}.</source>
+        <translation>{count} gemessene Partikel bei l_max = {degree}, {left} ausgelassen; an eine Hälfte angepasst, an der anderen beurteilt; {splits} {split}, {repeats}-mal {draws} Ziehungen je Fit, Startwert {seed}.</translation>
+    </message>
+    <message>
+        <source>{count} of the open particles come from no file and cannot be part of a batch.</source>
+        <translation>{count} der geöffneten Partikel stammen aus keiner Datei und können nicht Teil eines Stapels sein.</translation>
+    </message>
+    <message>
+        <source>{count} of them has fewer than {least} voxels and will be left out.</source>
+        <translation>{count} davon hat weniger als {least} Voxel und entfällt.</translation>
+    </message>
+    <message>
+        <source>{count} of them have fewer than {least} voxels and will be left out.</source>
+        <translation>{count} davon haben weniger als {least} Voxel und entfallen.</translation>
+    </message>
+    <message>
+        <source>{count} pairs of faces cross each other.</source>
+        <translation>{count} Paare von Flächen kreuzen sich.</translation>
+    </message>
+    <message>
+        <source>{count} particles</source>
+        <translation>{count} Partikel</translation>
+    </message>
+    <message>
+        <source>{count} particles are in {name}.</source>
+        <translation>{count} Partikel sind in {name}.</translation>
+    </message>
+    <message>
+        <source>{count} particles came from no file and are not in it ({names}); export them.</source>
+        <translation>{count} Partikel stammen aus keiner Datei und sind nicht darin ({names}); exportieren Sie sie.</translation>
+    </message>
+    <message>
+        <source>{count} particles up to l = {degree}.</source>
+        <translation>{count} Partikel bis l = {degree}.</translation>
+    </message>
+    <message>
+        <source>{count} particles; left out: {border} at the border, {small} too small.</source>
+        <translation>{count} Partikel; weggelassen: {border} am Rand, {small} zu klein.</translation>
+    </message>
+    <message>
+        <source>{count} planes, imitating {imitated}, seed {seed}</source>
+        <translation>{count} Ebenen, Vorbild: {imitated}, Startwert {seed}</translation>
+    </message>
+    <message>
+        <source>{count} problems are listed in failed.csv.</source>
+        <translation>{count} Probleme stehen in failed.csv.</translation>
+    </message>
+    <message>
+        <source>{count} representatives</source>
+        <translation>{count} Repräsentanten</translation>
+    </message>
+    <message>
+        <source>{count} runs; tables and figure are in {folder}.</source>
+        <translation>{count} Läufe; Tabellen und Abbildung sind in {folder}.</translation>
+    </message>
+    <message>
+        <source>{count} shapes in {folder}.</source>
+        <translation>{count} Formen in {folder}.</translation>
+    </message>
+    <message>
+        <source>{count} vertices lie exactly on another: seams cut the surface.</source>
+        <translation>{count} Ecken liegen genau auf einer anderen: Nähte zerschneiden die Oberfläche.</translation>
+    </message>
+    <message>
+        <source>{count} vertices, {triangles} triangles</source>
+        <translation>{count} Ecken, {triangles} Dreiecke</translation>
+    </message>
+    <message>
+        <source>{count} were left out. The first: {sentence}</source>
+        <translation>{count} wurden ausgelassen. Die erste: {sentence}</translation>
+    </message>
+    <message>
+        <source>{count} workers</source>
+        <translation>{count} Arbeitsprozesse</translation>
+    </message>
+    <message>
+        <source>{count}, as unit-volume STL files</source>
+        <translation>{count}, als STL-Dateien vom Volumen eins</translation>
+    </message>
+    <message>
+        <source>{count}, as unit-volume STL files, {size:,.0f} KiB in all</source>
+        <translation>{count}, als STL-Dateien mit Einheitsvolumen, zusammen {size:,.0f} KiB</translation>
+    </message>
+    <message>
+        <source>{edges} voxels, {dtype}.</source>
+        <translation>{edges} Voxel, {dtype}.</translation>
+    </message>
+    <message>
+        <source>{grains} grains from 1 connected body</source>
+        <translation>{grains} Körner aus 1 zusammenhängenden Körper</translation>
+    </message>
+    <message>
+        <source>{grains} grains from {bodies} connected bodies</source>
+        <translation>{grains} Körner aus {bodies} zusammenhängenden Körpern</translation>
+    </message>
+    <message>
+        <source>{keys} already runs “{command}”.</source>
+        <translation>{keys} gehört schon zu „{command}“.</translation>
+    </message>
+    <message>
+        <source>{keys} is needed for typing and for moving about; add Ctrl or Alt.</source>
+        <translation>{keys} wird zum Tippen und Bewegen gebraucht; nehmen Sie Strg oder Alt dazu.</translation>
+    </message>
+    <message>
+        <source>{keys} is no key that a command can have.</source>
+        <translation>{keys} ist keine Taste, die ein Befehl haben kann.</translation>
+    </message>
+    <message>
+        <source>{label}: {share:.3g} % of voxels</source>
+        <translation>{label}: {share:.3g} % der Voxel</translation>
+    </message>
+    <message>
+        <source>{least} voxels are a ball of {diameter:.1f} voxels in diameter.</source>
+        <translation>{least} Voxel sind eine Kugel von {diameter:.1f} Voxeln Durchmesser.</translation>
+    </message>
+    <message>
+        <source>{low:.1f} to {high:.1f}</source>
+        <translation>{low:.1f} bis {high:.1f}</translation>
+    </message>
+    <message>
+        <source>{method}, seed {seed}</source>
+        <translation>{method}, Startwert {seed}</translation>
+    </message>
+    <message>
+        <source>{moved}: the half-spaces bound no polyhedron any more. Refused without asking T(k).</source>
+        <translation>{moved}: die Halbräume begrenzen kein Polyeder mehr. Abgelehnt, ohne T(k) zu fragen.</translation>
+    </message>
+    <message>
+        <source>{moved}: the loss falls from {before} to {after}. Better, so it is accepted.</source>
+        <translation>{moved}: der Verlust fällt von {before} auf {after}. Besser, also angenommen.</translation>
+    </message>
+    <message>
+        <source>{moved}: the loss {how}. Accepted all the same: luck, of which there was {chance}.</source>
+        <translation>{moved}: der Verlust {how}. Trotzdem angenommen: Glück, das es mit {chance} gab.</translation>
+    </message>
+    <message>
+        <source>{moved}: the loss {how}. Refused; there was a chance of {chance} that it would have been taken.</source>
+        <translation>{moved}: der Verlust {how}. Abgelehnt; mit einer Wahrscheinlichkeit von {chance} wäre es angenommen worden.</translation>
+    </message>
+    <message>
+        <source>{name} (mean)</source>
+        <translation>{name} (Mittel)</translation>
+    </message>
+    <message>
+        <source>{name} and {count} more</source>
+        <translation>{name} und {count} weitere</translation>
+    </message>
+    <message>
+        <source>{name} has changes that are not saved.</source>
+        <translation>{name} hat Änderungen, die nicht gespeichert sind.</translation>
+    </message>
+    <message>
+        <source>{name} only</source>
+        <translation>Nur {name}</translation>
+    </message>
+    <message>
+        <source>{name} stands for 1 particle ({share})</source>
+        <translation>{name} steht für 1 Partikel ({share})</translation>
+    </message>
+    <message>
+        <source>{name} stands for {count} particles ({share})</source>
+        <translation>{name} steht für {count} Partikel ({share})</translation>
+    </message>
+    <message>
+        <source>{name} × {factor}</source>
+        <translation>{name} × {factor}</translation>
+    </message>
+    <message>
+        <source>{name}, not below</source>
+        <translation>{name}, nicht unter</translation>
+    </message>
+    <message>
+        <source>{name}, slider</source>
+        <translation>{name}, Schieberegler</translation>
+    </message>
+    <message>
+        <source>{name}, split {split}, draw {draw}</source>
+        <translation>{name}, Teilung {split}, Ziehung {draw}</translation>
+    </message>
+    <message>
+        <source>{name}, split {split}, fit</source>
+        <translation>{name}, Teilung {split}, Fit</translation>
+    </message>
+    <message>
+        <source>{name}: {count} shapes, by {weighting}</source>
+        <translation>{name}: {count} Formen, nach {weighting}</translation>
+    </message>
+    <message>
+        <source>{name}: {edges} voxels of {voxel}, {what} ({dtype}).</source>
+        <translation>{name}: {edges} Voxel zu {voxel}, {what} ({dtype}).</translation>
+    </message>
+    <message>
+        <source>{name}: {faces} facets, {vertices} vertices, stands for {count} particles</source>
+        <translation>{name}: {faces} Facetten, {vertices} Ecken, steht für {count} Partikel</translation>
+    </message>
+    <message>
+        <source>{noun} {at} of {last}</source>
+        <translation>{noun} {at} von {last}</translation>
+    </message>
+    <message>
+        <source>{plane}, {axis} = {number} of {count}</source>
+        <translation>{plane}, {axis} = {number} von {count}</translation>
+    </message>
+    <message>
+        <source>{preset} (modified)</source>
+        <translation>{preset} (geändert)</translation>
+    </message>
+    <message>
+        <source>{preset}, modified</source>
+        <translation>{preset}, geändert</translation>
+    </message>
+    <message>
+        <source>{row}, {column}: {before:.3g} % becomes {after:.3g} %</source>
+        <translation>{row}, {column}: aus {before:.3g} % werden {after:.3g} %</translation>
+    </message>
+    <message>
+        <source>{row}, {column}: {value:.3g} % ({low:.3g} to {high:.3g}; {share:.0%} bootstrap interval)</source>
+        <translation>{row}, {column}: {value:.3g} % ({low:.3g} bis {high:.3g}; {share:.0%}-Bootstrap-Bereich)</translation>
+    </message>
+    <message>
+        <source>{share:.0%} bootstrap intervals</source>
+        <translation>{share:.0%}-Bootstrap-Intervalle</translation>
+    </message>
+    <message>
+        <source>{share} quant.</source>
+        <translation>{share}-Quant.</translation>
+    </message>
+    <message>
+        <source>{size}, {count:,} triangles</source>
+        <translation>{size}, {count:,} Dreiecke</translation>
+    </message>
+    <message>
+        <source>{surface:.2%} of the surface is hidden from the star point; {volume:.2%} of the volume cannot be represented.</source>
+        <translation>{surface:.2%} der Oberfläche sind vom Sternpunkt aus verdeckt; {volume:.2%} des Volumens lassen sich nicht darstellen.</translation>
+    </message>
+    <message>
+        <source>{surface} of the surface and {volume} of the volume are hidden from the star point and cannot be kept by a radius function.</source>
+        <translation>{surface} der Oberfläche und {volume} des Volumens sind vom Sternpunkt aus verdeckt und lassen sich durch keine Radiusfunktion wiedergeben.</translation>
+    </message>
+    <message>
+        <source>{symbol} = {degree}: {shape}. The radius is missed by {missed:.1%} in the root mean square; errors against the particle: {errors}.</source>
+        <translation>{symbol} = {degree}: {shape}. Der Radius wird im quadratischen Mittel um {missed:.1%} verfehlt; Fehler gegen das Partikel: {errors}.</translation>
+    </message>
+    <message>
+        <source>{task} is running.</source>
+        <translation>In Arbeit: {task}.</translation>
+    </message>
+    <message>
+        <source>{unmet} of {total} requests not met exactly</source>
+        <translation>{unmet} von {total} Wünschen nicht genau erfüllt</translation>
+    </message>
+    <message>
+        <source>{value:+.3g} percentage points ({low:+.3g} to {high:+.3g})</source>
+        <translation>{value:+.3g} Prozentpunkte ({low:+.3g} bis {high:+.3g})</translation>
+    </message>
+    <message>
+        <source>{who}, watched at {link}</source>
+        <translation>{who}, zu beobachten unter {link}</translation>
+    </message>
+    <message>
+        <source>π^(1/3) (6V)^(2/3) / A (Wadell, true sphericity)</source>
+        <translation>π^(1/3) (6V)^(2/3) / A (Wadell, wahre Sphärizität)</translation>
+    </message>
+</context>
 </TS>

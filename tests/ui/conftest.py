@@ -16,14 +16,14 @@ if sys.platform.startswith("linux"):
     os.environ.setdefault("QT_QPA_PLATFORM", "xcb" if os.environ.get("DISPLAY") else "offscreen")
 
 import shiboken6
-from PySide6.QtCore import QCoreApplication, QEvent, QObject, Qt, QTimer
+from PySide6.QtCore import QCoreApplication, QEvent, QObject, Qt, QTimer, QTranslator
 from PySide6.QtWidgets import QApplication, QWidget
 from vtkmodules.vtkRenderingCore import vtkRenderer, vtkRenderWindow
 
 from regolith_studio.session.preferences import Preferences
 from regolith_studio.ui import main_window
 from regolith_studio.ui.startup import make_application
-from regolith_studio.ui.translation.language import Translator, fall_silent, speak
+from regolith_studio.ui.translation.language import fall_silent, speak
 from regolith_studio.ui.widgets.formula import THREAD_NAME, all_outlines_made
 from regolith_studio.ui.wiring import Wiring
 
@@ -107,11 +107,14 @@ def shown(app):
     kept.clear()
 
 
-class Brackets(dict):
-    """Every message in brackets."""
+class BracketTranslator(QTranslator):
+    """Puts every text of the window in brackets."""
 
-    def get(self, source, _default=None):
-        return f"⟦{source}⟧"
+    def isEmpty(self):  # noqa: N802
+        return False
+
+    def translate(self, context, source, _disambiguation=None, _n=-1):
+        return f"⟦{source}⟧" if context == "" else None
 
 
 @pytest.fixture
@@ -121,7 +124,7 @@ def speaking(app):
 
     def begin(language):
         if language == "brackets":
-            translator = Translator(Brackets(any="thing"))
+            translator = BracketTranslator()
             app.installTranslator(translator)
             installed.append(translator)
         else:

@@ -1,7 +1,10 @@
 """The files of translations, and the sentences that are told anew."""
 
+import ast
 import re
+import shutil
 import string
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,42 +14,44 @@ from regolith_studio.imaging.extraction import Extraction
 from regolith_studio.imaging.segmentation.segment import Segmentation
 from regolith_studio.imaging.segmentation.thresholding import Histogram
 from regolith_studio.imaging.volume import Volume
+from regolith_studio.resources import resource
 from regolith_studio.ui.pages.sample.page import in_english
-from regolith_studio.ui.translation import CONTEXT, tr
-from regolith_studio.ui.translation.extract import all_messages, messages_of, ts_text, update
+from regolith_studio.ui.translation import tr
 from regolith_studio.ui.translation.language import (
     LANGUAGES,
     language_of,
-    read_words,
-    translation_file,
 )
 from regolith_studio.ui.translation.sentences import retold
+from tools.update_translations import PACKAGE, read_translations, update
 
-GERMAN = read_words(translation_file("de"))
+TRANSLATIONS = resource("translations", "de.ts")
+GERMAN = read_translations(TRANSLATIONS)
 FORMATTER = string.Formatter()
-OF_OTHERS = re.compile(r"session/|jobs/|ui/pages/(?!explore)")
-"""Modules whose newest words may stand there in English for a while."""
-NEW_ELSEWHERE = 6
 
 
-def test_that_everything_in_the_window_is_translated():
-    missing = {text: places for text, places in all_messages().items() if text not in GERMAN}
-    ours = [text for text, places in missing.items() if not all(map(OF_OTHERS.match, places))]
-    advice = "run the module extract, then translate these in resources/translations/de.ts"
-    assert not ours, advice
-    assert len(missing) <= NEW_ELSEWHERE, advice
+def test_that_every_text_of_the_window_is_translated(tmp_path):
+    path = Path(shutil.copy(TRANSLATIONS, tmp_path))
+    update(path)
+    found = read_translations(path)
+    advice = "run python -m tools.update_translations, then translate these in resources/translations/de.ts"
+    assert [text for text, translation in found.items() if not translation] == [], advice
+    assert sorted(found) == sorted(GERMAN), advice
 
 
-def test_that_the_file_of_translations_is_brought_up_to_date(tmp_path):
-    path = tmp_path / "de.ts"
-    path.write_text(ts_text("de", GERMAN | {"Gone": "Fort"}).replace("Bereit", ""), encoding="utf-8")
-    assert "Ready" in update(path, "de")
-    text = path.read_text(encoding="utf-8")
-    assert 'type="unfinished"' in text
-    assert "Gone" not in text
-    words = read_words(path)
-    assert "Ready" not in words
-    assert words["Next seed"] == "Nächster Startwert"
+def test_that_the_compiled_translations_are_up_to_date(speaking):
+    speaking("de")
+    assert {text: tr(text) for text in GERMAN} == GERMAN, "run python -m tools.update_translations"
+
+
+def test_that_no_text_is_translated_inside_an_f_string():
+    """lupdate does not look into them."""
+    for path in sorted(PACKAGE.rglob("*.py")):
+        strings = [
+            node for node in ast.walk(ast.parse(path.read_text("utf-8"))) if isinstance(node, ast.JoinedStr)
+        ]
+        calls = [node for each in strings for node in ast.walk(each) if isinstance(node, ast.Call)]
+        hidden = [each for each in calls if getattr(each.func, "id", "") in ("tr", "N_")]
+        assert not [each for each in hidden if isinstance(each.args[0], ast.Constant)], path
 
 
 def test_that_a_translation_fills_in_what_the_source_does():
@@ -59,16 +64,6 @@ def test_that_a_translation_fills_in_what_the_source_does():
         assert german.count("&") == source.count("&"), source
         assert german.endswith("…") == source.endswith("…"), source
         assert german.strip() == german
-
-
-def test_that_messages_are_found_in_calls_and_in_tables():
-    code = """
-tr("one", count=3); tr_count("two", "three", 2); words = mark("fo" "ur"); tr(words); tr("="); other("no")
-ActionSpec("&Five", "six", "Se&ven", "eight", "Ctrl+N", "Nine", bar="words")
-Page(key="ten", title="Eleven", tip="Twelve"); ActionSpec(MENU, BREAK, "")
-"""
-    found = {"one", "two", "three", "four", "&Five", "Se&ven", "Nine", "Eleven", "Twelve"}
-    assert sorted(messages_of(code)) == sorted(found)
 
 
 def test_that_sentences_of_the_layers_below_are_told_anew(speaking):
@@ -98,7 +93,6 @@ def test_that_a_language_that_nobody_knows_is_english(app, speaking):
     assert tr("Ready") == "Bereit"
     assert tr("of no file: {count}", count=3) == "of no file: 3"
     assert app.translate("elsewhere", "Ready") == "Ready"
-    assert app.translate(CONTEXT, "Ready") == "Bereit"
 
 
 def test_that_names_of_rows_are_told_part_by_part(speaking):

@@ -15,6 +15,7 @@ from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.errors import GeometryError, InputError
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.half_spaces import HalfSpaces
+from regolith_studio.messages import N_
 
 TIE_BREAK = 1e-7
 CUT_DEPTH = 0.3
@@ -49,18 +50,18 @@ class AnnealingSettings:
     """
 
     start_temperature: float = field(
-        default=0.2, metadata={"label": "Start temperature T₀", "minimum": 0.0, "maximum": 1.0}
+        default=0.2, metadata={"label": N_("Start temperature T₀"), "minimum": 0.0, "maximum": 1.0}
     )
-    cooling: float = field(default=0.9, metadata={"label": "Cooling γ", "minimum": 0.0, "maximum": 1.0})
+    cooling: float = field(default=0.9, metadata={"label": N_("Cooling γ"), "minimum": 0.0, "maximum": 1.0})
     iterations: int = field(
-        default=100, metadata={"label": "Iterations k_max", "minimum": 1, "maximum": 1_000_000}
+        default=100, metadata={"label": N_("Iterations k_max"), "minimum": 1, "maximum": 1_000_000}
     )
     step_factor: float = field(
-        default=1.0, metadata={"label": "Step, in mean |p|", "minimum": 1e-4, "maximum": 10.0}
+        default=1.0, metadata={"label": N_("Step, in mean |p|"), "minimum": 1e-4, "maximum": 10.0}
     )
-    best_so_far: bool = field(default=False, metadata={"label": "Keep the best so far"})
-    adaptive_step: bool = field(default=False, metadata={"label": "Adaptive step"})
-    facet_repair: bool = field(default=False, metadata={"label": "Repair lost facets"})
+    best_so_far: bool = field(default=False, metadata={"label": N_("Keep the best so far")})
+    adaptive_step: bool = field(default=False, metadata={"label": N_("Adaptive step")})
+    facet_repair: bool = field(default=False, metadata={"label": N_("Repair lost facets")})
 
     def __post_init__(self) -> None:
         for each in fields(self):
@@ -101,7 +102,7 @@ class AnnealingMethod:
     """
 
     key = "annealing"
-    label = "Simulated annealing (paper)"
+    label = N_("Simulated annealing (paper)")
     Settings = AnnealingSettings
 
     def run(

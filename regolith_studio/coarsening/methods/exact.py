@@ -11,6 +11,7 @@ from regolith_studio.coarsening.result import MethodResult
 from regolith_studio.coarsening.target import Target
 from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.errors import InputError
+from regolith_studio.messages import N_
 
 
 @dataclass(frozen=True)
@@ -30,8 +31,8 @@ class ExactSettings:
         If a value is out of its range.
     """
 
-    level: str = field(default="fast", metadata={"label": "Level", "choices": tuple(LEVELS)})
-    retries: int = field(default=8, metadata={"label": "Retries", "minimum": 0, "maximum": 100})
+    level: str = field(default="fast", metadata={"label": N_("Level"), "choices": tuple(LEVELS)})
+    retries: int = field(default=8, metadata={"label": N_("Retries"), "minimum": 0, "maximum": 100})
 
     def __post_init__(self) -> None:
         if self.level not in LEVELS:
@@ -50,7 +51,7 @@ class ExactMethod:
     """
 
     key = "exact"
-    label = "Exact descriptors"
+    label = N_("Exact descriptors")
     Settings = ExactSettings
 
     def run(

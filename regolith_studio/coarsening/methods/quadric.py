@@ -16,6 +16,7 @@ from regolith_studio.descriptors.describe import describe
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.half_spaces import HalfSpaces
 from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.messages import N_
 
 
 @dataclass(frozen=True)
@@ -28,7 +29,7 @@ class QuadricSettings:
         Scale the half-spaces' polyhedron to the volume of the particle.
     """
 
-    restore_volume: bool = field(default=False, metadata={"label": "Restore the volume"})
+    restore_volume: bool = field(default=False, metadata={"label": N_("Restore the volume")})
 
 
 def variants(target: Target, n_facets: int) -> dict[str, dict[str, float]]:
@@ -56,7 +57,7 @@ class QuadricMethod:
     """Fast quadric mesh simplification of the convex hull (section 2.4); weights do not matter."""
 
     key = "quadric"
-    label = "Quadric decimation"
+    label = N_("Quadric decimation")
     Settings = QuadricSettings
 
     def run(

@@ -7,6 +7,7 @@ from regolith_studio.dataset.export import NOTES, Exporter, ExportOptions, shape
 from regolith_studio.dataset.lifting_cylinder import MICROMETRE
 from regolith_studio.dataset.size_distributions import size_classes
 from regolith_studio.io.stl import stl_bytes
+from regolith_studio.messages import N_
 
 _NOTE = b"""templates.asx: one particle_template for each class and size, its share of the mass behind it as a
 comment. Include it in an input script after the materials and hand the templates to an insertion
@@ -38,9 +39,9 @@ def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
 EXPORTER = Exporter(
     key="aspherix",
     label="Aspherix (convex templates)",
-    units="shapes of volume 1; scales in metres, coarse graining applied",
-    carries=("shapes", "sizes, one template each", "mass fractions (as comments)"),
-    loses=("contact parameters", "continuous size distributions: at most 16 sizes a class"),
+    units=N_("shapes of volume 1; scales in metres, coarse graining applied"),
+    carries=(N_("shapes"), N_("sizes, one template each"), N_("mass fractions (as comments)")),
+    loses=(N_("contact parameters"), N_("continuous size distributions: at most 16 sizes a class")),
     load_command="include {folder}/templates.asx",
     files=_files,
 )

@@ -8,6 +8,7 @@ from regolith_studio.dataset.lifting_cylinder import MICROMETRE
 from regolith_studio.dataset.size_distributions import size_classes
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.io.json_text import canonical_json
+from regolith_studio.messages import N_
 
 _NOTE = b"""meshes/*.obj are closed, outward, of volume 1, centroid at the origin, principal axes x, y, z.
 A particle of scale s (particles.json, metres) at density rho has mass rho s^3 and principal moments
@@ -66,14 +67,14 @@ def _obj(key: str, shape: ConvexPolyhedron) -> bytes:
 EXPORTER = Exporter(
     key="chrono",
     label="Chrono, DEM-Engine (OBJ, JSON)",
-    units="shapes of volume 1; scales in metres, coarse graining applied; SI material",
+    units=N_("shapes of volume 1; scales in metres, coarse graining applied; SI material"),
     carries=(
-        "shapes as triangles",
-        "mass and inertia",
-        "class weights, sizes",
-        "elastic constants, friction",
+        N_("shapes as triangles"),
+        N_("mass and inertia"),
+        N_("class weights, sizes"),
+        N_("elastic constants, friction"),
     ),
-    loses=("polygonal facets: they are cut into triangles", "surface energy (JKR)"),
+    loses=(N_("polygonal facets: they are cut into triangles"), N_("surface energy (JKR)")),
     load_command='solver.LoadMeshType("{folder}/meshes/shape_00.obj", material)',
     files=_files,
 )

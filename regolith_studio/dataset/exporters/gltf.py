@@ -10,6 +10,7 @@ from regolith_studio.dataset.export import NOTES, Exporter, ExportOptions, shape
 from regolith_studio.dataset.packing import pack_on_lattice
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
+from regolith_studio.messages import N_
 
 ENLARGED = 1000.0
 """Metres of the file for a metre of the particles: Blender cannot show particles of their true size well."""
@@ -129,9 +130,12 @@ _LOAD = "blender --python-expr \"import bpy; bpy.ops.import_scene.gltf(filepath=
 EXPORTER = Exporter(
     key="gltf",
     label="glTF (Blender)",
-    units="1 m in the file is 1 mm of the particles, coarse graining applied; y up",
-    carries=("drawn particles: shape, size, orientation", "flat shading of facets"),
-    loses=("exact half-spaces: float32 triangles", "weights and size distributions: only a sample is drawn"),
+    units=N_("1 m in the file is 1 mm of the particles, coarse graining applied; y up"),
+    carries=(N_("drawn particles: shape, size, orientation"), N_("flat shading of facets")),
+    loses=(
+        N_("exact half-spaces: float32 triangles"),
+        N_("weights and size distributions: only a sample is drawn"),
+    ),
     load_command=_LOAD,
     files=_files,
 )

@@ -6,6 +6,7 @@ from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.export import NOTES, Exporter, ExportOptions, shape_names, sizes_csv
 from regolith_studio.io.json_text import canonical_json
 from regolith_studio.io.tables import csv_bytes
+from regolith_studio.messages import N_
 
 _NOTE = b"""All x with <normal, x> <= offset; normals have length 1 and point out; every plane bears a facet.
 Floats are written so that they read back bit for bit. sizes.csv: classes, weights, sizes."""
@@ -40,9 +41,9 @@ def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
 EXPORTER = Exporter(
     key="half-spaces",
     label="Half-spaces (JSON, CSV)",
-    units="shapes of volume 1 without a length unit; diameters in micrometres",
-    carries=("shapes exactly", "class weights by number and mass", "sizes"),
-    loses=("where the particles come from (dataset.json has it)",),
+    units=N_("shapes of volume 1 without a length unit; diameters in micrometres"),
+    carries=(N_("shapes exactly"), N_("class weights by number and mass"), N_("sizes")),
+    loses=(N_("where the particles come from (dataset.json has it)"),),
     load_command="python -m json.tool {shell}/half_spaces.json",
     files=_files,
 )

@@ -3,6 +3,7 @@
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.export import NOTES, Exporter, ExportOptions, shape_names, sizes_csv
 from regolith_studio.io.json_text import canonical_json
+from regolith_studio.messages import N_
 
 _NOTE = b"""type_shapes goes into the GSD chunk particles/type_shapes, types into particles/types:
     frame.particles.types, frame.particles.type_shapes = content["types"], content["type_shapes"]
@@ -33,9 +34,9 @@ def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
 EXPORTER = Exporter(
     key="hoomd",
     label="GSD, HOOMD-blue (shape JSON)",
-    units="shapes of volume 1 without a length unit; diameters in micrometres",
-    carries=("shapes by their vertices", "class weights by number and mass, sizes (sizes.csv)"),
-    loses=("facets: they are those of the vertices' hull", "contact parameters"),
+    units=N_("shapes of volume 1 without a length unit; diameters in micrometres"),
+    carries=(N_("shapes by their vertices"), N_("class weights by number and mass, sizes (sizes.csv)")),
+    loses=(N_("facets: they are those of the vertices' hull"), N_("contact parameters")),
     load_command="python -m json.tool {shell}/type_shapes.json",
     files=_files,
 )

@@ -7,6 +7,7 @@ from regolith_studio.dataset.export import NOTES, Exporter, ExportOptions, sizes
 from regolith_studio.dataset.packing import PackedParticles, pack_on_lattice
 from regolith_studio.dataset.rounded_polyhedra import RoundedPolyhedron, rounded
 from regolith_studio.errors import DatasetError
+from regolith_studio.messages import N_
 
 LINES, WIDTH = 32, 250
 """Most lines of a body, and characters of a line, that LAMMPS reads (MAXBODY and MAXLINE of its sources)."""
@@ -141,13 +142,13 @@ def _row(values: "np.ndarray | tuple[float, ...]") -> str:
 EXPORTER = Exporter(
     key="lammps",
     label="LAMMPS (body rounded/polyhedron)",
-    units="SI; coarse graining applied",
-    carries=("drawn particles: shape, size, orientation", "mass and inertia", "friction"),
+    units=N_("SI; coarse graining applied"),
+    carries=(N_("drawn particles: shape, size, orientation"), N_("mass and inertia"), N_("friction")),
     loses=(
-        "weights and size distributions: only a sample is drawn (sizes.csv has them)",
-        "Hertz, Mindlin-Deresiewicz, JKR: the pair style is linear",
+        N_("weights and size distributions: only a sample is drawn (sizes.csv has them)"),
+        N_("Hertz, Mindlin-Deresiewicz, JKR: the pair style is linear"),
     ),
     load_command="cd {shell} && lmp -in in.particles -var steps 100",
     files=_files,
-    alters="LAMMPS rounds edges; facets stay in their planes, corners are lost.",
+    alters=N_("LAMMPS rounds edges; facets stay in their planes, corners are lost."),
 )

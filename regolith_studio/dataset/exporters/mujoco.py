@@ -8,6 +8,7 @@ from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.export import NOTES, Exporter, ExportOptions, shape_names, sizes_csv
 from regolith_studio.dataset.packing import pack_on_lattice
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
+from regolith_studio.messages import N_
 
 MILLIMETRES = 1e3
 """Per metre."""
@@ -86,11 +87,11 @@ def _row(values: np.ndarray) -> str:
 EXPORTER = Exporter(
     key="mujoco",
     label="MuJoCo (MJCF)",
-    units="mm, mg, ms; coarse graining applied",
-    carries=("drawn particles: shape, size, orientation", "mass and inertia", "friction"),
+    units=N_("mm, mg, ms; coarse graining applied"),
+    carries=(N_("drawn particles: shape, size, orientation"), N_("mass and inertia"), N_("friction")),
     loses=(
-        "weights and size distributions: only a sample is drawn (sizes.csv has them)",
-        "Hertz, Mindlin-Deresiewicz, JKR: MuJoCo's contacts are soft constraints",
+        N_("weights and size distributions: only a sample is drawn (sizes.csv has them)"),
+        N_("Hertz, Mindlin-Deresiewicz, JKR: MuJoCo's contacts are soft constraints"),
     ),
     load_command="python -m mujoco.viewer --mjcf={shell}/particles.xml",
     files=_files,

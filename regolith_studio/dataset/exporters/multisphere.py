@@ -6,6 +6,7 @@ from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.export import NOTES, Exporter, ExportOptions, shape_names, sizes_csv
 from regolith_studio.dataset.multisphere import fit_spheres, sphere_fit_errors
 from regolith_studio.io.tables import csv_bytes
+from regolith_studio.messages import N_
 
 _NOTE = """One file a shape, a line a sphere: x y z r, in the frame of the shape (volume 1, centroid at the
 origin). The spheres lie inside the polyhedron, so their union is smaller:
@@ -45,10 +46,14 @@ def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
 EXPORTER = Exporter(
     key="multi-sphere",
     label="Multi-sphere (x y z r)",
-    units="spheres in the frame of a shape of volume 1; diameters in micrometres",
-    carries=("shapes approximately", "weights and sizes (sizes.csv)", "true moments of inertia (fit.csv)"),
-    loses=("flat facets and edges", "part of the volume", "contact parameters"),
+    units=N_("spheres in the frame of a shape of volume 1; diameters in micrometres"),
+    carries=(
+        N_("shapes approximately"),
+        N_("weights and sizes (sizes.csv)"),
+        N_("true moments of inertia (fit.csv)"),
+    ),
+    loses=(N_("flat facets and edges"), N_("part of the volume"), N_("contact parameters")),
     load_command="file {folder}/spheres/shape_00.txt",
     files=_files,
-    alters="spheres inside each polyhedron stand for it; facets become bumpy and some volume is missing.",
+    alters=N_("spheres inside each polyhedron stand for it; facets become bumpy and some volume is missing."),
 )

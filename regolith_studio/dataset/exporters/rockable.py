@@ -6,6 +6,7 @@ from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.export import NOTES, Exporter, ExportOptions, shape_names, sizes_csv
 from regolith_studio.dataset.rounded_polyhedra import rounded
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
+from regolith_studio.messages import N_
 
 _NOTE = """shapes.shp holds all shapes, of volume 1 before rounding; a particle's homothety is its
 scale d (pi/6)^(1/3), and the Minkowski radius scales with it. Facets stay in their planes: vertices lie
@@ -64,10 +65,17 @@ def _row(values: np.ndarray) -> str:
 EXPORTER = Exporter(
     key="rockable",
     label="Rockable, exaDEM (.shp)",
-    units="shapes of volume 1 (before rounding) without a length unit; diameters in micrometres",
-    carries=("polygonal facets, edges, vertices", "volume and inertia", "weights and sizes (sizes.csv)"),
-    loses=("contact parameters", "size distributions inside the .shp: give each particle its homothety"),
+    units=N_("shapes of volume 1 (before rounding) without a length unit; diameters in micrometres"),
+    carries=(
+        N_("polygonal facets, edges, vertices"),
+        N_("volume and inertia"),
+        N_("weights and sizes (sizes.csv)"),
+    ),
+    loses=(
+        N_("contact parameters"),
+        N_("size distributions inside the .shp: give each particle its homothety"),
+    ),
     load_command="shapeFile {folder}/shapes.shp",
     files=_files,
-    alters="both programs need rounded edges; facets stay in their planes, corners are lost.",
+    alters=N_("both programs need rounded edges; facets stay in their planes, corners are lost."),
 )

@@ -15,6 +15,7 @@ from regolith_studio.dataset.lifting_cylinder import MICROMETRE, box_mesh, parti
 from regolith_studio.dataset.size_distributions import size_classes
 from regolith_studio.io.json_text import canonical_json
 from regolith_studio.io.stl import stl_bytes
+from regolith_studio.messages import N_
 from regolith_studio.resources import resource
 
 _NOTE = """rocky_case.py reads case.json and builds the case: materials, damped Hertzian and
@@ -94,15 +95,17 @@ def _plate(options: ExportOptions) -> np.ndarray:
 EXPORTER = Exporter(
     key="rocky",
     label="ANSYS Rocky (script)",
-    units="SI; sizes are equivalent diameters in metres before coarse graining, which Rocky applies itself",
-    carries=(
-        "shapes",
-        "class weights as shares of the mass",
-        "sizes as cumulative percentages by mass",
-        "contact parameters: damped Hertzian, Mindlin-Deresiewicz, JKR",
-        "coarse graining, lifting cylinder",
+    units=N_(
+        "SI; sizes are equivalent diameters in metres before coarse graining, which Rocky applies itself"
     ),
-    loses=("continuous size distributions: at most 16 sizes a shape", "rolling resistance"),
+    carries=(
+        N_("shapes"),
+        N_("class weights as shares of the mass"),
+        N_("sizes as cumulative percentages by mass"),
+        N_("contact parameters: damped Hertzian, Mindlin-Deresiewicz, JKR"),
+        N_("coarse graining, lifting cylinder"),
+    ),
+    loses=(N_("continuous size distributions: at most 16 sizes a shape"), N_("rolling resistance")),
     load_command="python {shell}/rocky_case.py",
     files=_files,
 )

@@ -16,6 +16,7 @@ from regolith_studio.dataset.export import (
 from regolith_studio.dataset.packing import PackedParticles, fitted_cylinder, pack_on_lattice
 from regolith_studio.io.json_text import canonical_json
 from regolith_studio.io.tables import csv_bytes
+from regolith_studio.messages import N_
 from regolith_studio.resources import resource
 
 OVERLAP = 1e-2
@@ -79,11 +80,11 @@ def _case(dataset: Dataset, options: ExportOptions, bodies: PackedParticles) -> 
 EXPORTER = Exporter(
     key="yade",
     label="YADE (script)",
-    units="SI; coarse graining applied",
-    carries=("drawn particles: shape, size, orientation", "friction", "lifting cylinder"),
+    units=N_("SI; coarse graining applied"),
+    carries=(N_("drawn particles: shape, size, orientation"), N_("friction"), N_("lifting cylinder")),
     loses=(
-        "weights and size distributions: only a sample is drawn (sizes.csv has them)",
-        "Hertz, Mindlin-Deresiewicz, JKR, restitution: the law is volumetric",
+        N_("weights and size distributions: only a sample is drawn (sizes.csv has them)"),
+        N_("Hertz, Mindlin-Deresiewicz, JKR, restitution: the law is volumetric"),
     ),
     load_command="yade -j1 {shell}/yade_case.py",
     files=_files,

@@ -5,6 +5,7 @@ from typing import Any
 
 from regolith_studio.dem.engine import Engine
 from regolith_studio.errors import InputError
+from regolith_studio.messages import N_
 from regolith_studio.registry import Registry
 
 ENGINES: Registry[Engine] = Registry(
@@ -27,13 +28,13 @@ def engine_named(key: str) -> Engine:
 
 
 CAPABILITY_LABELS = {
-    "shape": "Shape",
-    "normal": "Normal force",
-    "tangential": "Tangential force",
-    "cohesion": "Cohesion",
-    "rolling": "Rolling",
-    "coarse_graining": "Coarse graining",
-    "missing": "Not represented",
+    "shape": N_("Shape"),
+    "normal": N_("Normal force"),
+    "tangential": N_("Tangential force"),
+    "cohesion": N_("Cohesion"),
+    "rolling": N_("Rolling"),
+    "coarse_graining": N_("Coarse graining"),
+    "missing": N_("Not represented"),
 }
 
 

@@ -4,6 +4,7 @@ from dataclasses import dataclass, field
 
 from regolith_studio.dataset.parameters import check_limits
 from regolith_studio.errors import InputError
+from regolith_studio.messages import N_
 
 
 @dataclass(frozen=True)
@@ -47,35 +48,46 @@ class EvaluationSettings:
         If a value is out of its range.
     """
 
-    gap: float = field(default=1.0, metadata={"label": "Gap, in mean d", "minimum": 0.1, "maximum": 10.0})
+    gap: float = field(default=1.0, metadata={"label": N_("Gap, in mean d"), "minimum": 0.1, "maximum": 10.0})
     bin_width: float = field(
-        default=0.5, metadata={"label": "Bin width, in mean d", "minimum": 0.05, "maximum": 3.0}
+        default=0.5, metadata={"label": N_("Bin width, in mean d"), "minimum": 0.05, "maximum": 3.0}
     )
-    median_window: int = field(default=5, metadata={"label": "Rolling median", "minimum": 1, "maximum": 101})
-    cut_top: float = field(default=0.15, metadata={"label": "Upper cut", "minimum": 0.0, "maximum": 0.45})
-    cut_bottom: float = field(default=0.15, metadata={"label": "Lower cut", "minimum": 0.0, "maximum": 0.45})
+    median_window: int = field(
+        default=5, metadata={"label": N_("Rolling median"), "minimum": 1, "maximum": 101}
+    )
+    cut_top: float = field(default=0.15, metadata={"label": N_("Upper cut"), "minimum": 0.0, "maximum": 0.45})
+    cut_bottom: float = field(
+        default=0.15, metadata={"label": N_("Lower cut"), "minimum": 0.0, "maximum": 0.45}
+    )
     toe: float = field(
-        default=1.5, metadata={"label": "Lowest cut, in mean d", "minimum": 0.0, "maximum": 10.0}
+        default=1.5, metadata={"label": N_("Lowest cut, in mean d"), "minimum": 0.0, "maximum": 10.0}
     )
     slab: float = field(
         default=0.0,
-        metadata={"label": "Slice, in mean d", "minimum": 0.0, "maximum": 1000.0, "tip": "0: whole pile"},
+        metadata={
+            "label": N_("Slice, in mean d"),
+            "minimum": 0.0,
+            "maximum": 1000.0,
+            "tip": N_("0: whole pile"),
+        },
     )
     grain_correction: bool = field(
-        default=True, metadata={"label": "Correct for grain size", "minimum": False, "maximum": True}
+        default=True, metadata={"label": N_("Correct for grain size"), "minimum": False, "maximum": True}
     )
-    azimuths: int = field(default=12, metadata={"label": "Sections", "minimum": 2, "maximum": 360})
-    min_points: int = field(default=4, metadata={"label": "Points a flank", "minimum": 3, "maximum": 1000})
+    azimuths: int = field(default=12, metadata={"label": N_("Sections"), "minimum": 2, "maximum": 360})
+    min_points: int = field(
+        default=4, metadata={"label": N_("Points a flank"), "minimum": 3, "maximum": 1000}
+    )
     min_particles: int = field(
-        default=150, metadata={"label": "Fewest particles", "minimum": 10, "maximum": 1_000_000}
+        default=150, metadata={"label": N_("Fewest particles"), "minimum": 10, "maximum": 1_000_000}
     )
     min_height: float = field(
-        default=2.5, metadata={"label": "Lowest pile, in mean d", "minimum": 0.0, "maximum": 100.0}
+        default=2.5, metadata={"label": N_("Lowest pile, in mean d"), "minimum": 0.0, "maximum": 100.0}
     )
     confidence: float = field(
-        default=0.95, metadata={"label": "Confidence", "minimum": 0.5, "maximum": 0.999}
+        default=0.95, metadata={"label": N_("Confidence"), "minimum": 0.5, "maximum": 0.999}
     )
-    seed: int = field(default=0, metadata={"label": "Bootstrap seed", "minimum": 0, "maximum": 2**31 - 1})
+    seed: int = field(default=0, metadata={"label": N_("Bootstrap seed"), "minimum": 0, "maximum": 2**31 - 1})
 
     def __post_init__(self) -> None:
         check_limits(self, "evaluation setting")

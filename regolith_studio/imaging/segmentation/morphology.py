@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from regolith_studio.errors import InputError
+from regolith_studio.messages import N_
 
 _CROSS: NDArray[np.bool_] = ndimage.generate_binary_structure(3, 1)
 
@@ -33,7 +34,7 @@ class CleaningSettings:
     min_voxels: int = 64
 
     def __post_init__(self) -> None:
-        for name, value in (("Opening", self.opening), ("Closing", self.closing)):
+        for name, value in ((N_("Opening"), self.opening), (N_("Closing"), self.closing)):
             if value not in range(11):
                 raise InputError(f"{name} takes 0 to 10 voxels, got {value}.")
         if self.min_voxels < 0:

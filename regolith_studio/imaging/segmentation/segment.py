@@ -30,6 +30,7 @@ from regolith_studio.imaging.segmentation.thresholding import (
 )
 from regolith_studio.imaging.volume import Volume
 from regolith_studio.imaging.volume_slabs import ScratchArrays, SliceSource, slab_ranges, thick_slabs
+from regolith_studio.messages import N_
 
 
 @dataclass(frozen=True)
@@ -141,7 +142,7 @@ def segmentation_steps(
         numbers, bodies, edges, settings.splitting, settings.cleaning.fill_pores, settings.tiles
     )
     for done, total in splitter.steps(least):
-        yield SegmentationProgress("Parting touching grains", done, total)
+        yield SegmentationProgress(N_("Parting touching grains"), done, total)
     sizes = yield from _renumbered(numbers, splitter.n_grains, least)
     if not len(sizes):
         raise InputError(
@@ -188,7 +189,7 @@ def _denoised(source: SliceSource, settings: SegmentationSettings, scratch: Scra
             smooth = denoised(slab.values, how, noise)[:, :, slab.inner]
             values[:, :, slab.first : slab.stop] = smooth
         seen = seen + histogram(smooth, edges)
-        yield SegmentationProgress("Denoising", done, len(ranges))
+        yield SegmentationProgress(N_("Denoising"), done, len(ranges))
     if values is None:
         return source, seen
     return Volume(values, np.asarray(source.voxel_size), "grey", source.name), seen
@@ -215,7 +216,7 @@ def _numbered(
     for done, slab in enumerate(thick_slabs(values, ranges, settings.cleaning.margin), start=1):
         mask = cleaned(grain_voxels(slab.values, level, settings.threshold), settings.cleaning)
         numbers[:, :, slab.first : slab.stop] = counter.numbered(mask[:, :, slab.inner], slab.first)
-        yield SegmentationProgress("Finding bodies", done, len(ranges))
+        yield SegmentationProgress(N_("Finding bodies"), done, len(ranges))
     return counter.finish()
 
 
@@ -234,7 +235,7 @@ def _renumbered(
     for done, (first, stop) in enumerate(ranges, start=1):
         slab = numbers[:, :, first:stop]
         slab[...] = label[np.maximum(-slab, 0)]
-        yield SegmentationProgress("Numbering grains", done, len(ranges))
+        yield SegmentationProgress(N_("Numbering grains"), done, len(ranges))
     return counts[kept]
 
 

@@ -8,6 +8,7 @@ from types import TracebackType
 from typing import Any, Self
 
 from regolith_studio.errors import FileError
+from regolith_studio.messages import N_
 from regolith_studio.readers.units import unit_named
 from regolith_studio.readers.voxels.header import Sizes, sizes_or_none
 
@@ -19,7 +20,9 @@ _INCH, _CENTIMETRE = 25.4, 10.0
 """Millimetres."""
 _PRINTERS = (72, 96, 100, 150, 180, 200, 240, 300, 360, 400, 600, 720, 1200, 2400)
 """Resolutions, in dots per inch, that programs write when they know none."""
-_CUBIC = "The file states the width of a pixel only; the slices were assumed to be the same distance apart."
+_CUBIC = N_(
+    "The file states the width of a pixel only; the slices were assumed to be the same distance apart."
+)
 
 
 class _ErrorLog(logging.Handler):
@@ -133,7 +136,7 @@ def _ome(description: str) -> Stated:
         return None, None, ()
     unit = unit_named(found.get("XUnit", "µm"))
     if any(unit_named(found.get(f"{axis}Unit", "µm")) != unit for axis in "YZ" if axis in found):
-        return None, None, ("The file states voxel edges in different units; they were ignored.",)
+        return None, None, (N_("The file states voxel edges in different units; they were ignored."),)
     width = _number(found["X"], 0.0)
     size = sizes_or_none((width, _number(found.get("Y"), width), _number(found.get("Z"), width)))
     return size, unit if size else None, () if "Z" in found else (_CUBIC,)

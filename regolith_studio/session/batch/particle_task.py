@@ -20,6 +20,7 @@ from regolith_studio.jobs.events import Failed, Finished, Job, JobResult, Progre
 from regolith_studio.jobs.executor import call
 from regolith_studio.jobs.particle_jobs import FitRequest, MeasuredParticle, fit_one, measure_particle
 from regolith_studio.jobs.runners.run_job import iterate_job
+from regolith_studio.messages import N_
 from regolith_studio.session.batch.inputs import BatchInput
 from regolith_studio.session.outputs.coarsening import STL_HEADER, coarsening_entry
 from regolith_studio.session.outputs.descriptors import described
@@ -83,7 +84,7 @@ def process_particles(items: Sequence[tuple[int, BatchInput]], wish: ParticleTas
 
     Whatever goes wrong with a particle stands in its record, under ``failures``, and stops nothing else.
     """
-    yield Started("Working on particles", len(items))
+    yield Started(N_("Working on particles"), len(items))
     records = []
     for index, item in items:
         records.append((yield from _record(index, item, wish)))
@@ -129,7 +130,7 @@ def _particle(item: BatchInput) -> Particle:
 
 def _examined(particle: Particle, box_metric: str) -> Steps:
     """What ``descriptors.json`` says of the particle; a number that is not finite is a mistake here."""
-    yield Started("Measuring")
+    yield Started(N_("Measuring"))
     facts: MeasuredParticle = measure_particle(particle, box_metric)
     return _finite(described(particle, facts))
 

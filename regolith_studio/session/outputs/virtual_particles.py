@@ -15,6 +15,7 @@ from regolith_studio.io.json_text import json_bytes
 from regolith_studio.io.tables import Cell, Column, Table, csv_text
 from regolith_studio.jobs.model_jobs import GenerationRequest, particle_names
 from regolith_studio.jobs.particle_jobs import MeasuredParticle
+from regolith_studio.messages import N_
 from regolith_studio.readers.shape_files import ShapeSource
 from regolith_studio.session.outputs.descriptors import descriptor_table
 from regolith_studio.shape_models.protocol import FittedModel
@@ -73,7 +74,7 @@ def write_coefficients(folder: Path, made: Generated) -> None:
     write_bytes(folder / ARRAYS, packed.getvalue())
     columns = (Column("name"), Column("group"), Column("equivalent_radius", "um"))
     rows = tuple(zip(names, made.groups, radii.tolist(), strict=True))
-    _write_table(folder, Table("Virtual particles", columns, rows), made.draws)
+    _write_table(folder, Table(N_("Virtual particles"), columns, rows), made.draws)
 
 
 def write_document(folder: Path, made: Generated, extra: dict[str, Any]) -> dict[str, Any]:

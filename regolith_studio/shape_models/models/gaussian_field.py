@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray, locked_floats
 from regolith_studio.harmonics.coefficients import degrees
+from regolith_studio.messages import N_
 from regolith_studio.shape_models.chunked_sampling import ChunkedSampler, accepted, chunks
 from regolith_studio.shape_models.protocol import SizeRange
 from regolith_studio.shape_models.realizations import Realizations, acceptable
@@ -107,8 +108,8 @@ class GaussianRadiusModel:
     """Unbiased estimates: mu = mean of c_00, A_0 its variance (n - 1), A_l = mean of c_lm^2."""
 
     key = KEY
-    label = "Gaussian field (the paper's)"
-    summary = "Independent normal coefficients; draws with a negative radius are thrown away."
+    label = N_("Gaussian field (the paper's)")
+    summary = N_("Independent normal coefficients; draws with a negative radius are thrown away.")
     Settings = GaussianFieldSettings
 
     def fit(self, sample: Sample, settings: GaussianFieldSettings | None = None) -> GaussianField:

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray, locked_floats
 from regolith_studio.harmonics.coefficients import degrees
+from regolith_studio.messages import N_
 from regolith_studio.shape_models.chunked_sampling import ChunkedSampler, accepted, chunks
 from regolith_studio.shape_models.mixture import (
     MixtureSettings,
@@ -125,8 +126,10 @@ class GaussianMixtureModel:
     """Expectation and maximisation on c_00 and the power of each degree."""
 
     key = KEY
-    label = "Mixture of the paper's fields"
-    summary = "The paper's outlook: constituents with sizes and spectra of their own, in the radius itself."
+    label = N_("Mixture of the paper's fields")
+    summary = N_(
+        "The paper's outlook: constituents with sizes and spectra of their own, in the radius itself."
+    )
     Settings = MixtureSettings
 
     def fit(self, sample: Sample, settings: MixtureSettings | None = None) -> GaussianMixture:

@@ -20,6 +20,7 @@ from scipy.spatial.transform import Rotation
 
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray, locked_floats
+from regolith_studio.messages import N_
 from regolith_studio.shape_models.calibration import (
     CalibrationOffset,
     CalibrationTarget,
@@ -63,7 +64,9 @@ class HullFieldSettings:
     """
 
     l_max: int = 10
-    size_law: str = field(default="kernel", metadata={"label": "Law of sizes", "choices": tuple(SIZE_LAWS)})
+    size_law: str = field(
+        default="kernel", metadata={"label": N_("Law of sizes"), "choices": tuple(SIZE_LAWS)}
+    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -174,8 +177,10 @@ class HullFieldModel:
     """Measures the numbers of a sample's particles, and corrects what is asked for until they come out."""
 
     key = KEY
-    label = "Field drawn to its hull"
-    summary = "Parametric, with facets: size, form, roughness and hull ratio go together as in the sample."
+    label = N_("Field drawn to its hull")
+    summary = N_(
+        "Parametric, with facets: size, form, roughness and hull ratio go together as in the sample."
+    )
     Settings = HullFieldSettings
 
     def fit(self, sample: Sample, settings: HullFieldSettings | None = None) -> HullField:

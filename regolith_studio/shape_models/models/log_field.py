@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats
 from regolith_studio.harmonics.coefficients import degrees
+from regolith_studio.messages import N_
 from regolith_studio.shape_models.chunked_sampling import CHUNK, ChunkedSampler, chunks
 from regolith_studio.shape_models.log_radius import directed, log_shapes, sized
 from regolith_studio.shape_models.protocol import SizeRange
@@ -23,7 +24,7 @@ from regolith_studio.shape_models.sample import Sample
 from regolith_studio.shape_models.size_law import SIZE_LAWS, SizeLaw, checked_bounds, size_law_from
 
 KEY = "log_field"
-SPECTRA = ("resampled", "pooled")
+SPECTRA = (N_("resampled"), N_("pooled"))
 NEIGHBOURS_IN_SIZE = 20
 """A resampled spectrum comes from one of so many measured particles nearest in size."""
 SPECTRUM_JITTER = 0.1
@@ -46,9 +47,11 @@ class LogFieldSettings:
     """
 
     l_max: int = 10
-    spectrum: str = field(default="resampled", metadata={"label": "Spectrum", "choices": SPECTRA})
-    size_law: str = field(default="kernel", metadata={"label": "Law of sizes", "choices": tuple(SIZE_LAWS)})
-    size_dependent: bool = field(default=True, metadata={"label": "Spectrum depends on size"})
+    spectrum: str = field(default="resampled", metadata={"label": N_("Spectrum"), "choices": SPECTRA})
+    size_law: str = field(
+        default="kernel", metadata={"label": N_("Law of sizes"), "choices": tuple(SIZE_LAWS)}
+    )
+    size_dependent: bool = field(default=True, metadata={"label": N_("Spectrum depends on size")})
 
 
 @dataclass(frozen=True, eq=False)
@@ -162,8 +165,8 @@ class LogFieldModel:
     """Pooled or resampled spectrum of ln(r / r_eq), and a law of r_eq."""
 
     key = KEY
-    label = "Field in log r"
-    summary = "Positive by construction; sizes and spectrum apart, so that it extrapolates."
+    label = N_("Field in log r")
+    summary = N_("Positive by construction; sizes and spectrum apart, so that it extrapolates.")
     Settings = LogFieldSettings
 
     def fit(self, sample: Sample, settings: LogFieldSettings | None = None) -> LogField:

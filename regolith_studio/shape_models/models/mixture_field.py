@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats
 from regolith_studio.harmonics.coefficients import degrees
+from regolith_studio.messages import N_
 from regolith_studio.shape_models.chunked_sampling import CHUNK, ChunkedSampler, chunks
 from regolith_studio.shape_models.log_radius import log_shapes, sized
 from regolith_studio.shape_models.mixture import (
@@ -103,8 +104,8 @@ class MixtureFieldModel:
     """Expectation and maximisation on ln r_eq and the power of each degree."""
 
     key = KEY
-    label = "Mixture of fields"
-    summary = "Constituents with sizes and spectra of their own; their number by Bayes' criterion."
+    label = N_("Mixture of fields")
+    summary = N_("Constituents with sizes and spectra of their own; their number by Bayes' criterion.")
     Settings = MixtureSettings
 
     def fit(self, sample: Sample, settings: MixtureSettings | None = None) -> MixtureField:

@@ -26,6 +26,7 @@ from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats
 from regolith_studio.harmonics.coefficients import degrees
 from regolith_studio.harmonics.sphere_grid import enclosed_volumes, sphere_grid
+from regolith_studio.messages import N_
 from regolith_studio.shape_models.chunked_sampling import CHUNK, ChunkedSampler, chunks
 from regolith_studio.shape_models.inertia_ellipsoid import PrincipalAxes, principal_axes
 from regolith_studio.shape_models.linear_maps import Tables, mapped_radii, radius_tables
@@ -67,24 +68,28 @@ class SampleMatchedSettings:
     turn: float = field(
         default=0.45,
         metadata={
-            "label": "Turn [rad]",
+            "label": N_("Turn [rad]"),
             "maximum": 2.0,
             "step": 0.1,
             "decimals": 2,
-            "tip": "Mean rotation of a round particle; long ones are turned less.",
+            "tip": N_("Mean rotation of a round particle; long ones are turned less."),
         },
     )
     n_neighbours: int = field(
         default=20,
-        metadata={"label": "Neighbours", "minimum": 1, "tip": "Particles that may lend their ellipsoid."},
+        metadata={
+            "label": N_("Neighbours"),
+            "minimum": 1,
+            "tip": N_("Particles that may lend their ellipsoid."),
+        },
     )
     size_jitter: float = field(
         default=0.02,
         metadata={
-            "label": "Size jitter",
+            "label": N_("Size jitter"),
             "maximum": 1.0,
             "decimals": 3,
-            "tip": "Deviation in ln r_eq.",
+            "tip": N_("Deviation in ln r_eq."),
         },
     )
 
@@ -241,8 +246,8 @@ class SampleMatchedModel:
     """Keeps the measured particles; nothing is estimated but their ellipsoids."""
 
     key = KEY
-    label = "Matched to the sample"
-    summary = (
+    label = N_("Matched to the sample")
+    summary = N_(
         "Measured surfaces turned within their ellipsoids: sizes and shapes as in the sample, bodies new."
     )
     Settings = SampleMatchedSettings

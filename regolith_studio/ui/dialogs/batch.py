@@ -21,21 +21,22 @@ from PySide6.QtWidgets import (
 
 from regolith_studio.errors import InputError
 from regolith_studio.jobs.executor import ExecutorSettings
+from regolith_studio.messages import N_
 from regolith_studio.session.batch_job import ExecutorReady, is_unfinished
 from regolith_studio.session.recipe import Outputs
 from regolith_studio.session.tasks import Task
 from regolith_studio.ui.dialogs.batch_fields import PathField, SourceField, WorkersField
-from regolith_studio.ui.translation import mark, tr, tr_count
+from regolith_studio.ui.translation import tr, tr_count
 from regolith_studio.ui.widgets.labels import remark
 
 RESULTS = {
-    "descriptors": mark("Descriptors"),
-    "fits": mark("Fits"),
-    "meshes": mark("Polyhedra (STL)"),
-    "dataset": mark("Dataset"),
-    "lmax_study": mark("Study of the degree"),
-    "coarsening_study": mark("Study of the coarsening"),
-    "summary": mark("Report (HTML)"),
+    "descriptors": N_("Descriptors"),
+    "fits": N_("Fits"),
+    "meshes": N_("Polyhedra (STL)"),
+    "dataset": N_("Dataset"),
+    "lmax_study": N_("Study of the degree"),
+    "coarsening_study": N_("Study of the coarsening"),
+    "summary": N_("Report (HTML)"),
 }
 
 
@@ -144,7 +145,7 @@ class BatchDialog(QDialog):
 
     def show_hired(self, hired: ExecutorReady) -> None:
         """Say who works, and where that can be watched."""
-        who = tr_count("1 worker", "{count} workers", hired.workers)
+        who = tr_count(N_("1 worker"), N_("{count} workers"), hired.workers)
         link = f'<a href="{hired.dashboard}">{hired.dashboard}</a>'
         self.place.setText(tr("{who}, watched at {link}", who=who, link=link) if hired.dashboard else who)
         self.place.show()

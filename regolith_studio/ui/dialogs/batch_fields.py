@@ -21,14 +21,15 @@ from regolith_studio.errors import InputError
 from regolith_studio.jobs.executor import TLS_NAMES, ExecutorSettings
 from regolith_studio.jobs.runners.dask_cluster import SchedulerAddress
 from regolith_studio.jobs.runners.process_pool import cores
+from regolith_studio.messages import N_
 from regolith_studio.ui.dialogs.folder import FolderDialog
-from regolith_studio.ui.translation import mark, tr
+from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.labels import remark
 
 PLACES = {
-    "processes": mark("Processes of this machine"),
-    "local": mark("A Dask cluster started on this machine"),
-    "address": mark("A Dask cluster at an address"),
+    "processes": N_("Processes of this machine"),
+    "local": N_("A Dask cluster started on this machine"),
+    "address": N_("A Dask cluster at an address"),
 }
 
 

@@ -63,7 +63,7 @@ def summary(count: int, choices: Choices) -> list[tuple[str, str]]:
         (tr("Each with"), fineness_words(choices)),
         (tr("Imitating"), target),
         (tr("Method"), method),
-        (tr("Weights"), f"{weights or tr('none')} ({preset})"),
+        (tr("Weights"), (weights or tr("none")) + f" ({preset})"),
         (tr("Also"), tr("weights, size distribution, descriptors, provenance (JSON)")),
     ]
 

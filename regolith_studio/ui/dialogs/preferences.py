@@ -6,15 +6,16 @@ from typing import Any
 from PySide6.QtCore import QSignalBlocker, Signal
 from PySide6.QtWidgets import QDialog, QDialogButtonBox, QFormLayout, QSpinBox, QVBoxLayout, QWidget
 
+from regolith_studio.messages import N_
 from regolith_studio.ui.theme import LARGEST, SMALLEST, USUAL
-from regolith_studio.ui.translation import mark, tr
+from regolith_studio.ui.translation import tr
 from regolith_studio.ui.translation.language import LANGUAGES, SETTING, SYSTEM
 from regolith_studio.ui.widgets.combo_box import ChoiceBox
 from regolith_studio.ui.widgets.labels import remark
 
 LETTERS = "letters"
 """In the preferences of the window: size of letters in percent."""
-THEMES = {SYSTEM: mark("As the system"), "light": mark("Light"), "dark": mark("Dark")}
+THEMES = {SYSTEM: N_("As the system"), "light": N_("Light"), "dark": N_("Dark")}
 
 
 class PreferencesDialog(QDialog):

@@ -20,15 +20,16 @@ from PySide6.QtWidgets import (
 )
 
 from regolith_studio.errors import InputError
+from regolith_studio.messages import N_
 from regolith_studio.ui.shortcuts import Shortcuts, plain
-from regolith_studio.ui.translation import mark, tr
+from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.labels import heading, remark
 
 MOUSE = (
-    (mark("Left drag"), mark("Turn the particle")),
-    (mark("Right or middle drag, Shift + drag"), mark("Shift the picture")),
-    (mark("Ctrl + drag"), mark("Roll the picture")),
-    (mark("Wheel"), mark("Zoom")),
+    (N_("Left drag"), N_("Turn the particle")),
+    (N_("Right or middle drag, Shift + drag"), N_("Shift the picture")),
+    (N_("Ctrl + drag"), N_("Roll the picture")),
+    (N_("Wheel"), N_("Zoom")),
 )
 
 

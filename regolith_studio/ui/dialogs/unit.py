@@ -13,17 +13,18 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from regolith_studio.messages import N_
 from regolith_studio.readers.units import UNITS
-from regolith_studio.ui.translation import mark, tr, tr_count
+from regolith_studio.ui.translation import tr, tr_count
 from regolith_studio.ui.widgets.labels import remark
 
 LABELS = {
-    "um": mark("Micrometres (µm)"),
-    "mm": mark("Millimetres (mm)"),
-    "m": mark("Metres (m)"),
-    "nm": mark("Nanometres (nm)"),
-    "cm": mark("Centimetres (cm)"),
-    "voxel": mark("Voxels of a CT volume"),
+    "um": N_("Micrometres (µm)"),
+    "mm": N_("Millimetres (mm)"),
+    "m": N_("Metres (m)"),
+    "nm": N_("Nanometres (nm)"),
+    "cm": N_("Centimetres (cm)"),
+    "voxel": N_("Voxels of a CT volume"),
 }
 
 
@@ -36,8 +37,8 @@ class UnitDialog(QDialog):
         self.setObjectName("unit_dialog")
         question = QLabel(
             tr_count(
-                "In which unit are the numbers of {name}?",
-                "In which unit are the numbers of these {count} files and folders?",
+                N_("In which unit are the numbers of {name}?"),
+                N_("In which unit are the numbers of these {count} files and folders?"),
                 len(paths),
                 name=paths[0].name,
             )

@@ -16,9 +16,10 @@ from PySide6.QtWidgets import (
 
 from regolith_studio.coarsening.coarsen import FACETS_LIMITS
 from regolith_studio.coarsening.methods import METHODS
+from regolith_studio.messages import N_
 from regolith_studio.ui.icons import icon
 from regolith_studio.ui.theme import Theme, current_theme
-from regolith_studio.ui.translation import mark, tr
+from regolith_studio.ui.translation import tr
 from regolith_studio.ui.translation.sentences import retold
 from regolith_studio.ui.widgets.collapsible import Collapsible
 from regolith_studio.ui.widgets.combo_box import ChoiceBox
@@ -27,37 +28,37 @@ from regolith_studio.ui.widgets.forms import SettingsForm
 from regolith_studio.ui.widgets.labels import heading, remark
 from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec
 
-STOPS = {"facets": mark("Facets n"), "triangles": mark("Triangles"), "error": mark("Error ≤")}
+STOPS = {"facets": N_("Facets n"), "triangles": N_("Triangles"), "error": N_("Error ≤")}
 FACETS = NumberSpec(
     "",
-    mark("Number of facets"),
+    N_("Number of facets"),
     FACETS_LIMITS[0],
     60,
     limit=FACETS_LIMITS[1],
-    tip=mark("Half-spaces of Eq. 5; n facets in general position have 2n−4 vertices and 4n−12 triangles."),
+    tip=N_("Half-spaces of Eq. 5; n facets in general position have 2n−4 vertices and 4n−12 triangles."),
 )
 TRIANGLES = NumberSpec(
     "",
-    mark("Most triangles"),
+    N_("Most triangles"),
     4 * FACETS_LIMITS[0] - 12,
     228,
     limit=4 * FACETS_LIMITS[1] - 12,
-    tip=mark("The polyhedron has as many facets as surely have no more triangles than this."),
+    tip=N_("The polyhedron has as many facets as surely have no more triangles than this."),
 )
 ERROR = NumberSpec(
     "",
-    mark("Largest error"),
+    N_("Largest error"),
     0.05,
     10.0,
     0.05,
     limit=50.0,
     suffix=" %",
-    tip=mark(
+    tip=N_(
         "The fewest facets are sought whose weighted descriptors are all off by no more than this; of V and"
         " CH, which cannot both be met, beyond what none can avoid."
     ),
 )
-TARGET_LABELS = {"fit": mark("Spherical-harmonics fit"), "particle": mark("CT particle")}
+TARGET_LABELS = {"fit": N_("Spherical-harmonics fit"), "particle": N_("CT particle")}
 SEED_LIMIT = 2**31 - 1
 LINES = 2
 """Visible lines of the reason why a request could not be met."""

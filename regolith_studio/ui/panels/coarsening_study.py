@@ -6,14 +6,15 @@ from PySide6.QtWidgets import QVBoxLayout, QWidget
 
 from regolith_studio.coarsening.weights import JACCARD
 from regolith_studio.descriptors.catalogue import CATALOGUE, LOSS_KEYS
+from regolith_studio.messages import N_
 from regolith_studio.ui.theme import Theme
-from regolith_studio.ui.translation import mark, tr, tr_count
+from regolith_studio.ui.translation import tr, tr_count
 from regolith_studio.ui.translation.sentences import retold
 from regolith_studio.ui.widgets.heat_table import HeatTable
 from regolith_studio.ui.widgets.labels import plain_symbol
 from regolith_studio.ui.widgets.study_frame import StudyFrame
 
-PLACEHOLDER = mark(
+PLACEHOLDER = N_(
     "Root mean squared relative error of each descriptor, one row a loss function, as in Fig. 8 of the paper."
 )
 HEADERS = (*(plain_symbol(CATALOGUE[key].symbol) for key in LOSS_KEYS), "Jaccard")
@@ -44,11 +45,11 @@ class CoarseningStudyPanel(QWidget):
         labels, ends = [retold(row.label) for row in study.rows], study.bands.tolist()
         self.table.set_values(labels, HEADERS, study.rmsre, (ends[0], ends[1]))
         self._set_tool_tips()
-        count = tr_count("RMSRE [%], 1 particle", "RMSRE [%], {count} particles", len(study.names))
+        count = tr_count(N_("RMSRE [%], 1 particle"), N_("RMSRE [%], {count} particles"), len(study.names))
         count += ", " + tr("{share:.0%} bootstrap intervals", share=study.confidence)
         if study.box_metric != "exact":
             count += ", " + tr("box of {name}", name=study.box_metric)
-        self.frame.set_remark(f"{count}; {tr('computed with other choices')}" if outdated else count)
+        self.frame.set_remark(count + "; " + tr("computed with other choices") if outdated else count)
 
     def set_theme(self, theme: Theme) -> None:
         """Take the colours of a theme."""

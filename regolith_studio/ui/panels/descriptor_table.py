@@ -14,15 +14,16 @@ from PySide6.QtWidgets import (
 )
 
 from regolith_studio.descriptors.catalogue import CATALOGUE
+from regolith_studio.messages import N_
 from regolith_studio.session.results import Results
-from regolith_studio.ui.translation import mark, tr
+from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.labels import plain_symbol
 from regolith_studio.ui.widgets.number_text import short_number
 from regolith_studio.ui.widgets.table import FontRowHeight
 
 _UNITS = {0: "", 1: " [µm]", 2: " [µm²]", 3: " [µm³]", 5: " [µm⁵]"}
-COLUMNS = (mark("Particle"), mark("Fit"), mark("Polyhedron"))
-NARROW_COLUMNS = (mark("Particle"), mark("Fit"), mark("Solid"))
+COLUMNS = (N_("Particle"), N_("Fit"), N_("Polyhedron"))
+NARROW_COLUMNS = (N_("Particle"), N_("Fit"), N_("Solid"))
 _MIN_LABEL_WIDTH = 490
 _NARROW_DIGITS = 44
 """Width in digits below which headers and numbers are short."""

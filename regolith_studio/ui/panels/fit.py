@@ -8,8 +8,9 @@ from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QFormLayout, QVBoxLayout, QWidget
 
 from regolith_studio.harmonics.fit import AUTOMATIC
+from regolith_studio.messages import N_
 from regolith_studio.session.choices import L_MAX_LIMIT
-from regolith_studio.ui.translation import mark, tr
+from regolith_studio.ui.translation import tr
 from regolith_studio.ui.translation.sentences import retold
 from regolith_studio.ui.widgets.collapsible import Collapsible
 from regolith_studio.ui.widgets.combo_box import ChoiceBox
@@ -19,33 +20,33 @@ from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec
 
 L_MAX = NumberSpec(
     "l<sub>max</sub>",
-    mark("Maximum degree"),
+    N_("Maximum degree"),
     0,
     L_MAX_LIMIT,
-    tip=mark("Degree at which the series of Eq. 4 is cut: 0 is a sphere; the paper uses 10."),
+    tip=N_("Degree at which the series of Eq. 4 is cut: 0 is a sphere; the paper uses 10."),
 )
 STAR_POINTS = {
-    AUTOMATIC: mark("Automatic"),
-    "centre_of_mass": mark("Centre of mass"),
-    "kernel_centre": mark("Centre of the kernel"),
-    "least_hidden_volume": mark("Least hidden volume"),
+    AUTOMATIC: N_("Automatic"),
+    "centre_of_mass": N_("Centre of mass"),
+    "kernel_centre": N_("Centre of the kernel"),
+    "least_hidden_volume": N_("Least hidden volume"),
 }
 RULES = {
-    "volume": mark("Keep the volume"),
-    "outermost": mark("Last crossing"),
-    "first": mark("First crossing"),
+    "volume": N_("Keep the volume"),
+    "outermost": N_("Last crossing"),
+    "first": N_("First crossing"),
 }
-REFERENCES = {"sphere": mark("Sphere"), "ellipsoid": mark("Best-fit ellipsoid")}
+REFERENCES = {"sphere": N_("Sphere"), "ellipsoid": N_("Best-fit ellipsoid")}
 TIPS = {
-    "star_point": mark(
+    "star_point": N_(
         "Where radii begin. Automatic: the centre of mass or, where that is not inside, "
         "the point that hides the least volume."
     ),
-    "rule": mark(
+    "rule": N_(
         "Which radius counts where a ray crosses the surface more than once. Keep the volume: the cube "
         "root of the signed sum of r³ over all crossings."
     ),
-    "reference": mark(
+    "reference": N_(
         "What radii are divided by before they are expanded. An ellipsoid lowers the oscillation on "
         "flat and elongated grains."
     ),

@@ -6,14 +6,15 @@ import numpy as np
 from PySide6.QtWidgets import QDoubleSpinBox, QHBoxLayout, QLabel, QVBoxLayout, QWidget
 
 from regolith_studio.descriptors.catalogue import CATALOGUE
+from regolith_studio.messages import N_
 from regolith_studio.scene.palette import DESCRIPTOR_COLOURS
 from regolith_studio.ui.theme import Theme
-from regolith_studio.ui.translation import mark, tr, tr_count
+from regolith_studio.ui.translation import tr, tr_count
 from regolith_studio.ui.widgets.labels import rich_symbol
 from regolith_studio.ui.widgets.plots.curves import CurvePlot, PlotCurve
 from regolith_studio.ui.widgets.study_frame import StudyFrame
 
-PLACEHOLDER = mark(
+PLACEHOLDER = N_(
     "Root mean squared relative error of each descriptor against l<sub>max</sub>, as in Fig. 3 of the paper."
 )
 
@@ -54,8 +55,8 @@ class LmaxStudyPanel(QWidget):
             for number, key in enumerate(study.keys)
         ]
         self.plot.set_curves(curves)
-        count = tr_count("1 particle", "{count} particles", len(study.names))
-        self.frame.set_remark(f"{count}; {tr('computed with other choices')}" if outdated else count)
+        count = tr_count(N_("1 particle"), N_("{count} particles"), len(study.names))
+        self.frame.set_remark(count + "; " + tr("computed with other choices") if outdated else count)
         self._answer()
 
     def show_l_max(self, l_max: int) -> None:

@@ -4,11 +4,12 @@ import time
 
 from PySide6.QtWidgets import QApplication, QHBoxLayout, QPlainTextEdit, QPushButton, QVBoxLayout, QWidget
 
-from regolith_studio.ui.translation import mark, tr
+from regolith_studio.messages import N_
+from regolith_studio.ui.translation import tr
 
 LIMIT = 2000
 """Maximum number of lines."""
-MOODS = {"note": mark("note"), "problem": mark("problem")}
+MOODS = {"note": N_("note"), "problem": N_("problem")}
 
 
 class LogPanel(QWidget):

@@ -9,8 +9,9 @@ from PySide6.QtWidgets import QGridLayout, QVBoxLayout, QWidget
 from regolith_studio.coarsening.weights import JACCARD, WEIGHT_KEYS, LossWeights, Preset, presets
 from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.errors import InputError
+from regolith_studio.messages import N_
 from regolith_studio.session.user_presets import OwnPresets
-from regolith_studio.ui.translation import mark, tr
+from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.fixed_height_text import FixedHeightText
 from regolith_studio.ui.widgets.labels import heading, remark, rich_symbol
 from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec, align_labels
@@ -120,7 +121,7 @@ class LossPanel(QWidget):
             except (InputError, KeyError, TypeError, ValueError):
                 continue  # of another version, or edited by hand
             if values.get("preset") in presets():
-                found[OWN + name] = Preset(values["preset"], name, weights, mark("Own preset"))
+                found[OWN + name] = Preset(values["preset"], name, weights, N_("Own preset"))
         self._known = found
         self.bar.set_entries(
             [

@@ -7,10 +7,11 @@ from typing import Any
 from PySide6.QtCore import QItemSelectionModel, QModelIndex, Qt, Signal
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 
+from regolith_studio.messages import N_
 from regolith_studio.session.results import ParticleEntry
 from regolith_studio.session.sample_table import health_sentences, health_word
 from regolith_studio.ui.theme import Theme, current_theme
-from regolith_studio.ui.translation import mark, tr
+from regolith_studio.ui.translation import tr
 from regolith_studio.ui.translation.sentences import retold
 from regolith_studio.ui.widgets.labels import heading, remark
 from regolith_studio.ui.widgets.number_text import short_number
@@ -61,16 +62,16 @@ def _descriptor(
 
 
 COLUMNS = (
-    ListColumn(mark("Particle"), mark("Name and health of the mesh"), lambda e: e.id, lambda e: e.id),
+    ListColumn(N_("Particle"), N_("Name and health of the mesh"), lambda e: e.id, lambda e: e.id),
     ListColumn(
-        mark("Group"),
-        mark("Sample or size fraction"),
+        N_("Group"),
+        N_("Sample or size fraction"),
         lambda e: e.particle.group,
         lambda e: e.particle.group,
     ),
-    ListColumn("V [µm³]", mark("Volume"), *_descriptor("volume", lambda v: short_number(v, 3))),
-    ListColumn("S", mark("Sphericity, Eq. 1 (Wadell)"), *_descriptor("sphericity", "{:.3f}".format)),
-    ListColumn("AR", mark("Aspect ratio, Eq. 2"), *_descriptor("aspect_ratio", "{:.2f}".format)),
+    ListColumn(N_("V [µm³]"), N_("Volume"), *_descriptor("volume", lambda v: short_number(v, 3))),
+    ListColumn("S", N_("Sphericity, Eq. 1 (Wadell)"), *_descriptor("sphericity", "{:.3f}".format)),
+    ListColumn("AR", N_("Aspect ratio, Eq. 2"), *_descriptor("aspect_ratio", "{:.2f}".format)),
 )
 
 

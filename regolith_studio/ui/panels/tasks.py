@@ -6,16 +6,17 @@ from collections.abc import Sequence
 from PySide6.QtCore import QEvent, QTimer, Signal
 from PySide6.QtWidgets import QHBoxLayout, QProgressBar, QToolButton, QWidget
 
+from regolith_studio.messages import N_
 from regolith_studio.session.tasks import Task
 from regolith_studio.ui.icons import icon
 from regolith_studio.ui.theme import Theme, current_theme
-from regolith_studio.ui.translation import mark, tr
+from regolith_studio.ui.translation import tr
 from regolith_studio.ui.translation.sentences import retold
 from regolith_studio.ui.widgets.labels import ElidedLabel
 
 SHOW_DELAY = 250
 """Milliseconds after which a running task is shown."""
-IDLE = mark("Ready")
+IDLE = N_("Ready")
 
 
 class TasksPanel(QWidget):

@@ -1,14 +1,13 @@
-"""Words of the window in the language of the user; the words in the code are English.
+"""Translation of the window by Qt; the texts in the code are English.
 
-``tr`` translates where a text is shown, ``mark`` names one in a table that is made when a module is loaded.
-The translations lie in ``resources/translations``; :mod:`regolith_studio.ui.translation.extract` keeps them
-in step with the code.
+``tr`` and ``tr_count`` translate where a text is shown, ``translate`` a sentence of the layers below, and
+:func:`~regolith_studio.messages.N_` marks a text that is translated later. ``tools/update_translations.py``
+keeps ``resources/translations`` in step with the code by lupdate and lrelease.
 """
 
 from PySide6.QtCore import QCoreApplication
 
-CONTEXT = "RegolithStudio"
-"""The one context of all messages: a word means the same wherever it stands in the window."""
+from regolith_studio.messages import Message
 
 
 def tr(text: str, **values: object) -> str:
@@ -16,15 +15,20 @@ def tr(text: str, **values: object) -> str:
 
     Numbers are formatted as Python does, with a point, in every language.
     """
-    found = QCoreApplication.translate(CONTEXT, text) if text else text
+    found = QCoreApplication.translate("", text) if text else text  # lupdate gives Python texts no context
     return found.format(**values) if values else found
 
 
 def tr_count(one: str, many: str, count: int, **values: object) -> str:
-    """As :func:`tr`, of the form for one thing or of the form for `count` of them."""
+    """As :func:`tr`, of the form for one thing or of the form for `count` of them; both marked by ``N_``."""
     return tr(one if count == 1 else many, count=count, **values)
 
 
-def mark(text: str) -> str:
-    """`text` itself, so that it is found for the translators; :func:`tr` is called where it is shown."""
-    return text
+def translate(text: str) -> str:
+    """A text of the layers below in the language of the window, with its values translated and filled in."""
+    if not isinstance(text, Message):
+        return tr(text)
+    values = {
+        name: translate(each) if isinstance(each, Message) else each for name, each in text.values.items()
+    }
+    return tr(text.template, **values)

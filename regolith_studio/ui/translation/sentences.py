@@ -3,83 +3,84 @@
 import re
 from functools import cache
 
-from regolith_studio.ui.translation import mark, tr
+from regolith_studio.messages import N_
+from regolith_studio.ui.translation import tr
 from regolith_studio.ui.translation.health_sentences import HEALTH_SENTENCES
 
 SENTENCES = (
-    mark(
+    N_(
         "{surface} of the surface and {volume} of the volume are hidden from the star point and cannot be"
         " kept by a radius function."
     ),
-    mark(
+    N_(
         "The expansion up to l = {degree} misses the radius by {error} in the root mean square, at most"
         " {most}; a higher l_max comes closer, and on flat or long grains so does an ellipsoid as reference."
     ),
-    mark(
+    N_(
         "The expansion up to l = {degree} misses the radius by {error} in the root mean square; a higher"
         " l_max comes closer, and on flat or long grains so does an ellipsoid as reference."
     ),
-    mark("The centre of mass lies outside the particle; the point with the least hidden volume is used."),
-    mark("Sphericity {sphericity} needs at least {needed} facets; with {faces} the most is {most}."),
-    mark("Sphericity {sphericity} needs more than 100,000 facets; with {faces} the most is {most}."),
-    mark(
+    N_("The centre of mass lies outside the particle; the point with the least hidden volume is used."),
+    N_("Sphericity {sphericity} needs at least {needed} facets; with {faces} the most is {most}."),
+    N_("Sphericity {sphericity} needs more than 100,000 facets; with {faces} the most is {most}."),
+    N_(
         "No polyhedron with {faces} facets was found that meets all descriptors: {name} is off by {error} %;"
         " more facets or a weight of 0 would free it."
     ),
-    mark(
+    N_(
         "No polyhedron with {faces} facets was found that meets all descriptors: {name} is off by {error} %;"
         " a convex shape with the other descriptors has less surface, so a weight of 0 would free it."
     ),
-    mark(
+    N_(
         "The result has {real} facets instead of {faces}: the particle is convex and has {facets} facets"
         " itself, and no other polyhedron was found that meets all descriptors."
     ),
-    mark(
+    N_(
         "The result has {real} facets instead of {faces}: no place was found where the other half-spaces"
         " bound a facet and all descriptors are met."
     ),
-    mark("The result has {real} facets instead of {faces}."),
-    mark(
+    N_("The result has {real} facets instead of {faces}."),
+    N_(
         "Not even {faces} facets bring all errors below {limit} %: the least is {error} %, with {count}"
         " facets."
     ),
-    mark("1 grain from 1 connected body"),
-    mark("1 grain from {bodies} connected bodies"),
-    mark("{grains} grains from 1 connected body"),
-    mark("{grains} grains from {bodies} connected bodies"),
-    mark("{counts} at grey level {level}; {small} too small."),
-    mark("1 particle; left out: {border} at the border, {small} too small."),
-    mark("{count} particles; left out: {border} at the border, {small} too small."),
-    mark("Looking at {name}"),
-    mark("Reading {name}"),
-    mark("The file is named {suffix} but is {format}."),
-    mark("The file holds {count} volumes; {name} was read."),
-    mark("The file holds {count} series of images; the largest was read."),
-    mark("The file calls its {count} images channels; they were interpreted as slices."),
-    mark("The file states the width of a pixel only; the slices were assumed to be the same distance apart."),
-    mark("The file states voxel edges in different units; they were ignored."),
-    mark("The file states a voxel of {size}, which is implausible; give the size of a voxel."),
-    mark("{name} only"),
-    mark("{name} × {factor}"),
-    mark("{count} facets"),
-    mark("Overlap + {symbols}"),
-    mark("at least {limit}"),
-    mark("at most {limit}"),
-    mark(
+    N_("1 grain from 1 connected body"),
+    N_("1 grain from {bodies} connected bodies"),
+    N_("{grains} grains from 1 connected body"),
+    N_("{grains} grains from {bodies} connected bodies"),
+    N_("{counts} at grey level {level}; {small} too small."),
+    N_("1 particle; left out: {border} at the border, {small} too small."),
+    N_("{count} particles; left out: {border} at the border, {small} too small."),
+    N_("Looking at {name}"),
+    N_("Reading {name}"),
+    N_("The file is named {suffix} but is {format}."),
+    N_("The file holds {count} volumes; {name} was read."),
+    N_("The file holds {count} series of images; the largest was read."),
+    N_("The file calls its {count} images channels; they were interpreted as slices."),
+    N_("The file states the width of a pixel only; the slices were assumed to be the same distance apart."),
+    N_("The file states voxel edges in different units; they were ignored."),
+    N_("The file states a voxel of {size}, which is implausible; give the size of a voxel."),
+    N_("{name} only"),
+    N_("{name} × {factor}"),
+    N_("{count} facets"),
+    N_("Overlap + {symbols}"),
+    N_("at least {limit}"),
+    N_("at most {limit}"),
+    N_(
         "Synthesised by Regolith Studio from the angular power spectrum and size spread of {count} particles"
         " of the published micro-CT set {name}, rounded to two digits; the length unit is taken as"
         " micrometres and no measured particle is contained."
     ),
-    mark("Statistics of {count} particles of {name}, made by Regolith Studio."),
-    mark("noise of sampling, split {split}"),
-    mark("split {split} of {total}"),
-    mark("{name}, split {split}, fit"),
-    mark("{name}, split {split}, draw {draw}"),
-    mark(
+    N_("Statistics of {count} particles of {name}, made by Regolith Studio."),
+    N_("noise of sampling, split {split}"),
+    N_("split {split} of {total}"),
+    N_("{name}, split {split}, fit"),
+    N_("{name}, split {split}, draw {draw}"),
+    N_(
         "{count} measured particles at l_max = {degree}, {left} left out; fitted to one half, judged on the"
         " other; {splits} {split}, {draws} draws once from each fit, seed {seed}."
     ),
-    mark(
+    N_(
         "{count} measured particles at l_max = {degree}, {left} left out; fitted to one half, judged on the"
         " other; {splits} {split}, {draws} draws {repeats} times from each fit, seed {seed}."
     ),
@@ -116,17 +117,17 @@ def _word(value: str) -> str:
 
 _AFTER_A_SENTENCE = re.compile(r"(?<=\.) (?=[A-Z])")
 PLUS = " + "
-PARTS = (mark("size"), mark("box"), mark("sphericity"))
+PARTS = (N_("size"), N_("box"), N_("sphericity"))
 """Terms of a loss as the study of the trade-off names them."""
 TARGETS = (
-    *(mark("yes"), mark("no"), mark("number"), mark("volume"), mark("split"), mark("splits")),
-    mark("aspect ratio, times nearer than the paper's model"),
-    mark("r_eq, A, AR, S: the worst, over the 95th percentile of noise"),
-    mark("V/CH: Kolmogorov-Smirnov distance in floors"),
-    mark("pairs of r_eq, A, AR: the largest energy distance [%]"),
-    mark("draws thrown away [%]"),
-    mark("median novelty"),
-    *(mark("measured particles"), mark("figures")),
+    *(N_("yes"), N_("no"), N_("number"), N_("volume"), N_("split"), N_("splits")),
+    N_("aspect ratio, times nearer than the paper's model"),
+    N_("r_eq, A, AR, S: the worst, over the 95th percentile of noise"),
+    N_("V/CH: Kolmogorov-Smirnov distance in floors"),
+    N_("pairs of r_eq, A, AR: the largest energy distance [%]"),
+    N_("draws thrown away [%]"),
+    N_("median novelty"),
+    *(N_("measured particles"), N_("figures")),
 )
 """Words of the judgement of models."""
 

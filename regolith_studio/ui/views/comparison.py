@@ -8,30 +8,30 @@ from typing import Any
 import numpy as np
 
 from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.messages import N_
 from regolith_studio.scene.comparing import arrange, show_cuts, show_other
 from regolith_studio.scene.divider import Divider
 from regolith_studio.scene.palette import Surroundings
 from regolith_studio.scene.sectioning import show_frame
 from regolith_studio.scene.shapes import FIT, NAMES, PARTICLE, POLYHEDRON, Shape
 from regolith_studio.ui.theme import Theme
-from regolith_studio.ui.translation import mark
 from regolith_studio.ui.views.grips import DividerGrip, PlaneGrip
 from regolith_studio.ui.views.sections import Sections
 from regolith_studio.ui.views.view_frame import ViewFrame
 
 PARTNERS = {PARTICLE: "", FIT: PARTICLE, POLYHEDRON: PARTICLE}
 """What each body is compared with at first."""
-WITH = {PARTICLE: mark("with particle"), FIT: mark("with fit"), POLYHEDRON: mark("with polyhedron")}
+WITH = {PARTICLE: N_("with particle"), FIT: N_("with fit"), POLYHEDRON: N_("with polyhedron")}
 COMPARE = {
-    PARTICLE: mark("Compare the particle with"),
-    FIT: mark("Compare the fit with"),
-    POLYHEDRON: mark("Compare the polyhedron with"),
+    PARTICLE: N_("Compare the particle with"),
+    FIT: N_("Compare the fit with"),
+    POLYHEDRON: N_("Compare the polyhedron with"),
 }
 
 
 def partners_of(name: str) -> dict[str, str]:
     """What a body can be compared with."""
-    return {"": mark("alone")} | {other: WITH[other] for other in NAMES if other != name}
+    return {"": N_("alone")} | {other: WITH[other] for other in NAMES if other != name}
 
 
 class Comparison:

@@ -8,6 +8,7 @@ from PySide6.QtCore import QObject, Signal
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.jobs.events import Job, Started, Steps
+from regolith_studio.messages import N_
 from regolith_studio.scene.distance import signed_distances
 
 Follow = Callable[[Job, Callable[[Any], None], Callable[[str], None]], None]
@@ -49,5 +50,5 @@ class Distances(QObject):
 
 def measure_distances(fit: Mesh, particle: Mesh) -> Steps:
     """A job: :func:`~regolith_studio.scene.distance.signed_distances` of a fit's vertices."""
-    yield Started("Measuring distances")
+    yield Started(N_("Measuring distances"))
     return signed_distances(fit.vertices, particle)

@@ -9,12 +9,13 @@ from PySide6.QtGui import QAction
 from PySide6.QtWidgets import QFormLayout, QInputDialog, QMenu, QPushButton, QToolButton, QVBoxLayout, QWidget
 
 from regolith_studio.errors import InputError
+from regolith_studio.messages import N_
 from regolith_studio.session.user_presets import OwnPresets
-from regolith_studio.ui.translation import mark, tr
+from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.combo_box import ComboBoxRow, ElidedComboBox
 from regolith_studio.ui.widgets.forms import ParameterForm
 
-MODIFIED = mark("{preset} (modified)")
+MODIFIED = N_("{preset} (modified)")
 SHIPPED = "paper"
 """Key of the preset with the values of the paper."""
 

@@ -3,6 +3,7 @@
 from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QHBoxLayout, QProgressBar, QPushButton, QVBoxLayout, QWidget
 
+from regolith_studio.messages import N_
 from regolith_studio.session.tasks import Task
 from regolith_studio.ui.translation import tr, tr_count
 from regolith_studio.ui.widgets.labels import ElidedLabel
@@ -52,7 +53,9 @@ class StudyFrame(QWidget):
 
     def set_count(self, count: int) -> None:
         """Set the number of particles of the study."""
-        self.start.setText(tr_count("Compute for this particle", "Compute for all {count} particles", count))
+        self.start.setText(
+            tr_count(N_("Compute for this particle"), N_("Compute for all {count} particles"), count)
+        )
         self.start.setEnabled(count > 0)
 
     def show_task(self, task: Task | None) -> None:

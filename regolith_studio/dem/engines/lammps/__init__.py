@@ -7,17 +7,20 @@ from regolith_studio.dem.case import PreparedCase
 from regolith_studio.dem.engine import Availability, EngineCapabilities, SimulationResult
 from regolith_studio.dem.engines.lammps.settings import LammpsSettings
 from regolith_studio.dem.snapshot import Snapshot
+from regolith_studio.messages import N_
 
 SECONDS_PER_SPHERE_AND_STEP = 0.7e-6
 """Measured on one core."""
 REPRESENTS = EngineCapabilities(
-    shape="rigid clumps of inscribed spheres (8 by default) with the polyhedra's mass and inertia: rounder",
-    normal="Hertz from Young's modulus (softened, recorded) with restitution, approximate with cohesion",
-    tangential="Mindlin with history and Coulomb friction, one coefficient (the static one)",
-    cohesion="Johnson, Kendall and Roberts between spheres",
-    rolling="spring, dashpot and slider (where resistance is above 0)",
-    coarse_graining="by size; scaling the surface energy keeps cohesion over weight",
-    missing="edges, corners and flat faces; friction of rest apart from friction of motion",
+    shape=N_(
+        "rigid clumps of inscribed spheres (8 by default) with the polyhedra's mass and inertia: rounder"
+    ),
+    normal=N_("Hertz from Young's modulus (softened, recorded) with restitution, approximate with cohesion"),
+    tangential=N_("Mindlin with history and Coulomb friction, one coefficient (the static one)"),
+    cohesion=N_("Johnson, Kendall and Roberts between spheres"),
+    rolling=N_("spring, dashpot and slider (where resistance is above 0)"),
+    coarse_graining=N_("by size; scaling the surface energy keeps cohesion over weight"),
+    missing=N_("edges, corners and flat faces; friction of rest apart from friction of motion"),
 )
 
 

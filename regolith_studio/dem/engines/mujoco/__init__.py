@@ -8,18 +8,21 @@ from regolith_studio.dem.case import PreparedCase
 from regolith_studio.dem.engine import Availability, EngineCapabilities, SimulationResult
 from regolith_studio.dem.engines.mujoco.settings import MujocoSettings
 from regolith_studio.dem.snapshot import Snapshot
+from regolith_studio.messages import N_
 
 SECONDS_PER_PARTICLE_AND_STEP = {"polyhedra": 18e-6, "spheres": 6e-6}
 """Measured on one core at 1,000 particles of 20 facets."""
 
 REPRESENTS = EngineCapabilities(
-    shape="the convex polyhedra themselves",
-    normal="unilateral constraint, no bounce; penetration is reported, stiffness has no part",
-    tangential="Coulomb friction in an elliptic cone, one coefficient (the static one)",
-    cohesion="pull-off force 3/2 π w R*, shared by the contact points; hardly steepens a heap: take LAMMPS",
-    rolling="Coulomb friction against rolling and spinning",
-    coarse_graining="by size; scaling the surface energy keeps cohesion over weight",
-    missing="Hertz and Mindlin stiffness, restitution, friction of rest apart from friction of motion",
+    shape=N_("the convex polyhedra themselves"),
+    normal=N_("unilateral constraint, no bounce; penetration is reported, stiffness has no part"),
+    tangential=N_("Coulomb friction in an elliptic cone, one coefficient (the static one)"),
+    cohesion=N_(
+        "pull-off force 3/2 π w R*, shared by the contact points; hardly steepens a heap: take LAMMPS"
+    ),
+    rolling=N_("Coulomb friction against rolling and spinning"),
+    coarse_graining=N_("by size; scaling the surface energy keeps cohesion over weight"),
+    missing=N_("Hertz and Mindlin stiffness, restitution, friction of rest apart from friction of motion"),
 )
 
 

@@ -6,6 +6,7 @@ import numpy as np
 
 from regolith_studio.dataset.parameters import check_limits
 from regolith_studio.dem.case import PreparedCase
+from regolith_studio.messages import N_
 
 
 @dataclass(frozen=True)
@@ -38,26 +39,28 @@ class MujocoSettings:
     """
 
     time_step: float = field(
-        default=0.025, metadata={"label": "Time step", "minimum": 1e-4, "maximum": 0.1, "decimals": 4}
+        default=0.025, metadata={"label": N_("Time step"), "minimum": 1e-4, "maximum": 0.1, "decimals": 4}
     )
     contact_steps: float = field(
-        default=2.0, metadata={"label": "Contact time in steps", "minimum": 2.0, "maximum": 20.0}
+        default=2.0, metadata={"label": N_("Contact time in steps"), "minimum": 2.0, "maximum": 20.0}
     )
-    iterations: int = field(default=25, metadata={"label": "Iterations", "minimum": 1, "maximum": 1000})
+    iterations: int = field(default=25, metadata={"label": N_("Iterations"), "minimum": 1, "maximum": 1000})
     tolerance: float = field(
-        default=1e-5, metadata={"label": "Tolerance", "minimum": 1e-12, "maximum": 1e-2, "decimals": 12}
+        default=1e-5, metadata={"label": N_("Tolerance"), "minimum": 1e-12, "maximum": 1e-2, "decimals": 12}
     )
     max_fill_speed: float = field(
-        default=6.0, metadata={"label": "Filling speed", "minimum": 0.1, "maximum": 100.0}
+        default=6.0, metadata={"label": N_("Filling speed"), "minimum": 0.1, "maximum": 100.0}
     )
     rest_energy: float = field(
-        default=2e-4, metadata={"label": "Rest: energy", "minimum": 1e-9, "maximum": 0.1, "decimals": 9}
+        default=2e-4, metadata={"label": N_("Rest: energy"), "minimum": 1e-9, "maximum": 0.1, "decimals": 9}
     )
-    rest_time: float = field(default=3.0, metadata={"label": "Rest: time", "minimum": 0.1, "maximum": 1000.0})
+    rest_time: float = field(
+        default=3.0, metadata={"label": N_("Rest: time"), "minimum": 0.1, "maximum": 1000.0}
+    )
     max_rest_time: float = field(
-        default=60.0, metadata={"label": "Longest wait", "minimum": 1.0, "maximum": 1e5}
+        default=60.0, metadata={"label": N_("Longest wait"), "minimum": 1.0, "maximum": 1e5}
     )
-    snapshots: int = field(default=120, metadata={"label": "Snapshots", "minimum": 2, "maximum": 10_000})
+    snapshots: int = field(default=120, metadata={"label": N_("Snapshots"), "minimum": 2, "maximum": 10_000})
 
     def __post_init__(self) -> None:
         check_limits(self, "MuJoCo setting")

@@ -8,17 +8,18 @@ from regolith_studio.dem.engine import Availability, EngineCapabilities, Simulat
 from regolith_studio.dem.engines.yade.settings import YadeSettings
 from regolith_studio.dem.snapshot import Snapshot
 from regolith_studio.errors import InputError
+from regolith_studio.messages import N_
 
 SECONDS_PER_PARTICLE_AND_STEP = 4e-4
 """Processor time at 150 packed particles of 8 facets, on a machine that others used too."""
 REPRESENTS = EngineCapabilities(
-    shape="the convex polyhedra themselves",
-    normal="force in proportion to the overlapping volume: neither Hertz nor restitution",
-    tangential="Coulomb friction while sliding, one coefficient (the static one), no memory at rest",
-    cohesion="none",
-    rolling="none besides what edges and faces do",
-    coarse_graining="by size",
-    missing="Hertz, Mindlin, restitution, cohesion, rolling resistance: qualitative; some 200 particles",
+    shape=N_("the convex polyhedra themselves"),
+    normal=N_("force in proportion to the overlapping volume: neither Hertz nor restitution"),
+    tangential=N_("Coulomb friction while sliding, one coefficient (the static one), no memory at rest"),
+    cohesion=N_("none"),
+    rolling=N_("none besides what edges and faces do"),
+    coarse_graining=N_("by size"),
+    missing=N_("Hertz, Mindlin, restitution, cohesion, rolling resistance: qualitative; some 200 particles"),
 )
 
 

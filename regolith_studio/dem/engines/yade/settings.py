@@ -6,6 +6,7 @@ import numpy as np
 
 from regolith_studio.dataset.parameters import check_limits
 from regolith_studio.dem.case import PreparedCase
+from regolith_studio.messages import N_
 
 
 @dataclass(frozen=True)
@@ -39,27 +40,29 @@ class YadeSettings:
     """
 
     stiffness: float = field(
-        default=5e3, metadata={"label": "Stiffness, in m g / d³", "minimum": 1e2, "maximum": 1e9}
+        default=5e3, metadata={"label": N_("Stiffness, in m g / d³"), "minimum": 1e2, "maximum": 1e9}
     )
     step_share: float = field(
-        default=0.35, metadata={"label": "Step, share of a swing", "minimum": 0.01, "maximum": 0.5}
+        default=0.35, metadata={"label": N_("Step, share of a swing"), "minimum": 0.01, "maximum": 0.5}
     )
-    damping: float = field(default=0.4, metadata={"label": "Damping", "minimum": 0.0, "maximum": 0.9})
+    damping: float = field(default=0.4, metadata={"label": N_("Damping"), "minimum": 0.0, "maximum": 0.9})
     n_segments: int = field(
-        default=24, metadata={"label": "Blocks of the cylinder", "minimum": 8, "maximum": 96}
+        default=24, metadata={"label": N_("Blocks of the cylinder"), "minimum": 8, "maximum": 96}
     )
     max_fill_speed: float = field(
-        default=4.0, metadata={"label": "Filling speed", "minimum": 0.1, "maximum": 100.0}
+        default=4.0, metadata={"label": N_("Filling speed"), "minimum": 0.1, "maximum": 100.0}
     )
     rest_energy: float = field(
-        default=5e-3, metadata={"label": "Rest: energy", "minimum": 1e-9, "maximum": 0.1, "decimals": 9}
+        default=5e-3, metadata={"label": N_("Rest: energy"), "minimum": 1e-9, "maximum": 0.1, "decimals": 9}
     )
-    rest_time: float = field(default=2.0, metadata={"label": "Rest: time", "minimum": 0.1, "maximum": 1000.0})
+    rest_time: float = field(
+        default=2.0, metadata={"label": N_("Rest: time"), "minimum": 0.1, "maximum": 1000.0}
+    )
     max_rest_time: float = field(
-        default=20.0, metadata={"label": "Longest wait", "minimum": 1.0, "maximum": 1e5}
+        default=20.0, metadata={"label": N_("Longest wait"), "minimum": 1.0, "maximum": 1e5}
     )
-    restarts: int = field(default=20, metadata={"label": "Restarts", "minimum": 0, "maximum": 1000})
-    snapshots: int = field(default=60, metadata={"label": "Snapshots", "minimum": 2, "maximum": 10_000})
+    restarts: int = field(default=20, metadata={"label": N_("Restarts"), "minimum": 0, "maximum": 1000})
+    snapshots: int = field(default=60, metadata={"label": N_("Snapshots"), "minimum": 2, "maximum": 10_000})
 
     def __post_init__(self) -> None:
         check_limits(self, "YADE setting")

@@ -1,5 +1,6 @@
 """Page "Dataset": particles that stand for all, their sizes, the folder, and its way to DEM programs."""
 
+from regolith_studio.messages import N_
 from regolith_studio.session.file_kinds import FileKind
 from regolith_studio.ui.action_spec import BREAK, PAGE_MENU, ActionSpec
 from regolith_studio.ui.page import Page, PageContext, PageWidget
@@ -14,19 +15,19 @@ def build(context: PageContext) -> PageWidget:
 
 PAGE = Page(
     key="dataset",
-    title="Dataset",
+    title=N_("Dataset"),
     icon="page_dataset",
     order=60,
-    tip="Choose representative particles, build a dataset, export it to DEM programs",
+    tip=N_("Choose representative particles, build a dataset, export it to DEM programs"),
     make=build,
     opens=(FileKind.DATASET,),
     actions=(
-        ActionSpec(PAGE_MENU, "find", "&Find representatives"),
-        ActionSpec(PAGE_MENU, "build", "&Build the dataset …"),
-        ActionSpec(PAGE_MENU, "open_dataset", "&Open a dataset …"),
-        ActionSpec(PAGE_MENU, "validate", "&Check the dataset"),
+        ActionSpec(PAGE_MENU, "find", N_("&Find representatives")),
+        ActionSpec(PAGE_MENU, "build", N_("&Build the dataset …")),
+        ActionSpec(PAGE_MENU, "open_dataset", N_("&Open a dataset …")),
+        ActionSpec(PAGE_MENU, "validate", N_("&Check the dataset")),
         ActionSpec(PAGE_MENU, BREAK, ""),
-        ActionSpec(PAGE_MENU, "export", "&Export to DEM programs …"),
-        ActionSpec(PAGE_MENU, "library", "Show the &library"),
+        ActionSpec(PAGE_MENU, "export", N_("&Export to DEM programs …")),
+        ActionSpec(PAGE_MENU, "library", N_("Show the &library")),
     ),
 )

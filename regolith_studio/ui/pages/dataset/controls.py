@@ -11,9 +11,10 @@ from PySide6.QtWidgets import QComboBox, QHBoxLayout, QLineEdit, QPushButton, QV
 from regolith_studio.dataset.size_parsing import SizeRule, parse_sizes
 from regolith_studio.errors import InputError
 from regolith_studio.jobs.representatives_jobs import RepresentativesRequest
+from regolith_studio.messages import N_
 from regolith_studio.session.recipe import DatasetRequest, Representatives
 from regolith_studio.ui.pages.dataset.export_panel import ExportPanel
-from regolith_studio.ui.translation import mark, tr, tr_count
+from regolith_studio.ui.translation import tr, tr_count
 from regolith_studio.ui.widgets.fixed_height_text import FixedHeightText
 from regolith_studio.ui.widgets.labels import heading, remark
 from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec
@@ -21,28 +22,26 @@ from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec
 MAX_REPRESENTATIVES = 200
 POPULATION_LINES, SIZES_LINES, ASKED_LINES, STATE_LINES = (1, 2), (1, 3), (3, 3), (2, 3)
 """Visible lines of the texts between the controls, in low and in high windows."""
-COUNT = NumberSpec(
-    "N", mark("Number of representatives"), 1, MAX_REPRESENTATIVES, tip=mark("The paper has 10.")
-)
+COUNT = NumberSpec("N", N_("Number of representatives"), 1, MAX_REPRESENTATIVES, tip=N_("The paper has 10."))
 WEIGHTINGS = {
-    "number": mark("Each particle counts the same"),
-    "volume": mark("Particles count by their volume"),
+    "number": N_("Each particle counts the same"),
+    "volume": N_("Particles count by their volume"),
 }
 SIZES = {
-    "measured": (mark("As measured"), ""),
-    "classes": (mark("In size classes"), "25,37,56,84,125"),
-    "fitted:log-normal": (mark("Log-normal, fitted to each class"), ""),
-    "log-normal": (mark("Log-normal, the same for all"), "50,0.4"),
-    "rosin-rammler": (mark("Rosin-Rammler, the same for all"), "60,2,10,200"),
-    "sieve": (mark("Sieve classes, the same for all"), "20,32,45,63=10,60,30"),
-    "discrete": (mark("Single diameters, the same for all"), "25=85.5,37=12.6,56=1.7,84=0.23,125=0.03"),
+    "measured": (N_("As measured"), ""),
+    "classes": (N_("In size classes"), "25,37,56,84,125"),
+    "fitted:log-normal": (N_("Log-normal, fitted to each class"), ""),
+    "log-normal": (N_("Log-normal, the same for all"), "50,0.4"),
+    "rosin-rammler": (N_("Rosin-Rammler, the same for all"), "60,2,10,200"),
+    "sieve": (N_("Sieve classes, the same for all"), "20,32,45,63=10,60,30"),
+    "discrete": (N_("Single diameters, the same for all"), "25=85.5,37=12.6,56=1.7,84=0.23,125=0.03"),
 }
 HINTS = {
-    "classes": mark("Diameters in µm; each particle moves to the nearest (Table 1 of the paper)."),
-    "log-normal": mark("Median in µm, deviation of ln d; @volume behind it counts volume."),
-    "rosin-rammler": mark("Scale, shape, smallest, largest; @volume behind it counts volume."),
-    "sieve": mark("Openings in µm = shares between them; @volume behind it counts volume."),
-    "discrete": mark("Diameter in µm = share; @volume behind it counts volume."),
+    "classes": N_("Diameters in µm; each particle moves to the nearest (Table 1 of the paper)."),
+    "log-normal": N_("Median in µm, deviation of ln d; @volume behind it counts volume."),
+    "rosin-rammler": N_("Scale, shape, smallest, largest; @volume behind it counts volume."),
+    "sieve": N_("Openings in µm = shares between them; @volume behind it counts volume."),
+    "discrete": N_("Diameter in µm = share; @volume behind it counts volume."),
 }
 
 
@@ -93,7 +92,7 @@ class RepresentativesPanel(QWidget):
     def show_population(self, n_particles: int) -> None:
         """Set the number of open particles, the upper limit of representatives."""
         self.population.setText(
-            tr_count("1 particle is open.", "{count:,} particles are open.", n_particles)
+            tr_count(N_("1 particle is open."), N_("{count:,} particles are open."), n_particles)
             if n_particles
             else tr("No particles are open: open files, the sample, or draw some on the page Shape model.")
         )

@@ -22,8 +22,9 @@ from regolith_studio.dataset.export import PARTS, ExportOptions, ExportResult
 from regolith_studio.dataset.exporters import EXPORTERS
 from regolith_studio.dataset.parameters import NOT_GIVEN, ContactParameters, LiftingCylinderTest, ScriptTimes
 from regolith_studio.errors import InputError
+from regolith_studio.messages import N_
 from regolith_studio.session.recipe import Exports
-from regolith_studio.ui.translation import mark, tr
+from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.collapsible import Collapsible
 from regolith_studio.ui.widgets.forms import ParameterForm
 from regolith_studio.ui.widgets.labels import ElidedLabel, heading, remark
@@ -32,11 +33,9 @@ from regolith_studio.ui.widgets.presets import PresetForm
 
 FIRST = ("rocky", "yade")
 NARROW = 84
-COARSE_GRAINING = NumberSpec(
-    "", mark("Coarse-graining factor"), 1, 20, limit=1000, tip=mark("The paper has 10.")
-)
+COARSE_GRAINING = NumberSpec("", N_("Coarse-graining factor"), 1, 20, limit=1000, tip=N_("The paper has 10."))
 PARTICLES = NumberSpec(
-    "", mark("Particles drawn"), 1, 5000, limit=1_000_000, tip=mark("For formats that list single bodies.")
+    "", N_("Particles drawn"), 1, 5000, limit=1_000_000, tip=N_("For formats that list single bodies.")
 )
 
 

@@ -21,16 +21,17 @@ from PySide6.QtWidgets import (
 from regolith_studio.dataset.catalog import CatalogEntry, provenance_tree
 from regolith_studio.jobs.dataset_jobs import list_library
 from regolith_studio.jobs.events import Job
+from regolith_studio.messages import N_
 from regolith_studio.ui.layout import side_by_side
 from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.theme import Theme, current_theme
-from regolith_studio.ui.translation import mark, tr
+from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.labels import ElidedLabel, remark
 from regolith_studio.ui.widgets.thumbnails import thumbnail
 
 PICTURE = 40
 LANE = "library"
-EMPTY = mark(
+EMPTY = N_(
     "Choose a folder: the datasets below it are listed here, with what was exported and simulated from each."
 )
 ROLE = Qt.ItemDataRole.UserRole

@@ -29,6 +29,7 @@ from regolith_studio.jobs.representatives_jobs import (
     choose_job,
     survey_representatives,
 )
+from regolith_studio.messages import N_
 from regolith_studio.session.recipe import DatasetRequest
 from regolith_studio.ui.dialogs.folder import FolderDialog
 from regolith_studio.ui.layout import equal_parts, padded, scrolled_column, side_by_side, stacked, tabs
@@ -265,7 +266,7 @@ class DatasetPage(PageWidget):
         if found.population.omitted:
             (name, reason), more = found.population.omitted[0], len(found.population.omitted) - 1
             named = tr("{name} and {count} more", name=name, count=more) if more else name
-            self._context.toast.problem(f"{tr('Left out: {names}.', names=named)} {reason}")
+            self._context.toast.problem(tr("Left out: {names}.", names=named) + f" {reason}")
         self._choose(int(self.representatives.count.value()))
 
     def _choose(self, count: int) -> None:
@@ -288,7 +289,7 @@ class DatasetPage(PageWidget):
     def _show_chosen(self) -> None:
         self._dataset = None
         shown = chosen_particles(self._particles, self._chosen) if self._chosen is not None else []
-        title = tr_count("1 representative", "{count} representatives", len(shown))
+        title = tr_count(N_("1 representative"), N_("{count} representatives"), len(shown))
         self.gallery.show_shapes(title if shown else tr("Representatives"), shown)
         self.folder.build.setEnabled(bool(shown))
         self._show_sizes()
@@ -352,7 +353,9 @@ class DatasetPage(PageWidget):
     def _take_exports(self, done: Sequence[ExportResult]) -> None:
         self._exports = list(done)
         self.exports.show_exports(done)
-        self._context.toast.note(tr_count("1 format is written.", "{count} formats are written.", len(done)))
+        self._context.toast.note(
+            tr_count(N_("1 format is written."), N_("{count} formats are written."), len(done))
+        )
         self._refresh_library()
 
     # --- parts ---------------------------------------------------------------------------------

@@ -6,8 +6,9 @@ import numpy as np
 
 from regolith_studio.dataset.build import ShapeClass
 from regolith_studio.dataset.quality import QualityCurve, QualityPoint
+from regolith_studio.messages import N_
 from regolith_studio.ui.theme import Theme
-from regolith_studio.ui.translation import mark, tr
+from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.plots.curves import CurvePlot, PlotCurve
 
 NAMES = {
@@ -18,7 +19,7 @@ NAMES = {
     "max_diameter": "D<sub>max</sub>",
 }
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#8c6d00")
-WEIGHTINGS = (mark("number"), mark("volume"))
+WEIGHTINGS = (N_("number"), N_("volume"))
 """Weightings of distributions."""
 MAX_CLASSES = 12
 """Number of classes up to which each distribution is drawn; beyond it only the mixture."""
@@ -136,6 +137,7 @@ class SizesPlot(CurvePlot):
             curves = [PlotCurve("", self.theme.border, tuple(at), tuple(100 * row)) for row in rows]
         mixture = 100 * (weights @ rows) / weights.sum()
         kinds = {one.sizes.weighting for one in self._classes}
-        words = tr("all classes, by {kinds}", kinds=f" {tr('and')} ".join(tr(each) for each in sorted(kinds)))
+        joint = " " + tr("and") + " "
+        words = tr("all classes, by {kinds}", kinds=joint.join(tr(each) for each in sorted(kinds)))
         curves.append(PlotCurve(words, self.theme.accent, tuple(at), tuple(mixture)))
         self.set_curves(curves)

@@ -6,6 +6,7 @@ from regolith_studio.coarsening.methods import METHODS
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.jobs.representatives_jobs import ChosenParticles
+from regolith_studio.messages import N_
 from regolith_studio.session.choices import Choices
 from regolith_studio.ui.fineness import fineness_words
 from regolith_studio.ui.pages.dataset.gallery import GalleryItem
@@ -21,8 +22,8 @@ def chosen_particles(particles: Sequence[Particle], chosen: ChosenParticles) -> 
         particle = particles[place]
         share = f"{100 * one.weight / total:.1f} %"
         tip = tr_count(
-            "{name} stands for 1 particle ({share})",
-            "{name} stands for {count} particles ({share})",
+            N_("{name} stands for 1 particle ({share})"),
+            N_("{name} stands for {count} particles ({share})"),
             one.n_members,
             name=particle.name,
             share=share,

@@ -1,5 +1,6 @@
 """Page "Explore": one particle in three linked views, with every choice at hand and every number below."""
 
+from regolith_studio.messages import N_
 from regolith_studio.scene.cameras import DIRECTIONS
 from regolith_studio.ui.action_spec import BREAK, PAGE_MENU, ActionSpec
 from regolith_studio.ui.page import Page, PageContext, PageWidget
@@ -16,37 +17,101 @@ def build(context: PageContext) -> PageWidget:
 
 PAGE = Page(
     key="explore",
-    title="Explore",
+    title=N_("Explore"),
     icon="page_explore",
     order=10,
-    tip="One particle, its spherical-harmonics fit and its polyhedron side by side",
+    tip=N_("One particle, its spherical-harmonics fit and its polyhedron side by side"),
     make=build,
     actions=(
         ActionSpec(
-            "&View", "link", "&Link cameras", "link", "Ctrl+L", "Turn all views together", True, "icon"
+            N_("&View"),
+            "link",
+            N_("&Link cameras"),
+            "link",
+            "Ctrl+L",
+            N_("Turn all views together"),
+            True,
+            "icon",
         ),
         ActionSpec(
-            "&View", "reset", "&Reset cameras", "reset", "Ctrl+R", "Show the whole particle", bar="icon"
+            N_("&View"),
+            "reset",
+            N_("&Reset cameras"),
+            "reset",
+            "Ctrl+R",
+            N_("Show the whole particle"),
+            bar="icon",
         ),
         *(
-            ActionSpec("Look &from", f"look_{key}", each.label, "", _DIRECTION_KEYS.get(key, ""))
+            ActionSpec(N_("Look &from"), f"look_{key}", each.label, "", _DIRECTION_KEYS.get(key, ""))
             for key, each in DIRECTIONS.items()
         ),
-        ActionSpec("&View", BREAK, ""),
+        ActionSpec(N_("&View"), BREAK, ""),
         ActionSpec(
-            "&View", "wireframe", "&Wireframe", "wireframe", "Ctrl+M", "Show triangles", False, "icon"
+            N_("&View"),
+            "wireframe",
+            N_("&Wireframe"),
+            "wireframe",
+            "Ctrl+M",
+            N_("Show triangles"),
+            False,
+            "icon",
         ),
-        ActionSpec("&View", "heat", "&Distance map", "heat", "Ctrl+D", "Show fitting errors", False, "icon"),
-        ActionSpec("&View", "overlay", "&Overlay", "overlay", "", "One body over another", False, "icon"),
-        ActionSpec("&View", "wipe", "Wi&pe", "wipe", "Ctrl+I", "Two bodies beside a line", False, "icon"),
-        ActionSpec("&View", "section", "Cross-s&ection", "section", "Ctrl+K", "Cut all views", False, "icon"),
-        ActionSpec("&View", "box", "&Bounding box", "box", "Ctrl+B", "Smallest in volume", False, "icon"),
-        ActionSpec("&View", "star_point", "Star &point", "star", "", "And what it cannot see", False, "icon"),
         ActionSpec(
-            "&View", "enlarge", "&Enlarge one view", "", "Ctrl+Shift+M", "One after the other, then all"
+            N_("&View"),
+            "heat",
+            N_("&Distance map"),
+            "heat",
+            "Ctrl+D",
+            N_("Show fitting errors"),
+            False,
+            "icon",
         ),
-        ActionSpec(PAGE_MENU, "save_picture", "Save &picture …", "camera", "Ctrl+P", "PNG", bar="icon"),
-        ActionSpec(PAGE_MENU, "save_turntable", "Save &turntable …", tip="One turn: GIF, WebP, PNG files"),
-        ActionSpec(PAGE_MENU, "save_animation", "Save &animation of l_max …", tip="GIF of l_max 0 to 30"),
+        ActionSpec(
+            N_("&View"), "overlay", N_("&Overlay"), "overlay", "", N_("One body over another"), False, "icon"
+        ),
+        ActionSpec(
+            N_("&View"), "wipe", N_("Wi&pe"), "wipe", "Ctrl+I", N_("Two bodies beside a line"), False, "icon"
+        ),
+        ActionSpec(
+            N_("&View"),
+            "section",
+            N_("Cross-s&ection"),
+            "section",
+            "Ctrl+K",
+            N_("Cut all views"),
+            False,
+            "icon",
+        ),
+        ActionSpec(
+            N_("&View"), "box", N_("&Bounding box"), "box", "Ctrl+B", N_("Smallest in volume"), False, "icon"
+        ),
+        ActionSpec(
+            N_("&View"),
+            "star_point",
+            N_("Star &point"),
+            "star",
+            "",
+            N_("And what it cannot see"),
+            False,
+            "icon",
+        ),
+        ActionSpec(
+            N_("&View"),
+            "enlarge",
+            N_("&Enlarge one view"),
+            "",
+            "Ctrl+Shift+M",
+            N_("One after the other, then all"),
+        ),
+        ActionSpec(
+            PAGE_MENU, "save_picture", N_("Save &picture …"), "camera", "Ctrl+P", N_("PNG"), bar="icon"
+        ),
+        ActionSpec(
+            PAGE_MENU, "save_turntable", N_("Save &turntable …"), tip=N_("One turn: GIF, WebP, PNG files")
+        ),
+        ActionSpec(
+            PAGE_MENU, "save_animation", N_("Save &animation of l_max …"), tip=N_("GIF of l_max 0 to 30")
+        ),
     ),
 )

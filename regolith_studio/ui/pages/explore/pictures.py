@@ -16,25 +16,26 @@ from PySide6.QtWidgets import (
 )
 
 from regolith_studio.jobs.events import Job
+from regolith_studio.messages import N_
 from regolith_studio.scene.animating import animate, draw_figure, turn
 from regolith_studio.scene.figure import view_titles
 from regolith_studio.ui.page import PageContext
-from regolith_studio.ui.translation import mark, tr
+from regolith_studio.ui.translation import tr
 from regolith_studio.ui.views.triptych import Triptych
 from regolith_studio.ui.widgets.combo_box import ChoiceBox
 
 MAX_SCALE = 6
 SCREENSHOT, FIGURE = "screenshot", "figure"
 KINDS = {
-    SCREENSHOT: mark("The views as they are seen"),
-    FIGURE: mark("A figure on white, 1860 × 560 times the scale"),
+    SCREENSHOT: N_("The views as they are seen"),
+    FIGURE: N_("A figure on white, 1860 × 560 times the scale"),
 }
-ANIMATION_FILTERS = ("GIF (*.gif)", "WebP (*.webp)", mark("Sequence of PNG files (*.png)"))
+ANIMATION_FILTERS = ("GIF (*.gif)", "WebP (*.webp)", N_("Sequence of PNG files (*.png)"))
 SUFFIXES = (".gif", ".webp", ".png")
 SAVED = {
-    "figure": mark("The picture is in {path}."),
-    "turntable": mark("The turntable is in {path}."),
-    "animation": mark("The animation is in {path}."),
+    "figure": N_("The picture is in {path}."),
+    "turntable": N_("The turntable is in {path}."),
+    "animation": N_("The animation is in {path}."),
 }
 
 

@@ -3,10 +3,11 @@
 from PySide6.QtWidgets import QCheckBox, QHBoxLayout, QVBoxLayout, QWidget
 
 from regolith_studio.geometry.cross_section import CrossSection
+from regolith_studio.messages import N_
 from regolith_studio.scene.sectioning import DIRECTIONS
 from regolith_studio.scene.shapes import LABELS, NAMES, PARTICLE
 from regolith_studio.ui.theme import Theme, current_theme
-from regolith_studio.ui.translation import mark, tr
+from regolith_studio.ui.translation import tr
 from regolith_studio.ui.views.triptych import Triptych
 from regolith_studio.ui.widgets.combo_box import ChoiceBox
 from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec
@@ -17,12 +18,12 @@ AXES = {"x": ("y", "z"), "y": ("x", "z"), "z": ("x", "y")}
 """Names of the horizontal and vertical axis, by direction of the section."""
 PLACE = NumberSpec(
     "",
-    mark("Place of the section"),
+    N_("Place of the section"),
     -100,
     100,
     0.1,
     suffix=" µm",
-    tip=mark("Distance from the middle of the particle; the frame in the views can be dragged as well."),
+    tip=N_("Distance from the middle of the particle; the frame in the views can be dragged as well."),
 )
 
 

@@ -1,5 +1,6 @@
 """Page "Lecture": the paper's ideas step by step, large enough for the last row."""
 
+from regolith_studio.messages import N_
 from regolith_studio.ui.action_spec import PAGE_MENU, ActionSpec
 from regolith_studio.ui.page import Page, PageContext, PageWidget
 
@@ -13,18 +14,22 @@ def build(context: PageContext) -> PageWidget:
 
 PAGE = Page(
     key="lecture",
-    title="Lecture",
+    title=N_("Lecture"),
     icon="page_lecture",
     order=90,
-    tip="Annealing step by step, l_max growing, a random field on the sphere; large letters",
+    tip=N_("Annealing step by step, l_max growing, a random field on the sphere; large letters"),
     make=build,
     actions=(
-        ActionSpec(PAGE_MENU, "play", "&Play or pause", "play", "Ctrl+Space", "Step by step", bar="words"),
-        ActionSpec(PAGE_MENU, "back", "Step &back", "", "PgUp"),
-        ActionSpec(PAGE_MENU, "forward", "Step &forward", "", "PgDown", "One step"),
-        ActionSpec(PAGE_MENU, "another", "&Another one", "dice", "Ctrl+Return", "Another seed", bar="words"),
-        ActionSpec(PAGE_MENU, "larger", "&Larger letters", "", "Ctrl++"),
-        ActionSpec(PAGE_MENU, "smaller", "S&maller letters", "", "Ctrl+-"),
-        ActionSpec(PAGE_MENU, "full_screen", "F&ull screen", "", "F11", "And back"),
+        ActionSpec(
+            PAGE_MENU, "play", N_("&Play or pause"), "play", "Ctrl+Space", N_("Step by step"), bar="words"
+        ),
+        ActionSpec(PAGE_MENU, "back", N_("Step &back"), "", "PgUp"),
+        ActionSpec(PAGE_MENU, "forward", N_("Step &forward"), "", "PgDown", N_("One step")),
+        ActionSpec(
+            PAGE_MENU, "another", N_("&Another one"), "dice", "Ctrl+Return", N_("Another seed"), bar="words"
+        ),
+        ActionSpec(PAGE_MENU, "larger", N_("&Larger letters"), "", "Ctrl++"),
+        ActionSpec(PAGE_MENU, "smaller", N_("S&maller letters"), "", "Ctrl+-"),
+        ActionSpec(PAGE_MENU, "full_screen", N_("F&ull screen"), "", "F11", N_("And back")),
     ),
 )

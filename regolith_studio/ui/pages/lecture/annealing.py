@@ -9,6 +9,7 @@ from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QLabel, QSplitter, QVBoxLayout, QWidget
 
 from regolith_studio.jobs.lecture_jobs import AnnealingLesson, AnnealingStep
+from regolith_studio.messages import N_
 from regolith_studio.scene import surfaces
 from regolith_studio.scene.comparing import OTHER, show_other
 from regolith_studio.scene.moves import show_move
@@ -17,7 +18,7 @@ from regolith_studio.ui.layout import side_by_side, stacked
 from regolith_studio.ui.pages.lecture import texts
 from regolith_studio.ui.pages.lecture.playback_bar import PlaybackBar
 from regolith_studio.ui.theme import Theme, current_theme
-from regolith_studio.ui.translation import mark, tr
+from regolith_studio.ui.translation import tr
 from regolith_studio.ui.views.camera_link import CameraLink
 from regolith_studio.ui.views.factory import make_view
 from regolith_studio.ui.views.view_frame import ViewFrame
@@ -29,7 +30,7 @@ from regolith_studio.ui.widgets.plots.curves import CurvePlot, PlotCurve
 
 TRANSLUCENT = 0.6
 """Opacity of a polyhedron that is shown with the edges of another one."""
-WAIT = mark("The particle is annealed …")
+WAIT = N_("The particle is annealed …")
 PLOT_LINES = 11
 """Minimum height of a plot in lines of text."""
 
@@ -70,7 +71,7 @@ class AnnealingView(QWidget):
             plot.setObjectName(f"annealing_{name}")
         self.frames["annealing"].set_texts(tr("Annealing"))
         self.frames["exact"].set_texts(tr("Exact method"))
-        self.playback = PlaybackBar("annealing", mark("step"))
+        self.playback = PlaybackBar("annealing", N_("step"))
         self.playback.stepChanged.connect(self._show_step)
         self._arrange()
 

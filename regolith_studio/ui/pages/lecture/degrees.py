@@ -5,13 +5,14 @@ from PySide6.QtWidgets import QVBoxLayout, QWidget
 from regolith_studio.descriptors.catalogue import LOSS_KEYS
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.jobs.lecture_jobs import DegreeStep
+from regolith_studio.messages import N_
 from regolith_studio.scene import surfaces
 from regolith_studio.scene.palette import DESCRIPTOR_COLOURS
 from regolith_studio.ui.layout import side_by_side
 from regolith_studio.ui.pages.lecture import texts
 from regolith_studio.ui.pages.lecture.playback_bar import PlaybackBar
 from regolith_studio.ui.theme import Theme, current_theme
-from regolith_studio.ui.translation import mark, tr, tr_count
+from regolith_studio.ui.translation import tr, tr_count
 from regolith_studio.ui.views.camera_link import CameraLink
 from regolith_studio.ui.views.factory import make_view
 from regolith_studio.ui.views.view_frame import ViewFrame
@@ -19,7 +20,7 @@ from regolith_studio.ui.widgets.formula import FormulaLabel
 from regolith_studio.ui.widgets.labels import remark
 from regolith_studio.ui.widgets.plots.curves import CurvePlot, PlotCurve
 
-WAIT = mark("The particle is fitted …")
+WAIT = N_("The particle is fitted …")
 
 
 class DegreesView(QWidget):
@@ -50,7 +51,7 @@ class DegreesView(QWidget):
         self.formula = FormulaLabel(tr("Eq. 4 with its numbers"))
         self.errors = CurvePlot(tr("Degree l<sub>max</sub>"), tr("Error [%]"), tr(WAIT), log_y=True)
         self.errors.setObjectName("degrees_errors")
-        self.playback = PlaybackBar("degrees", mark("degree"))
+        self.playback = PlaybackBar("degrees", N_("degree"))
         self.playback.stepChanged.connect(self._show_step)
         self._arrange()
 
@@ -101,7 +102,7 @@ class DegreesView(QWidget):
         degree = f"l<sub>max</sub>&nbsp;=&nbsp;{step.l_max}"
         self.frames["fit"].set_texts(
             tr("Spherical-harmonics fit, {degree}", degree=degree),
-            tr_count("1 coefficient", "{count:,} coefficients", count),
+            tr_count(N_("1 coefficient"), N_("{count:,} coefficients"), count),
             tr("Fit, {degree}", degree=degree),
         )
         if mesh is None:

@@ -3,17 +3,18 @@
 from PySide6.QtCore import QEvent, QSignalBlocker, Qt, QTimer, Signal
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QSlider, QWidget
 
-from regolith_studio.ui.translation import mark, tr
+from regolith_studio.messages import N_
+from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec
 
 SPEED = NumberSpec(
-    mark("Speed"),
-    mark("Steps a second"),
+    N_("Speed"),
+    N_("Steps a second"),
     0.5,
     20.0,
     0.5,
     suffix=" /s",
-    tip=mark("Steps a second while it plays by itself."),
+    tip=N_("Steps a second while it plays by itself."),
 )
 USUAL_SPEED = 2.0
 

@@ -22,8 +22,9 @@ from PySide6.QtWidgets import (
 
 from regolith_studio.errors import InputError
 from regolith_studio.jobs.model_jobs import CARD_MODEL, GenerationRequest
+from regolith_studio.messages import N_
 from regolith_studio.shape_models.models import DEFAULT_MODEL, MODELS
-from regolith_studio.ui.translation import mark, tr
+from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.fixed_height_text import FixedHeightText
 from regolith_studio.ui.widgets.forms import SettingsForm
 from regolith_studio.ui.widgets.labels import heading, remark
@@ -31,10 +32,10 @@ from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec
 
 L_MAX = NumberSpec(
     "l<sub>max</sub>",
-    mark("Degree of the particles"),
+    N_("Degree of the particles"),
     1,
     30,
-    tip=mark("The paper's virtual particles have 10."),
+    tip=N_("The paper's virtual particles have 10."),
 )
 MAX_DRAWN = 1_000_000
 

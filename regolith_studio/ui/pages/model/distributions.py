@@ -6,20 +6,21 @@ from PySide6.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
 from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.descriptors.distributions import Distribution, kolmogorov_smirnov_distance, wasserstein_1
 from regolith_studio.jobs.model_evaluation import DistributionComparison
+from regolith_studio.messages import N_
 from regolith_studio.studies.population import KEYS
 from regolith_studio.ui.theme import Theme
-from regolith_studio.ui.translation import mark, tr
+from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.combo_box import ChoiceBox
 from regolith_studio.ui.widgets.labels import ElidedLabel, rich_symbol
 from regolith_studio.ui.widgets.number_text import short_number
 from regolith_studio.ui.widgets.plots.curves import CurvePlot, PlotCurve
 
 WEIGHTINGS = {
-    "number": mark("Each particle counts the same"),
-    "volume": mark("Particles count by their volume"),
+    "number": N_("Each particle counts the same"),
+    "volume": N_("Particles count by their volume"),
 }
-WAITING = mark("Draw particles: their distributions appear here, over those of the measured ones.")
-SHARE = mark("Share at or below [%]")
+WAITING = N_("Draw particles: their distributions appear here, over those of the measured ones.")
+SHARE = N_("Share at or below [%]")
 _UNITS = {0: "", 1: "µm", 2: "µm²", 3: "µm³"}
 
 

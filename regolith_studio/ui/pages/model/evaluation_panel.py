@@ -23,51 +23,52 @@ from PySide6.QtWidgets import (
 
 from regolith_studio.io.tables import Table
 from regolith_studio.jobs.model_evaluation import ModelEvaluationResult
+from regolith_studio.messages import N_
 from regolith_studio.session.tasks import Task
 from regolith_studio.shape_models.models import MODELS
 from regolith_studio.studies.population import PopulationStudy
 from regolith_studio.studies.population_tables import distance_table, pair_table, ranking_table, target_table
 from regolith_studio.ui.layout import tabs
 from regolith_studio.ui.pages.model.table_view import StudyTableView
-from regolith_studio.ui.translation import mark, tr
+from regolith_studio.ui.translation import tr
 from regolith_studio.ui.translation.sentences import retold
 from regolith_studio.ui.widgets.labels import remark, with_subscripts
 from regolith_studio.ui.widgets.study_frame import StudyFrame
 
-WAITING = mark(
+WAITING = N_(
     "Models are fitted to one half of the sample and judged on the other, beside the noise of sampling."
 )
 FIGURES = {
-    "number": mark("By number (Fig. 4)"),
-    "volume": mark("By volume (Fig. 5)"),
-    "pairs": mark("Pairs (Fig. 6)"),
-    "quantiles": mark("Quantiles"),
-    "components": mark("Parts"),
+    "number": N_("By number (Fig. 4)"),
+    "volume": N_("By volume (Fig. 5)"),
+    "pairs": N_("Pairs (Fig. 6)"),
+    "quantiles": N_("Quantiles"),
+    "components": N_("Parts"),
 }
 TABLES: dict[str, tuple[str, Callable[[PopulationStudy], Table]]] = {
-    "targets": (mark("Targets"), target_table),
-    "distances": (mark("Distances"), distance_table),
-    "energies": (mark("Pairs in numbers"), pair_table),
+    "targets": (N_("Targets"), target_table),
+    "distances": (N_("Distances"), distance_table),
+    "energies": (N_("Pairs in numbers"), pair_table),
 }
 HEADERS = (
-    mark("Model"),
-    mark("W / floor"),
-    mark("KS / floor"),
-    mark("Energy"),
-    mark("Classifier"),
-    mark("Novelty"),
-    mark("Rejected"),
+    N_("Model"),
+    N_("W / floor"),
+    N_("KS / floor"),
+    N_("Energy"),
+    N_("Classifier"),
+    N_("Novelty"),
+    N_("Rejected"),
 )
 TIPS = (
-    mark("The nearest to the sample first"),
-    mark(
+    N_("The nearest to the sample first"),
+    N_(
         "Mean Wasserstein distance to the half that was held out, over that between random halves: 1 is noise"
     ),
-    mark("The same for the Kolmogorov-Smirnov distance"),
-    mark("Mean energy distance of pairs of descriptors: 0 for equal distributions"),
-    mark("Share that a classifier tells right: 0.5 cannot be told apart"),
-    mark("Median distance to the nearest measured particle, over that between measured ones: 0 is a copy"),
-    mark("Draws thrown away"),
+    N_("The same for the Kolmogorov-Smirnov distance"),
+    N_("Mean energy distance of pairs of descriptors: 0 for equal distributions"),
+    N_("Share that a classifier tells right: 0.5 cannot be told apart"),
+    N_("Median distance to the nearest measured particle, over that between measured ones: 0 is a copy"),
+    N_("Draws thrown away"),
 )
 NUMBERS = Qt.AlignmentFlag.AlignCenter
 MIN_FIGURE_SCALE = 0.55

@@ -6,15 +6,16 @@ from pathlib import Path
 from PySide6.QtWidgets import QFileDialog, QWidget
 
 from regolith_studio.errors import RegolithError
+from regolith_studio.messages import N_
 from regolith_studio.readers.shape_files import ShapeSource
 from regolith_studio.shape_models.io import write_model
 from regolith_studio.shape_models.materials import MaterialCard, write_card
 from regolith_studio.shape_models.protocol import FittedModel
 from regolith_studio.shape_models.sample import Sample
-from regolith_studio.ui.translation import mark, tr
+from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.toast import Toast
 
-MODELS, CARDS = mark("Models (*.json)"), mark("Cards (*.json)")
+MODELS, CARDS = N_("Models (*.json)"), N_("Cards (*.json)")
 
 
 def save_model(parent: QWidget, toast: Toast, model: FittedModel, source: ShapeSource) -> None:

@@ -22,6 +22,7 @@ from regolith_studio.jobs.model_jobs import (
     fit_shapes,
     make_particles,
 )
+from regolith_studio.messages import N_
 from regolith_studio.readers.shape_files import ShapeSource, read_shape_source
 from regolith_studio.session.provenance import VirtualSource
 from regolith_studio.shape_models.protocol import FittedModel
@@ -37,12 +38,12 @@ from regolith_studio.ui.pages.model.files import save_card, save_model
 from regolith_studio.ui.pages.model.source_box import SourceBox, usual_sizes
 from regolith_studio.ui.pages.model.views import LiveShape, ShapeGallery
 from regolith_studio.ui.theme import Theme, current_theme
-from regolith_studio.ui.translation import mark, tr
+from regolith_studio.ui.translation import tr
 from regolith_studio.ui.views.factory import make_view
 from regolith_studio.ui.widgets.labels import rich_symbol
 
-SOURCE_FILTER = mark("Fits, models and material cards (*.json *.npz);;All files (*)")
-DRAWN = mark("A drawn particle")
+SOURCE_FILTER = N_("Fits, models and material cards (*.json *.npz);;All files (*)")
+DRAWN = N_("A drawn particle")
 POPULATION_LEVEL = 4
 MAX_ADOPTED = 2000
 """Maximum number of drawn particles that are opened, as each becomes a mesh in memory."""

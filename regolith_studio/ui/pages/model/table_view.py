@@ -5,39 +5,40 @@ from PySide6.QtWidgets import QAbstractItemView, QHeaderView, QTableWidget, QTab
 
 from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.io.tables import Cell, Table
+from regolith_studio.messages import N_
 from regolith_studio.shape_models.models import MODELS
-from regolith_studio.ui.translation import mark, tr
+from regolith_studio.ui.translation import tr
 from regolith_studio.ui.translation.sentences import retold
 
 WORDS = {
     "wasserstein": "W",
-    "wasserstein_low": mark("from"),
-    "wasserstein_high": mark("to"),
-    "floor": mark("Floor"),
-    "floor_p5": mark("5th"),
-    "floor_p95": mark("95th"),
+    "wasserstein_low": N_("from"),
+    "wasserstein_high": N_("to"),
+    "floor": N_("Floor"),
+    "floor_p5": N_("5th"),
+    "floor_p95": N_("95th"),
     "kolmogorov_smirnov": "KS",
-    "kolmogorov_smirnov_low": mark("KS from"),
-    "kolmogorov_smirnov_high": mark("KS to"),
-    "kolmogorov_smirnov_floor": mark("KS floor"),
-    "wasserstein_in_floors": mark("W / floor"),
-    "kolmogorov_smirnov_in_floors": mark("KS / floor"),
-    "energy_distance": mark("Energy distance"),
+    "kolmogorov_smirnov_low": N_("KS from"),
+    "kolmogorov_smirnov_high": N_("KS to"),
+    "kolmogorov_smirnov_floor": N_("KS floor"),
+    "wasserstein_in_floors": N_("W / floor"),
+    "kolmogorov_smirnov_in_floors": N_("KS / floor"),
+    "energy_distance": N_("Energy distance"),
 }
 """Short headers; tool tips have the long ones."""
 OTHER_WORDS = (
-    *(mark("Model"), mark("Weighting"), mark("Descriptor"), mark("First"), mark("Second")),
-    *(mark("Target"), mark("Value"), mark("Wanted"), mark("Reached")),
+    *(N_("Model"), N_("Weighting"), N_("Descriptor"), N_("First"), N_("Second")),
+    *(N_("Target"), N_("Value"), N_("Wanted"), N_("Reached")),
 )
 """Headers that equal the names of their columns, marked for translation."""
 TIPS = (
-    *(mark("model"), mark("weighting"), mark("descriptor"), mark("first"), mark("second")),
-    *(mark("target"), mark("value"), mark("wanted"), mark("reached")),
-    *(mark("wasserstein"), mark("wasserstein low"), mark("wasserstein high")),
-    *(mark("floor"), mark("floor p5"), mark("floor p95")),
-    *(mark("kolmogorov smirnov"), mark("kolmogorov smirnov low"), mark("kolmogorov smirnov high")),
-    *(mark("kolmogorov smirnov floor"), mark("wasserstein in floors")),
-    *(mark("kolmogorov smirnov in floors"), mark("energy distance")),
+    *(N_("model"), N_("weighting"), N_("descriptor"), N_("first"), N_("second")),
+    *(N_("target"), N_("value"), N_("wanted"), N_("reached")),
+    *(N_("wasserstein"), N_("wasserstein low"), N_("wasserstein high")),
+    *(N_("floor"), N_("floor p5"), N_("floor p95")),
+    *(N_("kolmogorov smirnov"), N_("kolmogorov smirnov low"), N_("kolmogorov smirnov high")),
+    *(N_("kolmogorov smirnov floor"), N_("wasserstein in floors")),
+    *(N_("kolmogorov smirnov in floors"), N_("energy distance")),
 )
 """Names of all columns, marked for translation."""
 

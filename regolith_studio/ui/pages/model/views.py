@@ -4,16 +4,17 @@ from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QHBoxLayout, QPushButton, QVBoxLayout, QWidget
 
 from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.messages import N_
 from regolith_studio.scene import surfaces
 from regolith_studio.scene.cameras import framing_pose
 from regolith_studio.scene.gallery import gallery_pose, show_gallery
 from regolith_studio.ui.theme import Theme
-from regolith_studio.ui.translation import mark, tr
+from regolith_studio.ui.translation import tr
 from regolith_studio.ui.views.protocol import SceneView
 from regolith_studio.ui.views.view_frame import ViewFrame
 from regolith_studio.ui.widgets.plots.spectrum_editor import SpectrumEditor
 
-NO_MODEL = mark("The spectrum appears when a model is fitted.")
+NO_MODEL = N_("The spectrum appears when a model is fitted.")
 
 
 class LiveShape(QWidget):

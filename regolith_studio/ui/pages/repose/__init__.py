@@ -1,5 +1,6 @@
 """Page "Angle of repose": set up the lifting cylinder, watch it, measure the pile, compare runs."""
 
+from regolith_studio.messages import N_
 from regolith_studio.ui.action_spec import BREAK, PAGE_MENU, ActionSpec
 from regolith_studio.ui.page import Page, PageContext, PageWidget
 
@@ -13,22 +14,29 @@ def build(context: PageContext) -> PageWidget:
 
 PAGE = Page(
     key="repose",
-    title="Angle of repose",
+    title=N_("Angle of repose"),
     icon="page_repose",
     order=70,
-    tip="Fill a cylinder with the particles of a dataset, lift it, measure the pile",
+    tip=N_("Fill a cylinder with the particles of a dataset, lift it, measure the pile"),
     make=build,
     actions=(
-        ActionSpec(PAGE_MENU, "open_dataset", "Open a &dataset …", tip="Choose the dataset to simulate"),
+        ActionSpec(
+            PAGE_MENU, "open_dataset", N_("Open a &dataset …"), tip=N_("Choose the dataset to simulate")
+        ),
         ActionSpec(PAGE_MENU, BREAK, ""),
-        ActionSpec(PAGE_MENU, "run_test", "&Run the test", "play", "Ctrl+Return", bar="words"),
-        ActionSpec(PAGE_MENU, "start_study", "Start the &study", tip="Run the values of the study, or go on"),
-        ActionSpec(PAGE_MENU, "play", "&Play the run"),
+        ActionSpec(PAGE_MENU, "run_test", N_("&Run the test"), "play", "Ctrl+Return", bar="words"),
+        ActionSpec(
+            PAGE_MENU, "start_study", N_("Start the &study"), tip=N_("Run the values of the study, or go on")
+        ),
+        ActionSpec(PAGE_MENU, "play", N_("&Play the run")),
         ActionSpec(PAGE_MENU, BREAK, ""),
         ActionSpec(
-            PAGE_MENU, "open_positions", "&Measure positions …", tip="Measure the pile of another program"
+            PAGE_MENU,
+            "open_positions",
+            N_("&Measure positions …"),
+            tip=N_("Measure the pile of another program"),
         ),
-        ActionSpec(PAGE_MENU, "export_run", "&Export figure and JSON …", "export"),
-        ActionSpec(PAGE_MENU, "choose_folder", "Folder of r&uns …"),
+        ActionSpec(PAGE_MENU, "export_run", N_("&Export figure and JSON …"), "export"),
+        ActionSpec(PAGE_MENU, "choose_folder", N_("Folder of r&uns …")),
     ),
 )

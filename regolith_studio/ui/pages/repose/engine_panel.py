@@ -19,7 +19,7 @@ class EnginePanel(QTableWidget):
         self.setSelectionMode(QAbstractItemView.SelectionMode.NoSelection)
         self.setShowGrid(False)
         self.setHorizontalHeaderLabels([row["label"] for row in rows])
-        self.setVerticalHeaderLabels([tr("Availability"), *map(tr, CAPABILITY_LABELS.values())])
+        self.setVerticalHeaderLabels([tr("Found"), *map(tr, CAPABILITY_LABELS.values())])
         for column, row in enumerate(rows):
             texts = [row["version"] or row["problem"], *(tr(row[key]) for key in CAPABILITY_LABELS)]
             for at, text in enumerate(texts):

@@ -10,13 +10,14 @@ from regolith_studio.dem.snapshot import ParticleState, read_particle_state
 from regolith_studio.errors import RegolithError
 from regolith_studio.io.atomic import staged_folder
 from regolith_studio.io.json_text import json_bytes
+from regolith_studio.messages import N_
 from regolith_studio.readers.positions import read_positions
 from regolith_studio.studies.figures.repose import write_section_figure
 from regolith_studio.ui.dialogs.folder import FolderDialog
-from regolith_studio.ui.translation import mark, tr
+from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.toast import Toast
 
-POSITIONS = mark(
+POSITIONS = N_(
     "Positions (*.npz *.csv *.txt *.dat *.xyz *.dump *.lammpstrj *.vtk *.vtp *.vtu);;All files (*)"
 )
 UNITS = ("m", "cm", "mm", "um")

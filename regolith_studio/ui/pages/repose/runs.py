@@ -17,33 +17,34 @@ from PySide6.QtWidgets import (
 )
 
 from regolith_studio.dem.run_io import RunSummary
+from regolith_studio.messages import N_
 from regolith_studio.ui.theme import Theme
-from regolith_studio.ui.translation import mark, tr
+from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.plots.curves import CurvePlot, PlotCurve
 
 AGAINST: Mapping[str, tuple[str, ...]] = {
-    mark("Static friction"): ("case", "contact", "static_friction"),
-    mark("Facets a particle"): ("particles", "mean_facets"),
-    mark("Rolling resistance"): ("case", "contact", "rolling_friction"),
-    mark("Gravity [m/s²]"): ("case", "test", "gravity"),
-    mark("Wall friction"): ("case", "test", "wall_friction"),
-    mark("Lift speed [m/s]"): ("case", "test", "lift_speed"),
-    mark("Number of particles"): ("case", "n_particles"),
-    mark("Seed"): ("case", "seed"),
+    N_("Static friction"): ("case", "contact", "static_friction"),
+    N_("Facets a particle"): ("particles", "mean_facets"),
+    N_("Rolling resistance"): ("case", "contact", "rolling_friction"),
+    N_("Gravity [m/s²]"): ("case", "test", "gravity"),
+    N_("Wall friction"): ("case", "test", "wall_friction"),
+    N_("Lift speed [m/s]"): ("case", "test", "lift_speed"),
+    N_("Number of particles"): ("case", "n_particles"),
+    N_("Seed"): ("case", "seed"),
 }
-SHAPES = (mark("polyhedra"), mark("spheres"))
+SHAPES = (N_("polyhedra"), N_("spheres"))
 """Parameters that distinguish runs."""
 HEADINGS = (
-    mark("Run"),
-    mark("Angle"),
-    mark("Interval"),
+    N_("Run"),
+    N_("Angle"),
+    N_("Interval"),
     "N",
-    mark("Friction"),
-    mark("Shapes"),
-    mark("Gravity"),
-    mark("Seed"),
-    mark("Engine"),
-    mark("RunChecks"),
+    N_("Friction"),
+    N_("Shapes"),
+    N_("Gravity"),
+    N_("Seed"),
+    N_("Engine"),
+    N_("Checks"),
 )
 
 

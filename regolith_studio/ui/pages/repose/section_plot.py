@@ -7,8 +7,9 @@ from PySide6.QtCore import QPointF, Signal
 from regolith_studio.dem.evaluation.profile import Discs, project
 from regolith_studio.dem.evaluation.section import Section
 from regolith_studio.dem.snapshot import ParticleState
+from regolith_studio.messages import N_
 from regolith_studio.studies.figures.repose import framed
-from regolith_studio.ui.translation import mark, tr
+from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.plots.base import Numbers, Plot
 
 MILLIMETRE = 1e3
@@ -16,8 +17,8 @@ LEFT, RIGHT, BOTH = "#0072b2", "#e69f00", "#009e73"
 """Colours of left flank, right flank and symmetric model, as in the paper's figure."""
 HOVER_DISTANCE = 12.0
 """Pixels from a surface point within which the tool tip describes it."""
-LEFT_SIDE = mark("left flank: {z:.3g} mm, {angle:.1f}°")
-RIGHT_SIDE = mark("right flank: {z:.3g} mm, {angle:.1f}°")
+LEFT_SIDE = N_("left flank: {z:.3g} mm, {angle:.1f}°")
+RIGHT_SIDE = N_("right flank: {z:.3g} mm, {angle:.1f}°")
 
 
 class SectionPlot(Plot):

@@ -21,7 +21,8 @@ from regolith_studio.dem.engines import ENGINES, engine_named
 from regolith_studio.dem.evaluation.settings import EvaluationSettings
 from regolith_studio.errors import InputError
 from regolith_studio.jobs.repose_jobs import ReposeRequest
-from regolith_studio.ui.translation import mark, tr
+from regolith_studio.messages import N_
+from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.collapsible import Collapsible
 from regolith_studio.ui.widgets.combo_box import ElidedComboBox
 from regolith_studio.ui.widgets.fixed_height_text import FixedHeightText
@@ -29,12 +30,12 @@ from regolith_studio.ui.widgets.forms import SettingsForm
 from regolith_studio.ui.widgets.labels import ElidedLabel, heading, remark
 from regolith_studio.ui.widgets.presets import PresetForm
 
-PRESETS = {mark("Teaching"): 300, mark("Usual"): 1000, mark("Fine"): 5000}
-SHAPES = {mark("The dataset's polyhedra"): "polyhedra", mark("Spheres of the same volumes"): "spheres"}
+PRESETS = {N_("Teaching"): 300, N_("Usual"): 1000, N_("Fine"): 5000}
+SHAPES = {N_("The dataset's polyhedra"): "polyhedra", N_("Spheres of the same volumes"): "spheres"}
 COHESION = {
-    mark("None"): "none",
-    mark("As given (experimental)"): "given",
-    mark("Scaled with the size (experimental)"): "scaled",
+    N_("None"): "none",
+    N_("As given (experimental)"): "given",
+    N_("Scaled with the size (experimental)"): "scaled",
 }
 
 LINES, MAX_LINES = 6, 11

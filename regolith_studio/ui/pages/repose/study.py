@@ -22,27 +22,28 @@ from PySide6.QtWidgets import (
 
 from regolith_studio.coarsening.weights import presets
 from regolith_studio.jobs.repose_jobs import SHAPE_KEYS, values_in
+from regolith_studio.messages import N_
 from regolith_studio.studies.repose import ReposeStudy, ReposeStudyRun
 from regolith_studio.ui.theme import Theme
-from regolith_studio.ui.translation import mark, tr
+from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.labels import remark
 from regolith_studio.ui.widgets.plots.curves import CurvePlot, PlotCurve
 
 VARIED: Mapping[str, tuple[str, str]] = {
-    "static_friction": (mark("Static friction"), "0.2, 0.4, 0.8"),
-    "n_facets": (mark("Facets of the open particles"), "8, 20, 60"),
-    "preset": (mark("Weights of the loss, open particles"), "overlap, size, all"),
-    "rolling_friction": (mark("Rolling resistance"), "0, 0.1, 0.3"),
-    "cohesion": (mark("Cohesion"), "none, scaled"),
-    "shapes": (mark("Shapes"), "polyhedra, spheres"),
-    "gravity": (mark("Gravity [m/s²]"), "1.62, 3.71, 9.81"),
-    "plate_friction": (mark("Plate friction"), "0.3, 0.8"),
-    "wall_friction": (mark("Wall friction"), "0, 0.3, 0.8"),
-    "lift_speed": (mark("Lift speed [m/s]"), "0.01, 0.03, 0.1"),
-    "n_particles": (mark("Number of particles"), "300, 1000, 2000"),
+    "static_friction": (N_("Static friction"), "0.2, 0.4, 0.8"),
+    "n_facets": (N_("Facets of the open particles"), "8, 20, 60"),
+    "preset": (N_("Weights of the loss, open particles"), "overlap, size, all"),
+    "rolling_friction": (N_("Rolling resistance"), "0, 0.1, 0.3"),
+    "cohesion": (N_("Cohesion"), "none, scaled"),
+    "shapes": (N_("Shapes"), "polyhedra, spheres"),
+    "gravity": (N_("Gravity [m/s²]"), "1.62, 3.71, 9.81"),
+    "plate_friction": (N_("Plate friction"), "0.3, 0.8"),
+    "wall_friction": (N_("Wall friction"), "0, 0.3, 0.8"),
+    "lift_speed": (N_("Lift speed [m/s]"), "0.01, 0.03, 0.1"),
+    "n_particles": (N_("Number of particles"), "300, 1000, 2000"),
 }
 """Parameters that can be varied: label and proposed values."""
-HEADINGS = (mark("Value"), mark("Seed"), mark("Angle"), mark("Interval"))
+HEADINGS = (N_("Value"), N_("Seed"), N_("Angle"), N_("Interval"))
 
 
 class StudyPanel(QWidget):

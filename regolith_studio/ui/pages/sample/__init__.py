@@ -1,5 +1,6 @@
 """Page "Sample": every open particle in one table, one scatter plot, and as groups with their statistics."""
 
+from regolith_studio.messages import N_
 from regolith_studio.ui.action_spec import PAGE_MENU, ActionSpec
 from regolith_studio.ui.page import Page, PageContext, PageWidget
 
@@ -13,16 +14,20 @@ def build(context: PageContext) -> PageWidget:
 
 PAGE = Page(
     key="sample",
-    title="Sample",
+    title=N_("Sample"),
     icon="page_sample",
     order=20,
-    tip="All particles: table, scatter plot, health and statistics of groups",
+    tip=N_("All particles: table, scatter plot, health and statistics of groups"),
     make=build,
     actions=(
-        ActionSpec(PAGE_MENU, "export_table", "E&xport table …", "export", tip="As a CSV file", bar="words"),
-        ActionSpec(PAGE_MENU, "copy_table", "&Copy table", "", "", "Copy the rows for a spreadsheet"),
-        ActionSpec(PAGE_MENU, "explore", "Show in &Explore", "page_explore", "Ctrl+Return"),
-        ActionSpec(PAGE_MENU, "keep", "&Keep only these", "", "", "Close all particles but the chosen rows"),
-        ActionSpec(PAGE_MENU, "clear_filter", "Clear &filter", "", "Ctrl+Shift+F"),
+        ActionSpec(
+            PAGE_MENU, "export_table", N_("E&xport table …"), "export", tip=N_("As a CSV file"), bar="words"
+        ),
+        ActionSpec(PAGE_MENU, "copy_table", N_("&Copy table"), "", "", N_("Copy the rows for a spreadsheet")),
+        ActionSpec(PAGE_MENU, "explore", N_("Show in &Explore"), "page_explore", "Ctrl+Return"),
+        ActionSpec(
+            PAGE_MENU, "keep", N_("&Keep only these"), "", "", N_("Close all particles but the chosen rows")
+        ),
+        ActionSpec(PAGE_MENU, "clear_filter", N_("Clear &filter"), "", "Ctrl+Shift+F"),
     ),
 )

@@ -20,37 +20,38 @@ from PySide6.QtWidgets import (
 )
 
 from regolith_studio.geometry.mesh_health import MeshHealth
+from regolith_studio.messages import N_
 from regolith_studio.scene.faults import COLOURS
 from regolith_studio.session.results import ParticleEntry
 from regolith_studio.session.sample_table import health_sentences
-from regolith_studio.ui.translation import mark, tr
+from regolith_studio.ui.translation import tr
 from regolith_studio.ui.translation.sentences import retold
 from regolith_studio.ui.widgets.labels import WrappedLabel
 from regolith_studio.ui.widgets.number_text import short_number
 from regolith_studio.ui.widgets.table import FontRowHeight
 
 FINDINGS = (
-    ("bodies", mark("Bodies"), mark("Parts that hang together; a particle has one")),
-    ("watertight", mark("Closed"), mark("Every edge belongs to exactly two triangles")),
-    ("consistent_winding", mark("Wound alike"), mark("Neighbouring triangles look the same way")),
-    ("volume", mark("V [µm³]"), mark("Negative where the mesh is inside out")),
-    ("euler_number", mark("Euler number"), mark("2 for a closed body without tunnels")),
-    ("handles", mark("Tunnels"), mark("Through the body, of a closed mesh")),
-    ("open_edges", mark("Open edges"), mark("Edges of one triangle: the rims of holes")),
-    ("self_intersections", mark("Crossing pairs"), mark("Pairs of triangles that cross each other")),
-    ("degenerate_faces", mark("Faces without area"), mark("Triangles that are a line or a point")),
+    ("bodies", N_("Bodies"), N_("Parts that hang together; a particle has one")),
+    ("watertight", N_("Closed"), N_("Every edge belongs to exactly two triangles")),
+    ("consistent_winding", N_("Wound alike"), N_("Neighbouring triangles look the same way")),
+    ("volume", N_("V [µm³]"), N_("Negative where the mesh is inside out")),
+    ("euler_number", N_("Euler number"), N_("2 for a closed body without tunnels")),
+    ("handles", N_("Tunnels"), N_("Through the body, of a closed mesh")),
+    ("open_edges", N_("Open edges"), N_("Edges of one triangle: the rims of holes")),
+    ("self_intersections", N_("Crossing pairs"), N_("Pairs of triangles that cross each other")),
+    ("degenerate_faces", N_("Faces without area"), N_("Triangles that are a line or a point")),
 )
 """Fields of :class:`MeshHealth` with label and explanation."""
 KINDS = {
-    "filled": mark("closed holes"),
-    "open": mark("rims of holes"),
-    "crossing": mark("faces that cross"),
-    "turned": mark("faces turned round"),
-    "small bodies": mark("bodies left out"),
-    "non-manifold": mark("edges of more than two faces"),
-    "double": mark("faces there twice"),
-    "degenerate": mark("faces without area"),
-    "hidden": mark("hidden from the star point"),
+    "filled": N_("closed holes"),
+    "open": N_("rims of holes"),
+    "crossing": N_("faces that cross"),
+    "turned": N_("faces turned round"),
+    "small bodies": N_("bodies left out"),
+    "non-manifold": N_("edges of more than two faces"),
+    "double": N_("faces there twice"),
+    "degenerate": N_("faces without area"),
+    "hidden": N_("hidden from the star point"),
 }
 """Labels of the faults, in the order of :data:`COLOURS`."""
 DASH = "–"

@@ -11,10 +11,11 @@ from PySide6.QtWidgets import QCheckBox, QComboBox, QLabel, QToolButton, QVBoxLa
 
 from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.descriptors.zingg import THRESHOLD
+from regolith_studio.messages import N_
 from regolith_studio.scene.palette import DESCRIPTOR_COLOURS
 from regolith_studio.session.results import ParticleEntry
 from regolith_studio.ui.theme import Theme
-from regolith_studio.ui.translation import mark, tr, tr_count
+from regolith_studio.ui.translation import tr, tr_count
 from regolith_studio.ui.widgets.labels import rich_symbol
 from regolith_studio.ui.widgets.plots.base import Plot
 from regolith_studio.ui.widgets.wrapping_row import WrappingRow
@@ -22,7 +23,7 @@ from regolith_studio.ui.widgets.wrapping_row import WrappingRow
 ZINGG = ("flatness", "elongation")
 SYMBOLS = ("o", "s", "t", "d", "star", "p", "h", "+")
 _UNITS = {0: "", 1: " [µm]", 2: " [µm²]", 3: " [µm³]", 5: " [µm⁵]"}
-_CORNERS = ((mark("blade"), 0, 0), (mark("rod"), 1, 0), (mark("disc"), 0, 1), (mark("equant"), 1, 1))
+_CORNERS = ((N_("blade"), 0, 0), (N_("rod"), 1, 0), (N_("disc"), 0, 1), (N_("equant"), 1, 1))
 """Zingg's form classes, and whether flatness and elongation exceed the threshold."""
 
 
@@ -107,7 +108,7 @@ class ScatterPanel(QWidget):
         named = [(DESCRIPTOR_COLOURS[n % len(DESCRIPTOR_COLOURS)], g) for n, g in enumerate(groups) if g]
         self.plot.set_legend(named if len(groups) > 1 else [])
         count = len(self._entries)
-        self.plot.set_remark(tr_count("1 particle", "{count} particles", count))
+        self.plot.set_remark(tr_count(N_("1 particle"), N_("{count} particles"), count))
         canvas.enableAutoRange()
 
     def _draw_group(self, members: Sequence[ParticleEntry], number: int) -> None:

@@ -19,21 +19,22 @@ from PySide6.QtWidgets import (
 from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.descriptors.distributions import WEIGHTINGS
 from regolith_studio.io.tables import Column, Table
+from regolith_studio.messages import N_
 from regolith_studio.session.results import ParticleEntry
 from regolith_studio.session.sample_table import UNITS, has_weights, statistics_table
-from regolith_studio.ui.translation import mark, tr
+from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.number_text import short_number
 from regolith_studio.ui.widgets.table import FontRowHeight
 
-_WEIGHTING_LABELS = {"number": mark("each counts once"), "volume": mark("weighted by volume")}
+_WEIGHTING_LABELS = {"number": N_("each counts once"), "volume": N_("weighted by volume")}
 _SHORT = {
-    "group": mark("group"),
-    "count": mark("count"),
-    "mean": mark("mean"),
-    "standard deviation": mark("std. dev."),
+    "group": N_("group"),
+    "count": N_("count"),
+    "mean": N_("mean"),
+    "standard deviation": N_("std. dev."),
 }
 QUANTILE = " quantile"
-GROUPS = (mark("all"), mark("(no group)"))
+GROUPS = (N_("all"), N_("(no group)"))
 """Group names that are translated."""
 
 

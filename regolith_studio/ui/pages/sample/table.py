@@ -9,10 +9,11 @@ from PySide6.QtCore import QItemSelectionModel, QModelIndex, Qt, Signal
 from PySide6.QtWidgets import QAbstractItemView, QWidget
 
 from regolith_studio.descriptors.catalogue import CATALOGUE
+from regolith_studio.messages import N_
 from regolith_studio.session.results import ParticleEntry
 from regolith_studio.session.sample_table import Filter, form_of, has_weights, health_sentences, health_word
 from regolith_studio.ui.theme import Theme, current_theme
-from regolith_studio.ui.translation import mark, tr
+from regolith_studio.ui.translation import tr
 from regolith_studio.ui.translation.sentences import retold
 from regolith_studio.ui.widgets.labels import plain_symbol
 from regolith_studio.ui.widgets.number_text import short_number
@@ -27,10 +28,8 @@ from regolith_studio.ui.widgets.table import ListTable
 _UNITS = {0: "", 1: " [µm]", 2: " [µm²]", 3: " [µm³]", 5: " [µm⁵]"}
 HEALTH, FORM = "health", "form"
 WEIGHT = "weight"
-HEALTH_WORDS = (
-    *(mark("sound"), mark("coarse"), mark("mended"), mark("doubtful"), mark("unsound"), mark("unknown")),
-)
-FORM_WORDS = (mark("equant"), mark("disc"), mark("rod"), mark("blade"))
+HEALTH_WORDS = (*(N_("sound"), N_("coarse"), N_("mended"), N_("doubtful"), N_("unsound"), N_("unknown")),)
+FORM_WORDS = (N_("equant"), N_("disc"), N_("rod"), N_("blade"))
 WORDS = 4
 """Text columns, which precede those of numbers."""
 

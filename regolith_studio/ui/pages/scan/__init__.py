@@ -1,5 +1,6 @@
 """Page "Scan": from a volume of grey values or labels to particles."""
 
+from regolith_studio.messages import N_
 from regolith_studio.session.file_kinds import FileKind
 from regolith_studio.ui.action_spec import BREAK, PAGE_MENU, ActionSpec
 from regolith_studio.ui.page import Page, PageContext, PageWidget
@@ -14,21 +15,29 @@ def build(context: PageContext) -> PageWidget:
 
 PAGE = Page(
     key="scan",
-    title="Scan",
+    title=N_("Scan"),
     icon="page_scan",
     order=30,
-    tip="Find the grains in a CT volume and make particles of them",
+    tip=N_("Find the grains in a CT volume and make particles of them"),
     make=build,
     opens=(FileKind.VOLUME,),
     actions=(
-        ActionSpec(PAGE_MENU, "open_volume", "Open &volume …", "open", "Ctrl+Alt+O", "Open a CT volume"),
-        ActionSpec(PAGE_MENU, "open_slices", "Open a folder of s&lices …"),
-        ActionSpec(PAGE_MENU, "sample_volume", "Open the sample &scan", "sample"),
+        ActionSpec(
+            PAGE_MENU, "open_volume", N_("Open &volume …"), "open", "Ctrl+Alt+O", N_("Open a CT volume")
+        ),
+        ActionSpec(PAGE_MENU, "open_slices", N_("Open a folder of s&lices …")),
+        ActionSpec(PAGE_MENU, "sample_volume", N_("Open the sample &scan"), "sample"),
         ActionSpec(PAGE_MENU, BREAK, ""),
-        ActionSpec(PAGE_MENU, "open_settings", "Open se&ttings …", tip="Take settings from a file"),
-        ActionSpec(PAGE_MENU, "save_settings", "Sa&ve settings …", tip="Write settings for the next scan"),
+        ActionSpec(PAGE_MENU, "open_settings", N_("Open se&ttings …"), tip=N_("Take settings from a file")),
+        ActionSpec(
+            PAGE_MENU, "save_settings", N_("Sa&ve settings …"), tip=N_("Write settings for the next scan")
+        ),
         ActionSpec(PAGE_MENU, BREAK, ""),
-        ActionSpec(PAGE_MENU, "find_grains", "&Find grains", "play", "F5", "Segment the whole volume"),
-        ActionSpec(PAGE_MENU, "make_particles", "&Make particles", tip="Hand the grains to all other pages"),
+        ActionSpec(
+            PAGE_MENU, "find_grains", N_("&Find grains"), "play", "F5", N_("Segment the whole volume")
+        ),
+        ActionSpec(
+            PAGE_MENU, "make_particles", N_("&Make particles"), tip=N_("Hand the grains to all other pages")
+        ),
     ),
 )

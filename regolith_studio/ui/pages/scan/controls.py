@@ -11,39 +11,38 @@ from regolith_studio.imaging.extraction import voxel_diameter
 from regolith_studio.imaging.segmentation.morphology import CleaningSettings
 from regolith_studio.imaging.segmentation.segment import SegmentationSettings
 from regolith_studio.jobs.extraction_settings import GrainSettings
-from regolith_studio.ui.translation import mark, tr
+from regolith_studio.messages import N_
+from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.labels import heading, remark
 from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec, align_labels
 
 DENOISE = (
-    ("median", mark("Median of 27 voxels")),
-    ("gaussian", mark("Gaussian (fast)")),
-    ("non-local-means", mark("Non-local means (slow)")),
-    ("none", mark("None")),
+    ("median", N_("Median of 27 voxels")),
+    ("gaussian", N_("Gaussian (fast)")),
+    ("non-local-means", N_("Non-local means (slow)")),
+    ("none", N_("None")),
 )
 THRESHOLD = (
-    ("otsu", mark("Otsu")),
-    ("multi-otsu", mark("Multi-Otsu, three classes")),
-    ("manual", mark("By hand: drag the line")),
-    ("probability", mark("Probability map")),
+    ("otsu", N_("Otsu")),
+    ("multi-otsu", N_("Multi-Otsu, three classes")),
+    ("manual", N_("By hand: drag the line")),
+    ("probability", N_("Probability map")),
 )
-SURFACE = (("grey", mark("Grey values")), ("mask", mark("Mask")))
+SURFACE = (("grey", N_("Grey values")), ("mask", N_("Mask")))
 H_MAXIMA = NumberSpec(
-    "h", mark("Bump that is a grain of its own, in voxels"), 0.0, 6.0, 0.1, limit=50.0,
-    tip=mark(
+    "h", N_("Bump that is a grain of its own, in voxels"), 0.0, 6.0, 0.1, limit=50.0,
+    tip=N_(
         "How far a bump must stand out to be a grain of its own. Grains cut in two: larger. "
         "Grains that stick together: smaller."
     ),
 )  # fmt: skip
 OPENING = NumberSpec(
-    mark("Opening"), mark("Opening"), 0, 5, tip=mark("Removes specks and thin bridges, in voxels.")
+    N_("Opening"), N_("Opening"), 0, 5, tip=N_("Removes specks and thin bridges, in voxels.")
 )
-CLOSING = NumberSpec(
-    mark("Closing"), mark("Closing"), 0, 5, tip=mark("Closes cracks and thin gaps, in voxels.")
-)
+CLOSING = NumberSpec(N_("Closing"), N_("Closing"), 0, 5, tip=N_("Closes cracks and thin gaps, in voxels."))
 MIN_VOXELS = NumberSpec(
-    mark("Smallest"), mark("Least voxels of a grain"), 0, 2000, 1, limit=10_000_000,
-    tip=mark("Grains of fewer voxels are left out; below 12 voxels in diameter shapes are coarse."),
+    N_("Smallest"), N_("Least voxels of a grain"), 0, 2000, 1, limit=10_000_000,
+    tip=N_("Grains of fewer voxels are left out; below 12 voxels in diameter shapes are coarse."),
 )  # fmt: skip
 
 _LABEL_WIDTH = 62
@@ -63,7 +62,7 @@ class SegmentationControls(QWidget):
         self.threshold = choice("threshold", tr("Threshold"), THRESHOLD)
         self.level = QDoubleSpinBox()
         self.boundary = choice(
-            "boundary", tr("Boundary"), ((1, mark("dark | middle")), (2, mark("middle | bright")))
+            "boundary", tr("Boundary"), ((1, N_("dark | middle")), (2, N_("middle | bright")))
         )
         self.dark = _check("dark", tr("Grains are dark"), tr("Grains are darker than what is between them."))
         self.split = _check(

@@ -28,6 +28,7 @@ from regolith_studio.jobs.volume_jobs import (
     read_sample_scan,
     read_scan,
 )
+from regolith_studio.messages import N_
 from regolith_studio.readers.volumes.header import VolumeHeader, layout_from_name
 from regolith_studio.session.batch.preprocessing import entry_of
 from regolith_studio.session.provenance import VolumeSource
@@ -39,13 +40,13 @@ from regolith_studio.ui.pages.scan.slices_view import SlicesView
 from regolith_studio.ui.pages.scan.volume_dialog import RAW_SUFFIXES, VolumeDialog, needs_asking
 from regolith_studio.ui.pages.scan.workflow_panel import WorkflowPanel
 from regolith_studio.ui.theme import Theme
-from regolith_studio.ui.translation import mark, tr
+from regolith_studio.ui.translation import tr
 from regolith_studio.ui.translation.sentences import retold
 
-VOLUMES = mark(
+VOLUMES = N_(
     "Volumes (*.tif *.tiff *.h5 *.hdf5 *.nrrd *.nhdr *.mha *.mhd *.nii *.nii.gz *.npy *.raw);;All files (*)"
 )
-RECIPES = mark("Settings (*.json);;All files (*)")
+RECIPES = N_("Settings (*.json);;All files (*)")
 PREVIEW_DELAY = 120
 """Milliseconds from the last change to the preview."""
 

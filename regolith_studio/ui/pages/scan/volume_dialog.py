@@ -18,24 +18,25 @@ from PySide6.QtWidgets import (
 )
 
 from regolith_studio.jobs.extraction_settings import VolumeInput
+from regolith_studio.messages import N_
 from regolith_studio.readers.volume_formats import WITH_AXES
 from regolith_studio.readers.volumes.header import RawLayout, VolumeHeader
 from regolith_studio.ui.pages.scan.controls import choice
-from regolith_studio.ui.translation import mark, tr
+from regolith_studio.ui.translation import tr
 from regolith_studio.ui.translation.sentences import retold
 from regolith_studio.ui.widgets.labels import remark
 
 RAW_SUFFIXES = (".raw", ".bin", ".vol", ".dat")
 AXES = (
-    (None, mark("As the file says, else slices first (z, y, x)")),
-    ("xyz", mark("x, y, z: slices last")),
-    ("yxz", mark("y, x, z: as MATLAB has pictures")),
+    (None, N_("As the file says, else slices first (z, y, x)")),
+    ("xyz", N_("x, y, z: slices last")),
+    ("yxz", N_("y, x, z: as MATLAB has pictures")),
 )
-ORDERS = (("little", mark("little endian")), ("big", mark("big endian")))
+ORDERS = (("little", N_("little endian")), ("big", N_("big endian")))
 KINDS = (
-    (None, mark("Whatever it looks like")),
-    ("grey", mark("Grey values")),
-    ("labels", mark("Labels of grains")),
+    (None, N_("Whatever it looks like")),
+    ("grey", N_("Grey values")),
+    ("labels", N_("Labels of grains")),
 )
 UNITS = (("um", "µm"), ("mm", "mm"), ("nm", "nm"), ("cm", "cm"), ("m", "m"))
 _TYPES = ("uint8", "int8", "uint16", "int16", "uint32", "int32", "uint64", "int64", "float32", "float64")

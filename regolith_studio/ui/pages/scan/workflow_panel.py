@@ -5,6 +5,7 @@ from PySide6.QtWidgets import QHBoxLayout, QPushButton, QVBoxLayout, QWidget
 
 from regolith_studio.imaging.segmentation.segment import Segmentation
 from regolith_studio.jobs.volume_jobs import Scan
+from regolith_studio.messages import N_
 from regolith_studio.ui.translation import tr, tr_count
 from regolith_studio.ui.translation.sentences import retold
 from regolith_studio.ui.widgets.fixed_height_text import FixedHeightText
@@ -110,8 +111,8 @@ def _too_small(found: Segmentation, least: int) -> str:
     if not count:
         return ""
     return tr_count(
-        "{count} of them has fewer than {least} voxels and will be left out.",
-        "{count} of them have fewer than {least} voxels and will be left out.",
+        N_("{count} of them has fewer than {least} voxels and will be left out."),
+        N_("{count} of them have fewer than {least} voxels and will be left out."),
         count,
         least=least,
     )

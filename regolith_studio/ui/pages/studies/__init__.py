@@ -1,5 +1,6 @@
 """Page "Studies": the paper's figures 3, 7 and 8 for the particles that are open."""
 
+from regolith_studio.messages import N_
 from regolith_studio.ui.action_spec import PAGE_MENU, ActionSpec
 from regolith_studio.ui.page import Page, PageContext, PageWidget
 
@@ -13,28 +14,28 @@ def build(context: PageContext) -> PageWidget:
 
 PAGE = Page(
     key="studies",
-    title="Studies",
+    title=N_("Studies"),
     icon="page_studies",
     order=45,
-    tip="Errors against l_max, facets and weights, and what the polyhedra look like",
+    tip=N_("Errors against l_max, facets and weights, and what the polyhedra look like"),
     make=build,
     actions=(
         ActionSpec(
             PAGE_MENU,
             "run_all",
-            "&Compute all",
+            N_("&Compute all"),
             "play",
             "Ctrl+Return",
-            "Every study and the gallery",
+            N_("Every study and the gallery"),
             bar="words",
         ),
         ActionSpec(
             PAGE_MENU,
             "save",
-            "&Save figures and tables …",
+            N_("&Save figures and tables …"),
             "export",
             "",
-            "CSV, JSON, PNG, SVG",
+            N_("CSV, JSON, PNG, SVG"),
             None,
             "words",
         ),

@@ -17,9 +17,10 @@ from PySide6.QtWidgets import (
 )
 
 from regolith_studio.descriptors.catalogue import CATALOGUE
+from regolith_studio.messages import N_
 from regolith_studio.session.study_requests import GalleryCell
 from regolith_studio.ui.theme import Theme, current_theme
-from regolith_studio.ui.translation import mark, tr
+from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.heat_table import centred_remark
 from regolith_studio.ui.widgets.study_frame import StudyFrame
 from regolith_studio.ui.widgets.thumbnails import thumbnail
@@ -27,7 +28,7 @@ from regolith_studio.ui.widgets.thumbnails import thumbnail
 SIZE = 96
 LETTERS = 22
 """Pixels below a picture."""
-WAITING = mark("The polyhedra of six particles as each loss function makes them, as in Fig. 7 of the paper.")
+WAITING = N_("The polyhedra of six particles as each loss function makes them, as in Fig. 7 of the paper.")
 Index = QModelIndex | QPersistentModelIndex
 MAX_PARTICLES = 6
 """Maximum number of columns."""

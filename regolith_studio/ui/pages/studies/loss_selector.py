@@ -7,21 +7,22 @@ from PySide6.QtCore import Signal
 from PySide6.QtGui import QAction, QMouseEvent
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QMenu, QToolButton, QWidget
 
+from regolith_studio.messages import N_
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.study_requests import loss_names
 from regolith_studio.studies.loss_variants import ALONE, PAPER_LOSSES
-from regolith_studio.ui.translation import mark, tr
+from regolith_studio.ui.translation import tr
 from regolith_studio.ui.translation.sentences import retold
 from regolith_studio.ui.widgets.combo_box import ChoiceBox
 
 ARROW = "  ▾"
-BOXES = {"exact": mark("exact minimum volume"), "trimesh": mark("trimesh's heuristic (paper)")}
-BOX_TIP = mark(
+BOXES = {"exact": N_("exact minimum volume"), "trimesh": N_("trimesh's heuristic (paper)")}
+BOX_TIP = N_(
     "Diameters and aspect ratio come from this box. The heuristic of the paper's program is no minimum; "
     "it is here to compare numbers."
 )
 
-EQUAL_TIP = mark("Losses can be compared at equal numbers of facets only; choose the number beside Facets n.")
+EQUAL_TIP = N_("Losses can be compared at equal numbers of facets only; choose the number beside Facets n.")
 
 
 class LossSelector(QWidget):

@@ -10,6 +10,7 @@ from PySide6.QtWidgets import QTabWidget, QVBoxLayout, QWidget
 
 from regolith_studio.errors import RegolithError
 from regolith_studio.jobs.events import Job, Progress, Started, Steps
+from regolith_studio.messages import N_
 from regolith_studio.session.dependencies import STUDIES as KINDS
 from regolith_studio.session.dependencies import Kind
 from regolith_studio.session.outputs.studies import STUDIES
@@ -25,13 +26,13 @@ from regolith_studio.ui.pages.studies.sweep_panel import SweepPanel
 from regolith_studio.ui.panels.coarsening_study import CoarseningStudyPanel
 from regolith_studio.ui.panels.lmax_study import LmaxStudyPanel
 from regolith_studio.ui.theme import Theme
-from regolith_studio.ui.translation import mark, tr, tr_count
+from regolith_studio.ui.translation import tr, tr_count
 from regolith_studio.ui.translation.sentences import retold
 from regolith_studio.ui.widgets.labels import heading
 
-LMAX_TITLE = mark("Error against l<sub>max</sub> (Fig. 3)")
-COARSENING_TITLE = mark("Error of coarsened particles")
-TABS = {"facets": mark("Facets"), "tradeoff": mark("Overlap or descriptors"), "sensitivity": mark("Weights")}
+LMAX_TITLE = N_("Error against l<sub>max</sub> (Fig. 3)")
+COARSENING_TITLE = N_("Error of coarsened particles")
+TABS = {"facets": N_("Facets"), "tradeoff": N_("Overlap or descriptors"), "sensitivity": N_("Weights")}
 """Object name of the tab after that of Fig. 8."""
 
 
@@ -181,8 +182,8 @@ class StudiesPage(PageWidget):
         self.gallery.frame.set_count(count)
         self.gallery.frame.start.setText(
             tr_count(
-                "Draw the polyhedra of this particle",
-                "Draw the polyhedra of {count} particles",
+                N_("Draw the polyhedra of this particle"),
+                N_("Draw the polyhedra of {count} particles"),
                 min(count, MAX_PARTICLES),
             )
         )
@@ -210,7 +211,7 @@ class StudiesPage(PageWidget):
 
 def write_studies(studies: tuple[tuple[str, object], ...], folder: Path) -> Steps:
     """Write tables and figures; returns their paths. A job."""
-    yield Started("Writing figures", len(studies))
+    yield Started(N_("Writing figures"), len(studies))
     written: tuple[Path, ...] = ()
     for number, (kind, study) in enumerate(studies, start=1):
         written += tuple(STUDIES[kind].write(study, folder))

@@ -8,20 +8,21 @@ from PySide6.QtWidgets import QHBoxLayout, QLabel, QLineEdit, QVBoxLayout, QWidg
 
 from regolith_studio.coarsening.weights import JACCARD
 from regolith_studio.descriptors.catalogue import CATALOGUE, LOSS_KEYS
+from regolith_studio.messages import N_
 from regolith_studio.scene.palette import DESCRIPTOR_COLOURS
 from regolith_studio.studies.coarsening import COLUMNS, MIN_PLOTTED, CoarseningStudy
 from regolith_studio.studies.sweeps import SWEEPS, descriptor_error, pareto_front
 from regolith_studio.ui.pages.studies.band_plot import BandPlot, Series
 from regolith_studio.ui.pages.studies.sensitivity_table import SensitivityTable
 from regolith_studio.ui.theme import Theme
-from regolith_studio.ui.translation import mark, tr, tr_count
+from regolith_studio.ui.translation import tr, tr_count
 from regolith_studio.ui.translation.sentences import retold
 from regolith_studio.ui.widgets.labels import plain_symbol, rich_symbol
 from regolith_studio.ui.widgets.plots.curves import PlotCurve
 from regolith_studio.ui.widgets.study_frame import StudyFrame
 
 OVERLAP = "Jaccard"
-ON_AND_OFF = mark("The method keeps descriptors exactly: each is asked for or not, whatever its weight.")
+ON_AND_OFF = N_("The method keeps descriptors exactly: each is asked for or not, whatever its weight.")
 
 
 class StudyView(Protocol):
@@ -171,7 +172,7 @@ class SweepPanel(QWidget):
 
 def summary_text(study: CoarseningStudy, outdated: bool) -> str:
     """Number of particles, box, unmet requests, and whether the choices have changed since."""
-    words = [tr_count("1 particle", "{count} particles", len(study.names))]
+    words = [tr_count(N_("1 particle"), N_("{count} particles"), len(study.names))]
     if study.box_metric != "exact":
         words.append(tr("box of {name}", name=study.box_metric))
     if study.failures:
