@@ -60,7 +60,7 @@ def read_coefficients(
     ------
     FileError
         With one sentence if the file is no such table, rows are missing or not finite, or its
-        convention cannot be told.
+        convention is ambiguous.
     InputError
         If there is no such unit.
     """
@@ -115,20 +115,20 @@ def _without_header(rows: np.ndarray) -> np.ndarray:
 
 
 def _as_predicate(sentence: str) -> str:
-    """What the tables' own checks say, behind the file's name."""
+    """The error of a check as the end of a sentence that begins with the file's name."""
     if sentence.startswith(("has ", "does ", "cannot ")):
         return sentence
     return f"is not a valid table of coefficients: {sentence[0].lower()}{sentence[1:]}"
 
 
 TABLE_SUFFIXES = (".anm", ".sh", ".shc")
-"""What is a table of coefficients wherever it lies."""
+"""Suffixes of tables of coefficients."""
 
 TEXT_SUFFIXES = (".txt", ".dat", ".tab", ".csv")
-"""What may be one where it is named itself; in a folder it is ignored."""
+"""Suffixes of text files that may be such tables if named explicitly; ignored in folders."""
 
 _FINE_DEGREE = 16
-"""Above it 2,562 vertices would not show what the coefficients hold."""
+"""Above it 2,562 vertices do not resolve the coefficients."""
 
 
 def read_table_particle(path: Path, unit: str, group: str = "", sandbox: Sandbox | None = None) -> Particle:

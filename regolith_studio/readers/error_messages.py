@@ -1,4 +1,4 @@
-"""What a file says about itself, made fit for a sentence: printable and short."""
+"""Error messages about files: one printable sentence of limited length."""
 
 from pathlib import Path
 
@@ -7,17 +7,17 @@ MAX_MESSAGE_LENGTH = 240
 
 
 def printable(text: str) -> str:
-    """`text` in one line, with a question mark for each sign that cannot be shown."""
+    """`text` in one line, with a question mark for each character that cannot be printed."""
     return "".join(sign if sign.isprintable() else "?" for sign in text)
 
 
-def plural(number: int, thing: str) -> str:
+def plural(number: int, noun: str) -> str:
     """``1 column``, ``2 columns``."""
-    return f"{number:,} {thing}{'' if number == 1 else 's'}"
+    return f"{number:,} {noun}{'' if number == 1 else 's'}"
 
 
 def display_name(path: Path) -> str:
-    """The file's name, without its middle where it is long."""
+    """The file's name in printable characters; a long one is shortened in the middle."""
     name = printable(path.name or str(path))
     if len(name) <= MAX_NAME_LENGTH:
         return name
@@ -25,7 +25,7 @@ def display_name(path: Path) -> str:
 
 
 def message_about(path: Path, predicate: str) -> str:
-    """The sentence that begins with the file's name; one that grows too long loses its end."""
+    """The sentence that begins with the file's name, truncated if it is too long."""
     sentence = f"{display_name(path)} {printable(predicate)}"
     if len(sentence) <= MAX_MESSAGE_LENGTH:
         return sentence

@@ -1,4 +1,4 @@
-"""Archives of arrays from strangers: looked at before a byte of them is unpacked, and never unpickled."""
+"""Bytes of files: read within limits, SHA-256, and NPZ archives, checked before they are unpacked."""
 
 import hashlib
 import io
@@ -19,7 +19,7 @@ MAX_ARRAYS = 64
 MAX_UNPACKED_BYTES = 2 * 1024**3
 """Bytes of all arrays together."""
 KINDS = "biufU"
-"""Truth values, whole numbers, numbers and text; no objects, no structures, no dates."""
+"""Kinds of arrays: booleans, integers, floats and text; no objects, structures or dates."""
 
 _BROKEN = (zipfile.BadZipFile, zlib.error, ValueError, EOFError, OSError, NotImplementedError, RuntimeError)
 

@@ -28,7 +28,7 @@ class NumberRows:
     numbers
         Shape (n, columns), float64; whatever is not finite is kept.
     units
-        What a second header line says of each column, in brackets or not; empty where there is none.
+        Units of the columns from a second header line; empty where there is none.
     """
 
     names: tuple[str, ...]
@@ -41,7 +41,7 @@ def number_rows(
 ) -> NumberRows:
     """The rows of a text of numbers with at most `skip_headers` lines of words before them.
 
-    Where `with_units` says so, a line of units may follow the header.
+    With `with_units`, a line of units may follow the header.
     Up to `numeric_headers` first rows of numbers may have another number of columns; they are ignored.
 
     Spaces, tabs, commas and semicolons separate; where semicolons do, a comma is a decimal comma.

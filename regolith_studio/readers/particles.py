@@ -189,15 +189,15 @@ def read_file(
 
 
 def _mesh_or_table(file: MeshFile, unit: str, repair: bool, sandbox: Sandbox | None) -> Particle:
-    """The particle in a text file that says by its content what it is."""
+    """The particle in a text file whose content decides between table and mesh."""
     try:
         return replace(read_table_particle(file.path, unit, file.group, sandbox), weight=file.weight)
     except FileError as no_table:
         try:
             return _read_mesh(file, unit, repair, sandbox)
         except FileError:
-            said = str(no_table).removeprefix(f"{display_name(file.path)} ")
-            sentence = f"is not a mesh, and as a table of coefficients it {said}"
+            reason = str(no_table).removeprefix(f"{display_name(file.path)} ")
+            sentence = f"is not a mesh, and as a table of coefficients it {reason}"
             raise FileError(message_about(file.path, sentence)) from None
 
 

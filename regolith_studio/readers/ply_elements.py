@@ -191,7 +191,7 @@ def ascii_columns(words: list[bytes], place: int, element: Element) -> tuple[Col
 
 
 def trimmed_rows(lines: list[list[bytes]], elements: tuple[Element, ...]) -> list[bytes] | None:
-    """The words that the header asks for, a row a line; ``None`` if a line has fewer."""
+    """The words that the header declares, one row per line; ``None`` if a line has fewer."""
     words: list[bytes] = []
     if sum(element.count for element in elements) > len(lines):
         return None

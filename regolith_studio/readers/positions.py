@@ -1,4 +1,4 @@
-"""Where particles lie: tables, XYZ, LAMMPS dumps and VTK files, for the angle of repose."""
+"""Particle positions from tables, XYZ, LAMMPS dumps and VTK files, for the angle of repose."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -27,7 +27,7 @@ class ParticlePositions:
     points
         Shape (n, 3), metres.
     diameters
-        Shape (n,), metres; None where the file does not say.
+        Shape (n,), metres; None where the file does not state it.
     name
         As the user knows the file.
     notes

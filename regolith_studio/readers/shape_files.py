@@ -46,7 +46,7 @@ class ShapeSource:
     sha256
         Of the file's bytes (of its JSON where there are two files); empty where there is no file.
     notes
-        One sentence for each thing about the source to know.
+        Sentences about the source for the user.
     """
 
     content: Sample | FittedModel | MaterialCard
@@ -247,7 +247,7 @@ class ModelDocument(_Coefficients):
 def check_document(
     kind: type[FitDocument | ModelDocument], document: Mapping[str, Any], path: Path, called: str
 ) -> None:
-    """Look whether everything is there, of its type and within its limits.
+    """Validate a document.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""The mesh formats: every module of this folder announces one as ``FORMAT``."""
+"""Mesh formats; each module of this folder defines one as ``FORMAT``."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -21,7 +21,7 @@ class ParsedMesh:
     faces
         Shape (m, 3), int64; may point outside the vertices.
     notes
-        One sentence for each thing in the file that was ignored.
+        Sentences about parts of the file that were ignored.
     """
 
     vertices: NDArray[np.float64]
@@ -31,21 +31,21 @@ class ParsedMesh:
 
 @dataclass(frozen=True)
 class MeshFormat:
-    """One row of the table of mesh formats; each file of ``readers.formats`` announces one as ``FORMAT``.
+    """A mesh format.
 
     Parameters
     ----------
     key
         Short name, ``stl``.
     label
-        As a sentence names it, ``STL``.
+        As in a sentence, ``STL``.
     suffixes
         Lower case, with the dot.
     recognises
         Whether the first 1,024 bytes can only be this format.
     parse
-        Bytes and path to triangles; the path serves to find files that belong to this one. Raises
-        ``FileError`` with the second half of a sentence that begins with the file's name.
+        Bytes and path to triangles; the path serves to find buffers beside the file. Raises ``FileError``
+        with the end of a sentence that begins with the file's name.
     shares_vertices
         False where each triangle brings its own three vertices, to be joined after reading.
     """

@@ -21,7 +21,7 @@ def parse(data: bytes, _path: Path) -> ParsedMesh:
     Raises
     ------
     FileError
-        If counts, coordinates or indices are missing or make no sense.
+        If counts, coordinates or indices are missing or invalid.
     """
     text = _COMMENT.sub(b"", data)
     keyword = _KEYWORD.match(text)

@@ -20,7 +20,7 @@ _SOLID_LINE = re.compile(rb"^[ \t]*(?:end[ \t]*)?solid\b[^\r\n]*", re.IGNORECASE
 def parse(data: bytes, _path: Path) -> ParsedMesh:
     """Triangles of an STL file: three new vertices a facet.
 
-    The stated normals are ignored: the order of the corners says the same, and more reliably.
+    The stated normals are ignored: the order of the corners is more reliable.
 
     Raises
     ------
@@ -35,7 +35,7 @@ def parse(data: bytes, _path: Path) -> ParsedMesh:
 
 
 def _looks_like_text(data: bytes) -> bool:
-    """Whether the facets are words; a header that says ``solid`` proves nothing."""
+    """Whether the file is ASCII; many binary files begin with ``solid`` too."""
     if len(data) >= HEADER and len(data) == HEADER + RECORD.itemsize * _declared(data):
         return False
     head = data[:1024].lstrip().lower()
@@ -91,7 +91,7 @@ def _soup(corners: NDArray[np.float64], notes: tuple[str, ...] = ()) -> ParsedMe
 
 
 def _first_fault(data: bytes) -> str:
-    """The second half of a sentence that says where an ASCII STL leaves the grammar."""
+    """The first syntax error of an ASCII STL, as the end of an error message."""
     place = 0
     for number, line in enumerate(data.splitlines(), start=1):
         if _SOLID_LINE.match(line):

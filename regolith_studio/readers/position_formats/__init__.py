@@ -1,4 +1,4 @@
-"""The formats of particle positions: every module of this folder announces one as ``FORMAT``."""
+"""Formats of particle positions; each module of this folder defines one as ``FORMAT``."""
 
 import re
 from collections.abc import Callable, Mapping
@@ -38,7 +38,7 @@ class ParsedPositions:
 
 @dataclass(frozen=True)
 class PositionFormat:
-    """One row of the table of position formats; each file of ``readers.position_formats`` announces one.
+    """A format of particle positions.
 
     Parameters
     ----------
@@ -106,7 +106,7 @@ def named_columns(names: tuple[str, ...]) -> NamedColumns:
 
 
 def sized(numbers: Numbers, columns: NamedColumns) -> Numbers | None:
-    """Diameters of the rows, if a column says."""
+    """Diameters of the rows, if there is such a column."""
     if columns.size is None:
         return None
     return numbers[:, columns.size] * (2.0 if columns.is_radius else 1.0)

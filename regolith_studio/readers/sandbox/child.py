@@ -1,7 +1,7 @@
 """The child process that parses untrusted files: ``python -m regolith_studio.readers.sandbox.child``.
 
-It takes one request at a time on its standard input and answers on its standard output, until the
-input ends. It kills itself when a request takes too long, so that it cannot outlive its parent.
+It reads one request at a time from standard input and writes the answer to standard output until the input
+ends. Timers end it when a request exceeds its limits, so that it cannot outlive its parent.
 """
 
 import contextlib
@@ -36,7 +36,7 @@ TASKS: dict[str, Task] = {
 
 
 def answer(request: dict[str, Any]) -> Message:
-    """The task's result, or a header that says why there is none."""
+    """The task's result, or a header with the reason why there is none."""
     path = Path(request["path"])
     try:
         message = TASKS[request["task"]](request)

@@ -1,4 +1,4 @@
-"""The sandbox of the reading child: starts it, keeps it warm, limits it, replaces it when it dies."""
+"""The parent of the sandbox process: starts it, limits it, and replaces it when it ends."""
 
 import contextlib
 import multiprocessing.util as process_end
@@ -17,15 +17,15 @@ from regolith_studio.readers.sandbox.messages import Message, receive, send
 
 MAX_FILE_BYTES = 2 * 1024**3
 MAX_MEMORY = 6 * 1024**3
-"""Bytes of addresses that the child may use at most; a 2 GiB binary file and its arrays fit."""
+"""Address space of the child in bytes; enough for a binary file of 2 GiB and its arrays."""
 
 MAX_MEMORY_SHARE = 0.75
-"""Nor may it use more than this share of what the machine has."""
+"""Upper limit of the address space as a share of the machine's memory."""
 
 BASE_SECONDS = 40.0
-"""Patience with a small file on a machine that has forty other things to do: sound files took 10 s there."""
+"""Wall time for a small file; on a machine with forty busy processes intact files took up to 10 s."""
 WORK_SECONDS = 1.5
-"""A small file may keep the processor busy for so long; the rest is patience with a busy machine."""
+"""Processor time for a small file."""
 SECONDS_PER_BYTE = 1.0 / 1e6
 START_SECONDS = 60.0
 MAX_WARM_RESULT_BYTES = 256 * 1024**2
@@ -33,7 +33,9 @@ MAX_WARM_RESULT_BYTES = 256 * 1024**2
 
 
 class Sandbox:
-    """One warm child process; safe to share between threads, not between processes.
+    """A child process that parses files; may be shared between threads, not between processes.
+
+    It is kept from one request to the next, and replaced after a crash, a time-out or a very large result.
 
     Parameters
     ----------
@@ -41,8 +43,8 @@ class Sandbox:
         Bytes of addresses that the child may use, where the system can limit them; by default 6 GiB, or
         three quarters of the machine's memory where that is less.
     seconds
-        Wall time for a small file, of which no more than 1.5 s may be work; larger ones get a second
-        more of both for each million bytes.
+        Wall time for a small file, of which at most 1.5 s may be processor time; a larger file gets one
+        second more of both per million bytes.
     """
 
     def __init__(self, memory: int | None = None, seconds: float = BASE_SECONDS) -> None:
@@ -64,7 +66,7 @@ class Sandbox:
         Raises
         ------
         FileError
-            With one sentence if the file is refused, hangs or kills its reader.
+            If the file is refused, or its reader crashes or exceeds its limits.
         """
         more = checked_size(path) * SECONDS_PER_BYTE
         work = min(self._seconds, WORK_SECONDS) + more
@@ -73,7 +75,7 @@ class Sandbox:
     def request_within(
         self, task: str, path: Path, seconds: float, work: float | None = None, **options: Any
     ) -> Message:
-        """As `request`, for who has looked at the file or folder before: no check of its size.
+        """As `request`, with explicit limits and without a check of the file's size.
 
         Parameters
         ----------
@@ -82,8 +84,7 @@ class Sandbox:
         work
             Processor time that it may take, where the system counts it; by default as much.
         options
-            More of what the task needs; ``memory`` is how many bytes it may use above what the child
-            has already, so that a damaged file cannot take all that the child may ever have.
+            Further arguments of the task; ``memory`` limits the bytes that it may allocate.
         """
         work = min(work or seconds, seconds)
         limits = {"seconds": seconds + 2.0, "work": work}
@@ -99,9 +100,11 @@ class Sandbox:
                 limit = options.get("memory", self._memory) / 1024**3
                 reason = f"needs more than the {limit:.3g} GiB of memory that a reader may use."
             case "busy":
-                reason = f"was given up after {work:.2g} s of work: it is damaged, or unpacks to far more."
+                reason = (
+                    f"was given up after {work:.2g} s of work: it is damaged, or far larger when unpacked."
+                )
             case "late":
-                reason = f"was given up after {seconds:.2g} s: it is damaged, or unpacks to far more."
+                reason = f"was given up after {seconds:.2g} s: it is damaged, or far larger when unpacked."
             case _:
                 reason = "is damaged: it crashed the process that read it; export it again."
         raise FileError(message_about(path, reason))
@@ -114,7 +117,7 @@ class Sandbox:
                 _stop(process)
 
     def abandon(self) -> None:
-        """Let go of a child that belongs to the process that this one was forked from."""
+        """Close the pipes of a child that belongs to the parent of a forked process."""
         self._lock = threading.RLock()
         self._ends_with_process = False
         process, self._process = self._process, None
@@ -131,7 +134,7 @@ class Sandbox:
             self.close()
             answer = self._exchange(self._running_process(), message, seconds)
         if _must_replace_child(answer):
-            with contextlib.suppress(OSError):  # whoever asks next will hear of it
+            with contextlib.suppress(OSError):  # the next request raises it
                 self._start_process()
         return answer
 
@@ -176,7 +179,7 @@ class Sandbox:
         return process
 
     def _start_process(self) -> subprocess.Popen[bytes]:
-        """Let a child start, without waiting: the successor of one that a file has ended is ready in time."""
+        """Start a child without waiting until it is ready."""
         self.close()
         process = self._process = _launch(self._memory)
         self._ready = False
@@ -195,7 +198,7 @@ def _exit_reason(process: subprocess.Popen[bytes]) -> str:
 
 
 def _must_replace_child(answer: Message) -> bool:
-    """Whether the child is gone, or has grown so large that a new one is better."""
+    """Whether the child has ended, or holds so much memory that it should be replaced."""
     size = sum(array.nbytes for array in answer.arrays)
     return answer.header["status"] not in ("read", "refused") or size > MAX_WARM_RESULT_BYTES
 
@@ -269,10 +272,10 @@ if hasattr(os, "register_at_fork"):
 
 
 def shared_sandbox() -> Sandbox:
-    """The one sandbox of this process for files that are read at once."""
+    """The sandbox of this process for files that are read whole."""
     return _SHARED
 
 
 def volume_sandbox() -> Sandbox:
-    """The one sandbox of this process for volumes, whose long reading must not keep meshes waiting."""
+    """The sandbox of this process for volumes, separate so that meshes need not wait for them."""
     return _VOLUMES

@@ -61,7 +61,7 @@ def parse_mesh(data: bytes, path: Path) -> tuple[ParsedMesh, MeshFormat]:
 
 
 def without_byte_order_mark(data: bytes) -> bytes:
-    """Text without the byte order mark that some editors put first, and never in UTF-16."""
+    """Text without a byte order mark; UTF-16 is converted to UTF-8."""
     if data.startswith(codecs.BOM_UTF8):
         return data[len(codecs.BOM_UTF8) :]
     if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
@@ -197,12 +197,12 @@ def _checked_positions(parsed: ParsedPositions) -> ParsedPositions:
 
 
 def spin(_request: dict[str, Any]) -> Message:
-    """Work for ever, as a parser does on a file made to that end; the tests ask for it."""
+    """Use the processor without end; for tests of the limits."""
     while True:
         pass
 
 
 def sleep(_request: dict[str, Any]) -> Message:
-    """Hang, as a parser does on a file made to that end; the tests ask for it."""
+    """Sleep without end; for tests of the limits."""
     time.sleep(3600.0)
     return Message({})

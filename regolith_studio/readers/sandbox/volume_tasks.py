@@ -1,4 +1,4 @@
-"""The child's part of reading volumes: opens one at a time, keeps it open, hands over its slices."""
+"""Tasks of the sandbox process for volumes: open one, keep it open, and return its slices."""
 
 import math
 from pathlib import Path
@@ -17,7 +17,7 @@ from regolith_studio.readers.voxels.header import OpenVolume, Sizes, VoxelHeader
 from regolith_studio.readers.voxels.stored import PlainVoxels
 
 MIN_VOXEL_EDGE, MAX_VOXEL_EDGE, MAX_EDGE_RATIO = 1e-5, 1e6, 1e4
-"""Micrometres that the edge of a voxel can have, from atoms to a metre, and how far two may differ."""
+"""Range of plausible voxel edges in micrometres, and the largest ratio of two."""
 _HEAD = 1024
 _opened: dict[str, tuple[OpenVolume, VolumeFormat]] = {}
 """At most one volume, by the request that opened it."""
@@ -153,7 +153,7 @@ def _as_json(volume: OpenVolume, row: VolumeFormat, notes: tuple[str, ...]) -> d
 
 
 def _plausible_size(header: VoxelHeader) -> tuple[Sizes | None, tuple[str, ...]]:
-    """The stated edges of a voxel, unless no scan can have them; then a sentence says so."""
+    """The stated voxel size, or None and a note where it is implausible."""
     size, unit = header.voxel_size, header.unit
     if size is None:
         return None, ()

@@ -1,4 +1,4 @@
-"""The volume formats: every module of this folder announces one as ``FORMAT``."""
+"""Volume formats; each module of this folder defines one as ``FORMAT``."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -11,23 +11,23 @@ from regolith_studio.registry import Registry
 
 @dataclass(frozen=True)
 class VolumeFormat:
-    """One row of the table of volume formats; each file of ``readers.volume_formats`` announces one.
+    """A volume format.
 
     Parameters
     ----------
     key
         Short name, ``tiff``.
     label
-        As a sentence names it, ``a TIFF stack``.
+        As in a sentence, ``a TIFF stack``.
     suffixes
         Lower case, with the dot.
     recognises
         Whether the first 1,024 bytes can only be this format.
     prepare
-        Import what opening needs; takes long the first time.
+        Import the libraries that `open` needs.
     open
-        Path and options of the request to an opened volume. Raises ``FileError`` with the second
-        half of a sentence that begins with the file's name.
+        Path and options of the request to an opened volume. Raises ``FileError`` with the end
+        of a sentence that begins with the file's name.
     """
 
     key: str
@@ -41,7 +41,7 @@ class VolumeFormat:
 VOLUME_FORMATS: Registry[VolumeFormat] = Registry(__name__, "FORMAT", "volume_readers")
 
 WITH_AXES = ("npy", "hdf5")
-"""Formats whose axes a user may state: they hold arrays and need not say which index is which."""
+"""Formats whose axes a user may state: they hold arrays without naming them."""
 
 
 def volume_suffixes() -> frozenset[str]:

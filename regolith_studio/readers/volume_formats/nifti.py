@@ -57,7 +57,7 @@ _ORDERS: tuple[Order, Order] = ("<", ">")
 
 
 class ScaledVoxels:
-    """Voxels that the header says to multiply and shift: float32 (float64 of large types)."""
+    """Voxels to be scaled by slope and intercept: float32 (float64 for types of 32 bits and more)."""
 
     def __init__(self, voxels: OpenVolume, header: VoxelHeader, slope: float, intercept: float) -> None:
         self.header = header
@@ -72,7 +72,7 @@ class ScaledVoxels:
         return scaled
 
     def close(self) -> None:
-        """Let go of the file."""
+        """Close the file."""
         self._voxels.close()
 
 

@@ -21,7 +21,7 @@ _HEADERS: dict[tuple[int, int], Any] = {(1, 0): npy.read_array_header_1_0, (2, 0
 
 
 def open_npy(path: Path, options: Mapping[str, Any]) -> PlainVoxels | TransposedVoxels:
-    """A three-dimensional array whose first index counts the slices, or as ``options["axes"]`` says.
+    """A three-dimensional array whose first index counts the slices, or with the axes ``options["axes"]``.
 
     Raises
     ------

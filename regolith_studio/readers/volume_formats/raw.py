@@ -1,4 +1,4 @@
-"""Raw voxels: nothing but numbers; the caller says how many and of which type."""
+"""Raw voxels without a header; the caller gives their shape and type."""
 
 import math
 from collections.abc import Mapping

@@ -41,7 +41,7 @@ class SliceFiles:
         return out
 
     def close(self) -> None:
-        """Nothing is kept open."""
+        """Do nothing: no file is kept open."""
 
 
 def open_slices(path: Path, options: Mapping[str, Any]) -> SliceFiles:
@@ -118,7 +118,7 @@ def _bmp_edges(data: bytes) -> tuple[int, int]:
     Raises
     ------
     FileError
-        If the pixels are packed, or do not lie where the header says.
+        If the pixels are packed, or are not where the header states.
     """
     begin, header, width, height, planes, bits, packing, _, colours = _BMP.unpack_from(data)
     if header < 40 or planes != 1 or bits not in (1, 4, 8, 16, 24, 32) or width <= 0:

@@ -58,7 +58,7 @@ class TiffPages:
         return decoded
 
     def close(self) -> None:
-        """Let go of the file."""
+        """Close the file."""
         self._file.close()
 
 

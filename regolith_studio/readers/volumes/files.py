@@ -1,4 +1,4 @@
-"""Which files make a volume: a file, a folder of slices, or each volume in a folder."""
+"""Find volumes: a file, a folder of slices, or each volume in a folder."""
 
 import os
 import re

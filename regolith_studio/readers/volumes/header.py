@@ -1,4 +1,4 @@
-"""What a volume's file says about itself, and how its voxel size becomes micrometres."""
+"""Headers of volumes: what a file states, the layout of raw files, voxel sizes, and the kind of voxels."""
 
 import math
 import re
@@ -21,7 +21,7 @@ VoxelSize = float | Sequence[float]
 
 @dataclass(frozen=True)
 class RawLayout:
-    """What a raw file does not say about itself.
+    """Layout of a raw file, which has no header.
 
     Parameters
     ----------
@@ -69,7 +69,7 @@ class RawLayout:
 
 @dataclass(frozen=True)
 class VolumeHeader:
-    """What is known of a volume before it is read.
+    """Description of a volume before it is read.
 
     Parameters
     ----------
@@ -82,9 +82,9 @@ class VolumeHeader:
     dtype
         Type of a voxel in memory.
     voxel_size
-        Edges along x, y and z in `unit`; None where the file does not say.
+        Edges along x, y and z in `unit`; None where the file does not state it.
     unit
-        Key of ``readers.units.UNITS``; None where the file does not say.
+        Key of ``readers.units.UNITS``; None where the file does not state it.
     kind
         ``labels`` or ``grey``, as guessed from a few slices; the caller may know better.
     datasets, dataset
@@ -108,7 +108,7 @@ class VolumeHeader:
     notes: tuple[str, ...] = ()
 
     def micrometres(self, voxel_size: VoxelSize | None = None, unit: str | None = None) -> Sizes:
-        """Edges of a voxel along x, y and z in micrometres, as `voxel_size_in_micrometres` says."""
+        """Edges of a voxel along x, y and z in micrometres, see `voxel_size_in_micrometres`."""
         return voxel_size_in_micrometres(self.path, (self.voxel_size, self.unit), voxel_size, unit)
 
 
@@ -123,7 +123,7 @@ def voxel_size_in_micrometres(
     Parameters
     ----------
     stated
-        Edges and unit of the file, each None where it does not say.
+        Edges and unit of the file, each None where it does not state it.
     voxel_size
         One edge or three (x, y, z) in `unit`, or in micrometres without one.
     unit
@@ -132,7 +132,7 @@ def voxel_size_in_micrometres(
     Raises
     ------
     InputError
-        If nobody says how large a voxel is, or the size is not positive.
+        If the voxel size is unknown or not positive.
     """
     if voxel_size is None and unit is not None and unit.startswith("voxel"):
         voxel_size, unit = unit_factor(unit), "um"

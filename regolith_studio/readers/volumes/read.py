@@ -1,4 +1,4 @@
-"""Volumes of voxels on their way in: what a file holds, all of it, a part of it, or slab by slab."""
+"""Read volumes of voxels: their header, all voxels, a box, or slab by slab."""
 
 import os
 from collections.abc import Iterator
@@ -113,7 +113,7 @@ def describe_volume(
     raw: RawLayout | None = None,
     sandbox: Sandbox | None = None,
 ) -> VolumeHeader:
-    """What a volume's file says about itself; at most a few slices are decoded.
+    """Read the header of a volume; at most a few slices are decoded.
 
     Parameters
     ----------
@@ -122,10 +122,10 @@ def describe_volume(
     dataset
         Which volume of a file that holds several; by default the likeliest.
     axes
-        Letters of the array's axes, the slowest first, where an NPY or HDF5 file does not say it
-        (``zyx``, slices first, is taken then) or says it wrongly.
+        Letters of the array's axes, the slowest first, where an NPY or HDF5 file does not state
+        them (default ``zyx``, slices first) or states them wrongly.
     raw
-        What a raw file does not say itself.
+        Layout of a raw file.
     sandbox
         The child process that parses the file; by default the one of this process for volumes.
 
@@ -173,7 +173,7 @@ def read_volume(
         As for `describe_volume`.
     voxel_size
         One edge, or three along x, y and z, in `unit` (micrometres without one); by default what
-        the file says.
+        that of the file.
     unit
         Unit of `voxel_size`, or of the file's own numbers; ``voxel:SIZE`` gives both.
     kind
@@ -181,14 +181,14 @@ def read_volume(
     bounds
         The box of voxels to read.
     on_progress
-        Told after each slab how many slices are read; it may raise to stop.
+        Called after each slab with the number of slices read and of all; may raise to cancel.
 
     Raises
     ------
     FileError
         With one sentence if the file cannot be read or is too large for the memory.
     InputError
-        If nobody says how large a voxel is, or the box lies outside the volume.
+        If the voxel size is unknown, or the box lies outside the volume.
     """
     file = open_slab_reader(Path(path), dataset, raw, sandbox, axes)
     edges = voxel_size_in_micrometres(file.path, (file.header.voxel_size, file.header.unit), voxel_size, unit)

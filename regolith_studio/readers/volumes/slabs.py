@@ -1,4 +1,4 @@
-"""A volume slab by slab, each read by the guarded child (or plain from a file of plain voxels)."""
+"""Slabs of a volume, read by the sandbox process, or directly where voxels are stored uncompressed."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -24,19 +24,19 @@ from regolith_studio.readers.voxels.header import MAX_CACHED_BYTES, DatasetEntry
 from regolith_studio.readers.voxels.stored import PlainVoxels, plain_voxels
 
 SLAB_BYTES = 64 * 1024**2
-"""Bytes that the child hands over at a time, or one slice where that has more."""
+"""Bytes that the child returns at a time, or one slice where that has more."""
 MAX_LAYER_BYTES = 256 * 1024**2
-"""Bytes that may be handed over at once where a file is packed in chunks of so many slices."""
+"""Bytes that may be returned at once where a chunk of the file spans so many slices."""
 BYTES_OPENED_A_SECOND, BYTES_READ_A_SECOND, BYTES_SKIPPED_A_SECOND = 5e6, 1e7, 3e7
 SECONDS_A_SLICE = 2e-3
 MAX_DEFLATE_RATIO = 1032
 """Bytes that a packed byte can stand for; what unpacks to more is no work, since it is empty."""
 WALL_TIME_FACTOR = 6.0
-"""How much longer than its work a task may take on a busy machine."""
+"""Ratio of wall time to processor time that a task may reach on a busy machine."""
 MIN_MEMORY = 512 * 1024**2
 
 SliceListener = Callable[[int, int], None]
-"""Told how many slices are read, of how many."""
+"""Called with the number of slices read and the number of all."""
 
 
 @dataclass(frozen=True)
@@ -46,16 +46,16 @@ class SlabReader:
     Parameters
     ----------
     path, request
-        The file and what the child is asked with.
+        The file, and the arguments of its requests.
     header
-        What the child said about the voxels.
+        Description of the voxels.
     format
         Key of the format.
     in_order, layer
         Whether the file is best read from its beginning on, and how many slices at a time.
     sandbox
-        Whose child reads it; by default the one for volumes of the process that asks, so that opened
-        files can go to the workers of a pool.
+        The sandbox that reads it; by default that for volumes of the current process, so that a reader can be
+        sent to the workers of a pool.
     plain
         The voxels themselves, where they lie in the file as they are and need no child.
     """

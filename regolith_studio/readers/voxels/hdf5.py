@@ -56,7 +56,7 @@ def find_volumes(file: Any, axes: str = "") -> list[Hdf5Volume]:
     Parameters
     ----------
     axes
-        Letters that overrule what the file says about arrays of as many dimensions.
+        Letters that override the axes in the file, for arrays of as many dimensions.
 
     Raises
     ------
@@ -103,7 +103,7 @@ def _listed_size(dataset: Any, candidate: Hdf5Volume) -> Sizes | None:
 
 
 def _tagged_size(dataset: Any) -> Sizes | None:
-    """Resolutions of vigra's axis tags in the units of ilastik's ``axis_units``; 0 there says unknown."""
+    """Resolutions of vigra's axis tags in the units of ilastik's ``axis_units``; 0 means unknown."""
     tags, units = _parsed(dataset, "axistags"), _parsed(dataset, "axis_units")
     if not isinstance(tags, dict) or not isinstance(units, dict):
         return None
@@ -235,6 +235,6 @@ def _attribute(dataset: Any, name: str) -> Any:
 
 
 def format_names(candidates: list[Hdf5Volume]) -> str:
-    """The first few names for a sentence."""
+    """The first few names for an error message."""
     names = ", ".join(printable(each.name)[:40] for each in candidates[:4])
     return f"{names}, …" if len(candidates) > 4 else names

@@ -1,4 +1,4 @@
-"""What a volume format says about itself, and what it hands over: voxels, slice by slice.
+"""The header and the slices that every volume format provides, and checks of both.
 
 Inside the readers a volume is indexed [z, y, x], slices first, as nearly all files hold it; the
 public door (``readers.volumes``) turns it to the [x, y, z] of ``imaging.Volume``.
@@ -20,10 +20,10 @@ Kind = Literal["labels", "grey"]
 VOXEL_TYPES = frozenset(("b1", "u1", "u2", "u4", "u8", "i1", "i2", "i4", "i8", "f2", "f4", "f8"))
 MAX_EDGE = 1 << 20
 MAX_SLICE_BYTES = 1 << 30
-"""Bytes of the largest slice that is read; a detector of 16,384 pixels' width gives half of that."""
+"""Bytes of the largest slice that is read; twice that of a detector 16,384 pixels wide."""
 MIRRORED = "The axes of the volume are left-handed: particles come in as their mirror images."
 MAX_CACHED_BYTES = 1 << 29
-"""Bytes of a layer of HDF5 chunks that stay unpacked while its slices are asked for."""
+"""Bytes of a layer of HDF5 chunks that are cached unpacked."""
 
 
 @dataclass(frozen=True)
@@ -37,22 +37,22 @@ class DatasetEntry:
 
 @dataclass(frozen=True)
 class VoxelHeader:
-    """What a file says about its voxels before any of them is decoded.
+    """Description of the voxels in a file, read before any of them is decoded.
 
     Parameters
     ----------
     shape
         Slices, rows, columns: (nz, ny, nx).
     dtype
-        Type of the voxels as they are handed over, in the machine's byte order.
+        Type of the voxels in memory, in native byte order.
     voxel_size
-        Edges along x, y and z, in `unit`; None where the file does not say.
+        Edges along x, y and z, in `unit`; None where the file does not state it.
     unit
-        A key of ``readers.units.UNITS``; None where the file does not say.
+        A key of ``readers.units.UNITS``; None where the file does not state it.
     kind
-        Where the file itself says what it holds.
+        Where the file itself states it.
     notes
-        One sentence for each thing that a user should know.
+        Sentences for the user.
     datasets, dataset
         The arrays that the file offers, and the name of the one that this is.
     """
@@ -80,18 +80,19 @@ class VoxelHeader:
 class OpenVolume(Protocol):
     """An opened file: its header, and its slices.
 
-    It may also say that it is best read ``in_order``, or in ``layer`` slices at a time.
+    Optional attributes: ``in_order``, if it is best read sequentially, and ``layer``, the number of slices
+    that are best read together.
     """
 
     @property
     def header(self) -> VoxelHeader:
-        """What the file says about its voxels."""
+        """Description of the voxels."""
 
     def read(self, z0: int, z1: int) -> NDArray[Any]:
         """Slices z0 to z1, shape (z1 - z0, ny, nx)."""
 
     def close(self) -> None:
-        """Let go of the file."""
+        """Close the file."""
 
 
 def three_dimensions(shape: tuple[int, ...], named: str = "shape") -> Shape:

@@ -1,4 +1,4 @@
-"""Voxels that lie in a file as they are: uncompressed, one after the other."""
+"""Voxels as files store them: uncompressed or deflated, in the file itself or in one beside it."""
 
 import math
 import os
@@ -28,7 +28,7 @@ class PlainVoxels:
     path, offset
         The file, and the byte that the first voxel begins at.
     header
-        Shape and type of what is handed over.
+        Shape and type of the voxels in memory.
     stored
         The type in the file, with its byte order.
     slices_last
@@ -68,7 +68,7 @@ class PlainVoxels:
         return flat.astype(self.header.dtype, copy=False).reshape(z1 - z0, ny, nx)
 
     def close(self) -> None:
-        """Nothing is kept open."""
+        """Do nothing: no file is kept open."""
 
     def _gathered(self, z0: int, z1: int) -> NDArray[Any]:
         nz, ny, nx = self.header.shape
@@ -128,7 +128,7 @@ class TransposedVoxels:
         return np.ascontiguousarray(turned[z0:z1], dtype=self.header.dtype)
 
     def close(self) -> None:
-        """Nothing is kept open."""
+        """Do nothing: no file is kept open."""
 
 
 def plain_voxels(layout: Mapping[str, Any], shape: Shape, dtype: np.dtype[Any]) -> PlainVoxels:
@@ -144,7 +144,7 @@ def plain_voxels(layout: Mapping[str, Any], shape: Shape, dtype: np.dtype[Any]) 
 
 _CHUNK = 1 << 20
 _GZIP_OR_ZLIB = 47
-"""Window bits with which zlib finds out by itself which of its two wrappers a stream has."""
+"""Window bits with which zlib detects the gzip or zlib wrapper of a stream."""
 
 
 class InflatedStream:
@@ -177,12 +177,12 @@ class InflatedStream:
             view = view[len(piece) :]
 
     def skip(self, count: int) -> None:
-        """Pass over so many bytes."""
+        """Skip so many bytes."""
         while count:
             count -= len(self._piece(min(count, _CHUNK)))
 
     def check_end(self) -> None:
-        """See that the checksum behind the last byte is right, unless the stream goes on.
+        """Verify the checksum after the last byte, unless the stream continues.
 
         Raises
         ------
@@ -222,13 +222,13 @@ class InflatedStream:
         self._inflater = zlib.decompressobj(_GZIP_OR_ZLIB)
 
     def close(self) -> None:
-        """Let go of the file."""
+        """Close the file."""
         self._file.close()
 
 
 @dataclass
 class DeflatedVoxels:
-    """Slices of a gzip or zlib stream; going back means to begin again.
+    """Slices of a gzip or zlib stream; reading backwards starts again at the beginning.
 
     Parameters
     ----------
@@ -237,7 +237,7 @@ class DeflatedVoxels:
     offset
         Bytes of the unpacked stream before the first voxel.
     header
-        Shape and type of what is handed over.
+        Shape and type of the voxels in memory.
     stored
         The type in the file, with its byte order.
     """
@@ -269,7 +269,7 @@ class DeflatedVoxels:
         return out.astype(self.header.dtype, copy=False)
 
     def close(self) -> None:
-        """Let go of the file."""
+        """Close the file."""
         if self._stream is not None:
             self._stream.close()
             self._stream = None
@@ -301,7 +301,7 @@ def beside(path: Path, name: str) -> Path:
 
 
 def _is_bare(name: str) -> bool:
-    """Whether this can be the name of a file in any folder, and of nothing else."""
+    """Whether this is a plain file name without folders."""
     if not name or name in (".", "..") or "\0" in name or "\\" in name:
         return False
     return len(name.encode("utf-8", "replace")) <= MAX_NAME_LENGTH and Path(name).name == name
