@@ -79,25 +79,25 @@ def grains_seen(view):
 
 
 def test_that_a_new_user_gets_from_the_sample_scan_to_particles(page, wait):
-    assert not page.steps.search.isEnabled()
-    assert not page.steps.convert.isEnabled()
-    press(page.steps.sample)
+    assert not page.workflow.search.isEnabled()
+    assert not page.workflow.convert.isEnabled()
+    press(page.workflow.sample)
     wait(lambda: page.preview is not None, SECONDS)
-    assert "144 × 144 × 144 voxels of 2.3 µm" in page.steps.volume.text()
-    assert "grains from" in page.steps.found.text()
+    assert "144 × 144 × 144 voxels of 2.3 µm" in page.workflow.volume.text()
+    assert "grains from" in page.workflow.found.text()
     assert page.preview.n_grains > 15
-    assert page.overview.histogram.line.value() == pytest.approx(103.0, abs=2.0)
-    assert all(grains_seen(view) > 0.03 for view in page.overview.slices)
-    press(page.steps.search)
+    assert page.slices.histogram.line.value() == pytest.approx(103.0, abs=2.0)
+    assert all(grains_seen(view) > 0.03 for view in page.slices.views)
+    press(page.workflow.search)
     wait(lambda: page.grains is not None, SECONDS)
     assert page.grains.n_grains == 60
-    assert "60 grains" in page.steps.found.text()
-    press(page.steps.convert)
-    wait(lambda: page.steps.show_them.isVisible(), SECONDS)
+    assert "60 grains" in page.workflow.found.text()
+    press(page.workflow.convert)
+    wait(lambda: page.workflow.show_them.isVisible(), SECONDS)
     assert len(page.adopted) == 46
     assert {particle.group for particle in page.adopted} == {"synthetic-grey"}
     assert min(particle.weight for particle in page.adopted) > 1.0
-    press(page.steps.show_them)
+    press(page.workflow.show_them)
     assert page.visited == ["sample"]
 
 
@@ -111,7 +111,7 @@ def test_that_a_dragged_threshold_is_a_manual_one_and_changes_the_preview(page, 
     wait(lambda: page.preview is not None, SECONDS)
     assert page.scan.volume.voxel_size.tolist() == [1.5, 1.5, 1.5]
     before = np.count_nonzero(page.preview.labels.array)
-    line = page.overview.histogram.line
+    line = page.slices.histogram.line
     line.setValue(130.0)
     line.sigDragged.emit(line)
     assert page.controls.value().segmentation.threshold.method == "manual"
@@ -130,28 +130,28 @@ def test_that_h_and_the_frame_change_the_preview_and_settings_undo_what_was_foun
     expected = segment(page.scan.volume, page.controls.value().segmentation)
     assert page.grains.n_grains == expected.n_grains
     assert np.array_equal(page.grains.labels.array, expected.labels.array)
-    assert page.steps.convert.isEnabled()
+    assert page.workflow.convert.isEnabled()
     page.controls.least.field.setValue(2000)
     assert page.grains is not None
     few = np.count_nonzero(expected.sizes < 2000)
-    assert f"{few} of them have fewer than 2000 voxels" in page.steps.found.text()
+    assert f"{few} of them have fewer than 2000 voxels" in page.workflow.found.text()
     page.controls.split.click()
     assert page.grains is None
-    assert not page.steps.convert.isEnabled()
+    assert not page.workflow.convert.isEnabled()
     wait(lambda: page.preview is not None and page.preview.n_grains == page.preview.n_bodies, SECONDS)
 
 
 def test_that_a_click_and_the_wheel_go_through_the_slices(page, part, wait):
     page.read(VolumeInput(part, 2.3, kind="grey"))
     wait(lambda: page.preview is not None, SECONDS)
-    assert page.overview.place == (45, 40, 35)
-    top = page.overview.slices[0]
+    assert page.slices.place == (45, 40, 35)
+    top = page.slices.views[0]
     centre = QPoint(top.canvas.width() // 4, top.canvas.height() // 4)
     QTest.mouseClick(top.canvas.viewport(), Qt.MouseButton.LeftButton, pos=centre)
-    wait(lambda: page.overview.place != (45, 40, 35))
-    assert page.overview.place[2] == 35
+    wait(lambda: page.slices.place != (45, 40, 35))
+    assert page.slices.place[2] == 35
     top.turn(3)
-    assert page.overview.place[2] == 38
+    assert page.slices.place[2] == 38
     assert "z = 39 of 70" in top.title.text()
 
 
@@ -161,11 +161,11 @@ def test_that_labels_go_straight_to_particles(page, tmp_path, wait):
     wait(lambda: page.findChild(VolumeDialog) is not None, SECONDS)
     page.findChild(VolumeDialog).accept()
     wait(lambda: page.scan is not None, SECONDS)
-    assert "labels" in page.steps.volume.text()
-    assert not page.steps.search.isEnabled()
+    assert "labels" in page.workflow.volume.text()
+    assert not page.workflow.search.isEnabled()
     assert not page.controls.denoise.isEnabled()
-    press(page.steps.convert)
-    wait(lambda: page.steps.show_them.isVisible(), SECONDS)
+    press(page.workflow.convert)
+    wait(lambda: page.workflow.show_them.isVisible(), SECONDS)
     assert {particle.group for particle in page.adopted} == {"labels"}
 
 
@@ -253,9 +253,9 @@ def test_that_a_large_volume_stays_on_the_disk_and_gives_the_same_grains(
     wait(lambda: page.grains is not None, SECONDS)
     expected = segment(Volume(array, (2.3,) * 3, "grey", "big"), page.controls.value().segmentation)
     assert np.array_equal(page.grains.labels.array, expected.labels.array)
-    assert grains_seen(page.overview.slices[2]) > 0.03
-    press(page.steps.convert)
-    wait(lambda: page.steps.show_them.isVisible(), SECONDS)
+    assert grains_seen(page.slices.views[2]) > 0.03
+    press(page.workflow.convert)
+    wait(lambda: page.workflow.show_them.isVisible(), SECONDS)
     page.controls.split.click()
     page.open_sample()
     wait(lambda: page.scan.volume.name.startswith("sample"), SECONDS)
@@ -268,7 +268,7 @@ def test_that_a_probability_map_is_thresholded_by_its_share(page, tmp_path, wait
     page.read(VolumeInput(tmp_path / "likely.npy", 1.0, kind="grey"))
     wait(lambda: page.preview is not None, SECONDS)
     page.controls.threshold.setCurrentIndex(page.controls.threshold.findData("probability"))
-    assert page.overview.histogram.line.value() == pytest.approx(127.5)
+    assert page.slices.histogram.line.value() == pytest.approx(127.5)
     page._level_dragged(0.8 * 255)
     assert page.controls.value().segmentation.threshold.value == pytest.approx(0.8)
     wait(lambda: page.preview.level == pytest.approx(0.8 * 255), SECONDS)
@@ -280,9 +280,9 @@ def test_that_dark_grains_are_suspected_where_one_body_fills_the_frame(page, tmp
     np.save(tmp_path / "dark.npy", 255 - np.ascontiguousarray(sample_volume("grey").array[:90, :80, :70].T))
     page.read(VolumeInput(tmp_path / "dark.npy", 2.3, kind="grey"))
     wait(lambda: page.preview is not None, SECONDS)
-    assert "if the grains are dark, tick that below" in page.steps.found.text()
+    assert "if the grains are dark, tick that below" in page.workflow.found.text()
     page.controls.dark.click()
-    wait(lambda: "dark" not in page.steps.found.text(), SECONDS)
+    wait(lambda: "dark" not in page.workflow.found.text(), SECONDS)
     assert page.preview.n_grains > 10
 
 

@@ -116,12 +116,12 @@ def test_that_no_words_on_the_way_from_a_scan_to_particles_go_past_the_translati
     speaking("brackets")
     page = scanned()
     assert english_left(page) == []
-    box = page.overview.histogram.canvas.getViewBox()
-    assert "⟦" in page.overview.histogram.value_at(box.mapViewToScene(box.viewRect().center()))
+    box = page.slices.histogram.canvas.getViewBox()
+    assert "⟦" in page.slices.histogram.value_at(box.mapViewToScene(box.viewRect().center()))
     page.find_grains()
     wait(lambda: page.grains is not None, SECONDS)
     page.make_particles()
-    wait(lambda: page.steps.show_them.isVisible(), SECONDS)
+    wait(lambda: page.workflow.show_them.isVisible(), SECONDS)
     assert english_left(page) == []
     (tmp_path / "a.h5").write_bytes(bytes(64))
     said = VolumeHeader(
@@ -138,12 +138,12 @@ def test_that_no_words_on_the_way_from_a_scan_to_particles_go_past_the_translati
 def test_that_what_a_scan_holds_is_told_in_german_and_nothing_of_it_is_cut(scanned, speaking, assert_fits):
     speaking("de")
     page = scanned()
-    told = page.steps.found.text()
+    told = page.workflow.found.text()
     assert re.match(r"Im Rahmen: \d+ Körner aus \d+ zusammenhängenden Körpern\. ", told)
     assert told.endswith("Ein Klick in ein Schichtbild verschiebt den Rahmen.")
     assert_fits(page)
-    page.steps.set_particles(retold(Extraction((), tuple(range(14)), (), 46).summary))
-    assert page.steps.made.text() == "46 Partikel; weggelassen: 14 am Rand, 0 zu klein."
+    page.workflow.set_particles(retold(Extraction((), tuple(range(14)), (), 46).summary))
+    assert page.workflow.made.text() == "46 Partikel; weggelassen: 14 am Rand, 0 zu klein."
     assert_fits(page)
 
 

@@ -66,9 +66,9 @@ class ScanPage(PageWidget):
         self._found_with: SegmentationSettings | None = None
 
     def build(self) -> None:
-        self.overview = SlicesView()
+        self.slices = SlicesView()
         self.controls = SegmentationControls()
-        self.steps = WorkflowPanel()
+        self.workflow = WorkflowPanel()
         self._timer = QTimer(self, interval=PREVIEW_DELAY, singleShot=True)
         self._arrange()
         self._connect()
@@ -80,7 +80,7 @@ class ScanPage(PageWidget):
         return self._whole.segmentation if self._whole else None
 
     def set_theme(self, theme: Theme) -> None:
-        self.overview.set_theme(theme)
+        self.slices.set_theme(theme)
 
     def commands(self) -> Mapping[str, Callable[..., object]]:
         return {
@@ -102,7 +102,7 @@ class ScanPage(PageWidget):
 
     def on_close(self) -> None:
         self._timer.stop()
-        self._forget_grains()
+        self._discard_grains()
         if self.scan is not None:
             self.scan.scratch.close()
 
@@ -131,7 +131,7 @@ class ScanPage(PageWidget):
             return
         job = Job(read_header, (VolumeInput(path),))
         self._context.start(
-            tr("Looking at the volume"), job, lambda header: self._looked(path, header), lane="read"
+            tr("Looking at the volume"), job, lambda header: self._on_header(path, header), lane="read"
         )
 
     def open_sample(self) -> None:
@@ -149,7 +149,7 @@ class ScanPage(PageWidget):
         job = Job(read_scan, (given,))
         self._context.start(tr("Reading the volume"), job, lambda scan: self._take(scan, given), lane="read")
 
-    def _looked(self, path: Path, header: VolumeHeader) -> None:
+    def _on_header(self, path: Path, header: VolumeHeader) -> None:
         if needs_asking(header):
             self._ask(path, header)
         else:
@@ -183,14 +183,14 @@ class ScanPage(PageWidget):
 
     def _take(self, scan: Scan, given: VolumeInput) -> None:
         self._stop_work()
-        self._forget_grains()
+        self._discard_grains()
         if self.scan is not None:
             self.scan.scratch.close()
         self.scan, self.preview, self._given = scan, None, given
-        self.overview.set_scan(scan)
+        self.slices.set_scan(scan)
         self.controls.set_kind(scan.volume.kind)
         self._show_level()
-        self._begin_preview()
+        self._schedule_preview()
         self._show_state()
 
     # --- settings ------------------------------------------------------------------------------
@@ -221,7 +221,7 @@ class ScanPage(PageWidget):
 
     def _use(self, recipe: GrainSettings) -> None:
         self.controls.setValue(recipe)
-        self._changed(recipe)
+        self._on_settings(recipe)
 
     # --- segmenting ----------------------------------------------------------------------------
 
@@ -234,7 +234,7 @@ class ScanPage(PageWidget):
         settings = self.controls.value().segmentation
         job = Job(find_grains, (self.scan, settings))
         self._context.start(
-            tr("Finding grains"), job, lambda found: self._found(found, settings), lane="grains"
+            tr("Finding grains"), job, lambda found: self._show_grains(found, settings), lane="grains"
         )
 
     def make_particles(self) -> None:
@@ -251,14 +251,14 @@ class ScanPage(PageWidget):
         job = Job(extract_labels, (labels, settings.extraction, self._given.path, grey))
         self._context.start(tr("Making particles"), job, lambda made: self._adopt(made, entry), lane="grains")
 
-    def _found(self, found: GrainSegmentation, settings: SegmentationSettings) -> None:
-        self._forget_grains()
+    def _show_grains(self, found: GrainSegmentation, settings: SegmentationSettings) -> None:
+        self._discard_grains()
         self._whole, self.preview, self._found_with = found, None, settings
-        self.overview.show_whole(found.segmentation, found.sections)
+        self.slices.show_whole(found.segmentation, found.sections)
         self.controls.show_automatic_level(found.segmentation.level)
         self._show_state()
 
-    def _forget_grains(self) -> None:
+    def _discard_grains(self) -> None:
         if self._whole is not None:
             self._whole.scratch.close()
         self._whole = None
@@ -278,20 +278,20 @@ class ScanPage(PageWidget):
         self._context.session.adopt(extraction.particles, origin=origin)
         summary = retold(extraction.summary)
         self._context.toast.note(summary)
-        self.steps.set_particles(summary)
+        self.workflow.set_particles(summary)
 
-    def _changed(self, recipe: GrainSettings) -> None:
+    def _on_settings(self, recipe: GrainSettings) -> None:
         """Discard grains of other settings and start a preview."""
         if self.grains is not None and recipe.segmentation == self._found_with:
             self._show_state()
             return
-        self._forget_grains()
+        self._discard_grains()
         self._context.stop("grains")
         self._show_level()
-        self._begin_preview()
+        self._schedule_preview()
         self._show_state()
 
-    def _level_dragged(self, level: float) -> None:
+    def _on_level_dragged(self, level: float) -> None:
         if self.scan is not None:
             self.controls.set_level(level / self._probability_range())
 
@@ -299,7 +299,7 @@ class ScanPage(PageWidget):
         if self.scan is None:
             return
         level = self.scan.level(self.controls.value().segmentation)
-        self.overview.histogram.set_level(level)
+        self.slices.histogram.set_level(level)
         self.controls.show_automatic_level(level)
 
     def _probability_range(self) -> float:
@@ -311,33 +311,33 @@ class ScanPage(PageWidget):
 
     # --- preview -------------------------------------------------------------------------------
 
-    def _begin_preview(self) -> None:
+    def _schedule_preview(self) -> None:
         if self.scan is not None and self.scan.volume.kind == "grey" and self.grains is None:
             self._timer.start()
 
-    def _preview_now(self) -> None:
+    def _start_preview(self) -> None:
         if self.scan is None:
             return
         settings = self.controls.value().segmentation
-        arguments = (self.scan.volume, self.overview.box, settings, self.scan.level(settings))
-        box = self.overview.box
+        arguments = (self.scan.volume, self.slices.box, settings, self.scan.level(settings))
+        box = self.slices.box
         self._context.start(
             tr("Preview"),
             Job(preview_part, arguments),
-            lambda found: self._previewed(found, box),
+            lambda found: self._show_preview(found, box),
             lane="preview",
         )
 
-    def _previewed(self, found: Segmentation | None, box: Any) -> None:
+    def _show_preview(self, found: Segmentation | None, box: Any) -> None:
         self.preview = found
-        self.overview.show_preview(found, box)
+        self.slices.show_preview(found, box)
         self._show_state()
 
     # --- the rest ------------------------------------------------------------------------------
 
     def _show_state(self) -> None:
         least = self.controls.value().extraction.min_voxels
-        self.steps.show_state(self.scan, self.preview, self.grains, least)
+        self.workflow.show_state(self.scan, self.preview, self.grains, least)
 
     def _stop_work(self) -> None:
         self._timer.stop()
@@ -348,19 +348,19 @@ class ScanPage(PageWidget):
         return str(self._context.recall("folder", str(Path.home())))
 
     def _connect(self) -> None:
-        self._timer.timeout.connect(self._preview_now)
-        self.controls.valueChanged.connect(self._changed)
-        self.overview.boxMoved.connect(self._begin_preview)
-        self.overview.histogram.levelDragged.connect(self._level_dragged)
-        self.steps.openRequested.connect(self.ask_for_file)
-        self.steps.sampleRequested.connect(self.open_sample)
-        self.steps.findRequested.connect(self.find_grains)
-        self.steps.particlesRequested.connect(self.make_particles)
-        self.steps.showRequested.connect(lambda: self._context.go("sample"))
+        self._timer.timeout.connect(self._start_preview)
+        self.controls.valueChanged.connect(self._on_settings)
+        self.slices.boxMoved.connect(self._schedule_preview)
+        self.slices.histogram.levelDragged.connect(self._on_level_dragged)
+        self.workflow.openRequested.connect(self.ask_for_file)
+        self.workflow.sampleRequested.connect(self.open_sample)
+        self.workflow.findRequested.connect(self.find_grains)
+        self.workflow.particlesRequested.connect(self.make_particles)
+        self.workflow.showRequested.connect(lambda: self._context.go("sample"))
 
     def _arrange(self) -> None:
-        controls = scrolled_column([self.steps, self.controls])
-        parts = [padded(self.overview, 10, 10, 2, 8), controls]
+        controls = scrolled_column([self.workflow, self.controls])
+        parts = [padded(self.slices, 10, 10, 2, 8), controls]
         columns = side_by_side(parts, [1100, CONTROLS_WIDTH + 20], stretch=0)
         columns.setObjectName("scan_columns")
         layout = QHBoxLayout(self)

@@ -26,7 +26,7 @@ class SlicesView(QWidget):
 
     def __init__(self) -> None:
         super().__init__()
-        self.slices = [SliceView(axis) for axis in (2, 1, 0)]
+        self.views = [SliceView(axis) for axis in (2, 1, 0)]
         self.histogram = HistogramPlot()
         self.place = (0, 0, 0)
         self.box: Box = box_between((0, 0, 0), (1, 1, 1))
@@ -34,20 +34,20 @@ class SlicesView(QWidget):
         self._labels: SliceImages | None = None
         self._part: Box = self.box
         self._arrange()
-        for view in self.slices:
+        for view in self.views:
             view.placePicked.connect(lambda x, y, z: self.go_to((x, y, z)))
             view.sliceChosen.connect(self._turn)
 
     def set_theme(self, theme: Theme) -> None:
         """Take the colours of a theme."""
-        for view in self.slices:
+        for view in self.views:
             view.set_theme(theme)
         self.histogram.set_theme(theme)
 
     def set_scan(self, scan: Scan) -> None:
         """Show another volume, with slices through its centre."""
         self._scan, self._labels = scan, None
-        for view in self.slices:
+        for view in self.views:
             view.set_volume(scan.volume, scan.sections, scan.contrast)
             view.set_box_shown(scan.volume.kind == "grey")
         self.histogram.set_scanned(scan.seen)
@@ -63,7 +63,7 @@ class SlicesView(QWidget):
         self.place = place
         box = box_about(place, PREVIEW_EDGE, self._scan.volume.shape)
         moved, self.box = box != self.box, box
-        for view in self.slices:
+        for view in self.views:
             view.show_place(place, box)
         self._lay_over()
         if moved:
@@ -74,7 +74,7 @@ class SlicesView(QWidget):
         self._labels = None if found is None else SliceImages(found.labels.array)
         self._part = box
         self.histogram.set_denoised(None if found is None else found.seen)
-        for view in self.slices:
+        for view in self.views:
             view.set_box_shown(True)
         self._lay_over()
 
@@ -83,7 +83,7 @@ class SlicesView(QWidget):
         self._labels, self._part = labels, box_between((0, 0, 0), found.labels.shape)
         self.histogram.set_denoised(found.seen)
         self.histogram.set_level(found.level)
-        for view in self.slices:
+        for view in self.views:
             view.set_box_shown(False)
         self._lay_over()
 
@@ -93,12 +93,12 @@ class SlicesView(QWidget):
         self.go_to((place[0], place[1], place[2]))
 
     def _lay_over(self) -> None:
-        for view in self.slices:
+        for view in self.views:
             view.show_grains(self._labels, self._part, self.place[view.axis])
 
     def _arrange(self) -> None:
-        above = equal_parts(Qt.Orientation.Horizontal, self.slices[:2])
-        below = equal_parts(Qt.Orientation.Horizontal, [self.slices[2], self.histogram])
+        above = equal_parts(Qt.Orientation.Horizontal, self.views[:2])
+        below = equal_parts(Qt.Orientation.Horizontal, [self.views[2], self.histogram])
         page = equal_parts(Qt.Orientation.Vertical, [above, below])
         hint = QWidget()
         column_of_words = QVBoxLayout(hint)
