@@ -1,4 +1,4 @@
-"""Convex polyhedra brought to unit volume, centroid at the origin, principal axes along x, y, z."""
+"""Normalise a convex polyhedron: unit volume, centroid at the origin, principal axes along x, y, z."""
 
 from dataclasses import dataclass
 
@@ -13,7 +13,7 @@ from regolith_studio.geometry.mesh import Mesh
 
 @dataclass(frozen=True, eq=False)
 class Frame:
-    """Where a unit-volume shape lay in its particle: x_shape = rotation @ (x_particle - centroid) / scale.
+    """Pose of a unit-volume shape in its particle: x_shape = rotation @ (x_particle - centroid) / scale.
 
     Parameters
     ----------
@@ -43,14 +43,14 @@ class Frame:
 
 
 def aligned(polyhedron: ConvexPolyhedron, centre: FloatArray | None = None) -> tuple[ConvexPolyhedron, Frame]:
-    """The polyhedron at unit volume about its centroid, longest axis along x, shortest along z.
+    """The polyhedron at unit volume about its centroid, longest axis along x, shortest along z; and its pose.
 
     Parameters
     ----------
     polyhedron
-        About an inner origin, in micrometres.
+        About an origin in its interior, in micrometres.
     centre
-        Where that origin lies in the particle's frame; (0, 0, 0) if not given.
+        Position of that origin in the particle's frame; (0, 0, 0) if not given.
 
     Raises
     ------
@@ -67,10 +67,10 @@ def aligned(polyhedron: ConvexPolyhedron, centre: FloatArray | None = None) -> t
 
 
 def rebuilt(half_spaces: HalfSpaces) -> ConvexPolyhedron:
-    """The polyhedron of half-spaces, from numbers that a second rebuilding would not change.
+    """The polyhedron of half-spaces, with numbers that a second reconstruction does not change.
 
-    Normals are normalised until they stay as they are, and redundant half-spaces dropped, so that
-    what is read from a file is bit for bit what was written.
+    Normals are normalised until they no longer change, and redundant half-spaces are removed, so that a
+    shape read from a file is bit for bit the one that was written.
     """
     solid = ConvexPolyhedron.from_half_spaces(half_spaces)
     for _ in range(10):
@@ -84,10 +84,10 @@ def rebuilt(half_spaces: HalfSpaces) -> ConvexPolyhedron:
 
 
 def principal_axes(mesh: Mesh) -> FloatArray:
-    """Rows: axes of least, middle and largest moment of inertia, right-handed, shape (3, 3).
+    """Rows: axes of minimum, intermediate and maximum moment of inertia, right-handed, shape (3, 3).
 
-    The first two point to where the third moment of the mass along them is positive; where a shape
-    is symmetric, to where their largest component is.
+    Sign: the third moment of the mass along the first two axes is positive; for a symmetric shape their
+    largest component is.
     """
     _, columns = np.linalg.eigh(mesh.inertia)
     axes = columns.T

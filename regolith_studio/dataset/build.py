@@ -1,4 +1,4 @@
-"""Puts a dataset together from particles and the polyhedra that stand for them."""
+"""Build a dataset from particles and the polyhedra that approximate them."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -32,7 +32,7 @@ class CoarsenedShape(Protocol):
 
     @property
     def centre(self) -> FloatArray:
-        """Where the polyhedron's origin lies in the particle's frame, shape (3,)."""
+        """Origin of the polyhedron in the particle's frame, shape (3,)."""
 
     @property
     def errors(self) -> Mapping[str, float]:
@@ -52,16 +52,16 @@ class CoarsenedShape(Protocol):
 
     @property
     def n_facets_asked(self) -> int:
-        """Facets asked for."""
+        """Requested number of facets."""
 
     @property
     def reason(self) -> str | None:
-        """Why a request was not met."""
+        """Why a request was not met, if it was not."""
 
 
 @dataclass(frozen=True)
 class ShapeClass:
-    """What a representative stands for.
+    """The class of particles that a representative stands for.
 
     Parameters
     ----------
@@ -96,7 +96,7 @@ def build_dataset(
     classes
         Weight and sizes of each, for example of
         :func:`~regolith_studio.dataset.representatives.choose_representatives`; by default each entry
-        stands for itself, with the same weight and its own size.
+        is a class of its own, with equal weights and its own size.
     weighting
         What the weights of `classes` count.
     sizes
@@ -107,30 +107,30 @@ def build_dataset(
     Raises
     ------
     InputError
-        If there is no entry or as many classes as entries are missing.
+        If there is no entry, or the number of classes differs from that of the entries.
     """
     if not entries:
         raise InputError("A dataset needs at least one particle.")
     own = [singleton_class(particle) for particle, _ in entries] if classes is None else list(classes)
     if len(own) != len(entries):
-        raise InputError(f"{len(entries)} particles need as many classes, got {len(own)}.")
+        raise InputError(f"{len(entries)} particles need {len(entries)} classes, got {len(own)}.")
     weights = normalised_shares([one.weight for one in own])
     names = unique_names(particle.name for particle, _ in entries)
     representatives = tuple(
         representative_of(title, particle, shape, replace(one, weight=weight, sizes=sizes or one.sizes))
         for title, (particle, shape), one, weight in zip(names, entries, own, weights, strict=True)
     )
-    story = provenance or Provenance()
+    origin = provenance or Provenance()
     return Dataset(
         name=name,
         representatives=representatives,
         weighting=weighting,
-        provenance=story if story.software else replace(story, software=software_versions()),
+        provenance=origin if origin.software else replace(origin, software=software_versions()),
     )
 
 
 def software_versions() -> dict[str, str]:
-    """Versions of the program and of the packages that its numbers come from."""
+    """Versions of the program and of the packages that its results depend on."""
     found = {"regolith-studio": regolith_studio.__version__}
     for package in PACKAGES:
         try:
@@ -141,7 +141,7 @@ def software_versions() -> dict[str, str]:
 
 
 def unique_names(names: Iterable[str]) -> tuple[str, ...]:
-    """The names, later ones of the same name with -2, -3 ... behind."""
+    """The names; a repeated name gets the suffix -2, -3 ..."""
     taken: set[str] = set()
     result = []
     for name in names:
@@ -155,7 +155,7 @@ def unique_names(names: Iterable[str]) -> tuple[str, ...]:
 
 
 def singleton_class(particle: Particle) -> ShapeClass:
-    """The class of a particle that stands for itself."""
+    """The class of a particle that represents only itself."""
     return ShapeClass(1.0, DiscreteSizeDistribution.empirical([equivalent_diameter(particle.mesh.volume)]))
 
 

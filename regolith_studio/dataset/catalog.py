@@ -1,4 +1,4 @@
-"""A folder of datasets, of what was exported from them, and of what was simulated with them."""
+"""Find the datasets below a folder, with their exports and simulated angles of repose."""
 
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -17,33 +17,33 @@ from regolith_studio.io.json_text import parse_strict_json
 from regolith_studio.messages import N_
 
 RESULT = "repose.json"
-"""What a simulated angle of repose is kept in."""
+"""File with a simulated angle of repose."""
 RESULT_FORMAT = "regolith-studio-repose"
 DEPTH = 4
-"""Levels of folders that are looked into."""
+"""Levels of folders that are searched."""
 MAX_RECORD_BYTES = 20_000_000
 
 
 @dataclass(frozen=True, eq=False)
 class CatalogEntry:
-    """One folder of a library.
+    """One folder of the catalog.
 
     Parameters
     ----------
     folder, kind
-        Where it is, and whether it holds a ``dataset``, an ``export`` or a ``result``.
+        Path, and whether it holds a ``dataset``, an ``export`` or a ``result``.
     name
-        Of the dataset, or what was done with it.
+        Of the dataset, or a description of the export or result.
     sha256
-        Of the dataset that it is, or that it came from; empty where that was not noted.
+        Of the dataset itself, or of the one it was made from; empty if unknown.
     detail
-        One line.
+        One line of text.
     facts
-        What the provenance says, as label and text.
+        Provenance, text by label.
     mesh
         The shape with the largest weight, of volume 1.
     problem
-        Why the folder cannot be used, in one sentence.
+        Why the folder cannot be used, in one sentence; otherwise empty.
     """
 
     folder: Path
@@ -56,7 +56,7 @@ class CatalogEntry:
     problem: str = ""
 
     def matches(self, text: str) -> bool:
-        """Whether every word of a filter is somewhere in the entry."""
+        """Whether the entry contains every word of a filter."""
         whole = " ".join(
             (self.name, self.kind, self.detail, str(self.folder), self.sha256, *self.facts.values())
         )
@@ -64,16 +64,16 @@ class CatalogEntry:
 
 
 def scan_catalog(root: Path | str) -> Iterator[CatalogEntry]:
-    """Datasets, exports and results at and below `root`, by path; hidden folders are left out.
+    """Datasets, exports and results in and below `root`, sorted by path; hidden folders are skipped.
 
     Raises
     ------
     DatasetError
-        If `root` is no folder that can be read.
+        If `root` is not a folder.
     """
     top = Path(root).resolve()
     if not top.is_dir():
-        raise DatasetError(f"{top} is no folder.")
+        raise DatasetError(f"{top} is not a folder.")
     for place, folders, files in os.walk(top):
         here = Path(place)
         folders[:] = sorted(name for name in folders if not name.startswith("."))
@@ -86,7 +86,7 @@ def scan_catalog(root: Path | str) -> Iterator[CatalogEntry]:
 
 
 def provenance_tree(entries: Iterable[CatalogEntry]) -> list[tuple[CatalogEntry, list[CatalogEntry]]]:
-    """Each dataset with what came from it, found by its hash; what came from none that is here, alone."""
+    """Each dataset with its exports and results, matched by hash; those without a dataset stand alone."""
     every = list(entries)
     datasets = [entry for entry in every if entry.kind == "dataset"]
     known: dict[str, list[CatalogEntry]] = {}
@@ -108,7 +108,7 @@ def _read(folder: Path, name: str, read: Any) -> CatalogEntry:
     try:
         entry: CatalogEntry = read(folder)
     except (RegolithError, ValueError, KeyError, TypeError, AttributeError) as error:
-        sentence = str(error) if isinstance(error, RegolithError) else f"{name} is not what it should be."
+        sentence = str(error) if isinstance(error, RegolithError) else f"{name} has an unexpected structure."
         return CatalogEntry(folder, _KINDS[name], folder.name, problem=sentence)
     return entry
 
@@ -116,8 +116,8 @@ def _read(folder: Path, name: str, read: Any) -> CatalogEntry:
 def _dataset(folder: Path) -> CatalogEntry:
     document = read_document(folder)
     heaviest = max(document.representatives, key=lambda record: record.weight)
-    faces = sorted({record.mesh.n_facets for record in document.representatives})
-    span = f"{faces[0]}" if len(faces) == 1 else f"{faces[0]} to {faces[-1]}"
+    facets = sorted({record.mesh.n_facets for record in document.representatives})
+    span = f"{facets[0]}" if len(facets) == 1 else f"{facets[0]} to {facets[-1]}"
     return CatalogEntry(
         folder=folder,
         kind="dataset",
@@ -130,7 +130,7 @@ def _dataset(folder: Path) -> CatalogEntry:
 
 
 def _facts(document: DatasetDocument) -> dict[str, str]:
-    """The provenance in words, what is empty left out."""
+    """Provenance as text by label, without empty entries."""
     metadata = document.metadata
     sources = sorted({record.source.path for record in document.representatives if record.source})
     coarsening = metadata.coarsening
@@ -139,7 +139,7 @@ def _facts(document: DatasetDocument) -> dict[str, str]:
         "Sources": _few(sources),
         "Steps": " ".join(metadata.processing_steps),
         N_("Model"): metadata.model or "",
-        N_("Coarsening"): f"{coarsening.method}, {_fineness(coarsening)}, seed {coarsening.seed}"
+        N_("Coarsening"): f"{coarsening.method}, {_resolution(coarsening)}, seed {coarsening.seed}"
         if coarsening
         else "",
         "Software": ", ".join(f"{name} {version}" for name, version in sorted(metadata.software.items())),
@@ -177,7 +177,7 @@ def _result(folder: Path) -> CatalogEntry:
 def _record(path: Path, format: str) -> dict[str, Any]:
     try:
         if path.exists() and not path.is_file():
-            raise DatasetError(f"{path} is no regular file.")
+            raise DatasetError(f"{path} is not a regular file.")
         if path.stat().st_size > MAX_RECORD_BYTES:
             raise DatasetError(f"{path} is larger than {MAX_RECORD_BYTES // 1_000_000} MB.")
         content = parse_strict_json(path.read_text(encoding="utf-8"), str(path))
@@ -188,10 +188,10 @@ def _record(path: Path, format: str) -> dict[str, Any]:
     return content
 
 
-def _fineness(coarsening: CoarseningRecordModel) -> str:
-    if coarsening.largest_error is None:
+def _resolution(coarsening: CoarseningRecordModel) -> str:
+    if coarsening.max_error is None:
         return f"{coarsening.n_facets} facets"
-    return f"errors below {100 * coarsening.largest_error:g} %"
+    return f"errors below {100 * coarsening.max_error:g} %"
 
 
 def _few(names: Sequence[str], most: int = 5) -> str:

@@ -17,21 +17,21 @@ from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.particle import Source
 
 SHAPE_TOLERANCE = 1e-9
-"""How far a shape's volume may be from 1, and its centroid from the origin."""
+"""Tolerance of a shape's volume (1) and centroid (the origin)."""
 
 Setting = bool | int | float | str | None
 
 
 @dataclass(frozen=True)
 class Approximation:
-    """How a shape was coarsened and how well it stands for its particle.
+    """How a shape approximates its particle.
 
     Parameters
     ----------
     method
         Key of the coarsening method.
     n_facets_asked
-        Facets asked for; the shape tells how many there are.
+        Requested number of facets; the shape has the real one.
     errors
         Relative error of each descriptor of the loss (Eq. 8).
     jaccard_distance
@@ -57,7 +57,7 @@ class Representative:
     Parameters
     ----------
     name
-        Of the particle that was chosen; unique within the dataset.
+        Of the chosen particle; unique within the dataset.
     shape
         Unit volume, centroid at the origin, principal axes along x, y, z.
     weight
@@ -65,11 +65,11 @@ class Representative:
     sizes
         F_i, of equivalent diameters in micrometres.
     frame
-        How the shape lay in its particle.
+        Pose of the shape in its particle.
     n_members
         Number of particles that the class stands for.
     approximation
-        How it was coarsened, or ``None`` where the particle is a polyhedron already.
+        How the particle was coarsened, or ``None`` if it was a polyhedron already.
     group, source
         Of the particle.
     """
@@ -95,22 +95,22 @@ class Representative:
 
 @dataclass(frozen=True)
 class CoarseningRecord:
-    """What was asked of the coarsening of all shapes.
+    """Settings of the coarsening of all shapes.
 
     Parameters
     ----------
     method, seed
-        As asked.
+        Of the method, and of its random numbers.
     n_facets
-        As asked; where `largest_error` is given, the most that may be taken.
+        Requested; if `max_error` is given, the upper limit.
     target
-        ``particle`` or ``fit``: what was imitated.
+        ``particle`` or ``fit``: which surface was approximated.
     preset, weights
         Name of the preset, if one was used, and the loss weights of Eq. 9.
     settings
         Of the method, by name.
-    largest_error
-        Where given, each shape has the fewest facets whose weighted relative errors are all below it.
+    max_error
+        If given, each shape has the minimum number of facets with all weighted relative errors below it.
     """
 
     method: str
@@ -120,12 +120,12 @@ class CoarseningRecord:
     preset: str | None = None
     weights: Mapping[str, float] = field(default_factory=dict)
     settings: Mapping[str, Setting] = field(default_factory=dict)
-    largest_error: float | None = None
+    max_error: float | None = None
 
 
 @dataclass(frozen=True)
 class Representation:
-    """How well the representatives stand for the population that they were chosen from.
+    """How well the representatives reproduce the population that they were chosen from.
 
     Parameters
     ----------
@@ -144,7 +144,7 @@ class Representation:
 
 @dataclass(frozen=True)
 class Provenance:
-    """How a dataset came about (the metadata of section 2.5).
+    """Origin of a dataset (the metadata of section 2.5).
 
     Parameters
     ----------
@@ -153,7 +153,7 @@ class Provenance:
     processing_steps
         One sentence a step, in order.
     seed
-        Of what was drawn at random.
+        Of the random numbers.
     model
         Stochastic model of the shapes, or ``None`` for measured ones.
     l_max
@@ -162,9 +162,9 @@ class Provenance:
         A_l for l = 0..l_max, in square micrometres: variance per order at degree l (real orthonormal
         harmonics).
     coarsening
-        What was asked of the coarsening.
+        Settings of the coarsening.
     representation
-        How well the shapes stand for the population, where they were chosen from one.
+        How well the shapes reproduce the population, if they were chosen from one.
     software
         Versions by package name.
     """
@@ -187,13 +187,13 @@ class Dataset:
     Parameters
     ----------
     name
-        As the user calls it.
+        Chosen by the user.
     representatives
         At least one; their weights add up to 1.
     weighting
         Whether the class weights count particles or their volume.
     provenance
-        Where all this comes from.
+        Origin of the data.
     """
 
     name: str
@@ -218,7 +218,7 @@ class Dataset:
 
     @property
     def weights(self) -> FloatArray:
-        """Class weights alpha_i as stated, shape (n,)."""
+        """Class weights alpha_i as given, shape (n,)."""
         return np.array([representative.weight for representative in self.representatives])
 
     def class_weights(self, weighting: Weighting) -> FloatArray:

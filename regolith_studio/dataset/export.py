@@ -1,4 +1,4 @@
-"""What an exporter is, what it is told, and how its folder is written: as a whole, with a README."""
+"""Export a dataset for another program: options, the interface of an exporter, and writing its folder."""
 
 import hashlib
 import os
@@ -26,23 +26,23 @@ PARTS = ("contact", "test", "times")
 
 @dataclass(frozen=True)
 class ExportOptions:
-    """What the exporters are told besides the dataset; each takes what its format has room for.
+    """Options of all exporters; each uses those that its format can hold.
 
     Parameters
     ----------
     contact, test, times
-        Of the simulated case: Tables 1 and 2, and how long a script waits.
+        Of the simulated test: Tables 1 and 2, and the waiting times of scripts.
     coarse_graining_factor
-        By which all diameters are enlarged (section 2.6); 10 in the paper.
+        Factor on all diameters (section 2.6); 10 in the paper.
     n_particles
-        Particles drawn for formats that list single bodies.
+        Particles drawn for formats that list individual particles.
     seed
-        Of that draw.
+        Of the draw.
     rounding
         Radius of rounded edges, as a share of the smallest distance between a shape's centre and a facet,
-        for formats that need some.
+        for formats that need rounded edges.
     n_spheres
-        Spheres a shape, for formats that know nothing else.
+        Spheres per shape, for formats that have only spheres.
     """
 
     contact: ContactParameters = field(default_factory=ContactParameters)
@@ -93,20 +93,19 @@ class Exporter:
     Parameters
     ----------
     key, label
-        For options, and for people.
+        Identifier in options, and name for display.
     units
-        In which units the files are, in one line.
+        Units of the files, in one line.
     carries, loses
-        What of a dataset the format holds, and what it has no room for; said before the export and in the
-        README.
+        What the format holds of a dataset and what it cannot hold; shown before the export and in the README.
     load_command
-        What to type, or to write into an input file, to use the files; ``{folder}`` stands for where they
-        are, ``{shell}`` for the same as a shell wants it.
+        Command, or line of an input file, that uses the files; ``{folder}`` is replaced by their folder,
+        ``{shell}`` by the same quoted for a shell.
     files
-        Every file by its relative path, the same bytes for the same input. The entry :data:`NOTES` is
-        no file: text for the README, such as what was measured.
+        Content of every file by its relative path; equal input gives equal bytes. The entry :data:`NOTES` is
+        not a file but text for the README, such as measured errors.
     alters
-        How shapes are changed, in one sentence; empty where they are kept. Such an export needs consent.
+        How shapes are changed, in one sentence; empty if they are exact. Such an export must be accepted.
     """
 
     key: str
@@ -120,12 +119,12 @@ class Exporter:
 
 
 NOTES = "NOTES"
-"""Key under which an exporter hands over text for the README, such as what it measured."""
+"""Key of an exporter's text for the README."""
 
 
 @dataclass(frozen=True)
 class ExportResult:
-    """An export on disk."""
+    """A written export."""
 
     key: str
     folder: Path
@@ -134,7 +133,7 @@ class ExportResult:
 
 
 def case_settings(options: ExportOptions) -> dict[str, Any]:
-    """What a simulation script is told: Tables 1 and 2, waiting times, coarse graining; SI units."""
+    """Input of a simulation script: Tables 1 and 2, waiting times, coarse graining; SI units."""
     return {
         **{part: asdict(getattr(options, part)) for part in PARTS},
         "coarse_graining_factor": options.coarse_graining_factor,
@@ -150,16 +149,16 @@ def write_export(
     dataset_hash: str | None = None,
     accept_loss: bool = False,
 ) -> ExportResult:
-    """Write one format into `folder`, which then holds it and nothing else, or is as it was before.
+    """Write one format into `folder`, which then holds nothing else, or is unchanged if an error occurs.
 
     Parameters
     ----------
     folder
         New, empty, or holding an export of this program and nothing else.
     dataset_hash
-        Of the dataset's folder, noted in the record.
+        Of the dataset's folder, stored in the record.
     accept_loss
-        Needed for formats that change the shapes.
+        Required for formats that change the shapes.
 
     Raises
     ------
@@ -172,7 +171,7 @@ def write_export(
     try:
         recover_folder(target)
         _check_replaceable(target)
-        content = _with_words(dataset, exporter, chosen, dataset_hash)
+        content = _with_readme(dataset, exporter, chosen, dataset_hash)
         replace_folder(target, content)
     except OSError as error:
         raise DatasetError(
@@ -182,27 +181,27 @@ def write_export(
 
 
 def load_command(exporter: Exporter, folder: Path) -> str:
-    """The exporter's command for files in `folder`, safe for blanks in its path."""
+    """The exporter's command for files in `folder`, quoted if its path contains blanks."""
     shell = subprocess.list2cmdline([str(folder)]) if os.name == "nt" else shlex.quote(str(folder))
     return exporter.load_command.format(folder=folder, shell=shell)
 
 
 def check_loss_accepted(exporter: Exporter, accept_loss: bool) -> None:
-    """Refuse a format that changes shapes, saying how, unless that was accepted.
+    """Check that a format which changes the shapes was accepted.
 
     Raises
     ------
     DatasetError
-        If it does and was not.
+        If it was not; the message says how shapes are changed.
     """
     if exporter.alters and not accept_loss:
         raise DatasetError(
             f"{exporter.label} cannot hold the shapes as they are: {exporter.alters} "
-            "Allow it if that is what you want."
+            "Allow formats that change the shapes to export it nevertheless."
         )
 
 
-def _with_words(
+def _with_readme(
     dataset: Dataset, exporter: Exporter, options: ExportOptions, dataset_hash: str | None
 ) -> dict[str, bytes]:
     """The exporter's files with README and record."""
@@ -289,7 +288,7 @@ SIZE_COLUMNS = ("class", "name", "weight_number", "weight_mass", "diameter_um", 
 
 
 def sizes_csv(dataset: Dataset) -> bytes:
-    """One row a class and size: weights of the class, diameter, and its share within the class."""
+    """CSV with one row for each class and size: class weights, diameter, and its share within the class."""
     rows: list[tuple[object, ...]] = [SIZE_COLUMNS]
     by_number, by_mass = dataset.class_weights("number"), dataset.class_weights("volume")
     for index, one in enumerate(dataset.representatives):
@@ -301,6 +300,6 @@ def sizes_csv(dataset: Dataset) -> bytes:
 
 
 def shape_names(dataset: Dataset, prefix: str = "shape") -> list[str]:
-    """Names without blanks or signs, in order: ``shape_00``, ``shape_01`` ..."""
+    """Names without special characters, in order: ``shape_00``, ``shape_01`` ..."""
     digits = max(2, len(str(len(dataset) - 1)))
     return [f"{prefix}_{index:0{digits}d}" for index in range(len(dataset))]

@@ -1,4 +1,7 @@
-"""The files of a dataset folder on their way in: sizes, links and foreign files are looked at first."""
+"""Read and write a dataset as a folder: ``dataset.json``, ``meshes/*.stl`` and a README (section 2.5).
+
+Sizes, links and foreign files are checked before anything is read.
+"""
 
 import hashlib
 import os
@@ -12,10 +15,10 @@ from regolith_studio.io.atomic import recover_folder, replace_folder
 
 DOCUMENT, README = "dataset.json", "README.txt"
 IGNORED_FILES = {".DS_Store", "Thumbs.db", "desktop.ini"}
-"""Files that file managers leave behind; they go with the folder."""
+"""Files of file managers, which may be deleted with the folder."""
 
 MAX_DOCUMENT_BYTES = 320_000_000
-"""Room for 100,000 shapes of 20 faces; reading them takes half a minute and 3 GB."""
+"""Enough for 100,000 shapes of 20 facets; reading them takes half a minute and 3 GB."""
 MAX_MESH_BYTES = 50_000_000
 
 
@@ -25,18 +28,18 @@ def read_document(folder: Path) -> DatasetDocument:
     Raises
     ------
     DatasetError
-        If it is missing, too large or breaks the schema.
+        If it is missing, too large or violates the schema.
     """
     path = folder / DOCUMENT
     try:
         text = _read(path, MAX_DOCUMENT_BYTES).decode("utf-8")
     except UnicodeDecodeError as error:
-        raise DatasetError(f"{path} is not text in UTF-8.") from error
+        raise DatasetError(f"{path} is not UTF-8 text.") from error
     return parsed_document(text, str(path))
 
 
 def dataset_hash(folder: Path | str) -> str:
-    """SHA-256 of ``dataset.json``, which holds those of the meshes: what DEM results refer to.
+    """SHA-256 of ``dataset.json``, which contains those of the meshes; results of DEM refer to it.
 
     Raises
     ------
@@ -48,16 +51,16 @@ def dataset_hash(folder: Path | str) -> str:
 
 
 def read_mesh_bytes(folder: Path, file: str) -> bytes:
-    """Content of a mesh file whose relative path the schema has admitted.
+    """Content of a mesh file by its relative path, which the schema has checked.
 
     Raises
     ------
     DatasetError
-        If it is missing, too large, or leads out of the folder by a link.
+        If it is missing, too large, or is a link to a file outside the folder.
     """
     path = folder.joinpath(*file.split("/"))
     if not real_path(path).is_relative_to(real_path(folder)):
-        raise DatasetError(f"{path} leads out of the dataset's folder.")
+        raise DatasetError(f"{path} is a link to a file outside the dataset's folder.")
     return _read(path, MAX_MESH_BYTES)
 
 
@@ -71,14 +74,14 @@ def foreign_files(folder: Path, document: DatasetDocument) -> list[str]:
 
 
 def real_path(path: Path | str) -> Path:
-    """The path without links; `Path.resolve` fails where they go round in circles, this leaves them."""
+    """The path without links; unlike `Path.resolve` it does not fail for circular links."""
     return Path(os.path.realpath(path))
 
 
 def _read(path: Path, largest: int) -> bytes:
     try:
         if path.exists() and not path.is_file():
-            raise DatasetError(f"{path} is no regular file.")
+            raise DatasetError(f"{path} is not a regular file.")
         if path.stat().st_size > largest:
             raise DatasetError(f"{path} is larger than {largest // 1_000_000} MB.")
         return path.read_bytes()
@@ -87,14 +90,14 @@ def _read(path: Path, largest: int) -> bytes:
 
 
 def write_dataset(folder: Path | str, dataset: Dataset, *, overwrite: bool = True) -> Path:
-    """Write the dataset; the folder then holds it and nothing else, or is as it was before.
+    """Write the dataset; the folder then holds nothing else, or is unchanged if an error occurs.
 
     Parameters
     ----------
     folder
         New, empty, or holding a dataset of this program and nothing else.
     overwrite
-        Whether a dataset that is there already may be replaced.
+        Whether an existing dataset may be replaced.
 
     Returns
     -------
@@ -119,19 +122,19 @@ def write_dataset(folder: Path | str, dataset: Dataset, *, overwrite: bool = Tru
 
 
 def dataset_files(dataset: Dataset) -> dict[str, bytes]:
-    """Every file of the folder by its relative path, the same bytes for the same dataset."""
+    """Content of every file by its relative path; equal datasets give equal bytes."""
     meshes = mesh_files(dataset)
     texts = {DOCUMENT: document_text(dataset, meshes), README: readme_text(dataset)}
     return meshes | {name: text.encode("utf-8") for name, text in texts.items()}
 
 
 def read_dataset(folder: Path | str) -> Dataset:
-    """The dataset of a folder; shapes from their exact half-spaces, meshes checked against their hashes.
+    """Read a dataset folder: shapes from their exact half-spaces; hashes of the meshes are checked.
 
     Raises
     ------
     DatasetError
-        If the folder holds no dataset, or one that is broken, with the place named.
+        If the folder holds no dataset or an invalid one; the message names the entry.
     """
     target = recover_folder(real_path(folder))
     document = read_document(target)
@@ -142,12 +145,12 @@ def read_dataset(folder: Path | str) -> Dataset:
 
 
 def check_replaceable(target: Path, overwrite: bool) -> None:
-    """Refuse a folder that holds anything else than a dataset, or one that may not be replaced.
+    """Check that a folder may be replaced by a dataset.
 
     Raises
     ------
     DatasetError
-        Saying what stands there.
+        If it holds anything else than a dataset, or a dataset that must not be replaced.
     """
     if not target.exists():
         return
@@ -159,7 +162,7 @@ def check_replaceable(target: Path, overwrite: bool) -> None:
         document = read_document(target)
     except DatasetError as error:
         raise DatasetError(
-            f"{target} is not empty and holds no dataset that could be replaced; choose another folder."
+            f"{target} is not empty and contains no dataset; choose another folder."
         ) from error
     if foreign := foreign_files(target, document):
         raise DatasetError(
@@ -172,24 +175,24 @@ def check_replaceable(target: Path, overwrite: bool) -> None:
 README_TEMPLATE = """\
 {name}
 
-A dataset of {count} representative particle shapes for the discrete element method,
+A dataset of {count} representative particle shapes for the discrete element method (DEM),
 written by Regolith Studio.
 
-dataset.json   weights, size distributions, exact half-spaces, where everything comes from.
+dataset.json   weights, size distributions, exact half-spaces, provenance.
                Its fields are described by the JSON Schema of the program
                (resources/schema/dataset.schema.json), schema version {version}.
 meshes/        one binary STL a shape: closed, convex, outward normals, volume 1, centroid at
-               the origin, longest principal axis along x, shortest along z. STL has no unit;
-               these have none either.
+               the origin, longest principal axis along x, shortest along z. The coordinates
+               have no unit.
 
 To make a particle: choose a class by the weights (they count {counted}), draw an equivalent
 diameter d (in micrometres) from the sizes of the class, and scale the shape by
-d * (pi / 6)^(1/3) = 0.80600 d, so that its volume is that of a ball of diameter d. Then turn it at
-random. If a program asks for a size of its own, choose the equivalent (volume) diameter.
+d * (pi / 6)^(1/3) = 0.80600 d, so that its volume is that of a sphere of diameter d. Then rotate it at
+random. If a program asks for a size, choose the equivalent (volume) diameter.
 
-"n_facets" counts polygonal facets; the STL cuts them into triangles. The half-spaces in
+"n_facets" counts polygonal facets; the STL file divides them into triangles. The half-spaces in
 dataset.json are the exact shape: all x with <normal_i, x> <= offset_i.
-To go back to the place of a shape in its particle: x_particle = scale rotation^T x_shape + centroid.
+Coordinates in the original particle: x_particle = scale rotation^T x_shape + centroid.
 
 To check the folder:   regolith-studio dataset validate .
 In Python:             import regolith_studio; regolith_studio.read_dataset(".")

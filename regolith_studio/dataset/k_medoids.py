@@ -1,4 +1,4 @@
-"""k-medoids: the k points of a population whose summed distance to all points is least.
+"""k-medoids: the k points of a population with the minimum sum of distances to all points.
 
 BUILD (Kaufman and Rousseeuw 1990) finds a start, eager swaps (FasterPAM, Schubert and Rousseeuw
 2021) improve it: each candidate's gain against all medoids at once in one pass over the points.
@@ -14,7 +14,7 @@ from regolith_studio.geometry.arrays import FloatArray, IntArray
 from regolith_studio.geometry.kernels import kernel
 
 MAX_TABLE_SIZE = 5000
-"""Larger populations are searched on a random subset of this size, so that the table fits the memory."""
+"""Maximum number of points in the table of distances; larger populations are searched on a random subset."""
 
 
 def k_medoids(
@@ -29,9 +29,9 @@ def k_medoids(
     k
         Number of medoids, 1 to n.
     weights
-        How much each point counts, shape (n,); 1 by default.
+        Weight of each point, shape (n,); 1 by default.
     seed
-        Chooses the subset of populations beyond :data:`MAX_TABLE_SIZE`; smaller ones need no chance.
+        Of the random subset of populations beyond :data:`MAX_TABLE_SIZE`; unused otherwise.
 
     Returns
     -------
@@ -103,7 +103,7 @@ def build_medoids(table: FloatArray, weights: FloatArray, chosen: IntArray) -> N
 
 @kernel
 def swap_medoids(table: FloatArray, weights: FloatArray, chosen: IntArray) -> int:
-    """Swap medoids of `chosen` (changed in place) for better points until none is left; number of swaps."""
+    """Swap medoids of `chosen` (in place) for better points until there are none; the number of swaps."""
     n, k = len(table), len(chosen)
     first, second = np.empty(n), np.empty(n)
     owner = np.empty(n, dtype=np.int64)
@@ -141,7 +141,7 @@ def _two_nearest(
     owner: IntArray,
     loss: FloatArray,
 ) -> None:
-    """Distances to each point's two nearest medoids, its owner, and what losing each medoid would cost."""
+    """Distances to each point's two nearest medoids, the nearest one, and the loss of removing each."""
     loss[:] = 0.0
     for point in range(len(table)):
         first[point] = second[point] = np.inf

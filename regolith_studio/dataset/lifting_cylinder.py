@@ -1,4 +1,7 @@
-"""How many particles are in the test of section 2.6, and how large a tube they fill. SI units."""
+"""Geometry of the lifting-cylinder test of section 2.6: number of particles, size and meshes of the cylinder.
+
+SI units.
+"""
 
 from dataclasses import replace
 
@@ -13,21 +16,23 @@ from regolith_studio.geometry.mesh import Mesh
 
 MICROMETRE = 1e-6
 FILL, PACKED = 1.375, 0.55
-"""Fill height over diameter of the paper's cylinder (2.5 to 3 cm of 2 cm), and the solid share of it."""
+"""Fill height over diameter of the paper's cylinder (2.5 to 3 cm of 2 cm), and its solid fraction."""
 
 
-def scaled_cylinder(test: LiftingCylinderTest, solid_volume: float, narrowest: float) -> LiftingCylinderTest:
-    """The cylinder made smaller for fewer particles: they fill it as high for its width as in the paper.
+def scaled_cylinder(
+    test: LiftingCylinderTest, solid_volume: float, min_diameter: float
+) -> LiftingCylinderTest:
+    """The cylinder scaled down for fewer particles, so that fill height over diameter is that of the paper.
 
     Parameters
     ----------
     solid_volume
         Of all particles, in m3.
-    narrowest
-        Least diameter in metres: a few of the largest particles.
+    min_diameter
+        Minimum diameter in metres: a few of the largest particles.
     """
     diameter = float((solid_volume / PACKED / (np.pi / 4 * FILL)) ** (1 / 3))
-    diameter = min(test.diameter, max(diameter, narrowest))
+    diameter = min(test.diameter, max(diameter, min_diameter))
     return replace(test, diameter=diameter, height=test.height * diameter / test.diameter)
 
 
@@ -46,14 +51,14 @@ def particle_count(
 
 
 def tube_mesh(diameter: float, height: float, sides: int = 96, thickness: float = 0.05) -> Mesh:
-    """An upright closed solid tube standing on z = 0; a regular polygon of the same inner area inside.
+    """An upright tube on z = 0 as a closed surface; its inner polygon has the area of the circle.
 
     Parameters
     ----------
     diameter
         Inner.
     thickness
-        Of the wall, as a share of the diameter.
+        Of the wall, as a fraction of the diameter.
     """
     angles = 2 * np.pi * np.arange(sides) / sides
     circle = np.column_stack([np.cos(angles), np.sin(angles)])

@@ -1,4 +1,4 @@
-"""Spheres inside a convex polyhedron that fill as much of it as they can: greedy, from the largest down."""
+"""Approximate a convex polyhedron by inscribed spheres: greedy, from the largest sphere down."""
 
 from dataclasses import dataclass
 
@@ -12,22 +12,22 @@ from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.sphere_points import fibonacci_directions
 
 PROBES = 4096
-"""Points that the fit tries to cover; a power of two for Sobol's sequence."""
+"""Points to be covered by the spheres; a power of two for Sobol's sequence."""
 CENTRES = 1500
-"""Places for a sphere that are tried."""
+"""Candidate centres of spheres."""
 VOLUME_PROBES = 1 << 16
 SURFACE_PROBES = 4096
-"""Points on each sphere that are looked at for the area of the union."""
+"""Points on each sphere for the area of the union."""
 
 
 @dataclass(frozen=True)
 class SphereFitErrors:
-    """How the union of spheres differs from the polyhedron that it stands for, as shares.
+    """Relative errors of a union of spheres that approximates a polyhedron.
 
     Parameters
     ----------
     volume, area
-        Of the union over the polyhedron's, less one: the volume is always missing, the area need not be.
+        Ratio of union and polyhedron minus 1; the volume error is always negative.
     inertia
         Largest difference of a principal moment about the polyhedron's centroid, at equal mass.
     """
@@ -40,22 +40,22 @@ class SphereFitErrors:
 def fit_spheres(shape: ConvexPolyhedron, count: int) -> FloatArray:
     """At most `count` spheres inside `shape`, each row x, y, z, r; the first is the largest that fits.
 
-    Every further sphere is the one, among many centres, each with the largest radius that fits there,
-    that covers most of what is still bare. Fewer come back where nothing is gained any more.
+    Each further sphere is the one that covers most of the uncovered points, among many candidate centres with
+    the maximum radius that fits there. Fewer are returned if no candidate covers anything more.
     """
     probes = inner_points(shape, PROBES)
     centres = np.vstack([_incentre(shape), probes[:CENTRES]])
     radii = (shape.half_spaces.offsets - centres @ shape.half_spaces.normals.T).min(axis=1)
     inside = cdist(centres, probes) <= radii[:, None]
-    bare, chosen = np.ones(len(probes), dtype=bool), [0]
-    bare &= ~inside[0]
+    uncovered, chosen = np.ones(len(probes), dtype=bool), [0]
+    uncovered &= ~inside[0]
     while len(chosen) < count:
-        gain = (inside & bare).sum(axis=1)
+        gain = (inside & uncovered).sum(axis=1)
         best = int(gain.argmax())
         if gain[best] == 0:
             break
         chosen.append(best)
-        bare &= ~inside[best]
+        uncovered &= ~inside[best]
     return np.column_stack([centres[chosen], radii[chosen]])
 
 
@@ -69,8 +69,8 @@ def union_area(spheres: FloatArray) -> float:
     """Area of the outer surface of the union of spheres; to about 0.1 %."""
     directions, area = fibonacci_directions(SURFACE_PROBES), 0.0
     for k, (x, y, z, radius) in enumerate(spheres):
-        bare = ~_covered((x, y, z) + radius * directions, np.delete(spheres, k, axis=0))
-        area += 4 * np.pi * radius**2 * float(bare.mean())
+        uncovered = ~_covered((x, y, z) + radius * directions, np.delete(spheres, k, axis=0))
+        area += 4 * np.pi * radius**2 * float(uncovered.mean())
     return area
 
 

@@ -1,4 +1,4 @@
-"""Particles drawn from a dataset and laid out apart from each other, for formats that list single bodies."""
+"""Particles drawn from a dataset and placed on a lattice without contacts, for lists of particles."""
 
 from dataclasses import dataclass
 
@@ -13,15 +13,15 @@ from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray, IntArray
 
 MIN_WIDTH = 3.0
-"""Least diameter of a tube in units of the lattice's spacing."""
+"""Minimum diameter of the cylinder in units of the lattice spacing."""
 
 SPACING = 1.02
-"""Spacing of the lattice in units of the largest circumscribed diameter."""
+"""Lattice spacing in units of the maximum circumscribed diameter."""
 
 
 @dataclass(frozen=True, eq=False)
 class PackedParticles:
-    """Particles in SI units, coarse graining applied, none touching another.
+    """Particles in SI units after coarse graining, without contacts.
 
     Parameters
     ----------
@@ -49,18 +49,18 @@ class PackedParticles:
         return np.asarray(self.diameter * (np.pi / 6) ** (1 / 3))
 
     def rotation_of(self, index: int) -> FloatArray:
-        """Matrix from the shape's axes to the world's, shape (3, 3)."""
+        """Matrix from the shape's to the global axes, shape (3, 3)."""
         return np.asarray(rotation_matrices(self.orientation[index : index + 1])[0])
 
 
 def pack_on_lattice(dataset: Dataset, options: ExportOptions, within: float | None = None) -> PackedParticles:
-    """Draw ``options.n_particles`` and put them on a cubic lattice.
+    """Draw ``options.n_particles`` and place them on a cubic lattice.
 
     Parameters
     ----------
     within
-        Inner diameter in metres of an upright cylinder about the z axis that all must lie in; a square
-        column if not given.
+        Inner diameter in metres of an upright cylinder about the z axis that contains all; a square column
+        if not given.
 
     Raises
     ------
@@ -81,14 +81,14 @@ def pack_on_lattice(dataset: Dataset, options: ExportOptions, within: float | No
 
 
 def fitted_cylinder(dataset: Dataset, options: ExportOptions) -> LiftingCylinderTest:
-    """The cylinder of the options, smaller if ``options.n_particles`` would only cover its ground."""
+    """The cylinder of the options, smaller if ``options.n_particles`` do not fill it."""
     drawn, spacing = _drawn(dataset, options)
     volume = float(((drawn.scale * options.coarse_graining_factor * MICROMETRE) ** 3).sum())
     return scaled_cylinder(options.test, volume, MIN_WIDTH * spacing)
 
 
 def _drawn(dataset: Dataset, options: ExportOptions) -> tuple[DrawnParticles, float]:
-    """The particles, and the spacing in metres at which none can touch another however it turns."""
+    """The particles, and the spacing in metres at which none can touch another in any orientation."""
     drawn = sample_dataset(dataset, options.n_particles, options.seed)
     reach = np.array([np.linalg.norm(one.shape.vertices, axis=1).max() for one in dataset.representatives])
     largest = float((reach[drawn.class_index] * drawn.scale).max())
@@ -96,7 +96,7 @@ def _drawn(dataset: Dataset, options: ExportOptions) -> tuple[DrawnParticles, fl
 
 
 def _layer(spacing: float, within: float | None, count: int) -> FloatArray:
-    """Places of one layer about the axis, shape (k, 2), the same for every layer."""
+    """Positions of one layer about the axis, shape (k, 2), the same for every layer."""
     if within is None:
         side = max(1, round(count ** (1 / 3)))
         line = (np.arange(side) - (side - 1) / 2) * spacing

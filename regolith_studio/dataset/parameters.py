@@ -1,4 +1,7 @@
-"""Tables 1 and 2 of the paper as settings; what the paper does not give is marked, chosen and editable."""
+"""Contact parameters and lifting-cylinder test: Tables 1 and 2 of the paper.
+
+Values that the paper does not give are marked as such.
+"""
 
 from dataclasses import dataclass, field, fields
 from typing import Any
@@ -21,7 +24,7 @@ def _number(
     source: str = NOT_GIVEN,
     factor: float = 1.0,
 ) -> Any:
-    """A field in SI; `factor` turns it into the `unit` in which people read and write it."""
+    """A field in SI units; `factor` converts it into the displayed `unit`."""
     metadata = {
         "label": label,
         "unit": unit,
@@ -35,7 +38,7 @@ def _number(
 
 @dataclass(frozen=True)
 class ContactParameters:
-    """Table 1: what happens where two particles touch. SI units.
+    """Contact parameters of Table 1. SI units.
 
     Parameters
     ----------
@@ -46,11 +49,11 @@ class ContactParameters:
     static_friction, dynamic_friction
         Coulomb's coefficients.
     rolling_friction
-        Rolling resistance as a share of the radius.
+        Coefficient of rolling resistance, as a fraction of the radius.
     restitution
         Of a normal impact.
     surface_energy
-        Of Johnson, Kendall and Roberts, in J/m^2.
+        Of the model of Johnson, Kendall and Roberts, in J/m^2.
 
     Raises
     ------
@@ -73,7 +76,7 @@ class ContactParameters:
 
 @dataclass(frozen=True)
 class LiftingCylinderTest:
-    """Table 2: a filled cylinder is lifted off a plate. SI units.
+    """Lifting-cylinder test of Table 2: a filled cylinder is lifted off a plate. SI units.
 
     Parameters
     ----------
@@ -113,7 +116,7 @@ class LiftingCylinderTest:
 
 @dataclass(frozen=True)
 class ScriptTimes:
-    """How long a script waits that cannot see whether the particles lie still. Seconds.
+    """Waiting times, in seconds, of scripts that cannot detect when the particles are at rest.
 
     Parameters
     ----------
@@ -135,12 +138,12 @@ class ScriptTimes:
         check_limits(self, "waiting time")
 
     def duration(self, test: LiftingCylinderTest) -> float:
-        """Of the whole test: settle, lift the cylinder clear by its own height, come to rest."""
+        """Of the whole test: settle, lift the cylinder by its height, come to rest."""
         return self.settling_time + test.height / test.lift_speed + self.resting_time
 
 
 PAPER_FILL_HEIGHT = (0.025, 0.030)
-"""Fill height of Table 2 in metres; a consequence of mass and packing here, and compared after a run."""
+"""Fill height of Table 2 in metres; here a result of mass and packing."""
 PAPER_PARTICLES = 378_000
 PAPER_COARSE_GRAINING = 10.0
 
@@ -151,19 +154,19 @@ def missing_in_paper(kind: type[Any]) -> tuple[str, ...]:
 
 
 def check_limits(settings: Any, what: str) -> None:
-    """Every field with a ``minimum`` must lie between it and its ``maximum``.
+    """Check that every field with a ``minimum`` lies between it and its ``maximum``.
 
     Parameters
     ----------
     settings
-        A dataclass; a field's ``factor`` and ``unit``, where it has them, are those that users read.
+        A dataclass; the metadata ``factor`` and ``unit`` of a field convert it for the message.
     what
-        Such as "MuJoCo setting".
+        Name of such a field in the message, for example "MuJoCo setting".
 
     Raises
     ------
     InputError
-        Naming the first that does not; a value that is no number does not either.
+        Naming the first field that does not; NaN is refused too.
     """
     for each in fields(settings):
         limits = each.metadata

@@ -1,4 +1,4 @@
-"""How many representatives are enough: the error of their number, against the population's own noise."""
+"""Error of a set of representatives over their number, compared with the sampling noise of the population."""
 
 from collections.abc import Generator, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from regolith_studio.dataset.representatives import (
-    Representatives,
+    RepresentativeSelection,
     representation_error,
     representative_series,
     sampling_noise,
@@ -14,12 +14,12 @@ from regolith_studio.dataset.representatives import (
 from regolith_studio.dataset.size_distributions import Weighting
 
 COUNTS = (1, 2, 3, 4, 5, 6, 8, 10, 12, 15, 20, 25, 30, 40, 50, 70, 100, 140, 200)
-"""Numbers of representatives that a curve looks at; the paper has 10."""
+"""Numbers of representatives of a curve; the paper has 10."""
 
 
 @dataclass(frozen=True)
 class QualityPoint:
-    """The error of one number of representatives: Wasserstein distance per descriptor, in deviations."""
+    """Error for one number of representatives: Wasserstein distance by descriptor, in standard deviations."""
 
     count: int
     errors: Mapping[str, float]
@@ -32,7 +32,7 @@ class QualityPoint:
 
 @dataclass(frozen=True)
 class QualityCurve:
-    """Errors over the number of representatives.
+    """Error over the number of representatives.
 
     Parameters
     ----------
@@ -49,7 +49,7 @@ class QualityCurve:
     noise: Mapping[str, float]
     n_particles: int
     weighting: Weighting = "number"
-    choices: tuple[Representatives, ...] = field(default=(), compare=False, repr=False)
+    choices: tuple[RepresentativeSelection, ...] = field(default=(), compare=False, repr=False)
 
     @property
     def noise_mean(self) -> float:
@@ -58,12 +58,12 @@ class QualityCurve:
 
     @property
     def sufficient_count(self) -> int | None:
-        """The smallest number at which the mean error is no larger than the noise; ``None`` if none is."""
+        """Minimum number with a mean error of at most the noise; ``None`` if there is none."""
         return next((point.count for point in self.points if point.mean <= self.noise_mean), None)
 
 
 def curve_counts(n_particles: int, wanted: int | None = None) -> tuple[int, ...]:
-    """Numbers worth looking at for a population, with the wanted one among them."""
+    """Numbers of representatives for a curve of a population, including `wanted`."""
     fitting = {count for count in COUNTS if count <= n_particles}
     return tuple(sorted(fitting | ({wanted} if wanted else set())))
 

@@ -1,4 +1,4 @@
-"""Chooses the particles that stand for a population, with their shares and sizes (section 2.5)."""
+"""Choose particles that represent a population, with their weights and sizes (section 2.5)."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -12,14 +12,14 @@ from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray, IntArray
 
 NEEDED = ("volume", "sphericity", "aspect_ratio", "min_diameter", "convex_hull_volume")
-"""Descriptors that the choice looks at."""
+"""Descriptors that the choice requires."""
 
 LENGTHS = ("min_diameter", "max_diameter")
-"""Compared descriptors that grow with the particle."""
+"""Compared descriptors that scale with the particle."""
 
 
 @dataclass(frozen=True, eq=False)
-class Representatives:
+class RepresentativeSelection:
     """Chosen particles of a population of n.
 
     Parameters
@@ -47,8 +47,8 @@ def choose_representatives(
     weighting: Weighting = "number",
     size_importance: float = 0.0,
     seed: int = 0,
-) -> Representatives:
-    """The `n` particles that stand for a population best: k-medoids on standardised shape features.
+) -> RepresentativeSelection:
+    """The `n` particles that represent a population best, by k-medoids on standardised shape features.
 
     Parameters
     ----------
@@ -58,14 +58,14 @@ def choose_representatives(
         ``number``: every particle counts the same, a class weighs its share of particles and F_i is the
         distribution of its diameters. ``volume``: everything counts by volume.
     size_importance
-        How much a standard deviation of ln d counts against one of a shape feature: 0 leaves size to F_i.
+        Weight of a standard deviation of ln d relative to one of a shape feature; 0 leaves the size to F_i.
     seed
-        Only for populations too large for a table of distances.
+        Used only for populations too large for a table of distances.
 
     Raises
     ------
     InputError
-        If there are fewer than `n` particles, or a descriptor is missing or makes no sense.
+        If there are fewer than `n` particles, or a descriptor is missing or not positive.
     """
     return next(
         representative_series(
@@ -81,8 +81,8 @@ def representative_series(
     weighting: Weighting = "number",
     size_importance: float = 0.0,
     seed: int = 0,
-) -> Iterator[Representatives]:
-    """As :func:`choose_representatives` for each number of `counts`, much faster than one by one.
+) -> Iterator[RepresentativeSelection]:
+    """As :func:`choose_representatives` for each number of `counts`, with one table of distances.
 
     Raises
     ------
@@ -99,7 +99,7 @@ def representative_series(
             _shape_class(diameters[labels == index], counted[labels == index], weighting)
             for index in range(len(chosen))
         )
-        yield Representatives(chosen, labels, classes, weighting)
+        yield RepresentativeSelection(chosen, labels, classes, weighting)
 
 
 def equivalent_diameters(population: Sequence[Mapping[str, float]]) -> FloatArray:
@@ -110,7 +110,7 @@ def equivalent_diameters(population: Sequence[Mapping[str, float]]) -> FloatArra
 def shape_features(population: Sequence[Mapping[str, float]]) -> FloatArray:
     """Standardised ln AR, ln(1 - S), ln(1 - V/CH) and ln(Dmin / d), shape (n, 4).
 
-    Distances from the ball and from convexity are floored at 1e-3, where they are numerical noise.
+    1 - S and 1 - V/CH are at least 1e-3; below they are numerical noise.
     """
     volume = _column(population, "volume")
     features = (
@@ -123,13 +123,13 @@ def shape_features(population: Sequence[Mapping[str, float]]) -> FloatArray:
 
 
 def representation_error(
-    population: Sequence[Mapping[str, float]], representatives: Representatives
+    population: Sequence[Mapping[str, float]], representatives: RepresentativeSelection
 ) -> dict[str, float]:
-    """Wasserstein distance between population and its representatives, per descriptor, in its deviations.
+    """Wasserstein distance between population and representatives, per descriptor, in standard deviations.
 
-    Ratios of the population are compared with those of the chosen particles by their weights; lengths
-    with those that its particles have once each has the shape of its representative and keeps its
-    equivalent diameter. Both are counted as the choice was.
+    Ratios are compared with those of the chosen particles by their weights; lengths with those that the
+    particles have if each takes the shape of its representative and keeps its equivalent diameter. Both are
+    weighted as in the choice.
     """
     values, counted = _compared(population, representatives.weighting)
     weights = [one.weight for one in representatives.classes]
@@ -151,9 +151,9 @@ def sampling_noise(
     repeats: int = 20,
     seed: int = 0,
 ) -> dict[str, float]:
-    """What :func:`representation_error` is between two random halves of the population, on average.
+    """Mean of :func:`representation_error` between two random halves of the population.
 
-    Below this, more representatives reproduce the sample and no longer the material.
+    An error below it describes the sample and no longer the material.
     """
     generator = np.random.default_rng(np.random.SeedSequence(seed))
     values, counted = _compared(population, weighting)
@@ -169,7 +169,7 @@ def sampling_noise(
 def _compared(
     population: Sequence[Mapping[str, float]], weighting: Weighting
 ) -> tuple[dict[str, FloatArray], FloatArray]:
-    """Values of the compared descriptors, and how much each particle counts."""
+    """Values of the compared descriptors, and the weight of each particle."""
     volume = _column(population, "volume")
     values = {key: _column(population, key) for key in ("aspect_ratio", "sphericity")}
     values["convexity"] = volume / _column(population, "convex_hull_volume")
@@ -186,7 +186,7 @@ def _distance(
     spread_of: FloatArray | None = None,
 ) -> float:
     """Wasserstein distance over the spread of all values."""
-    from scipy.stats import wasserstein_distance  # 30 MB that a window need not hold from its start
+    from scipy.stats import wasserstein_distance  # imports 30 MB, which the start of the window does not need
 
     apart = float(wasserstein_distance(values, chosen, counted, weights))
     return apart / _spread(values if spread_of is None else spread_of)
@@ -212,7 +212,7 @@ def _column(population: Sequence[Mapping[str, float]], key: str) -> FloatArray:
     if not np.isfinite(values).all() or not (values > 0).all():
         bad = int(np.flatnonzero(~(np.isfinite(values) & (values > 0)))[0])
         raise InputError(
-            f"Particle {bad + 1} of the population has the {key} {values[bad]}, which is no measure."
+            f"Particle {bad + 1} of the population has the {key} {values[bad]}; it must be positive."
         )
     return values
 

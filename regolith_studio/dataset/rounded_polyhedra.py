@@ -1,4 +1,4 @@
-"""Polyhedra with rounded edges: facets moved in by a radius, then swept by a ball of it."""
+"""Polyhedra with rounded edges: facets moved inwards by a radius, then dilated by a ball of that radius."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -12,7 +12,7 @@ from regolith_studio.geometry.half_spaces import HalfSpaces
 
 @dataclass(frozen=True, eq=False)
 class RoundedPolyhedron:
-    """The Minkowski sum of a core and a ball; its flat parts lie where the facets lay.
+    """Minkowski sum of a core and a ball; its flat parts lie in the planes of the original facets.
 
     Parameters
     ----------
@@ -41,7 +41,7 @@ class RoundedPolyhedron:
 def rounded(shape: ConvexPolyhedron, rounding: float) -> RoundedPolyhedron:
     """Round the edges of `shape` with a radius of `rounding` times the smallest offset of a facet.
 
-    The radius is halved until no facet is lost when the planes move in by it.
+    The radius is halved until no facet is lost.
     """
     planes = shape.half_spaces
     radius = rounding * float(planes.offsets.min())
@@ -70,7 +70,7 @@ def edge_bends(shape: ConvexPolyhedron) -> FloatArray:
 
 
 def _edges(shape: ConvexPolyhedron) -> dict[tuple[int, int], tuple[int, int]]:
-    """For each edge (lower vertex first) the two facets that it joins."""
+    """For each edge (lower vertex first) its two facets."""
     sides: dict[tuple[int, int], list[int]] = {}
     for facet, corners in enumerate(shape.facets):
         for first, second in zip(corners, (*corners[1:], corners[0]), strict=True):

@@ -1,4 +1,4 @@
-"""Draws particles from a dataset: a class by its weight, a size (section 2.5), and an orientation."""
+"""Draw particles from a dataset: class by weight, size (section 2.5), and uniform orientation."""
 
 from dataclasses import dataclass
 
@@ -25,8 +25,8 @@ class DrawnParticles:
     diameter
         Equivalent diameter in micrometres, shape (n,).
     orientation
-        Unit quaternions (w, x, y, z) that turn the shape's axes into the particle's, even over all
-        rotations, shape (n, 4).
+        Unit quaternions (w, x, y, z) from the shape's to the particle's axes, uniformly distributed,
+        shape (n, 4).
     """
 
     class_index: IntArray
@@ -40,7 +40,7 @@ class DrawnParticles:
 
 
 def sample_dataset(dataset: Dataset, n: int, seed: int) -> DrawnParticles:
-    """`n` independent particles, counted one by one whatever the dataset's weights count.
+    """`n` independent particles, drawn by number whatever the weighting of the dataset.
 
     Raises
     ------
@@ -56,19 +56,19 @@ def sample_dataset(dataset: Dataset, n: int, seed: int) -> DrawnParticles:
     for index, representative in enumerate(dataset.representatives):
         mine = chosen == index
         diameters[mine] = representative.sizes.weighted("number").quantile(shares[mine])
-    turned = random_quaternions(n, np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(1,))))
-    return DrawnParticles(chosen.astype(np.int64), diameters, turned)
+    orientation = random_quaternions(n, np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(1,))))
+    return DrawnParticles(chosen.astype(np.int64), diameters, orientation)
 
 
 def random_quaternions(n: int, generator: np.random.Generator) -> FloatArray:
-    """Even over all rotations: normal vectors in four dimensions on the unit sphere, w >= 0, shape (n, 4)."""
+    """Uniform random rotations: normalised Gaussian vectors in four dimensions with w >= 0, shape (n, 4)."""
     values = generator.standard_normal((n, 4))
     values /= np.linalg.norm(values, axis=1, keepdims=True)
     return np.asarray(values * np.where(values[:, :1] < 0.0, -1.0, 1.0))
 
 
 def rotation_matrices(quaternions: FloatArray) -> FloatArray:
-    """Rotation matrices of unit quaternions (w, x, y, z), shape (n, 3, 3); columns are the turned axes."""
+    """Rotation matrices of unit quaternions (w, x, y, z), shape (n, 3, 3); columns are the rotated axes."""
     return np.asarray(Rotation.from_quat(quaternions[:, [1, 2, 3, 0]]).as_matrix())
 
 

@@ -1,6 +1,6 @@
-"""What ``dataset.json`` holds, field by field; the published JSON Schema is made from this.
+"""The fields of ``dataset.json``; the published JSON Schema is generated from them.
 
-Run ``python -m regolith_studio.dataset.schema FILE`` to write ``resources/schema/dataset.schema.json`` anew.
+Run ``python -m regolith_studio.dataset.schema FILE`` to update ``resources/schema/dataset.schema.json``.
 """
 
 import json
@@ -23,7 +23,7 @@ Scalar = bool | int | float | str | None
 
 
 class SchemaModel(BaseModel):
-    """Base of all records: frozen, no unknown fields, no infinities, no silent conversions."""
+    """Base of all records: immutable, without unknown fields, infinities and implicit conversions."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
 
@@ -54,7 +54,7 @@ class HalfSpacesRecord(SchemaModel):
 
 
 class FrameRecord(SchemaModel):
-    """Where the shape lay in its particle: x_shape = rotation (x_particle - centroid) / scale."""
+    """Pose of the shape in its particle: x_shape = rotation (x_particle - centroid) / scale."""
 
     rotation: tuple[Triple, Triple, Triple] = Field(description="Row by row.")
     centroid_um: Triple
@@ -62,10 +62,10 @@ class FrameRecord(SchemaModel):
 
 
 class ApproximationRecord(SchemaModel):
-    """How well the shape stands for its particle."""
+    """How the shape approximates its particle."""
 
     method: str
-    n_facets_asked: int
+    n_facets_asked: int = Field(description="Requested number of facets.")
     errors: dict[str, float] = Field(description="Relative error of each descriptor (Eq. 8).")
     jaccard_distance: float = Field(description="Eq. 7; 0 same, 1 disjoint.")
     loss: float = Field(description="Eq. 9.")
@@ -73,11 +73,11 @@ class ApproximationRecord(SchemaModel):
 
 
 class SourceRecord(SchemaModel):
-    """A file that was measured, as the user named it."""
+    """A measured file, under the path given by the user."""
 
     path: str
     sha256: str
-    unit: str = Field(description="Length unit that the file's numbers were taken in.")
+    unit: str = Field(description="Length unit of the file's numbers.")
 
 
 class RepresentativeRecord(SchemaModel):
@@ -96,35 +96,35 @@ class RepresentativeRecord(SchemaModel):
 
 
 class CoarseningRecordModel(SchemaModel):
-    """What was asked of the coarsening of all shapes."""
+    """Settings of the coarsening of all shapes."""
 
     method: str
-    n_facets: int = Field(description="The most that may be taken where largest_error is given.")
+    n_facets: int = Field(description="The upper limit if max_error is given.")
     seed: int
-    target: str = Field(description="particle, or fit: what was imitated.")
+    target: str = Field(description="particle or fit: which surface was approximated.")
     preset: str | None
     weights: dict[str, float] = Field(description="Loss weights of Eq. 9.")
     settings: dict[str, Scalar]
-    largest_error: float | None = Field(
+    max_error: float | None = Field(
         default=None,
-        description="Where given, each shape has the fewest facets whose weighted errors are all below it.",
+        description="If given, each shape has the minimum number of facets with all weighted errors below.",
     )
 
 
 class RepresentationRecord(SchemaModel):
-    """How well the representatives stand for the population that they were chosen from."""
+    """How well the representatives reproduce the population that they were chosen from."""
 
     n_particles: Annotated[int, Field(ge=1, description="Of the population.")]
     errors: dict[str, float] = Field(
         description="Wasserstein distance per descriptor, in its standard deviations."
     )
     sampling_noise: dict[str, float] = Field(
-        description="The same between random halves of the population: better than this is not known."
+        description="The same between random halves of the population: the resolution of the sample."
     )
 
 
 class MetadataRecord(SchemaModel):
-    """How the dataset came about."""
+    """Origin of the dataset."""
 
     description: str
     processing_steps: tuple[str, ...]
@@ -136,7 +136,7 @@ class MetadataRecord(SchemaModel):
     )
     coarsening: CoarseningRecordModel | None
     representation: RepresentationRecord | None = Field(
-        description="Null where every particle stands for itself."
+        description="Null if every particle represents only itself."
     )
     software: dict[str, str] = Field(description="Versions by package.")
 

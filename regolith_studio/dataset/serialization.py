@@ -1,4 +1,4 @@
-"""Between the dataset as a value and its ``dataset.json``."""
+"""Convert a dataset to ``dataset.json`` and back."""
 
 import hashlib
 from typing import Any
@@ -50,12 +50,12 @@ def _numbered(index: int, count: int) -> str:
 
 
 def document_text(dataset: Dataset, files: dict[str, bytes]) -> str:
-    """The content of ``dataset.json``, the same for the same dataset.
+    """The content of ``dataset.json``; equal datasets give equal text.
 
     Raises
     ------
     DatasetError
-        If the dataset holds what the schema forbids, such as an error that is not finite.
+        If the dataset violates the schema, for example by an error that is not finite.
     """
     records = [
         record_of(representative, file, content)
@@ -71,7 +71,7 @@ def document_text(dataset: Dataset, files: dict[str, bytes]) -> str:
 
 
 def frame_of(name: str, weighting: Weighting, provenance: Provenance) -> dict[str, Any]:
-    """Everything in a ``dataset.json`` but the representatives."""
+    """The entries of ``dataset.json`` without the representatives."""
     return {
         "format": FORMAT,
         "schema_version": SCHEMA_VERSION,
@@ -91,7 +91,7 @@ def parsed_document(text: str, where: str) -> DatasetDocument:
     Raises
     ------
     DatasetError
-        Naming the first place where it breaks the schema.
+        Naming the first entry that violates the schema.
     """
     try:
         content = parse_strict_json(text, where)
@@ -108,7 +108,7 @@ def parsed_document(text: str, where: str) -> DatasetDocument:
         return DatasetDocument.model_validate_json(text)
     except ValidationError as error:
         raise DatasetError(
-            f"{where} breaks the schema: {format_validation_error(error.errors(include_url=False))}."
+            f"{where} violates the schema: {format_validation_error(error.errors(include_url=False))}."
         ) from error
 
 
@@ -118,7 +118,7 @@ def dataset_of(document: DatasetDocument, where: str) -> Dataset:
     Raises
     ------
     DatasetError
-        If half-spaces bound no unit volume or a frame is none.
+        If half-spaces bound no unit volume or a frame is invalid.
     """
     return Dataset(
         name=document.name,
@@ -129,7 +129,7 @@ def dataset_of(document: DatasetDocument, where: str) -> Dataset:
 
 
 def shape_of(record: RepresentativeRecord) -> ConvexPolyhedron:
-    """The polyhedron of the record's half-spaces, exactly as it was written.
+    """The polyhedron of the record's half-spaces.
 
     Raises
     ------
@@ -174,7 +174,7 @@ def _provenance(document: DatasetDocument) -> Provenance:
 
 
 def record_of(representative: Representative, file: str, content: bytes) -> dict[str, Any]:
-    """What ``dataset.json`` says of one representative, whose STL file is `file` and holds `content`."""
+    """The entry of one representative in ``dataset.json``; `content` are the bytes of its STL file."""
     shape, frame = representative.shape, representative.frame
     approximation, source = representative.approximation, representative.source
     return {
@@ -208,17 +208,14 @@ def _metadata(provenance: Provenance) -> dict[str, Any]:
     fields = _plain(vars(provenance))
     fields["angular_power_spectrum_um2"] = fields.pop("angular_power_spectrum")
     if provenance.coarsening is not None:
-        asked = _plain(vars(provenance.coarsening))
-        if asked["largest_error"] is None:  # as it was before there was such a choice
-            del asked["largest_error"]
-        fields["coarsening"] = asked
+        fields["coarsening"] = _plain(vars(provenance.coarsening))
     if provenance.representation is not None:
         fields["representation"] = _plain(vars(provenance.representation))
     return fields
 
 
 def _plain(fields: dict[str, Any]) -> dict[str, Any]:
-    """Mappings as dictionaries and numpy's numbers as Python's."""
+    """Mappings as dictionaries, numpy scalars as Python numbers."""
     plain: dict[str, Any] = {}
     for key, value in fields.items():
         if hasattr(value, "items"):

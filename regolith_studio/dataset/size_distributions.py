@@ -1,7 +1,7 @@
 """Size distributions F_i of section 2.5: of equivalent diameters, in micrometres.
 
-Each says whether its shares count particles (``number``) or their volume (``volume``; at one
-density the same as mass). The two differ by a factor d^3: ``weighted`` converts.
+Shares count either particles (``number``) or their volume (``volume``; at one density the same as mass).
+The two differ by a factor d^3; ``weighted`` converts.
 """
 
 from abc import abstractmethod
@@ -25,11 +25,11 @@ PAPER_CLASSES_UM = (25.0, 37.0, 56.0, 84.0, 125.0)
 """Particle sizes of the paper's Table 1."""
 
 WEIGHT_TOLERANCE = 1e-12
-"""How far a sum of shares may be from 1."""
+"""Tolerance of a sum of shares."""
 
 
 class SizeDistribution(BaseModel):
-    """A distribution of equivalent diameters; frozen, and the same in memory and in JSON."""
+    """A distribution of equivalent diameters."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
 
@@ -208,10 +208,10 @@ class LogNormalSizeDistribution(SizeDistribution):
 
 
 class RosinRammlerSizeDistribution(SizeDistribution):
-    """F(d) = 1 - exp(-(d / scale)^shape), cut off at a smallest and a largest diameter."""
+    """F(d) = 1 - exp(-(d / scale)^shape), truncated at a minimum and a maximum diameter."""
 
     type: Literal["rosin-rammler"] = "rosin-rammler"
-    scale_um: Diameter = Field(description="Diameter below which 63.2 % lie, before the cut.")
+    scale_um: Diameter = Field(description="Diameter below which 63.2 % lie, before truncation.")
     shape: Annotated[float, Field(gt=0.0, le=100.0)]
     min_um: Diameter
     max_um: Diameter
@@ -221,13 +221,13 @@ class RosinRammlerSizeDistribution(SizeDistribution):
         _check_ascending((self.min_um, self.max_um))
         low, high = self._limits
         if not high - low > 1e-9:
-            raise ValueError("hardly anything lies between the smallest and the largest diameter")
+            raise ValueError("hardly any particles lie between the minimum and the maximum diameter")
         return self
 
     def cdf(self, diameters: ArrayLike) -> FloatArray:
         low, high = self._limits
         inside = np.clip(np.asarray(diameters, dtype=np.float64), self.min_um, self.max_um)
-        return np.asarray((self._uncut(inside) - low) / (high - low))
+        return np.asarray((self._untruncated(inside) - low) / (high - low))
 
     def quantile(self, probabilities: ArrayLike) -> FloatArray:
         low, high = self._limits
@@ -259,12 +259,12 @@ class RosinRammlerSizeDistribution(SizeDistribution):
         """No closed form: as 400 sieve classes."""
         return self.as_classes()._by_cube(power, weighting)
 
-    def _uncut(self, diameters: ArrayLike) -> FloatArray:
+    def _untruncated(self, diameters: ArrayLike) -> FloatArray:
         return np.asarray(-np.expm1(-((np.asarray(diameters) / self.scale_um) ** self.shape)))
 
     @property
     def _limits(self) -> tuple[float, float]:
-        low, high = self._uncut([self.min_um, self.max_um])
+        low, high = self._untruncated([self.min_um, self.max_um])
         return float(low), float(high)
 
 
@@ -275,7 +275,7 @@ AnySizes = Annotated[
     | RosinRammlerSizeDistribution,
     Field(discriminator="type"),
 ]
-"""Every kind of size distribution, told apart by its ``type``."""
+"""Every kind of size distribution, distinguished by ``type``."""
 
 
 def normalised_shares(amounts: ArrayLike) -> tuple[float, ...]:
@@ -294,7 +294,7 @@ def normalised_shares(amounts: ArrayLike) -> tuple[float, ...]:
 
 
 def equivalent_diameter(volume: float) -> float:
-    """Diameter of the ball of `volume`."""
+    """Diameter of the sphere of `volume`."""
     return float((6.0 * volume / np.pi) ** (1 / 3))
 
 
@@ -326,12 +326,12 @@ def _check_shares(shares: Sequence[float], count: int) -> None:
 
 
 QUANTILES = 20_000
-"""How finely a continuous distribution is taken apart, evenly by number and as finely again by volume."""
+"""Quantiles of a continuous distribution, as many by number as by volume."""
 
 
 @dataclass(frozen=True, eq=False)
 class SizeClasses:
-    """A few diameters that stand for a distribution.
+    """A few diameters that represent a distribution.
 
     Parameters
     ----------
@@ -349,9 +349,8 @@ class SizeClasses:
 def size_classes(sizes: SizeDistribution, count: int = 16) -> SizeClasses:
     """At most `count` diameters with their shares by number and by mass.
 
-    Discrete sizes that are few enough stay as they are. Others are gathered between evenly spaced
-    logarithms; a class has the diameter whose volume is the mean of its particles', so that number
-    and mass are both what they were.
+    Discrete distributions of at most `count` diameters are unchanged. Others are binned in ln d; the diameter
+    of a bin has the mean volume of its particles, so that number and mass are both conserved.
     """
     diameters, number = _points(sizes)
     if len(diameters) > count:
@@ -366,7 +365,7 @@ def size_classes(sizes: SizeDistribution, count: int = 16) -> SizeClasses:
 
 
 def _points(sizes: SizeDistribution) -> tuple[FloatArray, FloatArray]:
-    """Diameters and number shares that stand for a distribution closely."""
+    """Diameters and number shares of a fine discretisation."""
     by_number = sizes.weighted("number")
     if isinstance(by_number, DiscreteSizeDistribution):
         shares = np.array(by_number.shares)

@@ -1,4 +1,4 @@
-"""Size distributions in one line of text, as the command line and the window take them."""
+"""Parse size distributions from one line of text, for the command line and the window."""
 
 from collections.abc import Callable, Sequence
 
@@ -27,32 +27,32 @@ FORMS = (
     "log-normal:MEDIAN,SIGMA",
     "rosin-rammler:SCALE,SHAPE,MIN,MAX",
 )
-"""What can be written; a share counts particles, or volume with ``@volume`` behind it."""
+"""Valid forms; shares count particles, or volume with the suffix ``@volume``."""
 
 SizeRule = Callable[[ShapeClass], SizeDistribution]
-"""From a class with its measured sizes to the sizes that it gets."""
+"""Function from a class with its measured sizes to its size distribution."""
 
 
 def parse_sizes(text: str) -> SizeRule:
-    """What a text of :data:`FORMS` asks for.
+    """The rule that a text of :data:`FORMS` describes.
 
-    ``measured`` keeps the members' diameters; ``classes`` moves each to the nearest of these diameters
-    (the paper's Table 1); ``fitted:log-normal`` takes mean and deviation of their ln d; the others are the
-    same for every class. Diameters in micrometres.
+    ``measured`` keeps the members' diameters; ``classes`` rounds each to the nearest of these diameters (the
+    paper's Table 1); ``fitted:log-normal`` has the mean and deviation of their ln d; the others are the same
+    for every class. Diameters in micrometres.
 
     Raises
     ------
     InputError
-        If the text is none of them, or describes no distribution.
+        If the text has another form, or describes no distribution.
     """
     body, _, counted = text.strip().partition("@")
     if counted not in ("", "number", "volume"):
-        raise InputError(f"Behind @ stands number or volume, got {counted!r}.")
+        raise InputError(f"@ must be followed by number or volume, got {counted!r}.")
     weighting: Weighting = "volume" if counted == "volume" else "number"
     kind, _, rest = body.partition(":")
     if kind in ("measured", "classes", "fitted"):
         if counted:
-            raise InputError(f"{kind} sizes are counted as the dataset's weights are; leave @{counted} out.")
+            raise InputError(f"{kind} sizes are weighted as the dataset is; remove @{counted}.")
         return _from_members(kind, rest)
     if kind not in {form.partition(":")[0] for form in FORMS}:
         raise InputError(_no_form(text))
@@ -107,7 +107,7 @@ def _in_classes(own: ShapeClass, classes: Sequence[float]) -> DiscreteSizeDistri
 
 
 def _fitted_log_normal(own: ShapeClass) -> SizeDistribution:
-    """The measured sizes where a class has too few of them to have a deviation."""
+    """The measured sizes if their deviation is zero."""
     diameters, shares = _members(own)
     logarithms = np.log(diameters)
     mean = float(shares @ logarithms)
@@ -129,8 +129,8 @@ def _numbers(text: str) -> list[float]:
     try:
         return [float(word) for word in text.split(",")]
     except ValueError:
-        raise InputError(f"Numbers are written as 25,37,56, got {text!r}.") from None
+        raise InputError(f"Numbers must be separated by commas, as 25,37,56; got {text!r}.") from None
 
 
 def _no_form(text: str) -> str:
-    return f"{text.strip(':')!r} is no size distribution; write one of: {'; '.join(FORMS)}."
+    return f"{text.strip(':')!r} is not a size distribution; write one of: {'; '.join(FORMS)}."

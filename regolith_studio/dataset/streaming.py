@@ -1,7 +1,7 @@
-"""A dataset of any size, written representative by representative: the same bytes as written at once.
+"""Write large datasets shape by shape, with the same bytes as :func:`~.folder_io.write_dataset`.
 
-Each particle is first reduced to a :class:`StoredShape`, wherever and whenever that suits; the folder is
-then put together from them, with one in memory at a time.
+Each particle is first reduced to a :class:`StoredShape`, in any process; the folder is then assembled from
+them, with one shape in memory at a time.
 """
 
 import hashlib
@@ -38,18 +38,18 @@ from regolith_studio.io.stl import stl_bytes
 
 _HEADER = 80
 _PLACE = "representatives"
-_RECORD_BYTES, _FACE_BYTES = 1_150, 95
-"""What a particle and each of its faces take in ``dataset.json``, measured."""
+_RECORD_BYTES, _FACET_BYTES = 1_150, 95
+"""Measured size of a particle and of each of its facets in ``dataset.json``."""
 
 
 @dataclass(frozen=True)
 class StoredShape:
-    """One particle that stands for itself, as it will lie in a dataset.
+    """One particle that represents only itself, as it is stored in a dataset.
 
     Parameters
     ----------
     record
-        What ``dataset.json`` will say; weight, file and hash are filled in later.
+        Its entry in ``dataset.json``; weight, file and hash are filled in later.
     mesh
         Binary STL of the shape.
     """
@@ -59,7 +59,7 @@ class StoredShape:
 
 
 def stored_shape(particle: Particle, coarsened: CoarsenedShape) -> StoredShape:
-    """The shape that stands for `particle`, aligned and at unit volume."""
+    """The shape that represents `particle`, aligned and at unit volume."""
     representative: Representative = representative_of(
         particle.name, particle, coarsened, singleton_class(particle)
     )
@@ -68,14 +68,14 @@ def stored_shape(particle: Particle, coarsened: CoarsenedShape) -> StoredShape:
 
 
 def check_count(count: int, n_facets: int) -> None:
-    """Refuse what would be too large to be read again, before hours of work and not after them.
+    """Check, before hours of work, that a dataset would not be too large to be read.
 
     Raises
     ------
     InputError
-        Saying how many particles a dataset may have.
+        If it would, with the maximum number of particles.
     """
-    most = MAX_DOCUMENT_BYTES // (_RECORD_BYTES + _FACE_BYTES * n_facets)
+    most = MAX_DOCUMENT_BYTES // (_RECORD_BYTES + _FACET_BYTES * n_facets)
     if count > most:
         raise InputError(
             f"A dataset of {count:,} particles of {n_facets} facets is larger than can be read again; make "
@@ -92,27 +92,27 @@ def write_stored(
     provenance: Provenance,
     overwrite: bool = True,
 ) -> Path:
-    """Write a dataset in which each of `count` shapes has the same weight, as ``write_dataset`` would.
+    """Write a dataset in which each of `count` shapes has the same weight.
 
     Parameters
     ----------
     shapes
-        Gives all shapes in order, each time anew; their names all differ.
+        Returns a new iterator over all shapes in order; their names must differ.
 
     Raises
     ------
     DatasetError
-        If there is no shape, one breaks the schema, the folder holds anything else than a dataset, or
+        If there is no shape, one violates the schema, the folder holds anything else than a dataset, or
         something cannot be written.
     """
     if count < 1:
         raise DatasetError("A dataset needs at least one particle.")
     target = Path(folder).resolve()
-    story = provenance if provenance.software else _with_software(provenance)
+    origin = provenance if provenance.software else _with_software(provenance)
     try:
         recover_folder(target)
         check_replaceable(target, overwrite)
-        replace_folder(target, _files(shapes, count, name, story))
+        replace_folder(target, _files(shapes, count, name, origin))
     except OSError as error:
         reason = error.strerror or str(error)
         raise DatasetError(f"The dataset could not be written to {target}: {reason}.") from error
@@ -151,7 +151,7 @@ def _records(shapes: Iterable[StoredShape], digests: list[str]) -> Iterator[dict
 
 
 def _document(records: Iterable[dict[str, Any]], name: str, provenance: Provenance) -> Iterator[bytes]:
-    """``dataset.json`` piece by piece; the frame is checked with the first record in it."""
+    """``dataset.json`` piece by piece; the rest of the document is checked together with the first record."""
     frame = frame_of(name, "number", provenance)
     try:
         before, after = canonical_json(frame | {_PLACE: ""}).split(f'\n  "{_PLACE}": ""')
@@ -168,7 +168,7 @@ def _document(records: Iterable[dict[str, Any]], name: str, provenance: Provenan
         size += len(piece)
         if size > MAX_DOCUMENT_BYTES:
             raise DatasetError(
-                f"A dataset of more than {index:,} such particles is larger than can be read again; make "
+                f"A dataset of more than {index:,} such particles is too large to be read; write "
                 "several, or choose representatives."
             )
         yield piece

@@ -1,4 +1,4 @@
-"""Checks a dataset folder from the outside: each finding is one sentence with its place."""
+"""Validate a dataset folder: each problem is one sentence that names its place."""
 
 import hashlib
 from pathlib import Path
@@ -24,15 +24,15 @@ from regolith_studio.io.atomic import recover_folder
 from regolith_studio.io.stl import stl_triangles
 
 FLOAT32_TOLERANCE = 1e-6
-"""How far an STL's coordinates may be from the exact shape: float32 at a size of about 1."""
+"""Tolerance of the STL's float32 coordinates at a size of about 1."""
 
 
 def validate_dataset(folder: Path | str) -> list[str]:
-    """Problems of a dataset folder, one plain sentence each; empty if it is sound.
+    """Problems of a dataset folder, one sentence each; empty if it is valid.
 
-    Looked at: the schema (weights, size distributions, unknown fields, paths), the list of files,
+    Checked are the schema (weights, size distributions, unknown fields, paths), the list of files,
     every hash, and every shape: closed, convex, as many facets as stated, unit volume, centroid at
-    the origin, and the same solid in the STL as in the half-spaces.
+    the origin, and the same shape in the STL file as in the half-spaces.
     """
     target = recover_folder(real_path(folder))
     try:
@@ -89,7 +89,7 @@ def _mesh_problems(mesh: Mesh, shape: ConvexPolyhedron) -> list[str]:
     planes = shape.half_spaces
     outside = (mesh.vertices @ planes.normals.T - planes.offsets).max()
     if outside > FLOAT32_TOLERANCE * max(1.0, float(np.abs(mesh.vertices).max())):
-        problems.append(f"the mesh reaches {outside:.3g} beyond the half-spaces, so it is another solid.")
+        problems.append(f"the mesh reaches {outside:.3g} beyond the half-spaces, so it is another shape.")
     if len(mesh.faces) != shape.n_triangles:
         problems.append(f"the mesh has {len(mesh.faces)} triangles, its facets need {shape.n_triangles}.")
     return problems

@@ -232,7 +232,7 @@ def dataset_provenance(
         preset=preset,
         weights=dict(request.weights),
         settings=dict(request.settings),
-        largest_error=request.largest_error,
+        max_error=request.largest_error,
     )
     return Provenance(
         processing_steps=(

@@ -8,7 +8,7 @@ from regolith_studio.dataset.dataset import Representation
 from regolith_studio.dataset.quality import QualityCurve, curve_counts, quality_steps
 from regolith_studio.dataset.representatives import (
     NEEDED,
-    Representatives,
+    RepresentativeSelection,
     choose_representatives,
     representation_error,
     sampling_noise,
@@ -107,12 +107,12 @@ class ChosenParticles:
     """Representatives of a population, with their places in the sample."""
 
     places: tuple[int, ...]
-    representatives: Representatives
+    representatives: RepresentativeSelection
     n_particles: int
     representation: Representation | None = None
 
     @classmethod
-    def of(cls, population: MeasuredPopulation, found: Representatives) -> "ChosenParticles":
+    def of(cls, population: MeasuredPopulation, found: RepresentativeSelection) -> "ChosenParticles":
         """With the places of the population's particles in the sample."""
         places = tuple(population.kept[index] for index in found.chosen)
         return cls(places, found, len(population.kept))

@@ -135,7 +135,7 @@ def test_that_software_versions_are_recorded() -> None:
 def test_that_a_dataset_of_nothing_is_refused() -> None:
     with pytest.raises(InputError, match="at least one particle"):
         build_dataset([])
-    with pytest.raises(InputError, match="as many classes"):
+    with pytest.raises(InputError, match="need 1 classes"):
         build_dataset([entry(0)], [])
 
 

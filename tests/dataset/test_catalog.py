@@ -103,5 +103,5 @@ def test_that_folders_deep_down_are_left_alone_and_a_missing_one_is_told(
 ) -> None:
     write_dataset(tmp_path / "a/b/c/d/e", make_dataset(1))
     assert list(scan_catalog(tmp_path)) == []
-    with pytest.raises(DatasetError, match="is no folder"):
+    with pytest.raises(DatasetError, match="is not a folder"):
         list(scan_catalog(tmp_path / "nowhere"))

@@ -196,6 +196,13 @@ def test_that_lammps_moves_the_bodies(dataset: Dataset, tmp_path: Path, lammps) 
     assert "ERROR" not in done.stdout
 
 
+def test_that_the_sections_of_lammps_data_have_the_names_that_it_reads(
+    dataset: Dataset, tmp_path: Path
+) -> None:
+    lines = (exported(dataset, "lammps", tmp_path / "lammps") / "particles.data").read_text().splitlines()
+    assert [line for line in lines if line[:1].isalpha()][1:] == ["Atoms # body", "Bodies"]
+
+
 def test_that_shapes_beyond_the_lines_of_lammps_are_refused(tmp_path: Path) -> None:
     many = build_dataset([entry(0, n_facets=150)])
     with pytest.raises(DatasetError, match="coarsen to fewer faces"):

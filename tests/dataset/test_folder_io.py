@@ -51,12 +51,10 @@ def test_that_the_same_dataset_gives_the_same_bytes_and_so_does_the_one_read_bac
     assert contents(tmp_path / "a") == contents(tmp_path / "b") == contents(tmp_path / "c")
 
 
-def test_that_a_largest_error_is_written_where_one_was_asked_for_and_nowhere_else(
-    tmp_path, make_dataset
-) -> None:
+def test_that_a_max_error_is_written_and_read_back(tmp_path, make_dataset) -> None:
     """What was written before there was that choice stays the same bytes when it is written again."""
     by_count = make_dataset()
-    asked = replace(by_count.provenance.coarsening, largest_error=0.02)
+    asked = replace(by_count.provenance.coarsening, max_error=0.02)
     by_error = replace(by_count, provenance=replace(by_count.provenance, coarsening=asked))
     records = []
     for name, dataset in (("count", by_count), ("error", by_error)):
@@ -64,8 +62,8 @@ def test_that_a_largest_error_is_written_where_one_was_asked_for_and_nowhere_els
         assert read_dataset(folder).provenance == dataset.provenance
         document = json.loads((folder / "dataset.json").read_text(encoding="utf-8"))
         records.append(document["metadata"]["coarsening"])
-    assert records[1] == records[0] | {"largest_error": 0.02}
-    assert "largest_error" not in records[0]
+    assert records[1] == records[0] | {"max_error": 0.02}
+    assert records[0]["max_error"] is None
 
 
 def test_that_the_folder_holds_the_promised_files(tmp_path: Path, make_dataset) -> None:

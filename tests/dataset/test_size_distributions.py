@@ -134,7 +134,7 @@ def test_that_impossible_sizes_are_refused(wrong: dict) -> None:
 
 
 def test_that_a_rosin_rammler_law_with_nothing_between_its_limits_is_refused() -> None:
-    with pytest.raises(ValidationError, match="hardly anything"):
+    with pytest.raises(ValidationError, match="hardly any particles"):
         RosinRammlerSizeDistribution(scale_um=1.0, shape=10.0, min_um=50.0, max_um=60.0)
 
 

@@ -57,7 +57,7 @@ def test_that_a_dataset_that_could_not_be_read_again_is_not_written(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(streaming, "MAX_DOCUMENT_BYTES", 5_000)
-    with pytest.raises(DatasetError, match="larger than can be read"):
+    with pytest.raises(DatasetError, match="too large to be read"):
         write_stored(tmp_path / "set", shapes, 3, name="a set", provenance=STORY)
     assert not (tmp_path / "set").exists()
 

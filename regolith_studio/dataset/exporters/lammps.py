@@ -77,7 +77,7 @@ def _data(dataset: Dataset, bodies: PackedParticles, shapes: list[RoundedPolyhed
         f"{index + 1} 1 1 {float(mass)!r} {_row(place)}"
         for index, (mass, place) in enumerate(zip(masses, bodies.position, strict=True))
     ]
-    lines += ["", "PackedParticles", ""]
+    lines += ["", "Bodies", ""]
     for index, which in enumerate(bodies.class_index.tolist()):
         inertia = dataset.representatives[which].shape.mesh.inertia
         lines += _body(index, shapes[which], inertia, bodies, masses[index])
@@ -87,7 +87,7 @@ def _data(dataset: Dataset, bodies: PackedParticles, shapes: list[RoundedPolyhed
 def _body(
     index: int, shape: RoundedPolyhedron, inertia: np.ndarray, bodies: PackedParticles, mass: float
 ) -> list[str]:
-    """One entry of the section PackedParticles, turned as the particle is."""
+    """One entry of the section Bodies, turned as the particle is."""
     turn, scale = bodies.rotation_of(index), float(bodies.scale[index])
     tensor = turn @ (inertia * mass * scale**2) @ turn.T
     corners = shape.core.vertices @ turn.T * scale
