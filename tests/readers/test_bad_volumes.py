@@ -16,7 +16,8 @@ import numpy as np
 import pytest
 
 from regolith_studio.errors import FileError
-from regolith_studio.readers.volumes.read import RawLayout, describe_volume, open_slabs
+from regolith_studio.readers.volumes.header import RawLayout
+from regolith_studio.readers.volumes.read import describe_volume, open_slabs
 
 FOREIGN = Path(__file__).with_name("foreign_volumes")
 SLICES = np.arange(120, dtype="<i2").reshape(4, 5, 6)

@@ -11,7 +11,8 @@ import numpy as np
 import pytest
 
 from regolith_studio.errors import InputError
-from regolith_studio.readers.volumes.read import describe_volume, open_slabs, read_volume, volume_files
+from regolith_studio.readers.volumes.files import volume_files
+from regolith_studio.readers.volumes.read import describe_volume, open_slabs, read_volume
 
 FOLDER = Path(__file__).with_name("foreign_volumes")
 FILES = volume_files(FOLDER)

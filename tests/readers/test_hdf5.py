@@ -10,7 +10,7 @@ import pytest
 
 from regolith_studio.errors import FileError
 from regolith_studio.readers.volume_formats.hdf5 import open_hdf5
-from regolith_studio.readers.volumes.read import datasets_in, describe_volume, open_slabs, read_volume
+from regolith_studio.readers.volumes.read import describe_volume, open_slabs, read_volume
 
 SLICES = np.random.default_rng(8).integers(0, 60_000, (9, 11, 13)).astype(np.uint16)
 
@@ -83,9 +83,10 @@ def test_that_several_volumes_are_offered_and_the_likeliest_read(path) -> None:
         file["deep/er/labels"] = SLICES.astype(np.uint8)
         file["table"] = np.zeros((5, 2))
         file["text"] = "no volume"
-    names = [entry.name for entry in datasets_in(path)]
+    names = [entry.name for entry in describe_volume(path).datasets]
     assert names == ["exported_data", "large", "deep/er/labels"]
-    assert [entry.shape for entry in datasets_in(path)] == [(13, 11, 9), (20, 20, 20), (13, 11, 9)]
+    shapes = [entry.shape for entry in describe_volume(path).datasets]
+    assert shapes == [(13, 11, 9), (20, 20, 20), (13, 11, 9)]
     header = describe_volume(path)
     assert header.dataset == "exported_data"
     assert header.notes == ("The file holds 3 volumes; exported_data was read.",)
@@ -99,7 +100,8 @@ def test_that_the_channels_of_a_probability_map_are_volumes_each(path) -> None:
     maps = np.random.default_rng(1).random((9, 11, 13, 2)).astype(np.float32)
     with h5py.File(path, "w") as file:
         file.create_dataset("exported_data", data=maps).attrs["axistags"] = tags("zyxc")
-    assert [entry.name for entry in datasets_in(path)] == ["exported_data[0]", "exported_data[1]"]
+    names = [entry.name for entry in describe_volume(path).datasets]
+    assert names == ["exported_data[0]", "exported_data[1]"]
     found = read_volume(path, dataset="exported_data[1]", voxel_size=1.0)
     assert found.kind == "grey"
     assert np.array_equal(found.array.T, maps[..., 1])
@@ -135,7 +137,7 @@ def test_that_external_and_soft_links_are_not_followed(path, tmp_path) -> None:
         read_volume(path, voxel_size=1.0)
     with h5py.File(path, "a") as file:
         file["inside"] = SLICES + 1
-    assert [entry.name for entry in datasets_in(path)] == ["inside"]
+    assert [entry.name for entry in describe_volume(path).datasets] == ["inside"]
     with pytest.raises(FileError, match="has no volume “outside”"):
         read_volume(path, dataset="outside", voxel_size=1.0)
 
@@ -164,7 +166,7 @@ def test_that_a_group_inside_itself_is_visited_once(path) -> None:
         group = file.create_group("a/b")
         group["loop"] = file["a"]
         group["data"] = SLICES
-    assert [entry.name for entry in datasets_in(path)] == ["a/b/data"]
+    assert [entry.name for entry in describe_volume(path).datasets] == ["a/b/data"]
 
 
 def test_that_chunks_too_large_for_the_memory_are_refused(path) -> None:

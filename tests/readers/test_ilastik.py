@@ -17,7 +17,7 @@ from regolith_studio.imaging.extraction import extract_particles
 from regolith_studio.imaging.segmentation.denoising import DenoiseSettings
 from regolith_studio.imaging.segmentation.segment import SegmentationSettings, segment
 from regolith_studio.imaging.segmentation.thresholding import ThresholdSettings
-from regolith_studio.readers.volumes.read import datasets_in, describe_volume, read_volume
+from regolith_studio.readers.volumes.read import describe_volume, read_volume
 
 RADII = (9.0, 8.0, 7.0, 9.5)
 CENTRES = ((13, 14, 15), (14, 36, 40), (35, 15, 38), (36, 38, 14))
@@ -83,7 +83,8 @@ def test_that_a_probability_map_gives_the_grains(axes: str, dtype: type, tmp_pat
     data = maps.transpose(order)[None] if "t" in axes else maps.transpose(order)
     drange = None if dtype is np.float32 else (0, int(np.iinfo(dtype).max))
     path = exported(tmp_path / "scan_Probabilities.h5", data, axes, drange)
-    assert [entry.name for entry in datasets_in(path)] == ["exported_data[0]", "exported_data[1]"]
+    names = [entry.name for entry in describe_volume(path).datasets]
+    assert names == ["exported_data[0]", "exported_data[1]"]
     volume = read_volume(path, dataset="exported_data[0]", voxel_size=2.0)
     assert volume.kind == "grey"
     assert np.array_equal(volume.array.T, maps[..., 0])

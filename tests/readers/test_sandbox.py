@@ -16,7 +16,7 @@ import pytest
 
 from regolith_studio.errors import FileError
 from regolith_studio.readers.particles import read_mesh
-from regolith_studio.readers.sandbox.messages import Message, receive, send
+from regolith_studio.readers.sandbox.messages import SandboxMessage, receive, send
 from regolith_studio.readers.sandbox.parent import Sandbox, shared_sandbox
 
 REPOSITORY = Path(__file__).resolve().parents[2]
@@ -254,7 +254,7 @@ class Pipe:
 def test_that_a_message_survives_a_pipe_of_small_pieces():
     pipe, message = (
         Pipe(),
-        Message({"status": "read"}, (np.arange(12.0).reshape(4, 3), np.zeros((0, 3), "<i8"))),
+        SandboxMessage({"status": "read"}, (np.arange(12.0).reshape(4, 3), np.zeros((0, 3), "<i8"))),
     )
     send(pipe, message)
     received = receive(pipe)

@@ -10,16 +10,9 @@ import tifffile
 
 from regolith_studio.errors import FileError, InputError
 from regolith_studio.readers.particles import read_mesh
-from regolith_studio.readers.volumes.header import layout_from_name
-from regolith_studio.readers.volumes.read import (
-    RawLayout,
-    datasets_in,
-    describe_volume,
-    guess_kind,
-    open_slabs,
-    read_volume,
-    volume_files,
-)
+from regolith_studio.readers.volumes.files import volume_files
+from regolith_studio.readers.volumes.header import RawLayout, guess_kind, layout_from_name
+from regolith_studio.readers.volumes.read import describe_volume, open_slabs, read_volume
 
 SLICES = np.random.default_rng(5).integers(0, 60_000, (7, 11, 13)).astype(np.uint16)
 """Indexed [z, y, x]."""
@@ -224,7 +217,7 @@ def test_that_a_voxel_size_that_is_none_is_refused(stack, size) -> None:
 
 
 def test_that_a_tiff_has_no_choice_of_datasets(stack) -> None:
-    assert datasets_in(stack) == ()
+    assert describe_volume(stack).datasets == ()
 
 
 def test_that_a_wrong_suffix_is_told(stack) -> None:

@@ -17,9 +17,9 @@ from regolith_studio.errors import RegolithError, os_error_reason
 from regolith_studio.readers.error_messages import message_about
 from regolith_studio.readers.formats import MESH_FORMATS
 from regolith_studio.readers.sandbox import tasks, volume_tasks
-from regolith_studio.readers.sandbox.messages import Message, receive, send
+from regolith_studio.readers.sandbox.messages import SandboxMessage, receive, send
 
-Task = Callable[[dict[str, Any]], Message]
+Task = Callable[[dict[str, Any]], SandboxMessage]
 
 
 TASKS: dict[str, Task] = {
@@ -35,22 +35,22 @@ TASKS: dict[str, Task] = {
 """What the child can do, by the name in a request."""
 
 
-def answer(request: dict[str, Any]) -> Message:
+def answer(request: dict[str, Any]) -> SandboxMessage:
     """The task's result, or a header with the reason why there is none."""
     path = Path(request["path"])
     try:
         message = TASKS[request["task"]](request)
     except RegolithError as error:
-        return Message({"status": "refused", "sentence": str(error)})
+        return SandboxMessage({"status": "refused", "sentence": str(error)})
     except MemoryError:
-        return Message({"status": "memory"})
+        return SandboxMessage({"status": "memory"})
     except OSError as error:
         sentence = message_about(path, f"cannot be opened: {os_error_reason(error)}.")
-        return Message({"status": "refused", "sentence": sentence})
+        return SandboxMessage({"status": "refused", "sentence": sentence})
     except Exception as error:  # noqa: BLE001 (whatever a parser trips over is the file's fault)
         sentence = message_about(path, "is damaged; export it again.")
-        return Message({"status": "refused", "sentence": sentence, "details": repr(error)})
-    return Message({**message.header, "status": "read"}, message.arrays)
+        return SandboxMessage({"status": "refused", "sentence": sentence, "details": repr(error)})
+    return SandboxMessage({**message.header, "status": "read"}, message.arrays)
 
 
 def main() -> None:
@@ -59,7 +59,7 @@ def main() -> None:
     limit = int(sys.argv[1]) if len(sys.argv) > 1 else 0
     _limit_memory(limit)
     warnings.simplefilter("ignore")
-    send(sink, Message({"status": "ready", "pid": os.getpid()}))
+    send(sink, SandboxMessage({"status": "ready", "pid": os.getpid()}))
     len(MESH_FORMATS)  # imports them while the parent is busy with what to request_within
     with contextlib.suppress(EOFError, OSError, KeyboardInterrupt):
         while True:

@@ -32,14 +32,14 @@ class Writable(Protocol):
 
 
 @dataclass(frozen=True)
-class Message:
+class SandboxMessage:
     """A JSON-able header and numpy arrays."""
 
     header: dict[str, Any]
     arrays: tuple[NDArray[Any], ...] = ()
 
 
-def send(stream: Writable, message: Message) -> None:
+def send(stream: Writable, message: SandboxMessage) -> None:
     """Write a whole message.
 
     Raises
@@ -56,7 +56,7 @@ def send(stream: Writable, message: Message) -> None:
             _write_all(stream, array.data.cast("B"))
 
 
-def receive(stream: Readable) -> Message:
+def receive(stream: Readable) -> SandboxMessage:
     """Read a whole message.
 
     Raises
@@ -76,7 +76,7 @@ def receive(stream: Readable) -> Message:
         if array.size:
             _fill(stream, array.data.cast("B"))
         arrays.append(array)
-    return Message(header, tuple(arrays))
+    return SandboxMessage(header, tuple(arrays))
 
 
 def _write_all(stream: Writable, data: bytes | memoryview) -> None:

@@ -13,7 +13,7 @@ from typing import Any
 
 from regolith_studio.errors import FileError, MissingRequirement, os_error_reason
 from regolith_studio.readers.error_messages import message_about
-from regolith_studio.readers.sandbox.messages import Message, receive, send
+from regolith_studio.readers.sandbox.messages import SandboxMessage, receive, send
 
 MAX_FILE_BYTES = 2 * 1024**3
 MAX_MEMORY = 6 * 1024**3
@@ -60,7 +60,7 @@ class Sandbox:
         with self._lock:
             self._running_process()
 
-    def request(self, task: str, path: Path, **options: Any) -> Message:
+    def request(self, task: str, path: Path, **options: Any) -> SandboxMessage:
         """Let the child do `task` on the file at `path`.
 
         Raises
@@ -74,7 +74,7 @@ class Sandbox:
 
     def request_within(
         self, task: str, path: Path, seconds: float, work: float | None = None, **options: Any
-    ) -> Message:
+    ) -> SandboxMessage:
         """As `request`, with explicit limits and without a check of the file's size.
 
         Parameters
@@ -90,7 +90,7 @@ class Sandbox:
         limits = {"seconds": seconds + 2.0, "work": work}
         header = {"task": task, "path": str(path.absolute()), **limits, **options}
         with self._lock:
-            message = self._answer(Message(header), seconds)
+            message = self._answer(SandboxMessage(header), seconds)
         match message.header["status"]:
             case "read":
                 return message
@@ -127,7 +127,7 @@ class Sandbox:
                 if pipe is not None:
                     pipe.close()
 
-    def _answer(self, message: Message, seconds: float) -> Message:
+    def _answer(self, message: SandboxMessage, seconds: float) -> SandboxMessage:
         """The child's answer, or a message of status ``late``, ``busy`` or ``dead``."""
         answer = self._exchange(self._running_process(), message, seconds)
         if answer.header["status"] == "unheard":
@@ -138,7 +138,9 @@ class Sandbox:
                 self._start_process()
         return answer
 
-    def _exchange(self, process: subprocess.Popen[bytes], message: Message | None, seconds: float) -> Message:
+    def _exchange(
+        self, process: subprocess.Popen[bytes], message: SandboxMessage | None, seconds: float
+    ) -> SandboxMessage:
         """Send a message and wait for the answer, no longer than `seconds`."""
         late = threading.Event()
 
@@ -152,12 +154,12 @@ class Sandbox:
             if message is not None:
                 send(process.stdin, message)  # type: ignore[arg-type]
         except OSError:
-            return Message({"status": "unheard"})
+            return SandboxMessage({"status": "unheard"})
         watch.start()
         try:
             return receive(process.stdout)  # type: ignore[arg-type]
         except (EOFError, OSError, ValueError, KeyError):
-            return Message({"status": "late" if late.is_set() else _exit_reason(process)})
+            return SandboxMessage({"status": "late" if late.is_set() else _exit_reason(process)})
         except BaseException:
             self.close()
             raise
@@ -197,7 +199,7 @@ def _exit_reason(process: subprocess.Popen[bytes]) -> str:
     return "dead"
 
 
-def _must_replace_child(answer: Message) -> bool:
+def _must_replace_child(answer: SandboxMessage) -> bool:
     """Whether the child has ended, or holds so much memory that it should be replaced."""
     size = sum(array.nbytes for array in answer.arrays)
     return answer.header["status"] not in ("read", "refused") or size > MAX_WARM_RESULT_BYTES

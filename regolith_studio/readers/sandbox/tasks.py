@@ -19,14 +19,14 @@ from regolith_studio.readers.position_formats import (
     PositionFormat,
     position_suffixes,
 )
-from regolith_studio.readers.sandbox.messages import Message
+from regolith_studio.readers.sandbox.messages import SandboxMessage
 from regolith_studio.readers.volume_formats import VOLUME_FORMATS, volume_suffixes
 
 MAX_COORDINATE = 1e40
 """Beyond it the sixth powers in the checks would leave the range of float64."""
 
 
-def read_mesh_file(request: dict[str, Any]) -> Message:
+def read_mesh_file(request: dict[str, Any]) -> SandboxMessage:
     """Vertices and faces of the file at ``request["path"]``."""
     path = Path(request["path"])
     data = path.read_bytes()
@@ -37,7 +37,7 @@ def read_mesh_file(request: dict[str, Any]) -> Message:
         "shares_vertices": row.shares_vertices,
         "sha256": hashlib.sha256(data).hexdigest(),
     }
-    return Message(header, (parsed.vertices.astype("<f8"), parsed.faces.astype("<i8")))
+    return SandboxMessage(header, (parsed.vertices.astype("<f8"), parsed.faces.astype("<i8")))
 
 
 def parse_mesh(data: bytes, path: Path) -> tuple[ParsedMesh, MeshFormat]:
@@ -118,7 +118,7 @@ def _checked_mesh(parsed: ParsedMesh) -> ParsedMesh:
 MAX_POSITION = 1e30
 
 
-def read_positions_file(request: dict[str, Any]) -> Message:
+def read_positions_file(request: dict[str, Any]) -> SandboxMessage:
     """Points and perhaps diameters of the file at ``request["path"]``."""
     path = Path(request["path"])
     parsed, row = parse_positions(path.read_bytes(), path)
@@ -130,10 +130,10 @@ def read_positions_file(request: dict[str, Any]) -> Message:
         "diameter_unit": parsed.diameter_unit,
     }
     arrays = (parsed.points, *(() if parsed.diameters is None else (parsed.diameters,)))
-    return Message(header, tuple(np.ascontiguousarray(array, "<f8") for array in arrays))
+    return SandboxMessage(header, tuple(np.ascontiguousarray(array, "<f8") for array in arrays))
 
 
-def read_number_rows(request: dict[str, Any]) -> Message:
+def read_number_rows(request: dict[str, Any]) -> SandboxMessage:
     """The rows of the text at ``request["path"]`` below at most ``request["headers"]`` lines of header."""
     path = Path(request["path"])
     data = path.read_bytes()
@@ -143,7 +143,7 @@ def read_number_rows(request: dict[str, Any]) -> Message:
     except FileError as error:
         raise FileError(message_about(path, str(error))) from None
     first = next((line for line in data.splitlines() if line.strip()[:1].isdigit()), b"")
-    return Message(
+    return SandboxMessage(
         {"names": table.names, "commas": b"," in first}, (np.ascontiguousarray(table.numbers, "<f8"),)
     )
 
@@ -196,13 +196,13 @@ def _checked_positions(parsed: ParsedPositions) -> ParsedPositions:
     return replace(parsed, points=points[good], diameters=kept, notes=(*parsed.notes, note))
 
 
-def spin(_request: dict[str, Any]) -> Message:
+def spin(_request: dict[str, Any]) -> SandboxMessage:
     """Use the processor without end; for tests of the limits."""
     while True:
         pass
 
 
-def sleep(_request: dict[str, Any]) -> Message:
+def sleep(_request: dict[str, Any]) -> SandboxMessage:
     """Sleep without end; for tests of the limits."""
     time.sleep(3600.0)
-    return Message({})
+    return SandboxMessage({})

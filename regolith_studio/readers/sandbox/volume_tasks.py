@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from regolith_studio.errors import FileError
 from regolith_studio.readers.error_messages import message_about, printable
 from regolith_studio.readers.formats import mesh_suffixes
-from regolith_studio.readers.sandbox.messages import Message
+from regolith_studio.readers.sandbox.messages import SandboxMessage
 from regolith_studio.readers.units import UNITS
 from regolith_studio.readers.volume_formats import VOLUME_FORMATS, WITH_AXES, VolumeFormat, volume_suffixes
 from regolith_studio.readers.voxels.header import OpenVolume, Sizes, VoxelHeader, checked_header
@@ -23,7 +23,7 @@ _opened: dict[str, tuple[OpenVolume, VolumeFormat]] = {}
 """At most one volume, by the request that opened it."""
 
 
-def prepare_volume(request: dict[str, Any]) -> Message:
+def prepare_volume(request: dict[str, Any]) -> SandboxMessage:
     """Import what the format of the file needs; the only step that may take long on a small file."""
     path = Path(request["path"])
     try:
@@ -31,20 +31,20 @@ def prepare_volume(request: dict[str, Any]) -> Message:
     except FileError as error:
         raise FileError(message_about(path, str(error))) from None
     row.prepare()
-    return Message({"format": row.key})
+    return SandboxMessage({"format": row.key})
 
 
-def open_volume(request: dict[str, Any]) -> Message:
+def open_volume(request: dict[str, Any]) -> SandboxMessage:
     """The header of the volume that the request names, which stays open for `read_slices`."""
     path = Path(request["path"])
     try:
         volume, row = _open_one(request)
     except FileError as error:
         raise FileError(message_about(path, str(error))) from None
-    return Message(_as_json(volume, row, volume_format_of(path)[1]))
+    return SandboxMessage(_as_json(volume, row, volume_format_of(path)[1]))
 
 
-def read_slices(request: dict[str, Any]) -> Message:
+def read_slices(request: dict[str, Any]) -> SandboxMessage:
     """Slices ``request["z0"]`` to ``request["z1"]``, shape (z1 - z0, ny, nx)."""
     path = Path(request["path"])
     try:
@@ -53,7 +53,7 @@ def read_slices(request: dict[str, Any]) -> Message:
         voxels = read_checked_slices(volume, z0, z1)
     except FileError as error:
         raise FileError(message_about(path, str(error))) from None
-    return Message({}, (_little(voxels),))
+    return SandboxMessage({}, (_little(voxels),))
 
 
 def read_checked_slices(volume: OpenVolume, z0: int, z1: int) -> NDArray[Any]:

@@ -215,7 +215,7 @@ MAX_CLASSES = 8
 """Classes of a segmentation that numbers all of them, as ilastik's simple one does."""
 
 
-def kind_of(slices: NDArray[Any]) -> Kind:
+def guess_kind(slices: NDArray[Any]) -> Kind:
     """``labels`` if each particle seems to have its own number, else ``grey``.
 
     Labels are whole numbers, not negative, constant over wide areas, and each of them is in few

@@ -13,29 +13,15 @@ from regolith_studio.errors import FileError, InputError
 from regolith_studio.imaging.volume import Volume, VolumeKind
 from regolith_studio.readers.error_messages import message_about, printable
 from regolith_studio.readers.sandbox.parent import Sandbox
-from regolith_studio.readers.volumes.files import volume_files
 from regolith_studio.readers.volumes.header import (
     RawLayout,
     VolumeHeader,
     VoxelSize,
-    kind_of,
+    guess_kind,
     voxel_size_in_micrometres,
 )
 from regolith_studio.readers.volumes.slabs import SlabReader, SliceListener, open_slab_reader
-from regolith_studio.readers.voxels.header import DatasetEntry, Shape, Sizes
-
-__all__ = [
-    "Bounds",
-    "RawLayout",
-    "VolumeFile",
-    "VolumeHeader",
-    "datasets_in",
-    "describe_volume",
-    "guess_kind",
-    "open_slabs",
-    "read_volume",
-    "volume_files",
-]
+from regolith_studio.readers.voxels.header import Shape, Sizes
 
 Bounds = tuple[tuple[int, int], tuple[int, int], tuple[int, int]]
 """First voxel and the one after the last, along x, y and z."""
@@ -135,20 +121,20 @@ def describe_volume(
         With one sentence if the file cannot be read.
     """
     file = open_slab_reader(Path(path), dataset, raw, sandbox, axes)
-    said = file.header
-    nz, ny, nx = said.shape
+    header = file.header
+    nz, ny, nx = header.shape
     return VolumeHeader(
         path=file.path,
         format=file.format,
         shape=(nx, ny, nz),
-        dtype=said.dtype,
-        voxel_size=said.voxel_size,
-        unit=said.unit,
-        kind=said.kind or _guessed(file),
-        datasets=said.datasets,
-        dataset=said.dataset,
-        bytes=said.nbytes,
-        notes=said.notes,
+        dtype=header.dtype,
+        voxel_size=header.voxel_size,
+        unit=header.unit,
+        kind=header.kind or _guess_kind(file),
+        datasets=header.datasets,
+        dataset=header.dataset,
+        bytes=header.nbytes,
+        notes=header.notes,
     )
 
 
@@ -194,7 +180,7 @@ def read_volume(
     edges = voxel_size_in_micrometres(file.path, (file.header.voxel_size, file.header.unit), voxel_size, unit)
     box = _checked_bounds(file, bounds)
     _check_memory(file, box)
-    kind = kind or file.header.kind or _guessed(file)
+    kind = kind or file.header.kind or _guess_kind(file)
     array = _read_box(file, box, on_progress)
     if kind == "labels" and array.dtype.kind == "f":
         array = _whole_numbers(file.path, array)
@@ -219,37 +205,19 @@ def open_slabs(
     file = open_slab_reader(Path(path), dataset, raw, sandbox, axes)
     edges = voxel_size_in_micrometres(file.path, (file.header.voxel_size, file.header.unit), voxel_size, unit)
     nz, ny, nx = file.header.shape
-    kind = kind or file.header.kind or _guessed(file)
+    kind = kind or file.header.kind or _guess_kind(file)
     dtype = np.dtype(np.int64) if kind == "labels" and file.header.dtype.kind == "f" else file.header.dtype
     return VolumeFile((nx, ny, nz), dtype, edges, kind, _name_of(file), file.header.notes, file)
 
 
-def datasets_in(path: str | Path, *, sandbox: Sandbox | None = None) -> tuple[DatasetEntry, ...]:
-    """The volumes in a file that can hold several (HDF5); empty for the other formats.
-
-    Raises
-    ------
-    FileError
-        With one sentence if the file cannot be read.
-    """
-    return open_slab_reader(Path(path), sandbox=sandbox).header.datasets
-
-
-def guess_kind(volume: Volume | NDArray[Any]) -> VolumeKind:
-    """``labels`` or ``grey``, judged by three slices of a volume indexed [x, y, z]."""
-    array = volume.array if isinstance(volume, Volume) else volume
-    places = sorted({int(share * array.shape[2]) for share in _SAMPLES})
-    return kind_of(np.ascontiguousarray(array[:, :, places].T))
-
-
-def _guessed(file: SlabReader) -> VolumeKind:
+def _guess_kind(file: SlabReader) -> VolumeKind:
     """The kind, judged by slices from the middle, or from what comes first where that is quicker."""
     depth, slice_bytes = file.header.shape[0], file.header.slice_bytes
     if file.in_order:
         depth = min(depth, max(1, 4 * _SAMPLE_BYTES // slice_bytes))
     n_samples = max(1, min(len(_SAMPLES), _SAMPLE_BYTES // slice_bytes))
     places = sorted({int(share * depth) for share in _SAMPLES[:n_samples]})
-    return kind_of(np.concatenate([file.read(place, place + 1) for place in places]))
+    return guess_kind(np.concatenate([file.read(place, place + 1) for place in places]))
 
 
 def _checked_bounds(file: SlabReader, bounds: Bounds | None) -> Bounds:

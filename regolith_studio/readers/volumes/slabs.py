@@ -88,7 +88,7 @@ class SlabReader:
         first, last = z0 // self.layer * self.layer, -(-z1 // self.layer) * self.layer
         return (min(last, self.header.shape[0]) - first) * self.header.slice_bytes
 
-    def read(self, z0: int, z1: int, into: NDArray[Any] | None = None) -> NDArray[Any]:
+    def read(self, z0: int, z1: int) -> NDArray[Any]:
         """Slices z0 to z1, shape (z1 - z0, ny, nx).
 
         Raises
@@ -96,7 +96,7 @@ class SlabReader:
         FileError
             If the file is damaged there.
         """
-        out = np.empty((z1 - z0, *self.header.shape[1:]), self.header.dtype) if into is None else into
+        out = np.empty((z1 - z0, *self.header.shape[1:]), self.header.dtype)
         for start, end in self.pieces(z0, z1):
             out[start - z0 : end - z0] = self._piece(start, end)
         return out

@@ -19,7 +19,7 @@ _MAX_DESCRIPTION = 100_000
 _INCH, _CENTIMETRE = 25.4, 10.0
 """Millimetres."""
 _PRINTERS = (72, 96, 100, 150, 180, 200, 240, 300, 360, 400, 600, 720, 1200, 2400)
-"""Resolutions, in dots per inch, that programs write when they know none."""
+"""Resolutions for printing, in dots per inch, that programs write by default."""
 _CUBIC = N_(
     "The file states the width of a pixel only; the slices were assumed to be the same distance apart."
 )
@@ -46,10 +46,11 @@ class _ErrorLog(logging.Handler):
 
 
 def open_tiff_file(path: Path) -> Any:
-    """An open ``tifffile.TiffFile`` whose pages have all been found.
+    """Open a ``tifffile.TiffFile`` and check that all pages can be found.
 
-    tifffile only logs it when the chain of pages breaks off, goes in a circle or lacks strips, and gives the
-    pages that it has found: a file that is cut short would become a smaller volume. So its log decides.
+    Where the chain of pages is broken or circular, or strips are missing, tifffile only logs an error and
+    returns the pages that it has found: a truncated file would become a smaller volume. Hence the log is
+    checked.
 
     Raises
     ------
@@ -85,7 +86,7 @@ def open_tiff_file(path: Path) -> Any:
 def check_page(page: Any, size: int, number: int) -> None:
     """Check that the strips or tiles of a page are all there and lie within the `size` bytes of the file.
 
-    tifffile fills with zeros what it cannot find.
+    tifffile fills missing pixels with zeros.
 
     Raises
     ------
@@ -102,7 +103,7 @@ def check_page(page: Any, size: int, number: int) -> None:
 
 
 def stated_size(file: Any) -> Stated:
-    """Edges along x, y and z in a unit, the unit, and notes; None where the file does not say.
+    """Edges along x, y and z in a unit, the unit, and notes; None where the file does not state it.
 
     Parameters
     ----------
@@ -143,7 +144,7 @@ def _ome(description: str) -> Stated:
 
 
 def _resolution(page: Any) -> Stated:
-    """Pixels per inch or centimetre, unless it is only what a printer would want."""
+    """Pixels per inch or centimetre, unless it is a resolution for printing."""
     tag = page.tags.get("ResolutionUnit")
     pixel = _pixel(page)
     millimetres = {2: _INCH, 3: _CENTIMETRE}.get(int(tag.value)) if tag is not None else None
