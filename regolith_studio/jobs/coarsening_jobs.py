@@ -88,7 +88,7 @@ class CoarsenedParticle:
     problem
         Why it failed, in one sentence.
     coefficients
-        Of the fit cut at the order's l_max; ``None`` where none was made.
+        Of the fit cut at the request's l_max; ``None`` where none was made.
     notes
         What to know about the particle: repairs of its mesh, warnings of its fit.
     seconds
@@ -113,12 +113,12 @@ def coarsen_one(mesh: Mesh, request: CoarseningRequest, particle_index: int = 0)
 def coarsen_particle(
     particle: Particle, request: CoarseningRequest, index: int, fit: HarmonicFit | None = None
 ) -> Steps:
-    """Fit (where the order says so) and coarsen one particle of a sample; returns `CoarsenedParticle`.
+    """Fit (where requested) and coarsen one particle of a sample; returns `CoarsenedParticle`.
 
     Parameters
     ----------
     fit
-        Of the particle by the order's options, to at least its degree, if there is one already.
+        Of the particle by the request's options, to at least its degree, if there is one already.
     """
     yield Started(f"Coarsening {particle.name}")
     begun = time.perf_counter()
@@ -140,7 +140,7 @@ def coarsen_sample(
 ) -> Steps:
     """Fit and coarsen every particle; returns a tuple of :class:`CoarsenedParticle`.
 
-    A particle that fails is told with its sentence and does not stop the others. The results do not
+    A particle that fails is reported with its message and does not stop the others. The results do not
     depend on `workers` (0: one process a core), and with their `indices` in a larger sample (by default
     0, 1, 2 ...) not on which of its particles are coarsened.
     """

@@ -135,18 +135,18 @@ def coarsen_chosen(
     DatasetError
         If so many fail that too few particles are left.
     """
-    wish = options.representatives or RepresentativesRequest()
+    wanted = options.representatives or RepresentativesRequest()
     known: dict[int, CoarsenedParticle] = {}
     while True:
-        chosen = choose_particles(population, wish)
+        chosen = choose_particles(population, wanted)
         fresh = [at for at in chosen.places if at not in known]
-        wanted = [particles[at] for at in fresh]
-        outcomes = yield from coarsen_sample(wanted, request, options.workers, fresh)
+        fresh_particles = [particles[at] for at in fresh]
+        outcomes = yield from coarsen_sample(fresh_particles, request, options.workers, fresh)
         known |= {one.index: one for one in outcomes}
         failed = {at for at in chosen.places if known[at].coarsened is None}
         if not failed:
             return chosen.measured(population), tuple(known[at] for at in chosen.places)
-        if len(population.kept) - len(failed) < wish.count:
+        if len(population.kept) - len(failed) < wanted.count:
             first = known[min(failed)]
             raise DatasetError(f"Too few particles can be coarsened; {first.name}: {first.problem}")
         population = population.without(failed)
@@ -193,7 +193,7 @@ def dataset_of(
     if not good:
         first = next((each.problem for each in outcomes), "there are no particles")
         raise DatasetError(f"No particle could be coarsened, so there is no dataset: {first}")
-    told = _provenance_of(outcomes, request, preset)
+    source = _provenance_of(outcomes, request, preset)
     weighting: Weighting = "number"
     classes: list[ShapeClass] = [singleton_class(particle) for particle, _ in good]
     if chosen is not None:
@@ -202,11 +202,11 @@ def dataset_of(
             f"{len(classes)} representatives of {chosen.n_particles} particles by k-medoids on shape "
             f"descriptors, weighted by {weighting}."
         )
-        steps = (told.processing_steps[0], step, *told.processing_steps[1:])
-        told = replace(told, processing_steps=steps, representation=chosen.representation)
+        steps = (source.processing_steps[0], step, *source.processing_steps[1:])
+        source = replace(source, processing_steps=steps, representation=chosen.representation)
     if sizing is not None:
         classes = [replace(one, sizes=sizing(one)) for one in classes]
-    return build_dataset(good, classes, name=name, weighting=weighting, provenance=told)
+    return build_dataset(good, classes, name=name, weighting=weighting, provenance=source)
 
 
 def _provenance_of(
@@ -252,12 +252,12 @@ def dataset_provenance(
 
 def _changed_options(fit_options: FitOptions) -> str:
     """What was not done as usual, to be put into a sentence."""
-    told = [
+    changed = [
         f"{name.replace('_', ' ')} {value}"
         for name, value in asdict(fit_options).items()
         if value != getattr(DEFAULT_FIT_OPTIONS, name)
     ]
-    return f" ({', '.join(told)})" if told else ""
+    return f" ({', '.join(changed)})" if changed else ""
 
 
 def export_dataset_folder(

@@ -103,7 +103,7 @@ class AnnealingLesson:
 def trace_annealing(mesh: Mesh, request: CoarseningRequest, particle_index: int = 0) -> Steps:
     """Anneal and keep every iteration, then coarsen exactly; returns an :class:`AnnealingLesson`.
 
-    The seed, weights and number of facets are those of the order, and its settings if they are those of the
+    The seed, weights and number of facets are those of the request, and its settings if they are those of the
     annealing: the last polyhedron is that of the method itself.
 
     Raises

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from regolith_studio.descriptors.distributions import Distribution
+from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.jobs.events import Partial, Progress, Started, Step, Steps
 from regolith_studio.jobs.study_jobs import study_population
 from regolith_studio.messages import N_
@@ -24,8 +26,7 @@ from regolith_studio.studies.population_distances import WEIGHTINGS
 
 if TYPE_CHECKING:  # imports matplotlib, which the page does not need before an evaluation
     from matplotlib.figure import Figure
-from regolith_studio.descriptors.distributions import Distribution
-from regolith_studio.geometry.arrays import FloatArray
+
 
 DOTS_PER_INCH = 110
 FIGURE_COLUMNS = 5

@@ -3,32 +3,18 @@
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from regolith_studio.errors import GeometryError, RegolithError
+from regolith_studio.errors import GeometryError, InputError, RegolithError
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
-from regolith_studio.harmonics.surface import reconstruct
-from regolith_studio.jobs.events import Progress, Started, Steps
-from regolith_studio.messages import N_
-from regolith_studio.readers.shape_files import ShapeSource
-from regolith_studio.shape_models.models import MODELS
-from regolith_studio.shape_models.protocol import FittedModel
-from regolith_studio.shape_models.realizations import Realizations, virtual_mesh
-from regolith_studio.shape_models.sample import Sample
-
-if TYPE_CHECKING:  # matplotlib: the page is opened more often than models are draw_evaluation_figures on it
-    pass
-
-from pathlib import Path
-
-from regolith_studio.errors import InputError
 from regolith_studio.harmonics.fit import HarmonicFit
-from regolith_studio.harmonics.surface import DEFAULT_LEVEL
+from regolith_studio.harmonics.surface import DEFAULT_LEVEL, reconstruct
 from regolith_studio.io.stl import stl_bytes
-from regolith_studio.jobs.events import Job
+from regolith_studio.jobs.events import Job, Progress, Started, Steps
 from regolith_studio.jobs.executor import Executor, open_executor, value_of
 from regolith_studio.jobs.particle_jobs import (
     FIT_DEGREE,
@@ -37,11 +23,14 @@ from regolith_studio.jobs.particle_jobs import (
     fit_sample,
     measure_particle,
 )
-from regolith_studio.readers.shape_files import radius_of
+from regolith_studio.messages import N_
+from regolith_studio.readers.shape_files import ShapeSource, radius_of
 from regolith_studio.shape_models.chunked_sampling import joined
 from regolith_studio.shape_models.materials import MaterialCard
-from regolith_studio.shape_models.models import DEFAULT_MODEL, model_settings
-from regolith_studio.shape_models.protocol import SizeRange
+from regolith_studio.shape_models.models import DEFAULT_MODEL, MODELS, model_settings
+from regolith_studio.shape_models.protocol import FittedModel, SizeRange
+from regolith_studio.shape_models.realizations import Realizations, virtual_mesh
+from regolith_studio.shape_models.sample import Sample
 from regolith_studio.shape_models.size_law import checked_bounds
 
 STL_HEADER = "Regolith Studio, virtual particle, micrometres"
@@ -49,6 +38,12 @@ CARD_MODEL = "log_field"
 PAPER_DEGREE = 10
 BATCH_SIZE = 20
 """Particles that one process makes at a time."""
+N_EXAMPLES = 6
+EXAMPLE_LEVEL = 4
+"""Icosphere level of the examples."""
+MAX_SIZED = 10_000
+"""Drawn particles whose sizes are computed at once."""
+ModelOrigin = ShapeSource | tuple[Particle, ...]
 
 
 @dataclass(frozen=True)
@@ -96,7 +91,7 @@ class GenerationRequest:
 
 
 def fit_request_for(request: GenerationRequest | None = None) -> FitRequest:
-    """How meshes are expanded for an order: to twice its degree, which ``sample_matched`` likes."""
+    """How meshes are expanded for a request: to twice its degree, which ``sample_matched`` needs."""
     degree = PAPER_DEGREE if request is None or request.l_max is None else request.l_max
     return FitRequest(min(FIT_DEGREE, 2 * degree))
 
@@ -127,12 +122,12 @@ def source_of_fits(particles: Sequence[Particle], fits: Sequence[HarmonicFit | s
 
 
 def fit_model(source: ShapeSource, request: GenerationRequest) -> Steps:
-    """The fitted model that an order asks for of a source; returns a ``FittedModel``.
+    """Fit the model that a request names to a source; returns a ``FittedModel``.
 
     Raises
     ------
     InputError
-        If source and order do not go together, or the model cannot be fitted.
+        If source and request do not go together, or the model cannot be fitted.
     """
     content = source.content
     yield Started(N_("Fitting the model"))
@@ -147,7 +142,7 @@ def fit_model(source: ShapeSource, request: GenerationRequest) -> Steps:
 
 
 def draw(model: FittedModel, request: GenerationRequest) -> Steps:
-    """The particles of an order, chunk by chunk; returns :class:`Realizations`."""
+    """Draw the particles of a request, chunk by chunk; returns :class:`Realizations`."""
     yield Started(N_("Drawing"), request.n)
     parts: list[Realizations] = []
     for part in model.draw_chunks(request.n, request.seed, request.size_range):
@@ -267,20 +262,6 @@ def _write_batch(draws: Realizations, groups: tuple[str, ...], level: int, folde
     return tuple(facts)
 
 
-N_EXAMPLES = 6
-
-
-EXAMPLE_LEVEL = 4
-"""Icosphere level of the examples."""
-
-
-MAX_SIZED = 10_000
-"""Drawn particles whose sizes are told at once."""
-
-
-ModelOrigin = ShapeSource | tuple[Particle, ...]
-
-
 @dataclass(frozen=True, eq=False)
 class ModelFitResult:
     """A fitted model, what it was fitted to, and some of the measured particles at its degree.
@@ -335,13 +316,13 @@ def fit_shapes(origin: ModelOrigin, request: GenerationRequest, half: bool = Fal
     else:
         source = origin
     sample = source.content if isinstance(source.content, Sample) else None
-    seen = source
+    fitted_to = source
     if sample is not None and half:
-        seen = ShapeSource(
+        fitted_to = ShapeSource(
             sample.chosen(sample.halves(request.seed)[0]), source.name, source.sha256, source.notes
         )
-    model: FittedModel = yield from fit_model(seen, request)
-    n_fitted = len(seen.content) if isinstance(seen.content, Sample) else 0
+    model: FittedModel = yield from fit_model(fitted_to, request)
+    n_fitted = len(fitted_to.content) if isinstance(fitted_to.content, Sample) else 0
     first: Mesh | None = None
     with suppress(RegolithError):
         first = live_mesh(model, 0)
@@ -352,7 +333,7 @@ def fit_shapes(origin: ModelOrigin, request: GenerationRequest, half: bool = Fal
 
 
 def draw_shapes(model: FittedModel, request: GenerationRequest) -> Steps:
-    """Draw the particles of an order; returns :class:`GenerationResult`."""
+    """Draw the particles of a request; returns :class:`GenerationResult`."""
     draws: Realizations = yield from draw(model, request)
     meshes = [virtual_mesh(draws, i, EXAMPLE_LEVEL) for i in range(min(N_EXAMPLES, len(draws)))]
     radii = draws.equivalent_radii() if 0 < len(draws) <= MAX_SIZED else None

@@ -28,6 +28,9 @@ from regolith_studio.readers.particles import (
     sample_particles,
 )
 
+FIT_DEGREE = 30
+"""Everything is fitted to this degree once; lower ones are truncations of that fit."""
+
 
 def load_particles(paths: Sequence[Path], unit: str = "um", repair: bool = True) -> Steps:
     """Read the meshes in `paths` (files and folders); returns :class:`LoadedParticles`.
@@ -55,7 +58,7 @@ def load_sample() -> Steps:
 
 @dataclass(frozen=True)
 class MeasuredParticle:
-    """What is known of a particle before anything is fitted.
+    """Health, descriptors and visibility of a particle, before anything is fitted.
 
     Parameters
     ----------
@@ -77,30 +80,30 @@ def measure_particle(particle: Particle, box_metric: str = "exact") -> MeasuredP
     """Health, descriptors and visibility of one particle; never raises for what is wrong with the mesh."""
     known = particle.repair
     health = known.health_after if known and known.mesh is particle.mesh else inspect(particle.mesh)
-    seen = _seen(particle)
+    visibility = _visibility(particle)
     try:
-        return MeasuredParticle(health, describe(particle.mesh, box_metric=box_metric), "", seen)
+        return MeasuredParticle(health, describe(particle.mesh, box_metric=box_metric), "", visibility)
     except RegolithError as error:
-        return MeasuredParticle(health, None, str(error), seen)
+        return MeasuredParticle(health, None, str(error), visibility)
 
 
-def _seen(particle: Particle) -> StarPointVisibility | None:
+def _visibility(particle: Particle) -> StarPointVisibility | None:
     try:
         return star_point_visibility(particle.mesh)
     except RegolithError:
         return None
 
 
-def find_faults(particle: Particle, seen: StarPointVisibility | None = None) -> Steps:
-    """Where a mesh is wrong or was before it was mended, and what its star point cannot see.
+def find_faults(particle: Particle, visibility: StarPointVisibility | None = None) -> Steps:
+    """Where a mesh is faulty or was before its repair, and what its star point cannot see.
 
     Returns the corners (k, 3, 3) of the triangles of each kind, as ``defect_triangles`` names them, and
     ``hidden``.
     """
     yield Started(N_("Looking for faults"))
     found: dict[str, FloatArray] = defect_triangles(particle)
-    if seen is not None and seen.hidden_surface_share > 0.0:
-        hidden = hidden_faces(particle.mesh, np.array(seen.star_point))
+    if visibility is not None and visibility.hidden_surface_share > 0.0:
+        hidden = hidden_faces(particle.mesh, np.array(visibility.star_point))
         found["hidden"] = particle.mesh.triangles[hidden]
     return found
 
@@ -114,19 +117,19 @@ def measure_one(particle: Particle, box_metric: str = "exact") -> Steps:
 def measure_particles(particles: Sequence[Particle], box_metric: str = "exact") -> Steps:
     """Each particle in order; partial results and the result are tuples of :class:`MeasuredParticle`, so far.
 
-    A partial result comes when an eighth more is known: what is copied grows as the number of particles
-    and not as its square.
+    A partial result comes when an eighth more is known, so that the copied tuples grow as the number of
+    particles and not as its square.
     """
     yield Started(N_("Measuring particles"), len(particles))
-    seen: list[MeasuredParticle] = []
+    measured: list[MeasuredParticle] = []
     due = 1
     for particle in particles:
-        seen.append(measure_particle(particle, box_metric))
-        if len(seen) >= due:
-            yield Partial(tuple(seen))
-            due = len(seen) + max(1, len(seen) // 8)
-        yield Progress(len(seen), len(particles), particle.name)
-    return tuple(seen)
+        measured.append(measure_particle(particle, box_metric))
+        if len(measured) >= due:
+            yield Partial(tuple(measured))
+            due = len(measured) + max(1, len(measured) // 8)
+        yield Progress(len(measured), len(particles), particle.name)
+    return tuple(measured)
 
 
 def measure_sample(
@@ -138,10 +141,6 @@ def measure_sample(
     with open_executor(workers) as executor:
         results = yield from executor.run_all(jobs, [particle.name for particle in particles])
     return tuple(value_of(result) for result in results)
-
-
-FIT_DEGREE = 30
-"""Everything is fitted to this degree once; lower ones are truncations of that fit."""
 
 
 @dataclass(frozen=True)

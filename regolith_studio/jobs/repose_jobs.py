@@ -283,7 +283,7 @@ def _finished_run(place: Path, dataset: Path, request: ReposeRequest) -> dict[st
 
 
 def with_value(request: ReposeRequest, key: str, value: Any) -> ReposeRequest:
-    """The same order with one value of Table 1, Table 2 or the case changed.
+    """The same request with one value of Table 1, Table 2 or the case changed.
 
     Raises
     ------
@@ -373,42 +373,47 @@ def values_in(key: str, text: str) -> tuple[float | str, ...]:
         raise InputError(f"Values of this kind are {kind} with commas between them, got {text!r}.") from error
 
 
-def run_repose_study(wish: ReposeStudyRequest, folder: Path) -> Steps:
-    """Do what was wished in a folder of its own, tables and figure at the end; returns ``ReposeStudy``."""
+def run_repose_study(study_request: ReposeStudyRequest, folder: Path) -> Steps:
+    """Run a study in a folder of its own and write its tables and figure; returns ``ReposeStudy``."""
     rows: list[ReposeVariant] = []
-    if wish.key not in SHAPE_KEYS:
-        assert wish.dataset is not None
+    if study_request.key not in SHAPE_KEYS:
+        assert study_request.dataset is not None
         rows = [
-            ReposeVariant(wish.key, value, wish.dataset, with_value(wish.request, wish.key, value))
-            for value in wish.values
+            ReposeVariant(
+                study_request.key,
+                value,
+                study_request.dataset,
+                with_value(study_request.request, study_request.key, value),
+            )
+            for value in study_request.values
         ]
     else:
-        yield Started("Angle of repose: datasets", len(wish.values))
-        for number, value in enumerate(wish.values):
-            place = folder / "datasets" / f"{wish.key}-{value}"
-            yield from _build_variant_dataset(wish, number, place)
-            rows.append(ReposeVariant(wish.key, value, place, wish.request))
-    study = yield from study_repose(rows, folder, wish.repeats)
+        yield Started("Angle of repose: datasets", len(study_request.values))
+        for number, value in enumerate(study_request.values):
+            place = folder / "datasets" / f"{study_request.key}-{value}"
+            yield from _build_variant_dataset(study_request, number, place)
+            rows.append(ReposeVariant(study_request.key, value, place, study_request.request))
+    study = yield from study_repose(rows, folder, study_request.repeats)
     from regolith_studio.studies.figures.repose import write_repose_study  # matplotlib
 
     write_repose_study(study, folder)
     return study
 
 
-def _build_variant_dataset(wish: ReposeStudyRequest, number: int, place: Path) -> Steps:
+def _build_variant_dataset(study_request: ReposeStudyRequest, number: int, place: Path) -> Steps:
     """A dataset of the open particles with one of the values; the same particles give the same bytes."""
-    assert wish.coarsening is not None
-    value = wish.values[number]
-    request = _with_shape_value(wish.coarsening, wish.key, value)
-    preset = str(value) if wish.key == "preset" else None
-    options = DatasetOptions(name=f"{wish.key} {value}", preset=preset, overwrite=True)
-    for step in build_dataset_folder(wish.particles, request, place, options):
+    assert study_request.coarsening is not None
+    value = study_request.values[number]
+    request = _with_shape_value(study_request.coarsening, study_request.key, value)
+    preset = str(value) if study_request.key == "preset" else None
+    options = DatasetOptions(name=f"{study_request.key} {value}", preset=preset, overwrite=True)
+    for step in build_dataset_folder(study_request.particles, request, place, options):
         if isinstance(step, Progress):
-            yield Progress(number, len(wish.values), f"dataset of {value}: {step.message}")
+            yield Progress(number, len(study_request.values), f"dataset of {value}: {step.message}")
 
 
 def _with_shape_value(request: CoarseningRequest, key: str, value: float | str) -> CoarseningRequest:
-    """The order with other facets or weights."""
+    """The request with another number of facets or other weights."""
     if key == "preset":
         known = presets()
         if value not in known:

@@ -125,7 +125,7 @@ def _with_answers(mapper: Mapper, answers: StudyCheckpoint | None) -> Mapper:
 
 
 def as_job_steps(steps: Generator[StudyProgress, None, Any]) -> Generator[Step, None, Any]:
-    """The story of a study in the events of jobs."""
+    """The steps of a study as events of a job."""
     while True:
         try:
             step = next(steps)

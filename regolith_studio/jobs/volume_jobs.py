@@ -58,7 +58,7 @@ class Scan:
     ----------
     volume
         Grey values or labels.
-    seen
+    histogram
         Histogram of its values, of some of them where there are many; none of labels.
     contrast
         Values to be shown black and white.
@@ -69,17 +69,17 @@ class Scan:
     """
 
     volume: Volume
-    seen: Histogram | None
+    histogram: Histogram | None
     contrast: tuple[float, float]
     sections: SliceImages
     scratch: ScratchArrays = field(default_factory=ScratchArrays)
 
     def level(self, settings: SegmentationSettings) -> float | None:
         """Where the threshold lies by the volume as it was scanned; none where there is no answer."""
-        if self.seen is None:
+        if self.histogram is None:
             return None
         try:
-            return level_of(self.seen, settings.threshold, self.volume.dtype)
+            return level_of(self.histogram, settings.threshold, self.volume.dtype)
         except RegolithError:
             return None
 
@@ -100,10 +100,10 @@ def scan_of(
     sections, scratch = sections or SliceImages(volume.array), scratch or ScratchArrays()
     if volume.kind == "labels":
         return Scan(volume, None, (0.0, 1.0), sections, scratch)
-    seen = histogram(_subsample(sections.sample))
-    share = np.cumsum(seen.counts) / seen.counts.sum()
-    low, high = (float(seen.centres[np.searchsorted(share, at)]) for at in _CONTRAST)
-    return Scan(volume, seen, (low, high if high > low else low + 1.0), sections, scratch)
+    distribution = histogram(_subsample(sections.sample))
+    share = np.cumsum(distribution.counts) / distribution.counts.sum()
+    low, high = (float(distribution.centres[np.searchsorted(share, at)]) for at in _CONTRAST)
+    return Scan(volume, distribution, (low, high if high > low else low + 1.0), sections, scratch)
 
 
 def read_header(given: VolumeInput) -> Steps:
@@ -270,7 +270,7 @@ def extract_file(given: VolumeInput, recipe: GrainSettings, scratch: Path | None
 def extract_each(
     given: VolumeInput, recipe: GrainSettings, scratch: Path | None, sink: Callable[[ExtractedParticle], None]
 ) -> Steps:
-    """As :func:`extract_file`, but each particle is handed to `sink` and forgotten, in the order of slabs."""
+    """As :func:`extract_file`, but each particle is passed to `sink` and not kept, in the order of slabs."""
     return (yield from _extract(given, recipe, scratch, partial(_pass_on, sink=sink)))
 
 

@@ -18,7 +18,7 @@ from regolith_studio.messages import N_
 from regolith_studio.session.choices import L_MAX_LIMIT, Choices
 from regolith_studio.session.dependencies import Kind
 from regolith_studio.studies.loss_variants import LossVariant, loss_variants, losses, paper_variants
-from regolith_studio.studies.polyhedron_gallery import GalleryPolyhedron, PolyhedronGallery
+from regolith_studio.studies.polyhedron_gallery import GalleryPolyhedron, GalleryStudy
 from regolith_studio.studies.sweeps import SWEEPS, parse_values
 
 CHOSEN = "chosen"
@@ -176,7 +176,7 @@ def study_gallery(
             for row, cell in enumerate(answer["rows"]):
                 cells[row, column] = cell if isinstance(cell, str) else GalleryPolyhedron.from_document(cell)
             yield Progress(column + 1, len(names), name)
-    return PolyhedronGallery(tuple(labels), tuple(names), cells)
+    return GalleryStudy(tuple(labels), tuple(names), cells)
 
 
 def coarsen_column(
@@ -196,15 +196,13 @@ def coarsen_column(
     return {"rows": cells}
 
 
-def solid_study(
-    solids: Sequence[GalleryCell], labels: Sequence[str], names: Sequence[str]
-) -> PolyhedronGallery:
+def solid_study(solids: Sequence[GalleryCell], labels: Sequence[str], names: Sequence[str]) -> GalleryStudy:
     """What has been drawn, as a study that can be written."""
     cells: dict[tuple[int, int], GalleryPolyhedron | str] = {}
     for each in solids:
         found = each.outcome.coarsened
         cells[each.row, each.column] = each.outcome.problem if found is None else GalleryPolyhedron.of(found)
-    return PolyhedronGallery(tuple(labels), tuple(names), cells)
+    return GalleryStudy(tuple(labels), tuple(names), cells)
 
 
 def _fit_of(particle: Particle, order: CoarseningRequest) -> HarmonicFit | str | None:

@@ -72,7 +72,7 @@ class GalleryPolyhedron:
 
 
 @dataclass(frozen=True, eq=False)
-class PolyhedronGallery:
+class GalleryStudy:
     """Some particles, each coarsened by every loss.
 
     Parameters
@@ -88,7 +88,7 @@ class PolyhedronGallery:
     cells: Mapping[tuple[int, int], GalleryPolyhedron | str]
 
 
-def gallery_table(study: PolyhedronGallery) -> Table:
+def gallery_table(study: GalleryStudy) -> Table:
     """Facets, errors and what no polyhedron can do better, a line a picture."""
     lines = [
         (study.rows[row], study.names[column], *_numbers(found))

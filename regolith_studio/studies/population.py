@@ -22,8 +22,8 @@ from regolith_studio.shape_models.models import MODELS
 from regolith_studio.shape_models.realizations import Realizations, virtual_mesh
 from regolith_studio.shape_models.sample import Sample
 from regolith_studio.studies.population_distances import (
-    Distances,
     Intervals,
+    PopulationDistances,
     distances,
     intervals,
     paired_columns,
@@ -67,10 +67,10 @@ class FitTask:
     seeds: tuple[int, ...]
 
 
-def fit_and_draw(order: FitTask) -> tuple[tuple[Realizations, ...], tuple[float, ...]]:
+def fit_and_draw(task: FitTask) -> tuple[tuple[Realizations, ...], tuple[float, ...]]:
     """Drawings from a fitted model, and Bayes' criterion of its parts if it has one."""
-    fitted = MODELS[order.key].fit(order.sample, order.options)
-    drawn = tuple(fitted.draw(order.n_draws, seed) for seed in order.seeds)
+    fitted = MODELS[task.key].fit(task.sample, task.options)
+    drawn = tuple(fitted.draw(task.n_draws, seed) for seed in task.seeds)
     return drawn, tuple(getattr(fitted, "bic", ()))
 
 
@@ -109,12 +109,12 @@ class StudyExecutor:
         return np.concatenate(rows)
 
     def drawn(
-        self, order: FitTask, message: str
+        self, task: FitTask, message: str
     ) -> Generator[StudyProgress, None, tuple[tuple[Realizations, ...], tuple[float, ...]]]:
         """As :func:`fit_and_draw`, by one process."""
         found: tuple[tuple[Realizations, ...], tuple[float, ...]] = (), ()
         yield self.progress(message)
-        for answer in self.mapper(fit_and_draw, (order,)):
+        for answer in self.mapper(fit_and_draw, (task,)):
             if answer is not None:
                 found = answer
             yield self.progress(message)
@@ -176,7 +176,7 @@ class ModelEvaluation:
     """
 
     key: str
-    distances: Distances
+    distances: PopulationDistances
     intervals: Intervals
     novelty: FloatArray
     rejected: FloatArray
@@ -199,7 +199,7 @@ class PopulationStudy:
     measured
         Descriptors of the sample's particles, shape (n, keys).
     floor
-        Distances between random halves.
+        PopulationDistances between random halves.
     models
         In the order asked for.
     n_draws
@@ -216,7 +216,7 @@ class PopulationStudy:
     l_max: int
     unit: str
     measured: FloatArray
-    floor: Distances
+    floor: PopulationDistances
     models: tuple[ModelEvaluation, ...]
     n_draws: int
     n_repeats: int
@@ -326,7 +326,7 @@ def _check_arguments(
 class _Round:
     """What one drawing from one fit came to; the novelty is worked out for the first drawing of each fit."""
 
-    distances: Distances
+    distances: PopulationDistances
     intervals: Intervals
     novelty: float | None
     rejected: float
@@ -343,15 +343,15 @@ class _TrainTestSplit:
     frames: FloatArray
     work: StudyExecutor
 
-    def floor(self, seed: int) -> Generator[StudyProgress, None, Distances]:
-        """Distances between random halves of the sample."""
+    def floor(self, seed: int) -> Generator[StudyProgress, None, PopulationDistances]:
+        """PopulationDistances between random halves of the sample."""
         found = []
         for split in range(N_FLOOR_SPLITS):
             train, test = self.sample.halves(seed + split)
             pair = (self.table[test], self.table[train])
             found.append(distances([pair], seed, self.work.size_column, first=split))
             yield self.work.progress(f"noise of sampling, split {split + 1}")
-        return Distances.joined(found)
+        return PopulationDistances.joined(found)
 
     def rounds(
         self, key: str, options: Any, split: int, plan: tuple[int, int, int]
@@ -361,8 +361,8 @@ class _TrainTestSplit:
         train, test = self.sample.halves(seed + split)
         seeds = tuple(seed + split * n_repeats + repeat for repeat in range(n_repeats))
         label = f"{MODELS[key].label}, split {split + 1}"
-        order = FitTask(key, options, self.sample.chosen(train), n_draws, seeds)
-        drawn, criterion = yield from self.work.drawn(order, f"{label}, fit")
+        task = FitTask(key, options, self.sample.chosen(train), n_draws, seeds)
+        drawn, criterion = yield from self.work.drawn(task, f"{label}, fit")
         found = []
         for repeat, draws in enumerate(drawn):
             message = f"{label}, draw {repeat + 1}"
@@ -390,7 +390,7 @@ def _evaluation_of(key: str, rounds: Sequence[_Round]) -> ModelEvaluation:
     }
     return ModelEvaluation(
         key,
-        Distances.joined([each.distances for each in rounds]),
+        PopulationDistances.joined([each.distances for each in rounds]),
         Intervals(**ends),
         np.array([each.novelty for each in rounds if each.novelty is not None]),
         np.array([each.rejected for each in rounds]),

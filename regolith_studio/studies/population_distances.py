@@ -1,4 +1,4 @@
-"""Distances between tables of descriptors, by number and by volume, and how sure they are."""
+"""PopulationDistances between tables of descriptors, by number and by volume, and how sure they are."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -23,8 +23,8 @@ MAX_PAIRED = 5
 
 
 @dataclass(frozen=True, eq=False)
-class Distances:
-    """Distances over rounds (draws from a model fitted to a half, or random halves).
+class PopulationDistances:
+    """PopulationDistances over rounds (draws from a model fitted to a half, or random halves).
 
     Parameters
     ----------
@@ -42,7 +42,7 @@ class Distances:
     accuracy: FloatArray
 
     @classmethod
-    def joined(cls, parts: Sequence["Distances"]) -> "Distances":
+    def joined(cls, parts: Sequence["PopulationDistances"]) -> "PopulationDistances":
         """All rounds of several."""
         return cls(*(np.concatenate([getattr(part, name) for part in parts]) for name in cls.__annotations__))
 
@@ -61,7 +61,7 @@ class Intervals:
 
 def distances(
     pairs: Iterable[tuple[FloatArray, FloatArray]], seed: int, size_column: int | None, first: int = 0
-) -> Distances:
+) -> PopulationDistances:
     """Between each pair of tables; by volume too if there is a column of equivalent radii.
 
     `first` is the number of the first pair, for the generators of the classifiers.
@@ -81,11 +81,11 @@ def distances(
         )
         rng = np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(number,)))
         accuracies.append(classifier_accuracy(one, two, rng))
-    return Distances(*map(np.array, (near, gaps, energies, accuracies)))
+    return PopulationDistances(*map(np.array, (near, gaps, energies, accuracies)))
 
 
 def intervals(
-    measured: FloatArray, drawn: FloatArray, found: Distances, seed: int, size_column: int | None
+    measured: FloatArray, drawn: FloatArray, found: PopulationDistances, seed: int, size_column: int | None
 ) -> Intervals:
     """Of one round, whose distances are `found`, by :data:`N_RESAMPLES` resamples of the particles."""
     rng = np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(1,)))

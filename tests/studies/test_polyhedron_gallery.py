@@ -16,7 +16,7 @@ from regolith_studio.studies.figures.polyhedron_gallery import (
     visible_facets,
     write_gallery,
 )
-from regolith_studio.studies.polyhedron_gallery import GalleryPolyhedron, PolyhedronGallery, gallery_table
+from regolith_studio.studies.polyhedron_gallery import GalleryPolyhedron, GalleryStudy, gallery_table
 
 
 @pytest.fixture(scope="module")
@@ -43,7 +43,7 @@ def test_that_the_view_is_a_rotation() -> None:
 
 
 def test_that_numbers_and_failures_have_lines_of_their_own(brick: GalleryPolyhedron) -> None:
-    study = PolyhedronGallery(("All", "V"), ("a",), {(0, 0): brick, (1, 0): "The mesh is open."})
+    study = GalleryStudy(("All", "V"), ("a",), {(0, 0): brick, (1, 0): "The mesh is open."})
     table = gallery_table(study)
     names = [column.name for column in table.columns]
     first, second = (dict(zip(names, row, strict=True)) for row in table.rows)
@@ -60,7 +60,7 @@ def test_that_a_solid_comes_back_from_text_to_the_bit(brick: GalleryPolyhedron) 
 
 
 def test_that_the_same_study_gives_the_same_bytes(brick: GalleryPolyhedron, tmp_path) -> None:
-    study = PolyhedronGallery(("All", "V"), ("a", "b"), {(0, 0): brick, (1, 1): brick, (0, 1): "No."})
+    study = GalleryStudy(("All", "V"), ("a", "b"), {(0, 0): brick, (1, 1): brick, (0, 1): "No."})
     one, other = write_gallery(study, tmp_path / "one"), write_gallery(study, tmp_path / "other")
     assert [path.name for path in one] == ["solids.csv", "solids.json", "solids.png", "solids.svg"]
     assert [path.read_bytes() for path in one] == [path.read_bytes() for path in other]

@@ -12,7 +12,7 @@ from regolith_studio.harmonics.io import from_complex_rows
 from regolith_studio.shape_models.sample import Sample
 from regolith_studio.studies.figures.population import components_figure, write_population_study
 from regolith_studio.studies.population import KEYS, N_FLOOR_SPLITS, PopulationStudy, population_study
-from regolith_studio.studies.population_distances import Distances, distances
+from regolith_studio.studies.population_distances import PopulationDistances, distances
 from regolith_studio.studies.population_tables import (
     distance_table,
     pair_table,
@@ -215,6 +215,6 @@ def test_that_distances_do_not_depend_on_how_pairs_are_shared_out() -> None:
     rng = np.random.default_rng(0)
     pairs = [(rng.normal(size=(40, 3)) + 5, rng.normal(size=(40, 3)) + 5) for _ in range(3)]
     whole = distances(pairs, 7, None)
-    parts = Distances.joined([distances([pair], 7, None, first=i) for i, pair in enumerate(pairs)])
-    for name in Distances.__annotations__:
+    parts = PopulationDistances.joined([distances([pair], 7, None, first=i) for i, pair in enumerate(pairs)])
+    for name in PopulationDistances.__annotations__:
         np.testing.assert_array_equal(getattr(whole, name), getattr(parts, name))

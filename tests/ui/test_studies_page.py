@@ -96,15 +96,15 @@ def test_that_studies_say_how_many_facets_they_take_where_polyhedra_stop_at_an_e
     assert page.bar.remark.text() == ""
 
 
-def test_that_errors_against_faces_are_drawn_told_and_saved(window, wait, settled, tmp_path, monkeypatch):
+def test_that_errors_against_facets_are_drawn_told_and_saved(window, wait, settled, tmp_path, monkeypatch):
     page = window.go("studies")
     page.tabs.setCurrentIndex(1)
-    panel = page.variations["faces"]
+    panel = page.variations["facets"]
     panel.values.setText("8, 12, 30")
     QTest.keyClick(panel.values, Qt.Key.Key_Return)
-    wait(lambda: "faces" in page.sweeps.results and not window.session.tasks, SECONDS)
+    wait(lambda: "facets" in page.sweeps.results and not window.session.tasks, SECONDS)
     settled(window)
-    study = page.sweeps.results["faces"]
+    study = page.sweeps.results["facets"]
     volume = panel.part.series[0]
     assert volume.x == (8.0, 12.0, 30.0)
     assert volume.y == pytest.approx(100 * study.rmsre[:, 0])
@@ -146,15 +146,15 @@ def test_that_a_variation_can_be_stopped_and_another_is_refused_with_a_reason(wi
     page = window.go("studies")
     page.variations["tradeoff"].frame.start.click()
     assert "Quadric decimation has no loss" in window.toast.sentence.text()
-    page.variations["faces"].values.setText("12, many")
-    page.sweeps.start("faces")
+    page.variations["facets"].values.setText("12, many")
+    page.sweeps.start("facets")
     assert "numbers with commas" in window.toast.sentence.text()
-    page.variations["faces"].values.setText("12, 20")
-    page.sweeps.start("faces")
+    page.variations["facets"].values.setText("12, 20")
+    page.sweeps.start("facets")
     task = window.session.tasks[-1]
-    page.variations["faces"].frame.cancelRequested.emit(task.id)
+    page.variations["facets"].frame.cancelRequested.emit(task.id)
     settled(window)
-    assert not page.variations["faces"].frame.stop.isVisibleTo(page)
+    assert not page.variations["facets"].frame.stop.isVisibleTo(page)
 
 
 def test_that_trade_and_sensitivity_follow_the_method(window, wait, settled):
@@ -190,7 +190,7 @@ def test_that_the_page_is_kept_with_the_project(window):
     page.bar.box.setCurrentIndex(1)
     page.variations["sensitivity"].values.setText("0, 9")
     kept = json.loads(json.dumps(page.state()))
-    page.restore({"rows": "all", "box": 3, "values": {"faces": 8, "beauty": "1"}})  # of another version
+    page.restore({"rows": "all", "box": 3, "values": {"facets": 8, "beauty": "1"}})  # of another version
     assert page.state() == kept
     page.bar.set_names([])
     page.bar.box.setCurrentIndex(0)

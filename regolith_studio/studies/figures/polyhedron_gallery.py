@@ -11,7 +11,7 @@ from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.io.tables import write_table
 from regolith_studio.studies.figures.files import write_figure
-from regolith_studio.studies.polyhedron_gallery import GalleryPolyhedron, PolyhedronGallery, gallery_table
+from regolith_studio.studies.polyhedron_gallery import GalleryPolyhedron, GalleryStudy, gallery_table
 
 VIEW = np.array([[-0.5, 0.866, 0.0], [-0.296, -0.171, 0.94], [0.814, 0.47, 0.342]])
 """Rows: to the right, up, and towards the eye."""
@@ -21,7 +21,7 @@ CELL = 1.7
 """Inches."""
 
 
-def gallery_figure(study: PolyhedronGallery) -> Figure:
+def gallery_figure(study: GalleryStudy) -> Figure:
     """A row a loss, a column a particle, those of a particle at one scale."""
     n_rows, n_columns = len(study.rows), len(study.names)
     figure = Figure(figsize=(1.6 + CELL * n_columns, 0.3 + CELL * n_rows), layout="constrained")
@@ -45,7 +45,7 @@ def gallery_figure(study: PolyhedronGallery) -> Figure:
     return figure
 
 
-def write_gallery(study: PolyhedronGallery, folder: Path) -> tuple[Path, ...]:
+def write_gallery(study: GalleryStudy, folder: Path) -> tuple[Path, ...]:
     """Table (CSV, JSON) and figure (PNG, SVG)."""
     return (
         *write_table(gallery_table(study), folder, "solids"),

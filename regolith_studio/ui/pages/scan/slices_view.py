@@ -50,7 +50,7 @@ class SlicesView(QWidget):
         for view in self.views:
             view.set_volume(scan.volume, scan.sections, scan.contrast)
             view.set_box_shown(scan.volume.kind == "grey")
-        self.histogram.set_scanned(scan.seen)
+        self.histogram.set_scanned(scan.histogram)
         self._stack.setCurrentIndex(1)
         self.box = box_between((0, 0, 0), (0, 0, 0))
         x, y, z = (edge // 2 for edge in scan.volume.shape)
