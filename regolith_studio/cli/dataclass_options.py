@@ -1,14 +1,19 @@
 """Options that belong together, taken by a command as one argument.
 
-A group is a frozen dataclass whose fields are annotated as options, or are groups themselves. A command with
+A group is a frozen dataclass whose fields are annotated as options, are made by
+:func:`~regolith_studio.settings.setting`, or are groups themselves. A command with
 :func:`with_dataclass_options` above it has each of those fields as an option, in the group's place.
 """
 
 import functools
 import inspect
 from collections.abc import Callable, Iterator
-from dataclasses import MISSING, fields, is_dataclass
-from typing import Any, get_type_hints
+from dataclasses import MISSING, Field, fields, is_dataclass
+from typing import Annotated, Any, get_type_hints
+
+import typer
+
+from regolith_studio.errors import InputError
 
 
 def with_dataclass_options(command: Callable[..., None]) -> Callable[..., None]:
@@ -43,7 +48,18 @@ def _options(name: str, hint: Any, default: Any) -> Iterator[inspect.Parameter]:
     hints = get_type_hints(hint, include_extras=True)
     for each in fields(hint):
         default = inspect.Parameter.empty if each.default is MISSING else each.default
-        yield from _options(each.name, hints[each.name], default)
+        annotation = _annotated(each, hints[each.name]) if "label" in each.metadata else hints[each.name]
+        yield from _options(each.name, annotation, default)
+
+
+def _annotated(each: Field[Any], hint: Any) -> Any:
+    """The type of a setting with its option: its tip and the keys that it may be are the help."""
+    known = each.metadata
+    keys = [key for key in known.get("choices", ()) if key]
+    help_ = f"{known['tip']} One of: {', '.join(keys)}." if keys else known["tip"]
+    metavar = known.get("metavar") or ("KEY" if isinstance(each.default, str) else "N")
+    name = f"--{each.name.replace('_', '-')}"
+    return Annotated[hint, typer.Option(name, help=help_, metavar=metavar, show_default=bool(each.default))]
 
 
 def _taken(group: Any, values: dict[str, Any]) -> Any:
@@ -52,4 +68,7 @@ def _taken(group: Any, values: dict[str, Any]) -> Any:
     made = {}
     for name in (each.name for each in fields(group)):
         made[name] = _taken(hints[name], values) if is_dataclass(hints[name]) else values.pop(name)
-    return group(**made)
+    try:
+        return group(**made)
+    except InputError as error:
+        raise typer.BadParameter(str(error)) from error

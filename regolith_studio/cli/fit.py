@@ -8,7 +8,6 @@ import typer
 from regolith_studio.cli.dataclass_options import with_dataclass_options
 from regolith_studio.cli.inputs import ReadingOptions
 from regolith_studio.cli.options import (
-    ExpansionOptions,
     Jobs,
     Json,
     Level,
@@ -19,6 +18,7 @@ from regolith_studio.cli.options import (
     check_writable_file,
     usage_errors,
 )
+from regolith_studio.harmonics.fit_options import FitOptions
 
 Stem = Annotated[
     Path,
@@ -48,7 +48,7 @@ def fit(
     meshes: Meshes,
     output: Stem,
     l_max: LMax = 30,
-    radii: ExpansionOptions,
+    radii: FitOptions,
     surfaces: Surfaces = None,
     level: Level = 4,
     reading: ReadingOptions,
@@ -65,7 +65,7 @@ def fit(
 
     with usage_errors():
         Choices(l_max=l_max, seed=seed, level=level)
-        order = FitRequest(l_max, radii.fit_options)
+        order = FitRequest(l_max, radii)
     stem = output.with_suffix("") if output.suffix in (".json", ".npz") else output
     loaded = reading.read(meshes)
     sample = FittedSample.of(loaded.particles, run_with_progress(fit_sample(loaded.particles, order, jobs)))

@@ -9,13 +9,13 @@ from regolith_studio.cli.dataclass_options import with_dataclass_options
 from regolith_studio.cli.inputs import ReadingOptions
 from regolith_studio.cli.options import (
     Degrees,
-    ExpansionOptions,
     Folder,
     Json,
     Meshes,
     usage_errors,
     whole_numbers,
 )
+from regolith_studio.harmonics.fit_options import FitOptions
 
 if TYPE_CHECKING:
     from regolith_studio.geometry.mesh import Mesh
@@ -33,7 +33,7 @@ def gallery(
     output: Folder,
     degrees: Degrees = "0,1,2,5,10,20,30",
     animation: Animation = True,
-    radii: ExpansionOptions,
+    radii: FitOptions,
     reading: ReadingOptions,
     json: Json = False,
 ) -> None:
@@ -47,7 +47,7 @@ def gallery(
 
     wanted = whole_numbers(degrees, 0, FIT_DEGREE)
     with usage_errors():
-        order = FitRequest(max(wanted), radii.fit_options)
+        order = FitRequest(max(wanted), radii)
     loaded = reading.read(meshes)
     fits = run_with_progress(fit_sample(loaded.particles, order))
     drawn: list[str] = []

@@ -3,17 +3,17 @@
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from regolith_studio.errors import FileError, InputError
+from regolith_studio.harmonics.fit_options import FitOptions
 
 if TYPE_CHECKING:
     from regolith_studio.coarsening.weights import LossWeights
-    from regolith_studio.harmonics.fit import FitOptions
     from regolith_studio.session.choices import Choices
 
 
@@ -70,28 +70,6 @@ Folder = Annotated[
 ]
 LMax = Annotated[
     int, typer.Option("--l-max", help="Degree of the spherical harmonics, 0 to 30.", metavar="L")
-]
-StarPoint = Annotated[
-    str,
-    typer.Option(
-        "--star-point",
-        help="Where radii begin: centre_of_mass kernel_centre least_hidden_volume; by itself the first, "
-        "or the last where that lies outside.",
-        metavar="RULE",
-        show_default=False,
-    ),
-]
-RadiusRule = Annotated[
-    str,
-    typer.Option(
-        "--rule", help="The radius where a ray crosses twice: volume outermost first.", metavar="RULE"
-    ),
-]
-Reference = Annotated[
-    str,
-    typer.Option(
-        "--reference", help="What radii are divided by: sphere, or ellipsoid for flat grains.", metavar="R"
-    ),
 ]
 Degrees = Annotated[str, typer.Option("--degrees", help="Values of l_max: 1,2,5 or 1-20.", metavar="LIST")]
 Level = Annotated[int, typer.Option("--level", help="Subdivisions of the fits' surface.", metavar="N")]
@@ -194,23 +172,6 @@ FACETS = 20
 
 
 @dataclass(frozen=True)
-class ExpansionOptions:
-    """How the radii of a particle are taken for its spherical harmonics."""
-
-    star_point: StarPoint = ""
-    rule: RadiusRule = "volume"
-    reference: Reference = "sphere"
-
-    @property
-    def fit_options(self) -> "FitOptions":
-        """The same, checked; a bad value is bad use."""
-        from regolith_studio.harmonics.fit import FitOptions
-
-        with usage_errors():
-            return FitOptions(self.star_point, self.rule, self.reference)
-
-
-@dataclass(frozen=True)
 class FinenessOptions:
     """How fine a polyhedron is to be."""
 
@@ -242,7 +203,7 @@ class CoarseningOptions:
     set_: Settings = None
     target: Target = "fit"
     l_max: LMax = 10
-    radii: ExpansionOptions
+    radii: FitOptions
 
     def choices(self, preset: str = "", **others: object) -> "Choices":
         """The choices that the options stand for; a bad one is bad use.
@@ -261,9 +222,7 @@ class CoarseningOptions:
             "settings": tuple(values(self.set_, "setting").items()),
             "target": self.target,
             "l_max": self.l_max,
-            "star_point": self.radii.star_point,
-            "rule": self.radii.rule,
-            "reference": self.radii.reference,
+            **asdict(self.radii),
             **others,
         }
         with usage_errors():

@@ -13,7 +13,6 @@ from regolith_studio.cli.options import (
     FACETS,
     CoarseningOptions,
     Degrees,
-    ExpansionOptions,
     Facets,
     Folder,
     Jobs,
@@ -26,6 +25,7 @@ from regolith_studio.cli.options import (
     usage_errors,
     whole_numbers,
 )
+from regolith_studio.harmonics.fit_options import FitOptions
 
 if TYPE_CHECKING:
     from regolith_studio.session.choices import Choices
@@ -108,7 +108,7 @@ def lmax(
     degrees: Degrees = "1-20",
     level: Level = 4,
     below: Below = 5.0,
-    radii: ExpansionOptions,
+    radii: FitOptions,
     reading: ReadingOptions,
     json: Json = False,
     jobs: Jobs = 1,
@@ -126,7 +126,7 @@ def lmax(
         Choices(level=level, seed=seed)
     loaded = reading.read(meshes)
     study = partial(study_lmax, loaded.particles, jobs, seed, degrees=wanted, level=level)
-    steps = partial(study, fit_options=radii.fit_options)
+    steps = partial(study, fit_options=radii)
     found = conclude("lmax_study", steps, output, json, resume)
     if not json:
         typer.echo(enough_degrees(found, below / 100))

@@ -13,7 +13,6 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.harmonics.coefficients import ShCoefficients, checked_degree
 from regolith_studio.harmonics.radius_function import (
     DEFAULT_RULE,
-    RULES,
     RadiusFunction,
     require_solid,
     sample_radius,
@@ -28,8 +27,6 @@ HIDDEN_TOLERANCE = 0.01
 """Hidden share of the surface from which on a fit carries a warning."""
 RADIAL_TOLERANCE = 0.05
 """Root-mean-square radial error, as a share of the mean radius, from which on a fit carries a warning."""
-AUTOMATIC = ""
-"""The centre of mass and, where that lies outside the particle, the nearest good point."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,46 +115,6 @@ class HarmonicFit:
         dropped = float((self.coefficients.values[len(kept) :] ** 2).sum()) / (4 * np.pi)
         error = np.sqrt(self.radial_error**2 + dropped / kept.mean_radius**2)
         return replace(self, coefficients=kept, radial_error=float(error), largest_radial_error=None)
-
-
-@dataclass(frozen=True)
-class FitOptions:
-    """How radii are taken; picklable.
-
-    Parameters
-    ----------
-    star_point
-        Key of ``STAR_POINT_RULES``, or :data:`AUTOMATIC`.
-    rule
-        Key of ``radius_function.RULES``.
-    reference
-        Key of ``REFERENCES``.
-
-    Raises
-    ------
-    InputError
-        If a key is unknown.
-    """
-
-    star_point: str = AUTOMATIC
-    rule: str = DEFAULT_RULE
-    reference: str = "sphere"
-
-    def __post_init__(self) -> None:
-        known = {"star_point": (AUTOMATIC, *STAR_POINT_RULES), "rule": RULES, "reference": REFERENCES}
-        for name, keys in known.items():
-            if (value := getattr(self, name)) not in keys:
-                choices = ", ".join(filter(None, keys))
-                raise InputError(f"The {name.replace('_', ' ')} must be one of {choices}, got {value!r}.")
-
-    def fit(self, mesh: Mesh, l_max: int) -> HarmonicFit:
-        """:func:`fit_harmonics` by these choices."""
-        point = self.star_point or None
-        return fit_harmonics(mesh, l_max, star_point=point, rule=self.rule, reference=self.reference)
-
-
-DEFAULT_FIT_OPTIONS = FitOptions()
-"""Automatic star point, volume-preserving radius, no reference but the unit sphere."""
 
 
 def fit_harmonics(

@@ -16,7 +16,8 @@ from regolith_studio.errors import JobCancelled
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.harmonics.coefficients import ShCoefficients
-from regolith_studio.harmonics.fit import DEFAULT_FIT_OPTIONS, FitOptions, HarmonicFit
+from regolith_studio.harmonics.fit import HarmonicFit
+from regolith_studio.harmonics.fit_options import DEFAULT_FIT_OPTIONS, FitOptions
 from regolith_studio.harmonics.surface import reconstruct
 from regolith_studio.jobs.events import (
     Failed,

@@ -13,7 +13,8 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.mesh_health import MeshHealth, inspect
 from regolith_studio.geometry.particle import Particle, defect_triangles
 from regolith_studio.harmonics.coefficients import checked_degree
-from regolith_studio.harmonics.fit import DEFAULT_FIT_OPTIONS, FitOptions, HarmonicFit
+from regolith_studio.harmonics.fit import HarmonicFit
+from regolith_studio.harmonics.fit_options import DEFAULT_FIT_OPTIONS, FitOptions
 from regolith_studio.harmonics.surface import reconstruct
 from regolith_studio.harmonics.visibility import StarPointVisibility, hidden_faces, star_point_visibility
 from regolith_studio.jobs.events import Failed, Job, Partial, Progress, Started, Steps

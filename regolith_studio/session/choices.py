@@ -9,9 +9,10 @@ from regolith_studio.coarsening.stopping_criteria import check_limit, facets_for
 from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.descriptors.shape_cache import BOX_METRICS
 from regolith_studio.errors import InputError
-from regolith_studio.harmonics.fit import DEFAULT_FIT_OPTIONS, FitOptions
+from regolith_studio.harmonics.fit_options import FitOptions
 from regolith_studio.jobs.coarsening_jobs import CoarseningRequest
 from regolith_studio.readers.units import unit_factor
+from regolith_studio.settings import setting
 
 Scalar = bool | int | float | str
 
@@ -19,8 +20,6 @@ L_MAX_LIMIT = 30
 """Highest degree that is fitted; every lower one is a truncation of that fit."""
 LEVEL_LIMITS = (0, 7)
 TARGETS = {"fit": "surface of the spherical-harmonics fit", "particle": "CT particle itself"}
-
-
 STOPS = {
     "facets": "a number of facets",
     "triangles": "a number of triangles",
@@ -30,44 +29,19 @@ STOPS = {
 
 
 @dataclass(frozen=True)
-class Choices:
+class Choices(FitOptions):
     """Every setting that decides what is computed.
+
+    Fields made by :func:`~regolith_studio.settings.setting` describe themselves, and are entries of a recipe.
 
     Parameters
     ----------
     selected
         Id of the particle on screen; empty for none.
-    star_point, rule, reference
-        Of the :class:`~regolith_studio.harmonics.fit.FitOptions`: where radii begin, which crossing
-        of a ray counts, what they are divided by.
-    l_max
-        Degree at which the spherical-harmonics series is cut, 0 to 30.
-    level
-        Subdivisions of the icosahedron that the fit is drawn on; 4 gives 5,120 triangles.
-    stop_at
-        Key of :data:`STOPS`; of the next three numbers only one counts, the others are kept.
-    n_facets
-        Facets asked of the coarsened polyhedron.
-    n_triangles
-        Most triangles that it may have.
-    largest_error
-        That its weighted descriptors may have, a fraction.
-    method, settings
-        Key of the coarsening method, and those of its settings that differ from its defaults, as
-        sorted (name, value) pairs.
-    weights, preset
-        Weights of the loss (Eq. 9), and the preset that they came from; :attr:`preset_modified`
-        says whether they still agree.
-    seed
-        Of all randomness.
-    target
-        What the coarsening imitates: ``fit`` (section 3.2 of the paper) or ``particle``.
-    unit
-        Length unit in which files without one are read.
-    repair
-        Whether what is wrong with meshes is mended as they are read.
-    box_metric
-        How the minimum-volume box of the descriptors is found.
+    settings
+        Settings of the method that differ from its defaults, as sorted (name, value) pairs.
+    weights
+        Of the loss (Eq. 9); :attr:`preset_modified` says whether they still are those of the preset.
 
     Raises
     ------
@@ -76,38 +50,65 @@ class Choices:
     """
 
     selected: str = ""
-    star_point: str = DEFAULT_FIT_OPTIONS.star_point
-    rule: str = DEFAULT_FIT_OPTIONS.rule
-    reference: str = DEFAULT_FIT_OPTIONS.reference
-    l_max: int = 10
-    level: int = 4
-    stop_at: str = "facets"
-    n_facets: int = 20
-    n_triangles: int = 68
-    largest_error: float = 0.01
-    method: str = DEFAULT_METHOD
+    l_max: int = setting(
+        10,
+        "Maximum degree",
+        "Degree at which the series of Eq. 4 is cut: 0 is a sphere; the paper uses 10.",
+        minimum=0,
+        maximum=L_MAX_LIMIT,
+    )
+    level: int = setting(
+        4,
+        "Subdivisions",
+        "Subdivisions of the icosahedron that the fit is drawn on; 4 gives 5,120 triangles.",
+        minimum=LEVEL_LIMITS[0],
+        maximum=LEVEL_LIMITS[1],
+    )
+    target: str = setting(
+        "fit",
+        "Target",
+        "What the coarsening imitates: the fit (section 3.2 of the paper) or the particle.",
+        choices=TARGETS,
+    )
+    method: str = setting(DEFAULT_METHOD, "Coarsening method", "Key of the coarsening method.")
     settings: tuple[tuple[str, Scalar], ...] = ()
+    preset: str = setting(DEFAULT_PRESET, "Preset", "Preset of the weights of the loss (Eq. 9).")
     weights: LossWeights = field(default_factory=lambda: LossWeights.from_preset(DEFAULT_PRESET))
-    preset: str = DEFAULT_PRESET
-    seed: int = 0
-    target: str = "fit"
-    unit: str = "um"
-    repair: bool = True
-    box_metric: str = "exact"
+    stop_at: str = setting(
+        "facets",
+        "Stop at",
+        "Whether n_facets, n_triangles or largest_error says how fine polyhedra are; the others are kept.",
+        choices=STOPS,
+    )
+    n_facets: int = setting(
+        20,
+        "Facets",
+        "Facets asked of a polyhedron.",
+        minimum=FACETS_LIMITS[0],
+        maximum=FACETS_LIMITS[1],
+    )
+    n_triangles: int = setting(68, "Triangles", "Most triangles that a polyhedron may have.", minimum=4)
+    largest_error: float = setting(
+        0.01,
+        "Largest error",
+        "That the weighted descriptors of the fewest facets may have, as a fraction.",
+    )
+    seed: int = setting(0, "Seed", "Seed of all randomness.", minimum=0, maximum=2**63 - 1)
+    unit: str = setting("um", "Unit", "Length unit in which files without one are read.")
+    repair: bool = setting(True, "Repair meshes", "Whether meshes are repaired as they are read.")
+    box_metric: str = setting(
+        "exact",
+        "Bounding box",
+        "How the minimum-volume box of the descriptors is found.",
+        choices={key: key for key in BOX_METRICS},
+    )
 
     def __post_init__(self) -> None:
-        _within("l_max", self.l_max, 0, L_MAX_LIMIT)
-        _within("The subdivision level", self.level, *LEVEL_LIMITS)
-        _within("The number of facets", self.n_facets, *FACETS_LIMITS)
-        _one_of("number that coarsening stops at", self.stop_at, tuple(STOPS))
+        super().__post_init__()
         facets_for_triangles(self.n_triangles)
         check_limit(self.largest_error)
-        _within("The seed", self.seed, 0, 2**63 - 1)
-        _one_of("target of the coarsening", self.target, tuple(TARGETS))
-        _one_of("box metric", self.box_metric, tuple(BOX_METRICS))
         unit_factor(self.unit)
         settings_of(self.method, dict(self.settings))
-        FitOptions(self.star_point, self.rule, self.reference)
         object.__setattr__(self, "settings", tuple(sorted(dict(self.settings).items())))
 
     def replaced(self, **changes: Any) -> Self:
@@ -135,7 +136,7 @@ class Choices:
     @property
     def fit_options(self) -> FitOptions:
         """How a radius function is taken and expanded."""
-        return FitOptions(self.star_point, self.rule, self.reference)
+        return FitOptions(**{each.name: getattr(self, each.name) for each in dataclasses.fields(FitOptions)})
 
     @property
     def facet_count(self) -> int:
@@ -167,13 +168,3 @@ class Choices:
     def preset_modified(self) -> bool:
         """Whether the weights are no longer those of the preset."""
         return self.weights != LossWeights.from_preset(self.preset)
-
-
-def _within(what: str, value: Any, low: int, high: int) -> None:
-    if isinstance(value, bool) or not isinstance(value, int) or not low <= value <= high:
-        raise InputError(f"{what} must be a whole number from {low} to {high}, got {value!r}.")
-
-
-def _one_of(what: str, value: str, known: tuple[str, ...]) -> None:
-    if value not in known:
-        raise InputError(f"There is no {what} called {value!r}; there are {', '.join(known)}.")

@@ -1,7 +1,9 @@
 """The present choices as a command line and as Python code."""
 
 import shlex
+from dataclasses import asdict
 
+from regolith_studio.harmonics.fit_options import FitOptions
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.recipe import SAMPLE
 
@@ -13,8 +15,8 @@ def as_command(choices: Choices, inputs: list[str]) -> str:
     words += ["--seed", str(choices.seed), "--target", choices.target]
     if choices.target == "fit":
         words += ["--l-max", str(choices.l_max)]
-        words += [f"--star-point={choices.star_point}"] if choices.star_point else []
-        words += ["--rule", choices.rule, "--reference", choices.reference]
+        options = asdict(choices.fit_options).items()
+        words += [f"--{name.replace('_', '-')}={value}" for name, value in options if value]
     words += ["--preset", choices.preset]
     if choices.preset_modified:
         words += [word for key, value in choices.weights.items() for word in ("--weight", f"{key}={value:g}")]
@@ -86,7 +88,7 @@ def _coarsening(choices: Choices) -> list[str]:
 
 
 def _expanding(choices: Choices) -> str:
-    ways = {"star_point": choices.star_point, "rule": choices.rule, "reference": choices.reference}
-    usual = Choices()
-    told = [f"{name}={value!r}" for name, value in ways.items() if value != getattr(usual, name)]
+    usual = asdict(FitOptions())
+    options = asdict(choices.fit_options).items()
+    told = [f"{name}={value!r}" for name, value in options if value != usual[name]]
     return f"fit_harmonics({', '.join(['particle.mesh', 'l_max=30', *told])})"

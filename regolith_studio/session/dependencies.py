@@ -1,9 +1,10 @@
 """Which results depend on which choices: compares two snapshots and names the work to be done again."""
 
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from enum import StrEnum
 
+from regolith_studio.harmonics.fit_options import FitOptions
 from regolith_studio.session.choices import Choices
 
 
@@ -23,17 +24,17 @@ LIVE = (Kind.FIT, Kind.SURFACE, Kind.DESCRIPTORS, Kind.COARSENING)
 STUDIES = (Kind.LMAX_STUDY, Kind.COARSENING_STUDY)
 """Kinds that wait until they are asked for."""
 
-_EXPANSION = ("star_point", "rule", "reference")
+_FIT_OPTIONS = tuple(each.name for each in fields(FitOptions))
 DEPENDS_ON: Mapping[Kind, tuple[str, ...]] = {
-    Kind.FIT: ("selected", *_EXPANSION),
-    Kind.SURFACE: ("selected", *_EXPANSION, "l_max", "level"),
-    Kind.DESCRIPTORS: ("selected", *_EXPANSION, "l_max", "level", "box_metric"),
+    Kind.FIT: ("selected", *_FIT_OPTIONS),
+    Kind.SURFACE: ("selected", *_FIT_OPTIONS, "l_max", "level"),
+    Kind.DESCRIPTORS: ("selected", *_FIT_OPTIONS, "l_max", "level", "box_metric"),
     Kind.COARSENING: ("selected", "target", "fineness", "method", "settings", "weights", "seed"),
-    Kind.LMAX_STUDY: (*_EXPANSION, "level"),
+    Kind.LMAX_STUDY: (*_FIT_OPTIONS, "level"),
     Kind.COARSENING_STUDY: ("target", "facet_count", "method", "settings", "seed"),
 }
 """The choices, and what follows from them, that each kind of result depends on."""
-_COARSENING_OF_FIT = (*_EXPANSION, "l_max", "level")
+_COARSENING_OF_FIT = (*_FIT_OPTIONS, "l_max", "level")
 
 _UPSTREAM: Mapping[Kind, tuple[Kind, ...]] = {
     Kind.SURFACE: (Kind.FIT,),

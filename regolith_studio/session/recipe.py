@@ -1,18 +1,18 @@
 """A recipe: everything that turns files into results, as JSON; the window saves it, ``run`` takes it."""
 
 from collections.abc import Sequence
+from dataclasses import Field as DataclassField
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any, Literal, Self
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, create_model, model_validator
 
-from regolith_studio.coarsening.coarsen import DEFAULT_METHOD, DEFAULT_PRESET
 from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.errors import FileError, InputError, format_validation_error
-from regolith_studio.harmonics.fit import DEFAULT_FIT_OPTIONS
 from regolith_studio.readers.file_bytes import read_bytes
 from regolith_studio.session.choices import L_MAX_LIMIT, LEVEL_LIMITS, Choices, Scalar
+from regolith_studio.settings import settings_of_kind
 
 FORMAT: Literal["regolith-studio recipe"] = "regolith-studio recipe"
 VERSION: Literal[2] = 2
@@ -20,14 +20,6 @@ LARGEST = 16_000_000
 """Bytes of a recipe or project that are read: 100,000 inputs by name, and four seconds at the worst."""
 SAMPLE = "sample:all"
 """Stands among the inputs for the particles that ship with the program."""
-
-
-_CHOICES = (
-    *("unit", "repair", "star_point", "rule", "reference", "l_max", "level", "target"),
-    *("method", "preset", "stop_at", "n_facets", "n_triangles", "largest_error", "seed", "box_metric"),
-)
-Stop = Literal["facets", "triangles", "error"]
-"""Which of the three numbers says how fine polyhedra are."""
 
 
 Pair = Annotated[list[float], Field(min_length=2, max_length=2)]
@@ -214,8 +206,8 @@ class Outputs(Strict):
     summary: bool = True
 
 
-class Recipe(Strict):
-    """Inputs, choices and outputs; relative inputs are looked up beside the recipe file.
+class RecipeInputs(Strict):
+    """The particles of a recipe; relative files are looked up beside the recipe file.
 
     Parameters
     ----------
@@ -230,13 +222,6 @@ class Recipe(Strict):
     particles
         Names of those of all these particles that are worked on, in this order; all of them, in the order
         of the fields above, where left out.
-    stop_at
-        Whether `n_facets`, `n_triangles` (the most) or `largest_error` (a fraction, which the weighted errors
-        of the fewest facets do not exceed) says how fine polyhedra are.
-    representatives
-        Which of them the dataset holds, and their sizes; all as they are where left out.
-    exports
-        Other programs that the dataset is written for, below ``exports``.
     """
 
     format: Literal["regolith-studio recipe"] = FORMAT
@@ -245,24 +230,45 @@ class Recipe(Strict):
     volumes: list[VolumeEntry] = Field(default_factory=list)
     population: Population | None = None
     particles: list[str | NamedParticle] | None = Field(default=None, min_length=1)
-    unit: str = "um"
-    repair: bool = True
-    star_point: str = DEFAULT_FIT_OPTIONS.star_point
-    rule: str = DEFAULT_FIT_OPTIONS.rule
-    reference: str = DEFAULT_FIT_OPTIONS.reference
-    l_max: int = 10
-    level: int = 4
-    target: str = "fit"
-    method: str = DEFAULT_METHOD
+
+
+def _entry(each: DataclassField[Any]) -> tuple[Any, Any]:
+    """Type and description of the entry that holds a setting."""
+    known = each.metadata
+    kind = Literal[tuple(known["choices"])] if "choices" in known else type(each.default)
+    limits = {"ge": known.get("minimum"), "le": known.get("maximum")}
+    given = {name: value for name, value in limits.items() if value is not None}
+    return kind, Field(default=each.default, title=known["label"], description=known["tip"], **given)
+
+
+_ENTRIES = {each.name: _entry(each) for each in settings_of_kind(Choices)}
+
+if TYPE_CHECKING:
+
+    class _ChoiceEntries(RecipeInputs):
+        def __getattr__(self, name: str) -> Any: ...
+
+else:
+    _ChoiceEntries = create_model("_ChoiceEntries", __base__=RecipeInputs, **_ENTRIES)
+
+
+class Recipe(_ChoiceEntries):
+    """Inputs, choices and outputs: an entry for each setting of ``Choices``, and those that follow.
+
+    Parameters
+    ----------
+    settings
+        Settings of the method that differ from its defaults.
+    weights
+        Of the loss, in place of the preset's.
+    representatives
+        Which of the particles the dataset holds, and their sizes; all as they are where left out.
+    exports
+        Other programs that the dataset is written for, below ``exports``.
+    """
+
     settings: dict[str, Scalar] = Field(default_factory=dict)
-    preset: str = DEFAULT_PRESET
     weights: dict[str, float] | None = None
-    stop_at: Stop = "facets"
-    n_facets: int = 20
-    n_triangles: int = 68
-    largest_error: float = 0.01
-    seed: int = 0
-    box_metric: str = "exact"
     representatives: Representatives | None = None
     exports: Exports | None = None
     outputs: Outputs = Field(default_factory=Outputs)
@@ -317,7 +323,7 @@ class Recipe(Strict):
         **others: Any,
     ) -> Self:
         """The recipe that repeats what has been chosen; `others` are fields of the recipe."""
-        chosen: dict[str, Any] = {name: getattr(choices, name) for name in _CHOICES}
+        chosen: dict[str, Any] = {name: getattr(choices, name) for name in _ENTRIES}
         chosen["settings"] = dict(choices.settings)
         chosen["weights"] = dict(choices.weights) if choices.preset_modified else None
         return cls(inputs=list(inputs), outputs=outputs or Outputs(), **(chosen | others))
@@ -330,7 +336,7 @@ class Recipe(Strict):
         InputError
             If a value is out of its range.
         """
-        changes: dict[str, Any] = {name: getattr(self, name) for name in _CHOICES}
+        changes: dict[str, Any] = {name: getattr(self, name) for name in _ENTRIES}
         changes["settings"] = tuple(self.settings.items())
         if self.weights is not None:
             changes["weights"] = LossWeights.of(**self.weights)

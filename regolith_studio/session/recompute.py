@@ -18,7 +18,8 @@ if TYPE_CHECKING:
     from regolith_studio.coarsening.result import CoarseningResult
     from regolith_studio.descriptors.describe import Descriptors
     from regolith_studio.geometry.mesh import Mesh
-    from regolith_studio.harmonics.fit import FitOptions, HarmonicFit
+    from regolith_studio.harmonics.fit import HarmonicFit
+    from regolith_studio.harmonics.fit_options import FitOptions
 
 TITLES = {
     Kind.FIT: N_("Fitting spherical harmonics"),

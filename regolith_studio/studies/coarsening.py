@@ -21,7 +21,7 @@ from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
-from regolith_studio.harmonics.fit import DEFAULT_FIT_OPTIONS, FitOptions
+from regolith_studio.harmonics.fit_options import DEFAULT_FIT_OPTIONS, FitOptions
 from regolith_studio.harmonics.surface import reconstruct
 from regolith_studio.io.tables import Column, Table
 from regolith_studio.studies.loss_variants import LossVariant, paper_variants

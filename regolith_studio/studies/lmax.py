@@ -16,7 +16,8 @@ from regolith_studio.errors import InputError, RegolithError
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
-from regolith_studio.harmonics.fit import DEFAULT_FIT_OPTIONS, FitOptions, HarmonicFit
+from regolith_studio.harmonics.fit import HarmonicFit
+from regolith_studio.harmonics.fit_options import DEFAULT_FIT_OPTIONS, FitOptions
 from regolith_studio.harmonics.surface import DEFAULT_LEVEL, gallery
 from regolith_studio.io.tables import Column, Table
 from regolith_studio.studies.progress import StudyProgress

@@ -3328,10 +3328,6 @@
         <translation>Radius</translation>
     </message>
     <message>
-        <source>Radius rule</source>
-        <translation>Regel für Radien</translation>
-    </message>
-    <message>
         <source>Random field</source>
         <translation>Zufallsfeld</translation>
     </message>
@@ -3390,10 +3386,6 @@
     <message>
         <source>Recover</source>
         <translation>Wiederherstellen</translation>
-    </message>
-    <message>
-        <source>Reference of the radius</source>
-        <translation>Bezug der Radien</translation>
     </message>
     <message>
         <source>Regolith Studio was not closed properly the last time. Bring its state back?</source>

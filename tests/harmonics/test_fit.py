@@ -9,7 +9,8 @@ from scipy.integrate import quad
 from regolith_studio.errors import GeometryError, InputError
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.sphere_points import icosphere
-from regolith_studio.harmonics.fit import DEFAULT_FIT_OPTIONS, FitOptions, HarmonicFit, fit_harmonics
+from regolith_studio.harmonics.fit import HarmonicFit, fit_harmonics
+from regolith_studio.harmonics.fit_options import DEFAULT_FIT_OPTIONS, FitOptions
 from regolith_studio.harmonics.surface import reconstruct
 from regolith_studio.harmonics.visibility import hidden_surface_share
 

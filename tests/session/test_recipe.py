@@ -103,9 +103,9 @@ def test_that_a_missing_recipe_is_a_sentence(tmp_path: Path) -> None:
         read_recipe(tmp_path / "none.json")
 
 
-def test_that_a_choice_out_of_range_is_found_when_the_recipe_is_used() -> None:
-    with pytest.raises(InputError, match="from 0 to 30"):
-        recipe_of(l_max=99).choices()
+def test_that_a_choice_out_of_range_is_found_when_the_recipe_is_made_or_used() -> None:
+    with pytest.raises(InputError, match="l_max must be at most 30, not 99"):
+        recipe_of(l_max=99)
     with pytest.raises(InputError, match="no term"):
         recipe_of(weights={"beauty": 1.0}).choices()
 

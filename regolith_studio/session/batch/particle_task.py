@@ -11,7 +11,8 @@ import numpy as np
 from regolith_studio.dataset.streaming import stored_shape
 from regolith_studio.errors import JobCancelled
 from regolith_studio.geometry.particle import Particle
-from regolith_studio.harmonics.fit import DEFAULT_FIT_OPTIONS, FitOptions, HarmonicFit
+from regolith_studio.harmonics.fit import HarmonicFit
+from regolith_studio.harmonics.fit_options import DEFAULT_FIT_OPTIONS, FitOptions
 from regolith_studio.harmonics.io import fits_document
 from regolith_studio.io.checkpoint import CheckpointRecord
 from regolith_studio.io.stl import stl_bytes

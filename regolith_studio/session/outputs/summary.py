@@ -116,7 +116,7 @@ def _lead(recipe: Recipe, summary: Summary) -> str:
 
 def _weights(recipe: Recipe) -> str:
     if recipe.weights is None:
-        return recipe.preset
+        return str(recipe.preset)
     return ", ".join(f"{key} {value:g}" for key, value in recipe.weights.items() if value)
 
 

@@ -1,13 +1,14 @@
 """Settings of the spherical-harmonics fit, and what the fit cannot represent."""
 
 from collections.abc import Mapping
+from dataclasses import fields
 from functools import partial
 from typing import Any
 
 from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QFormLayout, QVBoxLayout, QWidget
 
-from regolith_studio.harmonics.fit import AUTOMATIC
+from regolith_studio.harmonics.fit_options import FitOptions
 from regolith_studio.messages import N_
 from regolith_studio.session.choices import L_MAX_LIMIT
 from regolith_studio.ui.translation import tr
@@ -25,41 +26,14 @@ L_MAX = NumberSpec(
     L_MAX_LIMIT,
     tip=N_("Degree at which the series of Eq. 4 is cut: 0 is a sphere; the paper uses 10."),
 )
-STAR_POINTS = {
-    AUTOMATIC: N_("Automatic"),
-    "centre_of_mass": N_("Centre of mass"),
-    "kernel_centre": N_("Centre of the kernel"),
-    "least_hidden_volume": N_("Least hidden volume"),
-}
-RULES = {
-    "volume": N_("Keep the volume"),
-    "outermost": N_("Last crossing"),
-    "first": N_("First crossing"),
-}
-REFERENCES = {"sphere": N_("Sphere"), "ellipsoid": N_("Best-fit ellipsoid")}
-TIPS = {
-    "star_point": N_(
-        "Where radii begin. Automatic: the centre of mass or, where that is not inside, "
-        "the point that hides the least volume."
-    ),
-    "rule": N_(
-        "Which radius counts where a ray crosses the surface more than once. Keep the volume: the cube "
-        "root of the signed sum of r³ over all crossings."
-    ),
-    "reference": N_(
-        "What radii are divided by before they are expanded. An ellipsoid lowers the oscillation on "
-        "flat and elongated grains."
-    ),
-}
-
 LINES, MAX_LINES = 4, 7
 """Visible lines of warnings, in low and in high windows."""
 
 
 class FitPanel(QWidget):
-    """Edits l_max, star point, radius rule and reference."""
+    """Edits l_max and the options of the fit."""
 
-    FIELDS = ("l_max", "star_point", "rule", "reference")
+    FIELDS = ("l_max", *(each.name for each in fields(FitOptions)))
     valueChanged = Signal(dict)  # noqa: N815
     editingFinished = Signal()  # noqa: N815
 
@@ -70,9 +44,8 @@ class FitPanel(QWidget):
         self.l_max.slider.setObjectName("l_max_slider")
         self.l_max.field.setObjectName("l_max")
         self.ways = {
-            "star_point": ChoiceBox("star_point", tr("Star point"), STAR_POINTS),
-            "rule": ChoiceBox("rule", tr("Radius rule"), RULES),
-            "reference": ChoiceBox("reference", tr("Reference of the radius"), REFERENCES),
+            each.name: ChoiceBox(each.name, tr(each.metadata["label"]), each.metadata["choices"])
+            for each in fields(FitOptions)
         }
         self.more = Collapsible(tr("How radii are taken"), self._form())
         self.more.button.setObjectName("radius_settings")
@@ -126,12 +99,11 @@ class FitPanel(QWidget):
     def _form(self) -> QWidget:
         form = QFormLayout(content := QWidget())
         form.setContentsMargins(14, 0, 0, 0)
-        labels = {"star_point": tr("Star point"), "rule": tr("Radius"), "reference": tr("Divide by")}
-        for name, label in labels.items():
-            box = self.ways[name]
-            box.setToolTip(tr(TIPS[name]))
-            box.activated.connect(partial(self._announce, name))
-            form.addRow(label, box)
+        for each in fields(FitOptions):
+            box = self.ways[each.name]
+            box.setToolTip(tr(each.metadata["tip"]))
+            box.activated.connect(partial(self._announce, each.name))
+            form.addRow(tr(each.metadata["label"]), box)
         return content
 
     def _announce(self, name: str, _index: int) -> None:

@@ -78,8 +78,10 @@ def _setting_editor(default: Scalar, metadata: Mapping[str, Any]) -> QWidget:
         if "choices" not in metadata:
             return QLineEdit()
         combo = QComboBox()
-        for choice in metadata["choices"]:
-            combo.addItem(tr(str(choice)), str(choice))
+        choices = metadata["choices"]
+        labels = choices if isinstance(choices, Mapping) else dict(zip(choices, choices, strict=True))
+        for key, label in labels.items():
+            combo.addItem(tr(str(label)), str(key))
         return combo
     if isinstance(default, int):
         whole = QSpinBox()

@@ -1,0 +1,85 @@
+"""Options of a spherical-harmonics fit: how the radii of a particle are taken."""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from regolith_studio.messages import N_
+from regolith_studio.settings import check_settings, setting
+
+if TYPE_CHECKING:  # the command line makes its options of these fields, and must not wait for numerics
+    from regolith_studio.geometry.mesh import Mesh
+    from regolith_studio.harmonics.fit import HarmonicFit
+
+AUTOMATIC = ""
+"""The centre of mass or, where that is not inside, the point that hides the least volume."""
+
+
+@dataclass(frozen=True)
+class FitOptions:
+    """How radii are taken; picklable.
+
+    Parameters
+    ----------
+    star_point
+        Key of ``STAR_POINT_RULES``, or :data:`AUTOMATIC`.
+    rule
+        Key of ``radius_function.RULES``.
+    reference
+        Key of ``REFERENCES``.
+
+    Raises
+    ------
+    InputError
+        If a key is unknown.
+    """
+
+    star_point: str = setting(
+        AUTOMATIC,
+        N_("Star point"),
+        N_(
+            "Where radii begin. Automatic: the centre of mass or, where that is not inside, "
+            "the point that hides the least volume."
+        ),
+        choices={
+            AUTOMATIC: N_("Automatic"),
+            "centre_of_mass": N_("Centre of mass"),
+            "kernel_centre": N_("Centre of the kernel"),
+            "least_hidden_volume": N_("Least hidden volume"),
+        },
+    )
+    rule: str = setting(
+        "volume",
+        N_("Radius"),
+        N_(
+            "Which radius counts where a ray crosses the surface more than once. Keep the volume: the cube "
+            "root of the signed sum of r³ over all crossings."
+        ),
+        choices={
+            "volume": N_("Keep the volume"),
+            "outermost": N_("Last crossing"),
+            "first": N_("First crossing"),
+        },
+    )
+    reference: str = setting(
+        "sphere",
+        N_("Divide by"),
+        N_(
+            "What radii are divided by before they are expanded. An ellipsoid lowers the oscillation on "
+            "flat and elongated grains."
+        ),
+        choices={"sphere": N_("Sphere"), "ellipsoid": N_("Best-fit ellipsoid")},
+    )
+
+    def __post_init__(self) -> None:
+        check_settings(self)
+
+    def fit(self, mesh: "Mesh", l_max: int) -> "HarmonicFit":
+        """:func:`~regolith_studio.harmonics.fit.fit_harmonics` by these choices."""
+        from regolith_studio.harmonics.fit import fit_harmonics
+
+        point = self.star_point or None
+        return fit_harmonics(mesh, l_max, star_point=point, rule=self.rule, reference=self.reference)
+
+
+DEFAULT_FIT_OPTIONS = FitOptions()
+"""Automatic star point, volume-preserving radius, no reference but the unit sphere."""
