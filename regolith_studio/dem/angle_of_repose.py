@@ -14,8 +14,8 @@ from regolith_studio.dem.evaluation.settings import EvaluationSettings
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray
 
-ENOUGH = 1000
-"""Particles from which on the evaluation's bias is below half a degree."""
+RELIABLE_N = 1000
+"""Number of particles above which the bias of the evaluation is below half a degree."""
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,7 @@ class ReposeMeasurement:
     n_particles, mean_diameter, height, width, base
         Of the pile; `height` and `width` averaged over the sections, `base` is the level of the plate.
     settings
-        As evaluated.
+        Of the evaluation.
     warnings
         Sentences.
     """
@@ -83,16 +83,16 @@ def measure_repose(
     diameters
         Equivalent diameters in the same unit, shape (n,), or one number for all.
     settings
-        The choices of the procedure.
+        Parameters of the procedure.
     base
-        Height of the plate; by default judged from the lowest particles.
+        Height of the plate; by default estimated from the lowest particles.
 
     Raises
     ------
     NotAPileError
         If the particles form no pile: too few, a layer, a column, scattered, without straight flanks.
     InputError
-        If the numbers are no positions or diameters.
+        If positions or diameters are invalid.
     """
     settings = settings or EvaluationSettings()
     where, sizes = _checked(points, diameters)
@@ -113,8 +113,10 @@ def measure_repose(
             if number < 2:
                 raise
             warnings.append(f"Left out: {refusal}")
-    if len(where) < ENOUGH:
-        warnings.append(f"{len(where)} particles make a coarse pile; from {ENOUGH} on the angle is reliable.")
+    if len(where) < RELIABLE_N:
+        warnings.append(
+            f"{len(where)} particles make a coarse pile; from {RELIABLE_N} on the angle is reliable."
+        )
     return _summary(sections, len(azimuths), len(where), mean_diameter, level, settings, warnings)
 
 
@@ -247,7 +249,7 @@ def _section_document(section: Section) -> dict[str, Any]:
 
 RESAMPLES = 2000
 NEIGHBOURHOOD = 45.0
-"""Degrees over which neighbouring directions see largely the same grains, and are drawn together."""
+"""Size of a block in degrees: sections closer than this contain largely the same particles."""
 
 
 def bootstrap_interval(flanks: FloatArray, confidence: float, seed: int) -> tuple[float, float]:

@@ -1,4 +1,4 @@
-"""What is simulated: particles drawn from a dataset, coarse-grained to the mass of the test."""
+"""A simulated test: particles drawn from a dataset, coarse-grained to the mass of the test."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -14,10 +14,10 @@ from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats, locked_integers
 
 MICROMETRE = 1e-6
-NARROWEST = 3.0
-"""Mean particle diameters that the cylinder must be wide."""
+MIN_DIAMETERS_ACROSS = 3.0
+"""Minimum diameter of the cylinder in mean particle diameters."""
 SOLID_FRACTION = 0.55
-"""Of a settled filling, for estimates before a run."""
+"""Estimate for a settled filling, before a run."""
 
 ShapeKind = Literal["polyhedra", "spheres"]
 CohesionKind = Literal["none", "given", "scaled"]
@@ -25,7 +25,7 @@ CohesionKind = Literal["none", "given", "scaled"]
 
 @dataclass(frozen=True)
 class ReposeCase:
-    """What the user chooses.
+    """Parameters of a lifting-cylinder test.
 
     Parameters
     ----------
@@ -34,14 +34,14 @@ class ReposeCase:
     n_particles
         Simulated particles.
     coarse_graining
-        Factor on all diameters; 0 for the one with which `n_particles` have the mass of the test.
+        Factor on all diameters; 0: such that `n_particles` have the mass of the test.
     shapes
-        The polyhedra of the dataset, or balls of the same volumes for comparison.
+        The polyhedra of the dataset, or spheres of the same volumes for comparison.
     cohesion
         ``none``; the surface energy as ``given``; or ``scaled`` by the square of the coarse graining
         (relative to the paper's factor 10), which keeps the ratio of cohesion to weight.
     seed
-        Of sizes, shapes, places and orientations.
+        Of sizes, shapes, positions and orientations.
 
     Raises
     ------
@@ -81,19 +81,19 @@ class PreparedCase:
     Parameters
     ----------
     case
-        As chosen.
+        Parameters of the test.
     shapes
         Vertices of each unit-volume shape about its centroid, each of shape (k, 3).
     class_index
-        Which shape each particle has, shape (n,).
+        Index of each particle's shape, shape (n,).
     diameters
         Equivalent diameters after coarse graining, in metres, shape (n,).
     coarse_graining
         Factor that was applied.
     dataset_name, dataset_hash
-        What the particles were drawn from; the hash is empty for a dataset that is not on disk.
+        Of the dataset; the hash is empty if it is not on disk.
     n_facets
-        Facets of each shape, where they are known.
+        Facets of each shape, if known.
     """
 
     case: ReposeCase
@@ -143,7 +143,7 @@ class PreparedCase:
 
     @property
     def mean_facets(self) -> float | None:
-        """Facets of a particle in the mean, or ``None`` where they are not known or there are none."""
+        """Mean number of facets of a particle, or ``None`` if unknown or for spheres."""
         if not self.n_facets or self.case.shapes == "spheres":
             return None
         return float(np.array(self.n_facets)[self.class_index].mean())
@@ -191,7 +191,7 @@ def prepare(dataset: Dataset, case: ReposeCase, dataset_hash: str = "") -> Prepa
 def _check_room(prepared: PreparedCase) -> None:
     test, mean = prepared.case.test, prepared.mean_diameter
     widest = float(prepared.diameters.max())
-    if test.diameter < max(NARROWEST * mean, 1.5 * widest):
+    if test.diameter < max(MIN_DIAMETERS_ACROSS * mean, 1.5 * widest):
         raise InputError(
             f"The cylinder is {1e3 * test.diameter:.3g} mm wide, but the particles are {1e3 * mean:.3g} mm "
             f"in the mean and up to {1e3 * widest:.3g} mm; take more particles, less mass, a wider cylinder."

@@ -1,4 +1,4 @@
-"""What every engine offers: it finds itself, says what it capabilities, and runs a prepared case."""
+"""The interface of DEM engines: availability, capabilities, and running a prepared case."""
 
 from collections.abc import Generator
 from dataclasses import dataclass
@@ -10,7 +10,7 @@ from regolith_studio.dem.snapshot import ParticleState, Snapshot
 
 @dataclass(frozen=True)
 class EngineCapabilities:
-    """What an engine makes of Table 1, one sentence or word each; shown in the table of engines."""
+    """How an engine implements the contact model of Table 1, in phrases for the table of engines."""
 
     shape: str
     normal: str
@@ -23,7 +23,7 @@ class EngineCapabilities:
 
 @dataclass(frozen=True)
 class Availability:
-    """Whether an engine is there: its version, or else why not in one sentence."""
+    """Version of an installed engine, or a sentence that says why it cannot be used."""
 
     version: str = ""
     problem: str = ""
@@ -35,21 +35,20 @@ class Availability:
 
 @dataclass(frozen=True)
 class RunChecks:
-    """What is verified after every run. Overlaps in mean diameters, energies in units of m g d a particle.
+    """Checks after a run. Overlaps in mean diameters, energies in units of m g d per particle.
 
     Parameters
     ----------
     particles_in, particles_out
-        Number at the beginning, and of those that still lie on or above the plate at the end.
+        Number at the beginning, and of those on or above the plate at the end.
     mean_overlap, max_overlap
         At rest.
     energy_gain
-        Largest rise of the total energy while nothing that moves touches the particles; a sound
-        simulation only loses energy.
+        Maximum rise of the total energy while no moving wall touches the particles; it should only fall.
     kinetic_energy
         At the end.
     at_rest
-        Whether the heap came to rest before the longest wait was over.
+        Whether the heap came to rest within the maximum time.
     fill_height
         Of the settled filling in metres.
     solid_fraction
@@ -72,7 +71,7 @@ class RunChecks:
 
 @dataclass(frozen=True, eq=False)
 class SimulationResult:
-    """A finished run.
+    """Result of a finished run.
 
     Parameters
     ----------
@@ -81,9 +80,9 @@ class SimulationResult:
     checks
         Of the run.
     steps, simulated_time
-        How long it was; in seconds.
+        Number of time steps, and seconds.
     notes
-        Sentences on what the engine made of the particles.
+        Sentences on how the engine approximated the particles.
     """
 
     particles: ParticleState
@@ -104,7 +103,7 @@ class Engine(Protocol):
     Settings: type[Any]
 
     def find(self) -> Availability:
-        """Look for the code without loading it."""
+        """Check for the code without loading it."""
         ...
 
     def seconds(self, prepared: PreparedCase, settings: Any) -> float:
@@ -112,5 +111,5 @@ class Engine(Protocol):
         ...
 
     def simulate(self, prepared: PreparedCase, settings: Any) -> Generator[Snapshot, None, SimulationResult]:
-        """Run in this process; yields moments in the order of time."""
+        """Run in this process; yields snapshots in the order of time."""
         ...

@@ -1,4 +1,4 @@
-"""The particles before they fall: a loose column in the cylinder, every particle turned at random."""
+"""Initial state: a loose column of particles in the cylinder with random orientations."""
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -8,15 +8,15 @@ from regolith_studio.dem.snapshot import ParticleState
 from regolith_studio.geometry.arrays import FloatArray
 
 HEADROOM = 1.02
-"""The particles' enclosing balls are so much larger at the start."""
-TRIES = 24
-"""Random seats that a particle chooses from."""
-SIGHT = 600
-"""Particles placed before that a new one can touch."""
+"""Factor on the circumscribed spheres at the start."""
+TRIALS = 24
+"""Random candidate positions for a particle."""
+NEIGHBOURS = 600
+"""Number of preceding particles that a new one is checked against."""
 
 
 def loose_column(prepared: PreparedCase) -> ParticleState:
-    """Where a simulation begins; the same for the same case."""
+    """Initial state of a simulation; equal cases give equal states."""
     places, _ = start_places(
         enclosing_radii(prepared), prepared.case.test.diameter / 2, _generator(prepared, 0)
     )
@@ -25,7 +25,7 @@ def loose_column(prepared: PreparedCase) -> ParticleState:
 
 
 def enclosing_radii(prepared: PreparedCase) -> FloatArray:
-    """Radius of each particle's enclosing ball about its centre in metres, shape (n,)."""
+    """Radius of each particle's circumscribed sphere about its centre in metres, shape (n,)."""
     if prepared.case.shapes == "spheres":
         return np.asarray(prepared.diameters / 2)
     furthest = np.array([np.linalg.norm(shape, axis=1).max() for shape in prepared.shapes])
@@ -35,15 +35,15 @@ def enclosing_radii(prepared: PreparedCase) -> FloatArray:
 def start_places(
     reach: FloatArray, radius: float, generator: np.random.Generator
 ) -> tuple[FloatArray, float]:
-    """Centres that keep the particles' enclosing balls apart; and the height of the highest ball's top.
+    """Centres with disjoint circumscribed spheres, and the maximum height of the spheres.
 
-    Each ball sinks straight down in the cylinder at the best of a few random places until it would touch
-    another; so the column is loose, but not much taller than it need be.
+    Each sphere is dropped vertically until it touches another, at the lowest of a few random positions, so
+    that the column is loose, but not much higher than necessary.
 
     Parameters
     ----------
     reach
-        Radius of each particle's enclosing ball, shape (n,).
+        Radius of each particle's circumscribed sphere, shape (n,).
     radius
         Of the cylinder.
     """
@@ -51,19 +51,22 @@ def start_places(
     places = np.empty((len(reach), 3))
     for k in range(len(reach)):
         room = max(radius - wide[k], 0.0)
-        away, angle = room * np.sqrt(generator.random(TRIES)), generator.uniform(0.0, 2 * np.pi, TRIES)
-        seats = np.column_stack([away * np.cos(angle), away * np.sin(angle)])
-        near = slice(max(0, k - SIGHT), k)
-        heights = _resting_heights(seats, wide[k], places[near], wide[near])
+        away, angle = (
+            room * np.sqrt(generator.random(TRIALS)),
+            generator.uniform(0.0, 2 * np.pi, TRIALS),
+        )
+        positions = np.column_stack([away * np.cos(angle), away * np.sin(angle)])
+        near = slice(max(0, k - NEIGHBOURS), k)
+        heights = _resting_heights(positions, wide[k], places[near], wide[near])
         best = int(heights.argmin())
-        places[k] = *seats[best], heights[best]
+        places[k] = *positions[best], heights[best]
     return places, float((places[:, 2] + wide).max())
 
 
-def _resting_heights(seats: FloatArray, size: float, others: FloatArray, sizes: FloatArray) -> FloatArray:
-    """Lowest height of a ball's centre at each seat, above the plate and on the other balls, shape (m,)."""
+def _resting_heights(positions: FloatArray, size: float, others: FloatArray, sizes: FloatArray) -> FloatArray:
+    """Minimum height of a sphere's centre at each position, on the plate or other spheres, shape (m,)."""
     reach = sizes + size
-    aside = ((seats[:, None, :] - others[None, :, :2]) ** 2).sum(axis=2)
+    aside = ((positions[:, None, :] - others[None, :, :2]) ** 2).sum(axis=2)
     lift = np.sqrt(np.maximum(reach**2 - aside, 0.0))
     touching = np.where(aside < reach**2, others[:, 2] + lift, size)
     return np.asarray(np.maximum(touching.max(axis=1, initial=size), size))

@@ -1,4 +1,4 @@
-"""How deep particles stand in each other: the smallest shift that would part two convex bodies."""
+"""Overlap depth of particles: the minimum translation that separates two convex polyhedra."""
 
 import numpy as np
 from scipy.spatial import ConvexHull, cKDTree
@@ -10,14 +10,14 @@ from regolith_studio.dem.snapshot import ParticleState
 from regolith_studio.geometry.arrays import FloatArray
 
 PARALLEL = 1e-9
-"""Edges whose unit directions cross by less give no direction of their own."""
+"""Edges with a smaller cross product of unit directions are parallel."""
 
 
 def overlap_depths(prepared: PreparedCase, particles: ParticleState) -> FloatArray:
     """Depth of every pair of particles that overlap, in metres, shape (m,).
 
-    By separating axes: two convex polyhedra overlap by the least overlap of their shadows over the normals
-    of both and the cross products of their edges.
+    By the separating axis theorem: the minimum overlap of the projections on the normals of both polyhedra
+    and on the cross products of their edges.
     """
     forms = [_normals_and_edges(shape) for shape in prepared.shapes]
     turns = Rotation.from_quat(particles.orientations, scalar_first=True)
@@ -51,18 +51,18 @@ def _normals_and_edges(corners: FloatArray) -> tuple[FloatArray, FloatArray]:
 def _depth(
     one: tuple[FloatArray, FloatArray, FloatArray], other: tuple[FloatArray, FloatArray, FloatArray]
 ) -> float:
-    """Of two bodies given by corners, normals and edges; 0 or less if they are apart."""
-    rough = _least_overlap(one[0], other[0], np.vstack([one[1], other[1]]))
+    """Of two polyhedra given by vertices, normals and edges; 0 or less if they are separate."""
+    rough = _min_overlap(one[0], other[0], np.vstack([one[1], other[1]]))
     if rough <= 0.0:
         return rough
     crossed = np.cross(one[2][:, None, :], other[2][None, :, :]).reshape(-1, 3)
     length = np.linalg.norm(crossed, axis=1)
     crossed = crossed[length > PARALLEL] / length[length > PARALLEL][:, None]
-    return min(rough, _least_overlap(one[0], other[0], crossed))
+    return min(rough, _min_overlap(one[0], other[0], crossed))
 
 
-def _least_overlap(one: FloatArray, other: FloatArray, directions: FloatArray) -> float:
-    """Of the shadows along unit directions, shifted either way."""
+def _min_overlap(one: FloatArray, other: FloatArray, directions: FloatArray) -> float:
+    """Of the projections on unit directions, for a translation either way."""
     a, b = one @ directions.T, other @ directions.T
     ways = np.minimum(a.max(axis=0) - b.min(axis=0), b.max(axis=0) - a.min(axis=0))
     return float(ways.min(initial=np.inf))

@@ -1,4 +1,4 @@
-"""The checks after every run, the same for all engines; and the filling before the lift."""
+"""Checks after a simulation, the same for all engines, and the height of the filling before the lift."""
 
 from collections.abc import Sequence
 
@@ -9,10 +9,10 @@ from regolith_studio.dem.engine import RunChecks
 from regolith_studio.dem.snapshot import ParticleState
 from regolith_studio.geometry.arrays import FloatArray
 
-LARGEST_OVERLAP = 0.02
-"""Mean diameters of overlap at rest from which on a run is not trusted."""
-LARGEST_GAIN = 0.05
-"""Energy that may appear between two looks, in m g d a particle: rounding of the solver."""
+MAX_OVERLAP = 0.02
+"""Maximum accepted overlap at rest, in mean diameters."""
+MAX_ENERGY_GAIN = 0.05
+"""Maximum accepted rise of the energy between two samples, in m g d per particle: rounding of the solver."""
 
 
 def check_run(
@@ -25,7 +25,7 @@ def check_run(
     filling: tuple[float, float],
     problems: Sequence[str] = (),
 ) -> RunChecks:
-    """What was verified, with a sentence for each check that failed.
+    """Results of the checks, with a sentence for each check that failed.
 
     Parameters
     ----------
@@ -36,15 +36,15 @@ def check_run(
     filling
         Height in metres and solid fraction before the lift.
     problems
-        Sentences of the engine's own, which come first.
+        Sentences of the engine, which come first.
     """
     kept, said = int(np.count_nonzero(heights > -1.0)), list(problems)
     largest = float(overlaps.max(initial=0.0))
     if kept < len(heights):
         said.append(f"{len(heights) - kept} of {len(heights)} particles fell through the plate.")
-    if largest > LARGEST_OVERLAP:
+    if largest > MAX_OVERLAP:
         said.append(f"Particles overlap by up to {100 * largest:.1f} % of the mean diameter.")
-    if energy_gain > LARGEST_GAIN:
+    if energy_gain > MAX_ENERGY_GAIN:
         said.append(f"The energy rose by {energy_gain:.2g} m g d a particle out of nothing.")
     if not at_rest:
         said.append("The heap was still moving at the end.")

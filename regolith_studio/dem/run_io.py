@@ -1,4 +1,4 @@
-"""The folder of a run: snapshots while it goes, ``repose.json`` and ``final.npz`` at its end."""
+"""The folder of a run: snapshots, ``repose.json`` with the result, and ``final.npz`` with the final state."""
 
 import io
 import os
@@ -42,7 +42,7 @@ class RunSummary:
 
 
 def claim_folder(folder: Path, overwrite: bool) -> None:
-    """Make the folder, empty but for nothing; an earlier run in it is removed if that is allowed.
+    """Create an empty folder; an earlier run in it is removed if that is allowed.
 
     Raises
     ------
@@ -67,7 +67,7 @@ def claim_folder(folder: Path, overwrite: bool) -> None:
 
 
 def save_snapshot(folder: Path, number: int, particles: ParticleState) -> Path:
-    """Write one snapshot, whole or not at all."""
+    """Write one snapshot in one step."""
     return _write(folder / SNAPSHOTS / f"{number:06d}.npz", particle_state_bytes(particles))
 
 
@@ -80,7 +80,7 @@ def save_shapes(folder: Path, prepared: PreparedCase) -> Path:
 
 
 def save_result(folder: Path, document: dict[str, Any], final: ParticleState | None) -> None:
-    """Write the result; the document comes last, so that it never names what is not there.
+    """Write the result; the document is written last, when all other files exist.
 
     Raises
     ------
@@ -134,7 +134,7 @@ def read_run(folder: Path) -> RunSummary:
 
 
 def find_runs(folder: Path) -> list[RunSummary]:
-    """Runs in a folder and directly below it, by name; what is broken is left out."""
+    """Runs in a folder and directly below it, sorted by name; invalid ones are skipped."""
     found = []
     for place in (folder, *sorted(path for path in folder.iterdir() if path.is_dir())):
         try:
@@ -174,11 +174,11 @@ def run_document(
     state
         ``finished``, ``stopped`` by the user, or ``failed``.
     seconds
-        That the run took.
+        Duration of the run.
     measured
-        The angle, or why there is none.
+        The measurement, or why there is no angle.
     problem
-        The sentence of a run that failed.
+        The message of a failed run.
     """
     case = prepared.case
     return {
@@ -220,7 +220,7 @@ def run_document(
 
 
 def case_document(case: ReposeCase) -> dict[str, Any]:
-    """What was chosen, as plain JSON."""
+    """The parameters of the case as JSON."""
     return {
         "test": asdict(case.test),
         "contact": asdict(case.contact),

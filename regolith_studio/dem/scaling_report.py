@@ -1,4 +1,4 @@
-"""What the number of particles means: size, coarse graining, cohesion against weight, stiffness, time."""
+"""The scaling of a case: particle size, coarse graining, Bond numbers, time steps at full stiffness."""
 
 from dataclasses import dataclass
 
@@ -10,16 +10,16 @@ from regolith_studio.dem.case import PreparedCase
 
 @dataclass(frozen=True)
 class ScalingReport:
-    """Of a prepared case, before it runs. SI units.
+    """Dimensions and dimensionless numbers of a prepared case. SI units.
 
     Parameters
     ----------
     mean_diameter, coarse_graining
-        Of the simulated particles, and their size over the dataset's.
+        Of the simulated particles, and the ratio of their size to the dataset's.
     diameters_across
-        Mean diameters that the cylinder is wide; an experiment wants 20 or more.
+        Diameter of the cylinder in mean diameters; should be 20 or more.
     fill_height
-        Expected, from mass and a packing of 55 %.
+        Expected, from the mass and a solid fraction of 55 %.
     bond_number
         Pull-off force of Johnson, Kendall and Roberts over weight, for two mean particles: of the
         particles of the dataset, of the simulated particles with the given surface energy, and as simulated.
@@ -27,7 +27,7 @@ class ScalingReport:
         Steps a simulated second of a code that resolves the contacts at the given Young's modulus
         (a fifth of Rayleigh's time of the smallest particle).
     sentences
-        What a user should know.
+        Sentences for the user.
     """
 
     mean_diameter: float
@@ -40,23 +40,23 @@ class ScalingReport:
 
 
 def pull_off_force(surface_energy: float, diameter: float) -> float:
-    """3/2 pi w R* for two equal balls (R* = d/4), in N."""
+    """3/2 pi w R* for two equal spheres (R* = d/4), in N."""
     return 1.5 * np.pi * surface_energy * diameter / 4
 
 
 def bond_number(surface_energy: float, diameter: float, density: float, gravity: float) -> float:
-    """Pull-off force of two equal balls over the weight of one."""
+    """Ratio of the pull-off force of two equal spheres and the weight of one."""
     return pull_off_force(surface_energy, diameter) / (density * np.pi / 6 * diameter**3 * gravity)
 
 
 def rayleigh_time(diameter: float, density: float, youngs_modulus: float, poissons_ratio: float) -> float:
-    """Time of a surface wave around a ball, in s."""
+    """Rayleigh time of a sphere, in s."""
     shear = youngs_modulus / (2 * (1 + poissons_ratio))
     return float(np.pi * diameter / 2 * np.sqrt(density / shear) / (0.1631 * poissons_ratio + 0.8766))
 
 
 def scaling_report(prepared: PreparedCase) -> ScalingReport:
-    """What this case stands for."""
+    """The report of a prepared case."""
     test, contact = prepared.case.test, prepared.case.contact
     mean, factor = prepared.mean_diameter, prepared.coarse_graining
     real = mean / factor
@@ -112,5 +112,5 @@ def _sentences(prepared: PreparedCase, bonds: tuple[float, float, float]) -> lis
 
 
 def _plain(number: float) -> str:
-    """Two digits, without powers of ten where people would not write them."""
+    """Two significant digits without exponents below 1000."""
     return f"{number:.2g}" if number < 100 else f"{number:.0f}"

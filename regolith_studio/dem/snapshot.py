@@ -1,4 +1,4 @@
-"""Particles at one moment: positions, diameters, orientations, and their ``.npz`` file."""
+"""State of the particles at one moment, and its ``.npz`` file."""
 
 import io
 import zipfile
@@ -12,8 +12,8 @@ import numpy as np
 from regolith_studio.errors import FileError
 from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats, locked_integers
 
-LARGEST = 2_000_000_000
-"""Bytes that a file may unpack to."""
+MAX_UNPACKED_BYTES = 2_000_000_000
+"""Maximum unpacked size of a file in bytes."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,15 +27,15 @@ class ParticleState:
     diameters
         Equivalent diameters in metres, shape (n,).
     orientations
-        Quaternions (w, x, y, z) that turn a shape of the dataset into the particle, shape (n, 4).
+        Quaternions (w, x, y, z) from a shape of the dataset to the particle, shape (n, 4).
     class_index
-        Which shape each particle has, shape (n,).
+        Index of each particle's shape, shape (n,).
     time
         Simulated seconds.
     wall
-        Height of the cylinder's lower rim in metres; infinite once it is gone.
+        Height of the cylinder's lower rim in metres; infinite after it was removed.
     phase
-        What the test is doing: ``fill``, ``settle``, ``lift``, ``rest`` ...
+        Of the test: ``fill``, ``settle``, ``lift``, ``rest`` ...
     """
 
     points: FloatArray
@@ -105,8 +105,8 @@ def read_particle_state(path: Path) -> ParticleState:
     """
     try:
         with zipfile.ZipFile(path) as archive:
-            if sum(entry.file_size for entry in archive.infolist()) > LARGEST:
-                raise FileError(f"{path.name} would unpack to more than {LARGEST // 10**9} GB.")
+            if sum(entry.file_size for entry in archive.infolist()) > MAX_UNPACKED_BYTES:
+                raise FileError(f"{path.name} would unpack to more than {MAX_UNPACKED_BYTES // 10**9} GB.")
         with np.load(path, allow_pickle=False) as content:
             return ParticleState(
                 content["points_m"].astype(np.float64),

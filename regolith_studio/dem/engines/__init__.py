@@ -1,4 +1,4 @@
-"""The engines; each module of this folder that defines ``ENGINE`` is one."""
+"""DEM engines by key; each module of this folder that defines ``ENGINE`` is one."""
 
 from dataclasses import asdict
 from typing import Any
@@ -39,7 +39,7 @@ CAPABILITY_LABELS = {
 
 
 def engine_rows() -> list[dict[str, Any]]:
-    """One dictionary an engine: key, label, licence, whether it is here, and what it capabilities."""
+    """One dictionary per engine: key, label, licence, version or problem, and capabilities."""
     rows = []
     for engine in ENGINES.values():
         found = engine.find()

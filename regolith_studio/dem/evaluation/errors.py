@@ -1,18 +1,18 @@
-"""Where there is no angle of repose, and the sentence that says why."""
+"""The error raised for particles that form no pile, and its limits."""
 
 from typing import Literal
 
 from regolith_studio.errors import InputError
 
 Status = Literal["pile", "too few particles", "layer", "column stands", "no flanks", "scattered"]
-"""What particles that came to rest can be."""
+"""Classification of particles at rest."""
 
-STEEPEST = 60.0
-"""Degrees; a steeper heap is a column that has not collapsed."""
-STRAIGHTEST_SHARE = 0.7
-"""Least share of the surface's variance (R squared) that two straight flanks must explain."""
+MAX_ANGLE = 60.0
+"""Maximum angle in degrees; a steeper heap is a column that has not collapsed."""
+MIN_R_SQUARED = 0.7
+"""Minimum R squared of the fit of two straight flanks."""
 HEAP_SHARE = 0.6
-"""Least share of the particles that must lie in the heap."""
+"""Minimum share of the particles that must lie in the heap."""
 
 
 class NotAPileError(InputError):
@@ -21,9 +21,9 @@ class NotAPileError(InputError):
     Parameters
     ----------
     sentence
-        Why not, for the user.
+        Reason, for the user.
     status
-        The same as a word for programs and tables.
+        Reason, for programs and tables.
     """
 
     def __init__(self, sentence: str, status: Status = "no flanks") -> None:

@@ -64,7 +64,7 @@ class Profile:
 
 
 def base_level(points: FloatArray, diameters: FloatArray) -> float:
-    """Height of the plate that the particles rest on, judged from the particles."""
+    """Height of the plate, estimated from the lowest particles."""
     return float(np.quantile(points[:, 2] - diameters / 2, BASE_SHARE))
 
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from regolith_studio.dem.evaluation.errors import STEEPEST, STRAIGHTEST_SHARE, NotAPileError
+from regolith_studio.dem.evaluation.errors import MAX_ANGLE, MIN_R_SQUARED, NotAPileError
 from regolith_studio.dem.evaluation.profile import Profile
 from regolith_studio.dem.evaluation.settings import EvaluationSettings
 from regolith_studio.dem.evaluation.slope_fit import (
@@ -28,13 +28,13 @@ class Section:
     profile
         The surface.
     used
-        Which of its points are within the regression range, shape (m,).
+        Whether a point is within the regression range, shape (m,).
     low, high
         The cuts, as heights above the base.
     asymmetric, symmetric
         The fitted models.
     uncorrected
-        Asymmetric angle in degrees before the correction for the size of the grains.
+        Asymmetric angle in degrees before the correction for particle size.
     """
 
     azimuth: float
@@ -60,7 +60,7 @@ def evaluate_section(
     Raises
     ------
     NotAPileError
-        If what is there is a layer, a standing column, or has no two straight flanks.
+        If the particles form a layer, a standing column, or a surface without two straight flanks.
     """
     _check_shape(profile, mean_diameter, settings)
     low = max(settings.cut_bottom * profile.top, settings.toe * mean_diameter)
@@ -79,9 +79,9 @@ def evaluate_section(
             f"The section at {azimuth:g} degrees has no two flanks: {len(u)} surface points lie between the "
             f"cuts, and each flank needs {settings.min_points} that rise to an apex."
         )
-    if asymmetric.angle > STEEPEST:
+    if asymmetric.angle > MAX_ANGLE:
         raise NotAPileError(_column(asymmetric.angle), "column stands")
-    if asymmetric.r_squared < STRAIGHTEST_SHARE:
+    if asymmetric.r_squared < MIN_R_SQUARED:
         raise NotAPileError(
             f"The section at {azimuth:g} degrees is no pile: two straight flanks explain only "
             f"{100 * max(asymmetric.r_squared, 0.0):.0f} % of its surface."
@@ -93,8 +93,8 @@ def flank_points(profile: Profile, low: float, high: float) -> BoolArray:
     """Which surface points the regression uses, shape (m,).
 
     On each side of the peak they run from the last point at or above `high` to the first below `low`.
-    Choosing by place and not by each point's own height keeps the noise of single grains from bending
-    the line: points would be missing above it at the top and below it at the toe.
+    Points are selected by position, not by their own height, so that the noise of single particles does not
+    bias the line: points would be missing above it at the top and below it at the toe.
     """
     places = np.arange(len(profile.u))
     inside = (places >= profile.first) & (places <= profile.last)
@@ -117,7 +117,7 @@ def _check_shape(profile: Profile, mean_diameter: float, settings: EvaluationSet
             "layer",
         )
     steepness = float(np.degrees(np.arctan2(2 * profile.top, profile.width)))
-    if steepness > STEEPEST:
+    if steepness > MAX_ANGLE:
         raise NotAPileError(_column(steepness), "column stands")
 
 

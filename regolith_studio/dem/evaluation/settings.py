@@ -1,4 +1,4 @@
-"""Every choice that the evaluation of section 3.3 leaves open, with the paper's where it gives one."""
+"""Parameters of the evaluation of section 3.3, with the paper's values where it gives them."""
 
 from dataclasses import dataclass, field
 
@@ -22,7 +22,7 @@ class EvaluationSettings:
     cut_top, cut_bottom
         Shares of the pile's height that are left out above and below (the paper: 0.15).
     toe
-        The lower cut is at least this high: one layer of grains is no flank. 0 for the paper's letter.
+        Minimum height of the lower cut: one layer of particles is no flank. 0 as in the paper.
     slab
         Thickness of the slice that is projected; 0 projects the whole pile, as the paper does.
     grain_correction
@@ -32,11 +32,11 @@ class EvaluationSettings:
         Vertical sections, equally spaced over half a turn and beginning with x-z; even, so that y-z is
         one of them. 2 for the paper's two.
     min_points
-        Surface points that each flank needs.
+        Minimum number of surface points of a flank.
     min_particles
-        Fewer particles are no pile.
+        Minimum number of particles of a pile.
     min_height
-        A lower heap is a layer, not a pile.
+        Minimum height of a pile; lower heaps are layers.
     confidence
         Of the bootstrap interval.
     seed

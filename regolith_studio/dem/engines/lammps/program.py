@@ -1,4 +1,4 @@
-"""Where the program LAMMPS is, and how to start it; it is never loaded into this process (GPL)."""
+"""Find and start the program LAMMPS; it is never loaded into this process (GPL)."""
 
 import os
 import shutil

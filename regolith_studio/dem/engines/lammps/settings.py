@@ -13,16 +13,15 @@ class LammpsSettings:
     Parameters
     ----------
     spheres
-        Inscribed spheres that stand for a polyhedron.
+        Inscribed spheres per polyhedron.
     max_stiffness
-        Young's modulus over rho g d is lowered to this: the real one would need millions of steps. 0 keeps
-        the real one.
+        Maximum of Young's modulus over rho g d: the real one would need millions of steps. 0: no limit.
     step_share
         Time step as a share of Rayleigh's time of the smallest particle.
     rest
         Time after the lift.
     snapshots
-        Pictures of a run.
+        Number of snapshots of a run.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Runs the program and reads its snapshots while it goes."""
+"""Run LAMMPS and read its snapshots."""
 
 import subprocess
 import tempfile
@@ -30,11 +30,11 @@ from regolith_studio.dem.snapshot import ParticleState, Snapshot
 from regolith_studio.errors import RegolithError
 from regolith_studio.geometry.arrays import FloatArray, IntArray
 
-_FLOWN_APART = ("missing on proc", "Lost atoms", "Out of range atoms", "Non-numeric", "too far outside")
-"""What errors of LAMMPS say of particles that moved too far in one step."""
-GLANCE = 0.1
-"""Seconds between two looks for a snapshot."""
-CALM = 1e-3
+_LOST_ATOMS_ERRORS = ("missing on proc", "Lost atoms", "Out of range atoms", "Non-numeric", "too far outside")
+"""Error messages of LAMMPS for particles that moved too far in one step."""
+POLL_INTERVAL = 0.1
+"""Seconds between two checks for a new snapshot."""
+REST_ENERGY = 1e-3
 """Mean kinetic energy in m g d at which a heap is at rest."""
 
 
@@ -132,7 +132,7 @@ def _follow(run: _Run, child: "subprocess.Popen[bytes]", folder: Path) -> Genera
             step += run.plan.picture
         if ended:
             return
-        time.sleep(GLANCE)
+        time.sleep(POLL_INTERVAL)
 
 
 def _snapshot(run: _Run, path: Path, step: int) -> Snapshot:
@@ -197,7 +197,7 @@ def last_words(said: str, step_share: float) -> str:
     lines = said.splitlines()
     errors = [line for line in lines if "ERROR" in line] or lines[-1:] or ["it said nothing"]
     own = errors[0].strip()
-    if any(sign in own for sign in _FLOWN_APART):
+    if any(sign in own for sign in _LOST_ATOMS_ERRORS):
         return (
             f"The particles flew apart; take a smaller step than {step_share:g} of Rayleigh's time "
             f"(step_share). LAMMPS said: {own}"
@@ -232,7 +232,7 @@ def _checks(run: _Run, energies: dict[int, float]) -> RunChecks:
         overlaps,
         energy_gain=_energy_gain(run, energies),
         kinetic_energy=kinetic,
-        at_rest=bool(kinetic < CALM),
+        at_rest=bool(kinetic < REST_ENERGY),
         filling=run.fill,
     )
 

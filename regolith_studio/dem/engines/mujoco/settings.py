@@ -18,19 +18,19 @@ class MujocoSettings:
     time_step
         Of the integration.
     contact_steps
-        Time constant of a contact in time steps: how soft the constraints are.
+        Time constant of a contact in time steps: the softness of the constraints.
     iterations, tolerance
         Of the conjugate-gradient solver.
     max_fill_speed
-        Speed limit while the cylinder is being filled, in sqrt(g d).
+        Speed limit during filling, in sqrt(g d).
     rest_energy
         Mean kinetic energy of a particle, in units of its weight times d, below which a heap is at rest.
     rest_time
-        How long it must stay so.
+        Time for which it must stay below.
     max_rest_time
-        When waiting for rest ends.
+        Maximum time of waiting for rest.
     snapshots
-        Pictures of a run.
+        Number of snapshots of a run.
 
     Raises
     ------

@@ -16,14 +16,14 @@ from regolith_studio.errors import RegolithError
 from regolith_studio.geometry.arrays import FloatArray
 
 LOOK = 0.5
-"""Simulated time between two looks at energies and speeds."""
+"""Simulated time between two samples of the energies and speeds."""
 CLEAR = 0.5
-"""Distance between rim and pile, in mean diameters, at which the cylinder is gone."""
+"""Distance between rim and pile, in mean diameters, at which the cylinder is removed."""
 
 
 @dataclass(eq=False)
 class _Run:
-    """MuJoCo's state with what is noted on the way."""
+    """MuJoCo's state and the records of a run."""
 
     prepared: PreparedCase
     settings: MujocoSettings
@@ -104,7 +104,7 @@ def _lift(run: _Run) -> Generator[Snapshot, None, None]:
 
 
 def _rest(run: _Run) -> Generator[Snapshot, None, None]:
-    """Wait until the heap stays calm."""
+    """Wait until the heap is at rest."""
     run.phase, run.calm_since = "rest", None
     yield from _advance(run, None, _is_calm, run.settings.max_rest_time)
 

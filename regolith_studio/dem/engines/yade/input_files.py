@@ -1,4 +1,4 @@
-"""The order that YADE's script reads, and the states that it writes.
+"""The input file that YADE's script reads, and the states that it writes.
 
 YADE decides by absolute lengths what touches and what coincides (2e-11 m and 3e-10 m), so the solver's mean
 diameter is always 2 mm: smaller grains would spend more time in touches that it cannot resolve, and larger
@@ -27,8 +27,8 @@ LOOK = 0.25
 """Between two looks, in sqrt(d/g)."""
 CONTACT_AREA = 0.5
 """Of the smallest particle on a flat neighbour, over its diameter squared."""
-OTHERWISE = 0.97
-"""Step after a crash, so that the same touch does not come back."""
+RETRY_STEP_FACTOR = 0.97
+"""Factor on the time step after a crash, so that the same contact does not recur."""
 SHEAR = 0.2
 """YADE multiplies the stiffness by it for shear: far above what is stable, so that friction is Coulomb's at
 once whichever way a contact slides (its law keeps one shear force for all contacts, not one for each)."""
@@ -36,7 +36,7 @@ once whichever way a contact slides (its law keeps one shear force for all conta
 
 @dataclass(frozen=True, eq=False)
 class YadeState:
-    """One state of YADE's, in mean diameters and sqrt(d/g); energies in m g d.
+    """One state written by YADE, in mean diameters and sqrt(d/g); energies in m g d.
 
     Parameters
     ----------
@@ -65,12 +65,12 @@ class YadeState:
 def input_document(
     prepared: PreparedCase, settings: YadeSettings, duration: float, after: YadeState | None
 ) -> dict[str, Any]:
-    """What YADE is told; from the loose column at the start, or from where it crashed.
+    """Content of the input file: from the initial state, or from the last state before a crash.
 
     Parameters
     ----------
     duration
-        Expected, in sqrt(d/g), for the rhythm of the snapshots.
+        Expected, in sqrt(d/g); sets the interval of the snapshots.
     after
         The last state of a run that goes on.
     """
@@ -88,7 +88,7 @@ def input_document(
         "wall_friction": test.wall_friction,
         "plate_friction": test.plate_friction,
         "damping": settings.damping,
-        "time_step": time_step(prepared, settings) * (1.0 if after is None else OTHERWISE),
+        "time_step": time_step(prepared, settings) * (1.0 if after is None else RETRY_STEP_FACTOR),
         "skin": 0.02 * LENGTH,
         "shapes": [shape.tolist() for shape in prepared.shapes],
         "particles": _particles(prepared, after),

@@ -1,4 +1,4 @@
-"""Where the program YADE is; it is never loaded into this process (GPL)."""
+"""Find and start the program YADE; it is never loaded into this process (GPL)."""
 
 import os
 import re
@@ -13,7 +13,7 @@ MISSING = "YADE is not installed; install the package yade of your Linux distrib
 NAMES = ("yade", "yadedaily")
 VERSION = re.compile(r"'(20\d\d\.\d+\w*)'")
 _HIDDEN = ("LD_LIBRARY_PATH", "PYTHONPATH", "PYTHONHOME", "VIRTUAL_ENV", "DISPLAY", "WAYLAND_DISPLAY")
-"""Of this program's environment, out of reach of YADE's own Python."""
+"""Environment variables that are hidden from YADE's own Python."""
 
 
 def find_yade() -> Availability:

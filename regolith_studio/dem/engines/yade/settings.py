@@ -20,18 +20,18 @@ class YadeSettings:
     step_share
         Time step as a share of the time in which the smallest particle would swing on a flat contact.
     damping
-        YADE's local damping: this share of every force that speeds a particle up is left out.
+        YADE's local damping: the share by which every accelerating force is reduced.
     n_segments
-        Flat blocks that the cylinder is made of.
+        Number of flat segments of the cylinder.
     max_fill_speed
-        Speed limit while the cylinder is being filled, in sqrt(g d).
+        Speed limit during filling, in sqrt(g d).
     rest_energy, rest_time, max_rest_time
-        Mean kinetic energy of a particle in m g d below which a heap is at rest, how long it must stay so,
-        and when waiting for it ends.
+        Mean kinetic energy of a particle in m g d below which a heap is at rest, the time for which it must
+        stay below, and the maximum time of waiting for it.
     restarts
-        How often a run may go on from its last snapshot after YADE has crashed.
+        Maximum number of restarts from the last snapshot after a crash of YADE.
     snapshots
-        Pictures of a run.
+        Number of snapshots of a run.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Runs YADE and reads its states while it goes; a crash is answered by going on from the last state."""
+"""Run YADE and read its states; after a crash continue from the last state."""
 
 import json
 import subprocess
@@ -21,8 +21,8 @@ from regolith_studio.dem.run_checks import check_run, measure_filling
 from regolith_studio.dem.snapshot import ParticleState, Snapshot
 from regolith_studio.errors import RegolithError
 
-GLANCE = 0.1
-"""Seconds between two looks for a state."""
+POLL_INTERVAL = 0.1
+"""Seconds between two checks for a new state."""
 
 
 @dataclass(eq=False)
@@ -47,7 +47,7 @@ class _Run:
 
 
 def simulate(prepared: PreparedCase, settings: YadeSettings) -> Generator[Snapshot, None, SimulationResult]:
-    """Write the order, run YADE, read its states; after a crash go on from the last one.
+    """Write the input, run YADE, read its states; after a crash continue from the last one.
 
     Raises
     ------
@@ -61,7 +61,7 @@ def simulate(prepared: PreparedCase, settings: YadeSettings) -> Generator[Snapsh
             code = yield from _attempt(run, folder)
             if run.last is not None and run.last.last:
                 break
-            _bear(run, code, folder)
+            _handle_crash(run, code, folder)
     assert run.last is not None
     assert run.particles is not None
     steps = run.earlier_steps + run.last.steps
@@ -92,14 +92,14 @@ def _attempt(run: _Run, folder: Path) -> Generator[Snapshot, None, int]:
                 number += 1
             if ended:
                 return int(child.returncode)
-            time.sleep(GLANCE)
+            time.sleep(POLL_INTERVAL)
     finally:
         child.kill()
         child.wait()
 
 
-def _bear(run: _Run, code: int, folder: Path) -> None:
-    """Count a crash; give up where there were too many, nothing was reached, or it was none.
+def _handle_crash(run: _Run, code: int, folder: Path) -> None:
+    """Count a crash; raise if there were too many, before the first state, or if YADE reported an error.
 
     Raises
     ------

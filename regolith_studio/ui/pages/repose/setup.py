@@ -39,7 +39,7 @@ COHESION = {
 }
 
 LINES, MAX_LINES = 6, 11
-"""Visible lines of the scaling_report, in low and in high windows."""
+"""Visible lines of the scaling report, in low and in high windows."""
 
 
 class SetupPanel(QWidget):
@@ -147,7 +147,7 @@ class SetupPanel(QWidget):
         self.evaluationChanged.emit()
 
     def show_consequences(self, sentences: list[str], problem: str = "") -> None:
-        """Show the scaling_report of the values, or why they are invalid."""
+        """Show the scaling report of the values, or why they are invalid."""
         self.scaling_report.setText("<br>".join(sentences))
         self.problem.setText(problem)
         self.problem.setVisible(bool(problem))
