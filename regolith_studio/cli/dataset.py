@@ -75,6 +75,7 @@ def build(
     """Coarsen the meshes, or N that stand for all of them, and write a dataset folder."""
     from regolith_studio.cli.inputs import exit_code
     from regolith_studio.cli.terminal import print_errors, print_json, run_with_progress
+    from regolith_studio.dataset.quality import quality_table
     from regolith_studio.dataset.size_parsing import parse_sizes
     from regolith_studio.io.atomic import write_bytes
     from regolith_studio.io.tables import csv_text
@@ -85,7 +86,6 @@ def build(
         measure_quality,
     )
     from regolith_studio.session.outputs.coarsening import coarsening_document
-    from regolith_studio.studies.representatives import quality_table
 
     wish = how.choices(preset, seed=seed, **fineness.changes)
     with usage_errors():

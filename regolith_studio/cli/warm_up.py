@@ -8,9 +8,9 @@ from regolith_studio.cli.options import Jobs, Json
 def warm_up(json: Json = False, jobs: Jobs = 0) -> None:
     """Compile all numerics now, so that the first use is as quick as the second."""
     from regolith_studio.cli.terminal import print_json, run_with_progress
-    from regolith_studio.jobs.warming import warm_up as compile_everything
+    from regolith_studio.jobs.compile_kernels import compile_kernels
 
-    done = run_with_progress(compile_everything(jobs))
+    done = run_with_progress(compile_kernels(jobs))
     if json:
         print_json({"compiled": list(done)})
     else:

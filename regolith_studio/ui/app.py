@@ -11,9 +11,9 @@ from PySide6.QtCore import QTimer
 from PySide6.QtWidgets import QApplication
 
 from regolith_studio.errors import RegolithError
+from regolith_studio.jobs.compile_kernels import compile_kernels
 from regolith_studio.jobs.events import Job
 from regolith_studio.jobs.runners.thread import ThreadRunner
-from regolith_studio.jobs.warming import warm_up
 from regolith_studio.session.preferences import Preferences
 from regolith_studio.session.session import Session
 from regolith_studio.ui.main_window import MainWindow
@@ -61,7 +61,7 @@ def _warm_up_later(session: Session, runner: ThreadRunner) -> None:
     def begin() -> None:
         if session.results.coarsened is not None:
             session.events.coarsening.disconnect(begin)
-            runner.submit(Job(warm_up, (1,)), lambda _event: None, "warm-up")
+            runner.submit(Job(compile_kernels, (1,)), lambda _event: None, "warm-up")
 
     session.events.coarsening.connect(begin)
 

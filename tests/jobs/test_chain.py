@@ -14,10 +14,10 @@ from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.harmonics.fit import fit_harmonics
 from regolith_studio.io.stl import stl_bytes
 from regolith_studio.jobs.coarsening_jobs import CoarseningRequest, coarsen_one, coarsen_sample
+from regolith_studio.jobs.compile_kernels import compile_kernels
 from regolith_studio.jobs.dataset_jobs import DatasetOptions, build_dataset_folder
 from regolith_studio.jobs.events import Partial, Progress, Started, Step, Steps
 from regolith_studio.jobs.particle_jobs import FIT_DEGREE, load_particles, measure_particle, measure_particles
-from regolith_studio.jobs.warming import warm_up
 from regolith_studio.readers.particles import unique_names
 
 SPHERE = icosphere(3)
@@ -114,8 +114,8 @@ def test_that_a_sample_without_a_single_polyhedron_is_no_dataset(tmp_path: Path)
     assert not (tmp_path / "d").exists()
 
 
-def test_that_warming_up_covers_every_method() -> None:
-    heard, names = played(warm_up(workers=1))
+def test_that_compiling_kernels_covers_every_method() -> None:
+    heard, names = played(compile_kernels(workers=1))
     assert {"fit", "exact", "annealing", "quadric"} <= set(names)
     assert heard[0] == Started("Compiling", len(names))
 

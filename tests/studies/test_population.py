@@ -205,7 +205,7 @@ def test_that_whatever_takes_long_is_shared_out_and_the_floor_told_split_by_spli
     options = {"l_max": 2, "n_draws": 20, "n_splits": 1, "n_repeats": 2, "level": 1}
     steps, _ = run(rough_sample(24), ["log_field"], mapper=noting, **options)
     assert asked == [
-        *("descriptors_of", "frames_of", "drawings"),
+        *("descriptors_of", "frames_of", "fit_and_draw"),
         *("descriptors_of", "frames_of", "descriptors_of"),
     ]
     assert sum("noise of sampling" in step.message for step in steps) == N_FLOOR_SPLITS

@@ -1,4 +1,4 @@
-"""Compiles every kernel before somebody waits for it; the machine code stays on disk."""
+"""Compiles every kernel ahead of its first use; the machine code is cached on the disk."""
 
 from collections.abc import Callable
 
@@ -15,34 +15,34 @@ from regolith_studio.jobs.particle_jobs import measure_particle
 from regolith_studio.messages import N_
 
 
-def warm_up(workers: int | Executor = 0) -> Steps:
-    """Run the whole chain on a small body, each method in a process of its own; returns the steps' names.
+def compile_kernels(workers: int | Executor = 0) -> Steps:
+    """Run all methods on a small mesh, each in a process of its own; returns their names.
 
     Parameters
     ----------
     workers
         Processes at a time; 0 for one a core.
     """
-    chores: dict[str, Callable[[str], None]] = dict.fromkeys(reversed(list(METHODS)), _coarsen)
-    chores["fit"] = _measure_and_fit
-    yield Started(N_("Compiling"), len(chores))
-    jobs = [Job(call, (chore, name)) for name, chore in chores.items()]
+    tasks: dict[str, Callable[[str], None]] = dict.fromkeys(reversed(list(METHODS)), _coarsen)
+    tasks["fit"] = _measure_and_fit
+    yield Started(N_("Compiling"), len(tasks))
+    jobs = [Job(call, (task, name)) for name, task in tasks.items()]
     with open_executor(workers) as executor:
-        results = yield from executor.run_all(jobs, list(chores))
+        results = yield from executor.run_all(jobs, list(tasks))
     for result in results:
         value_of(result)
-    return tuple(chores)
+    return tuple(tasks)
 
 
-def _body() -> Mesh:
+def _small_mesh() -> Mesh:
     sphere = icosphere(2)
     return Mesh(sphere.vertices * [3.0, 2.0, 1.5], sphere.faces)
 
 
 def _measure_and_fit(_name: str) -> None:
-    measure_particle(Particle("body", _body()))
-    reconstruct(fit_harmonics(_body(), 4, sampling_degree=8), 2, level=1)
+    measure_particle(Particle("body", _small_mesh()))
+    reconstruct(fit_harmonics(_small_mesh(), 4, sampling_degree=8), 2, level=1)
 
 
 def _coarsen(method: str) -> None:
-    coarsen(_body(), 12, method)
+    coarsen(_small_mesh(), 12, method)
