@@ -46,3 +46,25 @@ def join_messages(parts: Iterable[str], separator: str = " ") -> Message:
     """Several texts as one message; each is translated by itself."""
     values = {f"part_{number}": part for number, part in enumerate(parts)}
     return Message(separator.join(f"{{{name}}}" for name in values), **values)
+
+
+def count_message(one: str, many: str, count: int, **values: Any) -> Message:
+    """The template for one thing, or that for several with their number as ``{count}``."""
+    return Message(one if count == 1 else many, count=f"{count:,}", **values)
+
+
+def to_json(text: str) -> Any:
+    """A text as plain JSON that keeps template and values of a message."""
+    if not isinstance(text, Message):
+        return text
+    values = {name: to_json(each) if isinstance(each, str) else each for name, each in text.values.items()}
+    return {"template": text.template, "values": values}
+
+
+def from_json(document: Any) -> str:
+    """The text that :func:`to_json` was given."""
+    if not isinstance(document, dict):
+        return str(document)
+    values = document["values"].items()
+    read = {name: from_json(each) if isinstance(each, dict) else each for name, each in values}
+    return Message(document["template"], **read)

@@ -34,7 +34,8 @@ def table_texts() -> Iterator[str]:
         yield from (stop["title"], stop["text"])
     for preset in presets().values():
         yield from (preset.label, preset.origin)
-    yield from (card.label for card in materials().values())
+    for card in materials().values():
+        yield from (card.label, card.origin)
     yield from (row.formula for row in CATALOGUE.values())
     kinds: tuple[Any, ...] = (*METHODS.values(), *MODELS.values(), *ENGINES.values())
     for kind in kinds:

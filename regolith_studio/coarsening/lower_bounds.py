@@ -5,6 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from regolith_studio.coarsening.weights import JACCARD, LossWeights
+from regolith_studio.messages import N_, Message
 
 MAX_FACETS = 100_000
 """Sphericities that ask for more facets count as unreachable."""
@@ -81,6 +82,11 @@ def sphericity_reason(sphericity: float, n_facets: int) -> str | None:
     limit = max_sphericity(n_facets)
     if sphericity <= limit:
         return None
-    needed = min_facets(sphericity)
-    ask = "more than 100,000 facets" if needed is None else f"at least {needed} facets"
-    return f"Sphericity {sphericity:.3f} needs {ask}; with {n_facets} the most is {limit:.3f}."
+    values = {"sphericity": f"{sphericity:.3f}", "faces": n_facets, "most": f"{limit:.3f}"}
+    if (needed := min_facets(sphericity)) is None:
+        template = N_(
+            "Sphericity {sphericity} needs more than 100,000 facets; with {faces} the most is {most}."
+        )
+        return Message(template, **values)
+    template = N_("Sphericity {sphericity} needs at least {needed} facets; with {faces} the most is {most}.")
+    return Message(template, needed=needed, **values)

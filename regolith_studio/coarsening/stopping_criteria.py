@@ -17,6 +17,7 @@ from regolith_studio.coarsening.target import Target
 from regolith_studio.coarsening.weights import JACCARD, LossWeights
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.messages import N_, Message
 
 
 @dataclass(frozen=True)
@@ -158,8 +159,14 @@ def check_limit(limit: float) -> None:
 def _least(failed: Sequence[Trial], limit: float) -> CoarseningResult:
     """The best of the trials, with the reason why it is not good enough."""
     least = min(failed, key=lambda trial: trial.largest_error)
-    reason = (
-        f"Not even {failed[-1].n_facets} facets bring all errors below {100 * limit:g} %:"
-        f" the least is {100 * least.largest_error:.2g} %, with {least.n_facets} facets."
+    reason = Message(
+        N_(
+            "Not even {faces} facets bring all errors below {limit} %: the least is {error} %, with {count}"
+            " facets."
+        ),
+        faces=failed[-1].n_facets,
+        limit=f"{100 * limit:g}",
+        error=f"{100 * least.largest_error:.2g}",
+        count=least.n_facets,
     )
     return replace(least.result, reason=reason)

@@ -19,7 +19,7 @@ from regolith_studio.geometry.topology import (
     neighbours,
     pinched_corners,
 )
-from regolith_studio.messages import N_
+from regolith_studio.messages import N_, Message, count_message
 
 MAX_FACES_SEARCHED = 200_000
 """Meshes with more faces are not searched for self-intersections."""
@@ -225,13 +225,26 @@ def _sentences(found: MeshHealth, searched: bool) -> Sequence[str]:
     rows = (
         (
             seams > 0,
-            f"{_count(seams, 'vertex lies', 'vertices lie')} exactly on another: seams cut the surface.",
+            Message(
+                N_("{count} vertices lie exactly on another: seams cut the surface."), count=f"{seams:,}"
+            ),
         ),
-        (found.bodies > 1, f"It consists of {found.bodies:,} separate bodies."),
-        (found.open_edges > 0, f"It is not closed: {_edges(found.open_edges)} one face only."),
+        (found.bodies > 1, Message(N_("It consists of {count} separate bodies."), count=f"{found.bodies:,}")),
+        (
+            found.open_edges > 0,
+            count_message(
+                N_("It is not closed: 1 edge belongs to one face only."),
+                N_("It is not closed: {count} edges belong to one face only."),
+                found.open_edges,
+            ),
+        ),
         (
             found.non_manifold_edges > 0,
-            f"It is not a simple surface: {_edges(found.non_manifold_edges)} three faces or more.",
+            count_message(
+                N_("It is not a simple surface: 1 edge belongs to three faces or more."),
+                N_("It is not a simple surface: {count} edges belong to three faces or more."),
+                found.non_manifold_edges,
+            ),
         ),
         (not found.consistent_winding, N_("Its faces do not all look the same way: some are turned round.")),
         (found.volume < 0.0, N_("It is inside out: its faces look inwards.")),
@@ -243,18 +256,40 @@ def _sentences(found: MeshHealth, searched: bool) -> Sequence[str]:
         ),
         (
             found.pinched_corners > 0,
-            f"Its surface touches itself in {_count(found.pinched_corners, 'corner', 'corners')}.",
+            count_message(
+                N_("Its surface touches itself in 1 corner."),
+                N_("Its surface touches itself in {count} corners."),
+                found.pinched_corners,
+            ),
         ),
         (
             found.handles > 0,
-            f"It has {_count(found.handles, 'tunnel', 'tunnels')} through it "
-            f"(Euler number {found.euler_number}).",
+            count_message(
+                N_("It has 1 tunnel through it (Euler number {euler})."),
+                N_("It has {count} tunnels through it (Euler number {euler})."),
+                found.handles,
+                euler=found.euler_number,
+            ),
         ),
-        (found.degenerate_faces > 0, f"{_count(found.degenerate_faces, 'face has', 'faces have')} no area."),
-        (found.duplicate_faces > 0, f"{_count(found.duplicate_faces, 'face is', 'faces are')} there twice."),
+        (
+            found.degenerate_faces > 0,
+            count_message(
+                N_("1 face has no area."), N_("{count} faces have no area."), found.degenerate_faces
+            ),
+        ),
+        (
+            found.duplicate_faces > 0,
+            count_message(
+                N_("1 face is there twice."), N_("{count} faces are there twice."), found.duplicate_faces
+            ),
+        ),
         (
             bool(crossing),
-            f"{_count(crossing or 0, 'pair of faces crosses', 'pairs of faces cross')} each other.",
+            count_message(
+                N_("1 pair of faces crosses each other."),
+                N_("{count} pairs of faces cross each other."),
+                crossing or 0,
+            ),
         ),
         (
             searched and crossing is None,
@@ -262,10 +297,6 @@ def _sentences(found: MeshHealth, searched: bool) -> Sequence[str]:
         ),
     )
     return tuple(sentence for holds, sentence in rows if holds)
-
-
-def _edges(count: int) -> str:
-    return _count(count, "edge belongs to", "edges belong to")
 
 
 def _count(count: int, one: str, many: str) -> str:

@@ -14,7 +14,7 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.mesh_health import MeshHealth, body_volumes, inspect, unit_size
 from regolith_studio.geometry.non_manifold import split_non_manifold_edges
 from regolith_studio.geometry.topology import edge_table, find_bodies, neighbours
-from regolith_studio.messages import N_
+from regolith_studio.messages import N_, Message, count_message
 
 TOLERANCES = (1e-7, 1e-6, 1e-5)
 """Shares of the mesh's size within which the vertices of an open mesh may be joined."""
@@ -145,9 +145,8 @@ def _merge_equal_vertices(draft: _Draft) -> _Draft:
     used = len(np.unique(draft.faces))
     vertices, faces = merged_vertices(draft.vertices, draft.faces)
     joined = used - len(vertices)
-    action = (
-        f"Joined {_count(joined, 'vertex', 'vertices')} with another at the same place." if joined else ""
-    )
+    template = N_("Joined {count} vertices with another at the same place.")
+    action = Message(template, count=f"{joined:,}") if joined else ""
     return draft.changed(action, vertices=vertices, faces=faces)
 
 
@@ -157,7 +156,8 @@ def _drop_degenerate(draft: _Draft) -> _Draft:
     dropped = int(np.count_nonzero(~proper))
     if not proper.any():
         raise GeometryError("The mesh is a point or a line: none of its faces has an area.")
-    action = f"Removed {_count(dropped, 'face', 'faces')} without area." if dropped else ""
+    one, many = N_("Removed 1 face without area."), N_("Removed {count} faces without area.")
+    action = count_message(one, many, dropped) if dropped else ""
     return draft.changed(action, faces=draft.faces[proper])
 
 
@@ -176,9 +176,8 @@ def _drop_duplicates(draft: _Draft) -> _Draft:
     if not len(kept):
         raise GeometryError("The mesh is a sheet with two sides and encloses no volume.")
     dropped = len(draft.faces) - len(kept)
-    return draft.changed(
-        f"Removed {_count(dropped, 'double face', 'double faces')}.", faces=draft.faces[kept]
-    )
+    action = count_message(N_("Removed 1 double face."), N_("Removed {count} double faces."), dropped)
+    return draft.changed(action, faces=draft.faces[kept])
 
 
 def _parity(faces: IntArray) -> IntArray:
@@ -223,7 +222,9 @@ def _wind(draft: _Draft) -> _Draft:
     turned = parts.turned ^ (share > 0.5)[parts.body]
     faces = np.where(turned[:, None], draft.faces[:, ::-1], draft.faces)
     count = int(np.count_nonzero(turned))
-    text = f"Turned {_count(count, 'face', 'faces')} that looked the wrong way." if count else ""
+    one = N_("Turned 1 face that looked the wrong way.")
+    many = N_("Turned {count} faces that looked the wrong way.")
+    text = count_message(one, many, count) if count else ""
     draft = draft.changed(text, faces=faces)
     return _split_non_manifold(draft) if table.non_manifold_edges else draft
 
@@ -247,7 +248,8 @@ def _make_orientable(draft: _Draft) -> _Draft:
     else:
         raise GeometryError("The mesh is one-sided like a Möbius strip: its faces have no outside.")
     cut = len(draft.faces) - len(kept)
-    text = f"Cut out {_count(cut, 'face', 'faces')} that made the surface one-sided." if cut else ""
+    template = N_("Cut out {count} faces that made the surface one-sided.")
+    text = Message(template, count=f"{cut:,}") if cut else ""
     return draft.changed(text, faces=draft.faces[kept])
 
 
@@ -257,7 +259,11 @@ def _split_non_manifold(draft: _Draft) -> _Draft:
     faces = draft.faces[:, ::-1] if inside_out else draft.faces
     count = edge_table(faces, len(draft.vertices)).non_manifold_edges
     vertices, faces = split_non_manifold_edges(draft.vertices, faces)
-    text = f"Took the surface apart along {_count(count, 'edge', 'edges')} where more than two faces met."
+    text = count_message(
+        N_("Took the surface apart along 1 edge where more than two faces met."),
+        N_("Took the surface apart along {count} edges where more than two faces met."),
+        count,
+    )
     return draft.changed(text, vertices=vertices, faces=faces[:, ::-1] if inside_out else faces)
 
 
@@ -273,7 +279,11 @@ def _keep_largest(draft: _Draft) -> _Draft:
     volumes = np.abs(body_volumes(draft.vertices, draft.faces, parts.body))
     largest = int(np.argmax(volumes))
     share = volumes[largest] / volumes.sum() if volumes.sum() > 0.0 else 1.0
-    text = f"Kept the largest of {parts.count:,} bodies, with {_percent(share)} of their volume."
+    text = Message(
+        N_("Kept the largest of {count} bodies, with {share} of their volume."),
+        count=f"{parts.count:,}",
+        share=_percent(share),
+    )
     return draft.changed(
         text,
         faces=draft.faces[parts.body == largest],
@@ -292,7 +302,12 @@ def _fill(draft: _Draft) -> _Draft:
     share = holes.area / whole if whole > 0.0 else 1.0
     if share > MIN_JUDGED_SHARE:
         require_closed_volume(Mesh(holes.vertices, holes.faces), len(holes.faces) - len(draft.faces), share)
-    text = f"Filled {_count(holes.count, 'hole', 'holes')} with {_percent(share)} of the surface."
+    text = count_message(
+        N_("Filled 1 hole with {share} of the surface."),
+        N_("Filled {count} holes with {share} of the surface."),
+        holes.count,
+        share=_percent(share),
+    )
     return draft.changed(
         text,
         vertices=holes.vertices,

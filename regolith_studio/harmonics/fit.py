@@ -21,12 +21,20 @@ from regolith_studio.harmonics.reference_surface import REFERENCES, Ellipsoid
 from regolith_studio.harmonics.star_point import STAR_POINT_RULES, centre_of_mass, least_hidden_volume
 from regolith_studio.harmonics.transform import SAMPLING_DEGREE, RayGrid, analyse, band_limited, ray_grid
 from regolith_studio.harmonics.visibility import hidden_surface_share
-from regolith_studio.messages import N_
+from regolith_studio.messages import N_, Message
 
 HIDDEN_TOLERANCE = 0.01
 """Hidden share of the surface from which on a fit carries a warning."""
 RADIAL_TOLERANCE = 0.05
 """Root-mean-square radial error, as a share of the mean radius, from which on a fit carries a warning."""
+MISSES = N_(
+    "The expansion up to l = {degree} misses the radius by {error} in the root mean square; a higher"
+    " l_max comes closer, and on flat or long grains so does an ellipsoid as reference."
+)
+MISSES_AT_MOST = N_(
+    "The expansion up to l = {degree} misses the radius by {error} in the root mean square, at most"
+    " {most}; a higher l_max comes closer, and on flat or long grains so does an ellipsoid as reference."
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,13 +101,10 @@ class HarmonicFit:
         """The notes, and a sentence with the number where the expansion misses the radius."""
         if not self.radial_error > RADIAL_TOLERANCE:
             return self.notes
-        most = "" if self.largest_radial_error is None else f", at most {self.largest_radial_error:.0%}"
-        return (
-            *self.notes,
-            f"The expansion up to l = {self.l_max} misses the radius by {self.radial_error:.1%} in the root "
-            f"mean square{most}; a higher l_max comes closer, and on flat or long grains so does an "
-            "ellipsoid as reference.",
-        )
+        values = {"degree": self.l_max, "error": f"{self.radial_error:.1%}"}
+        if self.largest_radial_error is None:
+            return (*self.notes, Message(MISSES, **values))
+        return (*self.notes, Message(MISSES_AT_MOST, most=f"{self.largest_radial_error:.0%}", **values))
 
     def truncated(self, l_max: int) -> "HarmonicFit":
         """The fit cut at `l_max`, with the radial error that it has there.
@@ -202,7 +207,9 @@ def _sampled(
 def _about_hidden(fit: HarmonicFit) -> tuple[str, ...]:
     if not fit.hidden_surface_share > HIDDEN_TOLERANCE:
         return ()
-    return (
-        f"{fit.hidden_surface_share:.1%} of the surface and {fit.unrepresentable_volume_share:.1%} of the "
-        "volume are hidden from the star point and cannot be kept by a radius function.",
+    template = N_(
+        "{surface} of the surface and {volume} of the volume are hidden from the star point and cannot be"
+        " kept by a radius function."
     )
+    surface, volume = f"{fit.hidden_surface_share:.1%}", f"{fit.unrepresentable_volume_share:.1%}"
+    return (Message(template, surface=surface, volume=volume),)

@@ -25,7 +25,7 @@ from regolith_studio.imaging.connected_components import largest_component, pore
 from regolith_studio.imaging.grain_surface import MARGIN, grey_mesh, mask_mesh
 from regolith_studio.imaging.label_table import GrainCrop, grain_crops, label_masks, label_table
 from regolith_studio.imaging.volume_slabs import SliceSource
-from regolith_studio.messages import N_
+from regolith_studio.messages import N_, count_message
 
 Surface = Literal["mask", "grey"]
 SURFACES: tuple[Surface, ...] = get_args(Surface)
@@ -148,8 +148,13 @@ class Extraction:
     @property
     def summary(self) -> str:
         """One sentence for the user."""
-        particles = N_("1 particle") if self.n_found == 1 else f"{self.n_found} particles"
-        return f"{particles}; left out: {len(self.border)} at the border, {len(self.small)} too small."
+        return count_message(
+            N_("1 particle; left out: {border} at the border, {small} too small."),
+            N_("{count} particles; left out: {border} at the border, {small} too small."),
+            self.n_found,
+            border=len(self.border),
+            small=len(self.small),
+        )
 
 
 def extract_particles(

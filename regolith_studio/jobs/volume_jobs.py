@@ -38,7 +38,7 @@ from regolith_studio.jobs.events import Job, Progress, Started, Step, Steps
 from regolith_studio.jobs.executor import Executor, open_executor, value_of
 from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput
 from regolith_studio.jobs.particle_jobs import MeasuredParticle, measure_one
-from regolith_studio.messages import N_
+from regolith_studio.messages import N_, Message
 from regolith_studio.readers.file_bytes import sha256_of
 from regolith_studio.readers.volumes.files import slice_names
 from regolith_studio.readers.volumes.read import VolumeFile, describe_volume, read_volume
@@ -108,7 +108,7 @@ def scan_of(
 
 def read_header(given: VolumeInput) -> Steps:
     """Read what a file says about itself; returns a ``VolumeHeader``."""
-    yield Started(f"Looking at {given.path.name}")
+    yield Started(Message(N_("Looking at {name}"), name=given.path.name))
     return describe_volume(given.path, dataset=given.dataset, axes=given.axes, raw=given.raw)
 
 
@@ -117,7 +117,7 @@ def read_scan(given: VolumeInput) -> Steps:
 
     What lies in the file as it is, is mapped there; packed voxels are unpacked into a temporary file.
     """
-    yield Started(f"Reading {given.path.name}")
+    yield Started(Message(N_("Reading {name}"), name=given.path.name))
     source = given.opened()
     if _n_bytes(source) > IN_MEMORY:
         return (yield from _map_volume(source))
@@ -352,7 +352,7 @@ def _extract(
     *,
     collect: bool = False,
 ) -> Steps:
-    yield Started(f"Reading {given.path.name}")
+    yield Started(Message(N_("Reading {name}"), name=given.path.name))
     volume = given.opened()
     sizes = tuple(float(edge) for edge in np.ravel(np.asarray(volume.voxel_size)))
     source = _source_of(given.path, volume)

@@ -50,12 +50,11 @@ def health_word(entry: ParticleEntry) -> str:
     return "mended"
 
 
-def health_sentences(entry: ParticleEntry) -> str:
-    """All that is known about the mesh, one sentence a line."""
+def health_sentences(entry: ParticleEntry) -> tuple[str, ...]:
+    """All that is known about the mesh."""
     if entry.health is None:
-        return N_("Being measured …")
-    sentences = (*entry.health.problems, *entry.particle.notes)
-    return "\n".join(sentences) or N_("A closed mesh without faults.")
+        return (N_("Being measured …"),)
+    return (*entry.health.problems, *entry.particle.notes) or (N_("A closed mesh without faults."),)
 
 
 def form_of(entry: ParticleEntry) -> str:

@@ -10,7 +10,7 @@ from regolith_studio.coarsening.coarsen import DEFAULT_METHOD
 from regolith_studio.coarsening.weights import JACCARD, WEIGHT_KEYS, LossWeights, presets
 from regolith_studio.descriptors.catalogue import CATALOGUE, LOSS_KEYS
 from regolith_studio.errors import InputError
-from regolith_studio.messages import N_
+from regolith_studio.messages import N_, Message, join_messages
 
 PAPER_LOSSES = (
     "quadric",
@@ -27,9 +27,9 @@ FACET_COUNTS = (8, 12, 16, 20, 30, 50)
 OVERLAP_FACTORS = (0.0, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0)
 CHANGE_FACTORS = (0.0, 4.0)
 GROUPS: Mapping[str, tuple[str, ...]] = {
-    "size": ("volume", "convex_hull_volume"),
-    "box": ("min_diameter", "max_diameter", "aspect_ratio"),
-    "sphericity": ("sphericity",),
+    N_("size"): ("volume", "convex_hull_volume"),
+    N_("box"): ("min_diameter", "max_diameter", "aspect_ratio"),
+    N_("sphericity"): ("sphericity",),
 }
 """Descriptors that are kept or left together when conditions are traded for overlap."""
 CONDITION_METHODS = ("exact",)
@@ -82,7 +82,9 @@ class Loss:
 def losses() -> dict[str, Loss]:
     """The presets by name, then each descriptor of the loss alone (overlap alone is a preset)."""
     alone = {
-        f"{ALONE}{key}": Loss(f"{CATALOGUE[key].label} only", LossWeights.of(**{key: 1.0}))
+        f"{ALONE}{key}": Loss(
+            Message(N_("{name} only"), name=Message(CATALOGUE[key].label)), LossWeights.of(**{key: 1.0})
+        )
         for key in LOSS_KEYS
     }
     return {name: Loss(each.label, each.weights) for name, each in presets().items()} | alone
@@ -125,7 +127,8 @@ def facet_count_variants(
         if count != int(count):
             raise InputError(f"Numbers of facets are whole numbers, got {count:g}.")
     return tuple(
-        like.relabelled(f"{int(count)} facets", n_facets=int(count)) for count in sorted(set(counts))
+        like.relabelled(Message(N_("{count} facets"), count=int(count)), n_facets=int(count))
+        for count in sorted(set(counts))
     )
 
 
@@ -152,7 +155,9 @@ def tradeoff_variants(
     if like.method in CONDITION_METHODS:
         return (alone, *_condition_variants(like, overlap, wanted))
     weighed = [
-        like.relabelled(f"Overlap × {factor:g}", weights=like.weights.replaced(**{JACCARD: overlap * factor}))
+        like.relabelled(
+            _scaled(JACCARD, factor), weights=like.weights.replaced(**{JACCARD: overlap * factor})
+        )
         for factor in sorted(set(factors))
     ]
     return (*weighed, alone)
@@ -167,7 +172,7 @@ def _condition_variants(
     for count in range(1, len(present) + 1):
         for chosen in combinations(present, count):
             weights = {key: wanted[key] for name in chosen for key in groups[name]}
-            label = " + ".join(("Overlap", *chosen))
+            label = join_messages([Message(N_("Overlap")), *map(Message, chosen)], " + ")
             rows.append(like.relabelled(label, weights=LossWeights.of(**{JACCARD: overlap}, **weights)))
     return tuple(rows)
 
@@ -188,7 +193,7 @@ def sensitivity_variants(
         for factor in sorted(set(factors) - {1.0}):
             changed = like.weights.replaced(**{key: like.weights[key] * factor})
             if like.weights[key] and not changed.all_zero:
-                rows.append(like.relabelled(f"{_label_of(key)} × {factor:g}", weights=changed))
+                rows.append(like.relabelled(_scaled(key, factor), weights=changed))
     return tuple(rows)
 
 
@@ -200,5 +205,6 @@ def _check_factors(like: LossVariant, factors: Sequence[float]) -> None:
             raise InputError(f"A factor on a weight must be 0 or a positive number, got {factor:g}.")
 
 
-def _label_of(key: str) -> str:
-    return "Overlap" if key == JACCARD else CATALOGUE[key].label
+def _scaled(key: str, factor: float) -> Message:
+    name = Message(N_("Overlap") if key == JACCARD else CATALOGUE[key].label)
+    return Message(N_("{name} × {factor}"), name=name, factor=f"{factor:g}")

@@ -15,7 +15,7 @@ from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.descriptors.describe import describe
 from regolith_studio.errors import InputError, RegolithError
 from regolith_studio.geometry.arrays import FloatArray, IntArray
-from regolith_studio.messages import N_
+from regolith_studio.messages import N_, Message
 from regolith_studio.shape_models.goodness_of_fit import nearest_neighbour_ratio_in_frame
 from regolith_studio.shape_models.inertia_ellipsoid import canonical
 from regolith_studio.shape_models.models import MODELS
@@ -291,7 +291,12 @@ def population_study(
         study = PopulationStudy(
             tuple(keys), l_max, sample.unit, half.table, floor, judged, drawn, n_repeats, seed, left_out
         )
-        yield StudyProgress(work.done, work.total, f"split {split + 1} of {n_splits}", study)
+        yield StudyProgress(
+            work.done,
+            work.total,
+            Message(N_("split {split} of {total}"), split=split + 1, total=n_splits),
+            study,
+        )
     return study
 
 
@@ -350,7 +355,7 @@ class _TrainTestSplit:
             train, test = self.sample.halves(seed + split)
             pair = (self.table[test], self.table[train])
             found.append(distances([pair], seed, self.work.size_column, first=split))
-            yield self.work.progress(f"noise of sampling, split {split + 1}")
+            yield self.work.progress(Message(N_("noise of sampling, split {split}"), split=split + 1))
         return PopulationDistances.joined(found)
 
     def rounds(
@@ -360,12 +365,14 @@ class _TrainTestSplit:
         n_draws, n_repeats, seed = plan
         train, test = self.sample.halves(seed + split)
         seeds = tuple(seed + split * n_repeats + repeat for repeat in range(n_repeats))
-        label = f"{MODELS[key].label}, split {split + 1}"
+        label = {"name": Message(MODELS[key].label), "split": split + 1}
         task = FitTask(key, options, self.sample.chosen(train), n_draws, seeds)
-        drawn, criterion = yield from self.work.drawn(task, f"{label}, fit")
+        drawn, criterion = yield from self.work.drawn(
+            task, Message(N_("{name}, split {split}, fit"), **label)
+        )
         found = []
         for repeat, draws in enumerate(drawn):
-            message = f"{label}, draw {repeat + 1}"
+            message = Message(N_("{name}, split {split}, draw {draw}"), draw=repeat + 1, **label)
             table = yield from self.work.measured(draws, message)
             table = table[np.isfinite(table).all(axis=1)]
             new = None if repeat else (yield from self._novelty(train, draws, message))

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from regolith_studio.io.tables import Column, Table
-from regolith_studio.messages import N_
+from regolith_studio.messages import N_, Message
 from regolith_studio.studies.population import N_FLOOR_SPLITS, ModelEvaluation, PopulationStudy
 from regolith_studio.studies.population_distances import CONFIDENCE, N_RESAMPLES, WEIGHTINGS
 
@@ -96,13 +96,16 @@ def ranking_table(study: PopulationStudy) -> Table:
     return Table("Models by their distance to held-out particles", columns, ranked, _notes(study))
 
 
+AT_LEAST, AT_MOST = N_("at least {limit}"), N_("at most {limit}")
+
+
 def target_table(study: PopulationStudy) -> Table:
     """What a model of a real sample should reach, and what each of the models does."""
     rows = [
-        (model.key, name, value, f"{sign} {limit:g}", "yes" if reached else "no")
+        (model.key, name, value, Message(sign, limit=f"{limit:g}"), N_("yes") if reached else N_("no"))
         for model in study.models
         for name, value, sign, limit in _targets(study, model)
-        for reached in [value >= limit if sign == "at least" else value <= limit]
+        for reached in [value >= limit if sign == AT_LEAST else value <= limit]
     ]
     columns = tuple(map(Column, ("model", "target", "value", "wanted", "reached")))
     return Table("What a model should reach on held-out particles", columns, tuple(rows), _notes(study))
@@ -115,28 +118,43 @@ def _targets(study: PopulationStudy, model: ModelEvaluation) -> Iterator[tuple[s
     if paper is not None and paper is not model and "aspect_ratio" in study.keys:
         column = study.keys.index("aspect_ratio")
         gain = paper.distances.wasserstein.mean(axis=0)[0, column] / far[0, column]
-        yield N_("aspect ratio, times nearer than the paper's model"), gain, "at least", LEAST_GAIN
+        yield N_("aspect ratio, times nearer than the paper's model"), gain, AT_LEAST, LEAST_GAIN
     if columns := [study.keys.index(key) for key in AT_NOISE if key in study.keys]:
         worst = (far / np.percentile(noise, 95, axis=0))[:, columns].max()
-        yield N_("r_eq, A, AR, S: the worst, over the 95th percentile of noise"), worst, "at most", 1.0
+        yield N_("r_eq, A, AR, S: the worst, over the 95th percentile of noise"), worst, AT_MOST, 1.0
     if "convexity" in study.keys:
         column = study.keys.index("convexity")
         gap = model.distances.kolmogorov[:, 0, column].mean() / study.floor.kolmogorov[:, 0, column].mean()
-        yield N_("V/CH: Kolmogorov-Smirnov distance in floors"), gap, "at most", MOST_FLOORS
+        yield N_("V/CH: Kolmogorov-Smirnov distance in floors"), gap, AT_MOST, MOST_FLOORS
     if pairs := [i for i, pair in enumerate(study.pairs) if set(pair) <= set(PAPERS_PAIRS)]:
         worst = 100 * model.distances.energy.mean(axis=0)[pairs].max()
-        yield N_("pairs of r_eq, A, AR: the largest energy distance [%]"), worst, "at most", MOST_ENERGY
-    yield N_("draws thrown away [%]"), 100 * model.rejected.mean(), "at most", 0.0
-    yield N_("median novelty"), model.novelty.mean(), "at least", LEAST_NOVELTY
+        yield N_("pairs of r_eq, A, AR: the largest energy distance [%]"), worst, AT_MOST, MOST_ENERGY
+    yield N_("draws thrown away [%]"), 100 * model.rejected.mean(), AT_MOST, 0.0
+    yield N_("median novelty"), model.novelty.mean(), AT_LEAST, LEAST_NOVELTY
 
 
 def _notes(study: PopulationStudy) -> tuple[str, ...]:
     splits = len(study.models[0].novelty) if study.models else 0
-    often = "once" if study.n_repeats == 1 else f"{study.n_repeats} times"
+    once = N_(
+        "{count} measured particles at l_max = {degree}, {left} left out; fitted to one half, judged on the"
+        " other; {splits} {split}, {draws} draws once from each fit, seed {seed}."
+    )
+    often = N_(
+        "{count} measured particles at l_max = {degree}, {left} left out; fitted to one half, judged on the"
+        " other; {splits} {split}, {draws} draws {repeats} times from each fit, seed {seed}."
+    )
     return (
-        f"{len(study.measured)} measured particles at l_max = {study.l_max}, {study.left_out} left out; "
-        f"fitted to one half, judged on the other; {splits} {'split' if splits == 1 else 'splits'}, "
-        f"{study.n_draws} draws {often} from each fit, seed {study.seed}.",
+        Message(
+            once if study.n_repeats == 1 else often,
+            count=len(study.measured),
+            degree=study.l_max,
+            left=study.left_out,
+            splits=splits,
+            split=Message(N_("split") if splits == 1 else N_("splits")),
+            draws=study.n_draws,
+            repeats=study.n_repeats,
+            seed=study.seed,
+        ),
         "Wasserstein distances are shares of the measured mean; the floor is the distance between random "
         f"halves, {N_FLOOR_SPLITS} of them; by volume means weighted with the cube of the equivalent radius.",
         f"Low and high hold the distance of one round in {CONFIDENCE:.0%} of {N_RESAMPLES} resamples of "

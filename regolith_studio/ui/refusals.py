@@ -3,14 +3,13 @@
 from collections.abc import Sequence
 
 from regolith_studio.readers.particles import FileProblem
-from regolith_studio.ui.translation import tr
-from regolith_studio.ui.translation.sentences import retold
+from regolith_studio.ui.translation import tr, translate
 from regolith_studio.ui.widgets.toast import Toast
 
 
 def tell_refusals(toast: Toast, problems: Sequence[FileProblem]) -> None:
     """One sentence on the screen: the only one, or the first and how many more there are; all on demand."""
-    first = retold(problems[0].sentence)
+    first = translate(problems[0].sentence)
     if len(problems) == 1:
         toast.problem(first, problems[0].with_path)
         return

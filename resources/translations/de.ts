@@ -3056,8 +3056,8 @@
         <translation>Eigene: die äußere Größe zählt und das Volumen gibt nach, denn ein konvexer Körper hat nur eines von beiden</translation>
     </message>
     <message>
-        <source>Overlap + {symbols}</source>
-        <translation>Überdeckung + {symbols}</translation>
+        <source>Overlap</source>
+        <translation>Überdeckung</translation>
     </message>
     <message>
         <source>Overlap against descriptors</source>
@@ -4204,8 +4204,28 @@
         <translation>Oberflächenenergie</translation>
     </message>
     <message>
-        <source>Synthesised by Regolith Studio from the angular power spectrum and size spread of {count} particles of the published micro-CT set {name}, rounded to two digits; the length unit is taken as micrometres and no measured particle is contained.</source>
-        <translation>Von Regolith Studio synthetisiert aus dem Leistungsspektrum und der Größenstreuung von {count} Partikeln des veröffentlichten Mikro-CT-Satzes {name}, auf zwei Stellen gerundet; als Längeneinheit gelten Mikrometer, und kein gemessenes Partikel ist enthalten.</translation>
+        <source>Synthesised by Regolith Studio from the angular power spectrum and size spread of 1,230 particles of the published micro-CT set cement133, rounded to two digits; the length unit is taken as micrometres and no measured particle is contained.</source>
+        <translation>Von Regolith Studio synthetisiert aus dem Leistungsspektrum und der Größenstreuung von 1,230 Partikeln des veröffentlichten Mikro-CT-Satzes cement133, auf zwei Stellen gerundet; als Längeneinheit gelten Mikrometer, und kein gemessenes Partikel ist enthalten.</translation>
+    </message>
+    <message>
+        <source>Synthesised by Regolith Studio from the angular power spectrum and size spread of 1,599 particles of the published micro-CT set cement141, rounded to two digits; the length unit is taken as micrometres and no measured particle is contained.</source>
+        <translation>Von Regolith Studio synthetisiert aus dem Leistungsspektrum und der Größenstreuung von 1,599 Partikeln des veröffentlichten Mikro-CT-Satzes cement141, auf zwei Stellen gerundet; als Längeneinheit gelten Mikrometer, und kein gemessenes Partikel ist enthalten.</translation>
+    </message>
+    <message>
+        <source>Synthesised by Regolith Studio from the angular power spectrum and size spread of 2,000 particles of the published micro-CT set sacci425, rounded to two digits; the length unit is taken as micrometres and no measured particle is contained.</source>
+        <translation>Von Regolith Studio synthetisiert aus dem Leistungsspektrum und der Größenstreuung von 2,000 Partikeln des veröffentlichten Mikro-CT-Satzes sacci425, auf zwei Stellen gerundet; als Längeneinheit gelten Mikrometer, und kein gemessenes Partikel ist enthalten.</translation>
+    </message>
+    <message>
+        <source>Synthesised by Regolith Studio from the angular power spectrum and size spread of 3,179 particles of the published micro-CT set cement116, rounded to two digits; the length unit is taken as micrometres and no measured particle is contained.</source>
+        <translation>Von Regolith Studio synthetisiert aus dem Leistungsspektrum und der Größenstreuung von 3,179 Partikeln des veröffentlichten Mikro-CT-Satzes cement116, auf zwei Stellen gerundet; als Längeneinheit gelten Mikrometer, und kein gemessenes Partikel ist enthalten.</translation>
+    </message>
+    <message>
+        <source>Synthesised by Regolith Studio from the angular power spectrum and size spread of 4,204 particles of the published micro-CT set ma160, rounded to two digits; the length unit is taken as micrometres and no measured particle is contained.</source>
+        <translation>Von Regolith Studio synthetisiert aus dem Leistungsspektrum und der Größenstreuung von 4,204 Partikeln des veröffentlichten Mikro-CT-Satzes ma160, auf zwei Stellen gerundet; als Längeneinheit gelten Mikrometer, und kein gemessenes Partikel ist enthalten.</translation>
+    </message>
+    <message>
+        <source>Synthesised by Regolith Studio from the angular power spectrum and size spread of 6,261 particles of the published micro-CT set ma165, rounded to two digits; the length unit is taken as micrometres and no measured particle is contained.</source>
+        <translation>Von Regolith Studio synthetisiert aus dem Leistungsspektrum und der Größenstreuung von 6,261 Partikeln des veröffentlichten Mikro-CT-Satzes ma165, auf zwei Stellen gerundet; als Längeneinheit gelten Mikrometer, und kein gemessenes Partikel ist enthalten.</translation>
     </message>
     <message>
         <source>Table 1</source>
@@ -5236,6 +5256,10 @@
         <translation>wie der Ordner</translation>
     </message>
     <message>
+        <source>aspect ratio</source>
+        <translation>Seitenverhältnis</translation>
+    </message>
+    <message>
         <source>aspect ratio, times nearer than the paper&apos;s model</source>
         <translation>Seitenverhältnis, wievielmal näher als das Modell des Artikels</translation>
     </message>
@@ -5370,6 +5394,10 @@
     <message>
         <source>continuous size distributions: at most 16 sizes a shape</source>
         <translation>stetige Größenverteilungen: höchstens 16 Größen je Form</translation>
+    </message>
+    <message>
+        <source>convex hull volume</source>
+        <translation>Volumen der konvexen Hülle</translation>
     </message>
     <message>
         <source>count</source>
@@ -5680,6 +5708,10 @@
         <translation>Massenanteile (als Kommentare)</translation>
     </message>
     <message>
+        <source>max diameter</source>
+        <translation>größter Durchmesser</translation>
+    </message>
+    <message>
         <source>mean</source>
         <translation>Mittel</translation>
     </message>
@@ -5714,6 +5746,10 @@
     <message>
         <source>middle | bright</source>
         <translation>mittel | hell</translation>
+    </message>
+    <message>
+        <source>min diameter</source>
+        <translation>kleinster Durchmesser</translation>
     </message>
     <message>
         <source>mm, mg, ms; coarse graining applied</source>

@@ -23,7 +23,7 @@ from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.pages.model import PAGE
 from regolith_studio.ui.pages.model.distributions import distance_text
 from regolith_studio.ui.pages.model.evaluation_panel import EvaluationPanel
-from regolith_studio.ui.translation.sentences import retold
+from regolith_studio.ui.translation import translate
 from regolith_studio.ui.widgets.plots.spectrum_editor import SpectrumEditor
 from regolith_studio.ui.widgets.toast import Toast
 from regolith_studio.ui.wiring import Wiring
@@ -295,8 +295,8 @@ def test_that_the_outcome_of_a_judgement_is_told_in_german(opened, speaking):
     assert words.endswith("1 Teilung, 2-mal 20 Ziehungen je Fit, Startwert 0.")
     wanted = {page.evaluation.tables["targets"].item(row, 3).text().split()[0] for row in range(3)}
     assert wanted <= {"mindestens", "höchstens"}
-    assert retold("Mixture of fields, split 2, draw 3") == "Mischung von Feldern, Teilung 2, Ziehung 3"
-    assert retold("noise of sampling, split 30") == "Rauschen der Stichprobe, Teilung 30"
+    assert translate("Mixture of fields, split 2, draw 3") == "Mischung von Feldern, Teilung 2, Ziehung 3"
+    assert translate("noise of sampling, split 30") == "Rauschen der Stichprobe, Teilung 30"
 
 
 def test_that_the_means_of_distributions_have_units_and_the_same_digits():

@@ -29,8 +29,7 @@ from regolith_studio.ui.dialogs.unit import UnitDialog
 from regolith_studio.ui.pages.explore.pictures import PictureDialog
 from regolith_studio.ui.pages.scan.volume_dialog import VolumeDialog
 from regolith_studio.ui.tour import start_tour, steps
-from regolith_studio.ui.translation import tr
-from regolith_studio.ui.translation.sentences import retold
+from regolith_studio.ui.translation import tr, translate
 from tests.ui.reading import cut_off, english_left
 
 SECONDS = 120.0
@@ -142,7 +141,7 @@ def test_that_what_a_scan_holds_is_told_in_german_and_nothing_of_it_is_cut(scann
     assert re.match(r"Im Rahmen: \d+ Körner aus \d+ zusammenhängenden Körpern\. ", told)
     assert told.endswith("Ein Klick in ein Schichtbild verschiebt den Rahmen.")
     assert_fits(page)
-    page.workflow.set_particles(retold(Extraction((), tuple(range(14)), (), 46).summary))
+    page.workflow.set_particles(translate(Extraction((), tuple(range(14)), (), 46).summary))
     assert page.workflow.made.text() == "46 Partikel; weggelassen: 14 am Rand, 0 zu klein."
     assert_fits(page)
 

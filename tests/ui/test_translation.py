@@ -9,19 +9,21 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from regolith_studio.coarsening.exact.request import MISSED, NAMES
 from regolith_studio.coarsening.lower_bounds import max_sphericity, sphericity_reason
 from regolith_studio.imaging.extraction import Extraction
 from regolith_studio.imaging.segmentation.segment import Segmentation
 from regolith_studio.imaging.segmentation.thresholding import Histogram
 from regolith_studio.imaging.volume import Volume
+from regolith_studio.messages import Message, join_messages
 from regolith_studio.resources import resource
+from regolith_studio.studies.loss_variants import losses
 from regolith_studio.ui.pages.sample.page import in_english
-from regolith_studio.ui.translation import tr
+from regolith_studio.ui.translation import tr, translate
 from regolith_studio.ui.translation.language import (
     LANGUAGES,
     language_of,
 )
-from regolith_studio.ui.translation.sentences import retold
 from tools.update_translations import PACKAGE, read_translations, update
 
 TRANSLATIONS = resource("translations", "de.ts")
@@ -66,21 +68,21 @@ def test_that_a_translation_fills_in_what_the_source_does():
         assert german.strip() == german
 
 
-def test_that_sentences_of_the_layers_below_are_told_anew(speaking):
+def test_that_messages_of_the_layers_below_are_translated(speaking):
     speaking("de")
     reason = sphericity_reason(0.97, 10)
-    assert retold(reason) == (
+    assert translate(reason) == (
         f"Die Sphärizität 0.970 braucht mindestens {re.findall(r'[0-9]+', reason)[2]} Facetten;"
         f" mit 10 sind höchstens {max_sphericity(10):.3f} möglich."
     )
-    off = "No polyhedron with 8 facets was found that meets all descriptors: sphericity is off by 3 %;"
-    german = retold(f"{off} more facets or a weight of 0 would free it.")
-    assert "8 Facetten" in german
-    assert "Sphärizität weicht um 3 % ab" in german
-    both = retold(f"{reason} The result has 8 facets instead of 10.")
-    assert both == f"{retold(reason)} Das Ergebnis hat 8 statt 10 Facetten."
-    assert retold("A closed mesh without faults.") == "Ein geschlossenes, fehlerfreies Netz."
-    assert retold("Nobody has said this.") == "Nobody has said this."
+    missed = Message(MISSED, faces=8, name=Message(NAMES["sphericity"]), error="3")
+    assert "8 Facetten" in translate(missed)
+    assert "Sphärizität weicht um 3 % ab" in translate(missed)
+    fewer = Message("The result has {real} facets instead of {faces}.", real=8, faces=10)
+    both = translate(join_messages([reason, fewer]))
+    assert both == f"{translate(reason)} Das Ergebnis hat 8 statt 10 Facetten."
+    assert translate("A closed mesh without faults.") == "Ein geschlossenes, fehlerfreies Netz."
+    assert translate("Nobody has said this.") == "Nobody has said this."
 
 
 def test_that_a_language_that_nobody_knows_is_english(app, speaking):
@@ -95,15 +97,15 @@ def test_that_a_language_that_nobody_knows_is_english(app, speaking):
     assert app.translate("elsewhere", "Ready") == "Ready"
 
 
-def test_that_names_of_rows_are_told_part_by_part(speaking):
-    assert retold("Overlap + size + box") == "Overlap + size + box"
-    assert retold("Volume only") == "Volume only"
+def test_that_labels_of_losses_are_translated_with_their_parts(speaking):
     speaking("de")
-    assert retold("Overlap only") == "Nur Überdeckung"
-    assert retold("Volume only") == "Nur Volumen"
-    assert retold("Aspect ratio × 2") == "Seitenverhältnis × 2"
-    assert retold("Overlap + size + sphericity") == "Überdeckung + Größe + Sphärizität"
-    assert retold("12 facets") == "12 Facetten"
+    assert losses()["only_volume"].label == "Volume only"
+    assert translate(losses()["only_volume"].label) == "Nur Volumen"
+    label = Message("{name} × {factor}", name=Message("Aspect ratio"), factor="2")
+    assert translate(label) == "Seitenverhältnis × 2"
+    parts = join_messages([Message(each) for each in ("Overlap", "size", "sphericity")], " + ")
+    assert parts == "Overlap + size + sphericity"
+    assert translate(parts) == "Überdeckung + Größe + Sphärizität"
 
 
 def test_that_a_filter_takes_the_words_that_are_read_and_the_english_ones(speaking):
@@ -123,7 +125,7 @@ def test_that_what_was_found_in_a_scan_is_told_anew(grains, bodies, speaking):
         f"{grains} {'Korn' if grains == 1 else 'Körner'} aus {bodies} zusammenhängenden"
         f" {'Körper' if bodies == 1 else 'Körpern'}"
     )
-    assert retold(found.counts) == counts
-    assert retold(found.summary) == f"{counts} beim Grauwert 103.5; 2 zu klein."
+    assert translate(found.counts) == counts
+    assert translate(found.summary) == f"{counts} beim Grauwert 103.5; 2 zu klein."
     made = Extraction((), (1, 2), (3,), grains).summary
-    assert retold(made) == f"{grains} Partikel; weggelassen: 2 am Rand, 1 zu klein."
+    assert translate(made) == f"{grains} Partikel; weggelassen: 2 am Rand, 1 zu klein."

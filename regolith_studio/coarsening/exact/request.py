@@ -12,6 +12,7 @@ from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.descriptors.comparison import relative_errors
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.half_spaces import HalfSpaces
+from regolith_studio.messages import N_, Message, join_messages
 
 CONDITION_KEYS = ("volume", "sphericity", "min_diameter", "max_diameter", "aspect_ratio")
 """Descriptors in the order of :mod:`regolith_studio.coarsening.exact.problem`."""
@@ -29,8 +30,23 @@ FLAT, COPLANAR = 1e-6, 1e-5
 """Concavity and triangles that count as none; difference of the planes of one facet. At unit volume."""
 
 
-ADVICE = "more facets or a weight of 0 would free it."
-ROUGH_ADVICE = "a convex shape with the other descriptors has less surface, so a weight of 0 would free it."
+NAMES = {
+    "volume": N_("volume"),
+    "sphericity": N_("sphericity"),
+    "aspect_ratio": N_("aspect ratio"),
+    "min_diameter": N_("min diameter"),
+    "max_diameter": N_("max diameter"),
+    "convex_hull_volume": N_("convex hull volume"),
+}
+"""Of descriptors inside a sentence."""
+MISSED = N_(
+    "No polyhedron with {faces} facets was found that meets all descriptors: {name} is off by {error} %;"
+    " more facets or a weight of 0 would free it."
+)
+TOO_ROUGH = N_(
+    "No polyhedron with {faces} facets was found that meets all descriptors: {name} is off by {error} %;"
+    " a convex shape with the other descriptors has less surface, so a weight of 0 would free it."
+)
 """More facets do not help where a particle has more surface than they can."""
 
 
@@ -121,16 +137,22 @@ def reason_for(
     if worst is None or missed[worst] <= EXACT:
         return None if n_real == n_facets else facets_reason(n_real, n_facets)
     wanted = target.descriptors["sphericity"]
-    fewer = "" if n_real == n_facets else f" The result has {n_real} facets instead of {n_facets}."
-    if "sphericity" in missed and (bound := sphericity_reason(wanted, n_facets)) is not None:
-        return bound + fewer
-    rough = worst == "sphericity" and found[worst] > wanted
-    advice = ROUGH_ADVICE if rough else ADVICE
-    return (
-        f"No polyhedron with {n_facets} facets was found that meets all descriptors:"
-        f" {_reported(worst, request).replace('_', ' ')} is off by {100 * missed[worst]:.2g} %; {advice}"
-        + fewer
-    )
+    reason: str | None = None
+    if "sphericity" in missed:
+        reason = sphericity_reason(wanted, n_facets)
+    if reason is None:
+        rough = worst == "sphericity" and found[worst] > wanted
+        name = _reported(worst, request)
+        reason = Message(
+            TOO_ROUGH if rough else MISSED,
+            faces=n_facets,
+            name=Message(NAMES.get(name, name.replace("_", " "))),
+            error=f"{100 * missed[worst]:.2g}",
+        )
+    if n_real == n_facets:
+        return reason
+    template = N_("The result has {real} facets instead of {faces}.")
+    return join_messages([reason, Message(template, real=n_real, faces=n_facets)])
 
 
 def own_planes(target: Target, below: int) -> HalfSpaces | None:
@@ -153,17 +175,26 @@ def own_planes(target: Target, below: int) -> HalfSpaces | None:
 
 def own_reason(n_own: int, n_facets: int) -> str:
     """One sentence about a convex particle with fewer facets than it shall have."""
-    return (
-        f"The result has {n_own} facets instead of {n_facets}: the particle is convex and has {n_own} facets"
-        " itself, and no other polyhedron was found that meets all descriptors."
+    return Message(
+        N_(
+            "The result has {real} facets instead of {faces}: the particle is convex and has {facets} facets"
+            " itself, and no other polyhedron was found that meets all descriptors."
+        ),
+        real=n_own,
+        faces=n_facets,
+        facets=n_own,
     )
 
 
 def facets_reason(n_real: int, n_facets: int) -> str:
     """One sentence about half-spaces that bound no facet."""
-    return (
-        f"The result has {n_real} facets instead of {n_facets}: no place was found where the other"
-        " half-spaces bound a facet and all descriptors are met."
+    return Message(
+        N_(
+            "The result has {real} facets instead of {faces}: no place was found where the other half-spaces"
+            " bound a facet and all descriptors are met."
+        ),
+        real=n_real,
+        faces=n_facets,
     )
 
 

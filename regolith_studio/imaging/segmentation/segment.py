@@ -30,7 +30,7 @@ from regolith_studio.imaging.segmentation.thresholding import (
 )
 from regolith_studio.imaging.volume import Volume
 from regolith_studio.imaging.volume_slabs import ScratchArrays, SliceSource, slab_ranges, thick_slabs
-from regolith_studio.messages import N_
+from regolith_studio.messages import N_, Message
 
 
 @dataclass(frozen=True)
@@ -88,14 +88,20 @@ class Segmentation:
     @property
     def counts(self) -> str:
         """How many grains of how many bodies."""
-        grains = "1 grain" if self.n_grains == 1 else f"{self.n_grains} grains"
-        bodies = "1 connected body" if self.n_bodies == 1 else f"{self.n_bodies} connected bodies"
-        return f"{grains} from {bodies}"
+        templates = {
+            (True, True): N_("1 grain from 1 connected body"),
+            (True, False): N_("1 grain from {bodies} connected bodies"),
+            (False, True): N_("{grains} grains from 1 connected body"),
+            (False, False): N_("{grains} grains from {bodies} connected bodies"),
+        }
+        template = templates[self.n_grains == 1, self.n_bodies == 1]
+        return Message(template, grains=self.n_grains, bodies=self.n_bodies)
 
     @property
     def summary(self) -> str:
         """One sentence for the user."""
-        return f"{self.counts} at grey level {self.level:g}; {self.n_small} too small."
+        template = N_("{counts} at grey level {level}; {small} too small.")
+        return Message(template, counts=self.counts, level=f"{self.level:g}", small=self.n_small)
 
 
 Steps = Generator[SegmentationProgress, None, Segmentation]

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from regolith_studio.errors import FileError
+from regolith_studio.messages import N_, Message, to_json
 from regolith_studio.readers.error_messages import message_about, printable
 from regolith_studio.readers.formats import mesh_suffixes
 from regolith_studio.readers.sandbox.messages import SandboxMessage
@@ -110,7 +111,11 @@ def volume_format_of(path: Path) -> tuple[VolumeFormat, tuple[str, ...]]:
     shown = next((row for row in rows.values() if row.recognises(head)), None)
     if shown is not None and shown is not named:
         return shown, (
-            f"The file is named {printable(path.suffix) or 'without a suffix'} but is {shown.label}.",
+            Message(
+                N_("The file is named {suffix} but is {format}."),
+                suffix=printable(path.suffix) or "without a suffix",
+                format=shown.label,
+            ),
         )
     if named is not None:
         return named, ()
@@ -143,7 +148,7 @@ def _as_json(volume: OpenVolume, row: VolumeFormat, notes: tuple[str, ...]) -> d
         "voxel_size": size,
         "unit": header.unit,
         "kind": header.kind,
-        "notes": notes + header.notes + doubts,
+        "notes": [to_json(note) for note in notes + header.notes + doubts],
         "datasets": [(entry.name, entry.shape, entry.dtype) for entry in header.datasets],
         "dataset": header.dataset,
         "plain": volume.plain() if isinstance(volume, PlainVoxels) else None,
@@ -164,10 +169,8 @@ def _plausible_size(header: VoxelHeader) -> tuple[Sizes | None, tuple[str, ...]]
     ):
         return size, ()
     shown = " × ".join(f"{edge:.3g}" for edge in size)
-    return None, (
-        f"The file states a voxel of {shown} {unit or ''}".rstrip()
-        + ", which is implausible; give the size of a voxel.",
-    )
+    template = N_("The file states a voxel of {size}, which is implausible; give the size of a voxel.")
+    return None, (Message(template, size=f"{shown} {unit or ''}".rstrip()),)
 
 
 def _little(voxels: NDArray[Any]) -> NDArray[Any]:

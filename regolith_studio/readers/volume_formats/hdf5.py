@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from regolith_studio.errors import FileError
+from regolith_studio.messages import N_, Message
 from regolith_studio.readers.error_messages import printable
 from regolith_studio.readers.volume_formats import VolumeFormat
 from regolith_studio.readers.voxels.hdf5 import (
@@ -102,7 +103,13 @@ def _chosen(file: Any, wanted: Any, axes: str) -> Hdf5Voxels:
     size = element_size(dataset, candidate)
     notes: tuple[str, ...] = ()
     if wanted is None and len(candidates) > 1:
-        notes = (f"The file holds {len(candidates)} volumes; {printable(candidate.name)[:60]} was read.",)
+        notes = (
+            Message(
+                N_("The file holds {count} volumes; {name} was read."),
+                count=len(candidates),
+                name=printable(candidate.name)[:60],
+            ),
+        )
     header = VoxelHeader(
         three_dimensions(candidate.spatial),
         voxel_type(dataset.dtype),

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from regolith_studio.errors import FileError
+from regolith_studio.messages import N_, Message
 from regolith_studio.readers.volume_formats import VolumeFormat
 from regolith_studio.readers.voxels.header import (
     OpenVolume,
@@ -90,7 +91,11 @@ def _stack(path: Path, file: Any) -> OpenVolume:
     shape = three_dimensions(tuple(series.shape))
     if len(file.series) > 1:
         _check_run(series)
-        notes += (f"The file holds {len(file.series)} series of images; the largest was read.",)
+        notes += (
+            Message(
+                N_("The file holds {count} series of images; the largest was read."), count=len(file.series)
+            ),
+        )
     header = VoxelHeader(shape, voxel_type(np.dtype(series.dtype)), size, unit, None, notes)
     if series.dataoffset is not None:
         file.close()
@@ -117,7 +122,12 @@ def _check_colours(series: Any, page: Any) -> tuple[str, ...]:
     notes: tuple[str, ...] = ()
     for axis, edge in zip(series.axes, series.shape, strict=True):
         if axis == "C" and edge > MAX_CHANNELS and max(others, default=1) == 1:
-            notes = (f"The file calls its {edge} images channels; they were interpreted as slices.",)
+            notes = (
+                Message(
+                    N_("The file calls its {count} images channels; they were interpreted as slices."),
+                    count=edge,
+                ),
+            )
         elif axis in "SC" and edge > 1:
             raise FileError(f"holds {edge} colours or channels; save one of them as greys.")
     channels = _CHANNELS.search(page.description[:100_000])

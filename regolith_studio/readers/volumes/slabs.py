@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from regolith_studio.errors import FileError, os_error_reason
+from regolith_studio.messages import from_json
 from regolith_studio.readers.error_messages import message_about
 from regolith_studio.readers.sandbox.parent import (
     BASE_SECONDS,
@@ -186,7 +187,7 @@ def _header_from(answer: dict[str, Any]) -> VoxelHeader:
         voxel_size=None if size is None else (float(size[0]), float(size[1]), float(size[2])),
         unit=answer["unit"],
         kind=answer["kind"],
-        notes=tuple(answer["notes"]),
+        notes=tuple(map(from_json, answer["notes"])),
         datasets=tuple(DatasetEntry(name, tuple(shape), dtype) for name, shape, dtype in answer["datasets"]),
         dataset=answer["dataset"],
     )

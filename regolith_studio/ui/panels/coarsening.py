@@ -19,8 +19,7 @@ from regolith_studio.coarsening.methods import METHODS
 from regolith_studio.messages import N_
 from regolith_studio.ui.icons import icon
 from regolith_studio.ui.theme import Theme, current_theme
-from regolith_studio.ui.translation import tr
-from regolith_studio.ui.translation.sentences import retold
+from regolith_studio.ui.translation import tr, translate
 from regolith_studio.ui.widgets.collapsible import Collapsible
 from regolith_studio.ui.widgets.combo_box import ChoiceBox
 from regolith_studio.ui.widgets.fixed_height_text import FixedHeightText
@@ -137,7 +136,7 @@ class CoarseningPanel(QWidget):
 
     def set_outcome(self, sentence: str | None) -> None:
         """Show why a request could not be met, or nothing."""
-        self.outcome.setText(retold(sentence) if sentence else "")
+        self.outcome.setText(translate(sentence) if sentence else "")
         self.outcome.setVisible(bool(sentence))
 
     def set_theme(self, theme: Theme) -> None:

@@ -8,8 +8,7 @@ from regolith_studio.coarsening.weights import JACCARD
 from regolith_studio.descriptors.catalogue import CATALOGUE, LOSS_KEYS
 from regolith_studio.messages import N_
 from regolith_studio.ui.theme import Theme
-from regolith_studio.ui.translation import tr, tr_count
-from regolith_studio.ui.translation.sentences import retold
+from regolith_studio.ui.translation import tr, tr_count, translate
 from regolith_studio.ui.widgets.heat_table import HeatTable
 from regolith_studio.ui.widgets.labels import plain_symbol
 from regolith_studio.ui.widgets.study_frame import StudyFrame
@@ -42,7 +41,7 @@ class CoarseningStudyPanel(QWidget):
             self.frame.set_remark("")
             return
         self._study = study
-        labels, ends = [retold(row.label) for row in study.rows], study.bands.tolist()
+        labels, ends = [translate(row.label) for row in study.rows], study.bands.tolist()
         self.table.set_values(labels, HEADERS, study.rmsre, (ends[0], ends[1]))
         self._set_tool_tips()
         count = tr_count(N_("RMSRE [%], 1 particle"), N_("RMSRE [%], {count} particles"), len(study.names))
@@ -70,7 +69,7 @@ class CoarseningStudyPanel(QWidget):
                         tr(
                             "{row}, {column}: {value:.3g} % ({low:.3g} to {high:.3g}; {share:.0%} bootstrap"
                             " interval)",
-                            row=retold(row.label),
+                            row=translate(row.label),
                             column=header,
                             value=100 * study.rmsre[r, k],
                             low=low[r, k],

@@ -11,8 +11,7 @@ from PySide6.QtWidgets import QFormLayout, QVBoxLayout, QWidget
 from regolith_studio.harmonics.fit_options import FitOptions
 from regolith_studio.messages import N_
 from regolith_studio.session.choices import L_MAX_LIMIT
-from regolith_studio.ui.translation import tr
-from regolith_studio.ui.translation.sentences import retold
+from regolith_studio.ui.translation import tr, translate
 from regolith_studio.ui.widgets.collapsible import Collapsible
 from regolith_studio.ui.widgets.combo_box import ChoiceBox
 from regolith_studio.ui.widgets.fixed_height_text import FixedHeightText
@@ -93,7 +92,7 @@ class FitPanel(QWidget):
                     volume=fit.unrepresentable_volume_share,
                 )
             )
-        self.warnings.setText(with_subscripts(" ".join(map(retold, fit.warnings))))
+        self.warnings.setText(with_subscripts(" ".join(map(translate, fit.warnings))))
         self.warnings.setVisible(bool(fit.warnings))
 
     def _form(self) -> QWidget:

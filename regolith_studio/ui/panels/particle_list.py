@@ -11,8 +11,7 @@ from regolith_studio.messages import N_
 from regolith_studio.session.results import ParticleEntry
 from regolith_studio.session.sample_table import health_sentences, health_word
 from regolith_studio.ui.theme import Theme, current_theme
-from regolith_studio.ui.translation import tr
-from regolith_studio.ui.translation.sentences import retold
+from regolith_studio.ui.translation import tr, translate
 from regolith_studio.ui.widgets.labels import heading, remark
 from regolith_studio.ui.widgets.number_text import short_number
 from regolith_studio.ui.widgets.particle_table_model import (
@@ -94,7 +93,7 @@ class _Model(ParticleTableModel):
                 return self.icons.get(health_word(entry))
             case Qt.ItemDataRole.ToolTipRole:
                 values = [f"{tr(each.title)} {each.text(entry)}" for each in COLUMNS[WORDS:]]
-                health = map(retold, health_sentences(entry).split("\n"))
+                health = map(translate, health_sentences(entry))
                 return "\n".join([entry.id, ", ".join(values), *health])
             case Qt.ItemDataRole.TextAlignmentRole if column >= WORDS:
                 return RIGHT

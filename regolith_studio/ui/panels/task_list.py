@@ -16,8 +16,7 @@ from PySide6.QtWidgets import (
 )
 
 from regolith_studio.session.tasks import Task
-from regolith_studio.ui.translation import tr
-from regolith_studio.ui.translation.sentences import retold
+from regolith_studio.ui.translation import tr, translate
 from regolith_studio.ui.widgets.labels import remark
 
 
@@ -66,7 +65,7 @@ class _Row:
     def show(self, task: Task) -> None:
         self.clock.run(not task.paused)
         parts = filter(None, (task.title, task.message))
-        self.title.setText(": ".join(map(retold, parts)))
+        self.title.setText(": ".join(map(translate, parts)))
         self.bar.setRange(0, task.total)
         self.bar.setValue(task.done)
         rest = time_left(task.done, task.total, self.clock.seconds())

@@ -10,8 +10,7 @@ from regolith_studio.messages import N_
 from regolith_studio.session.tasks import Task
 from regolith_studio.ui.icons import icon
 from regolith_studio.ui.theme import Theme, current_theme
-from regolith_studio.ui.translation import tr
-from regolith_studio.ui.translation.sentences import retold
+from regolith_studio.ui.translation import tr, translate
 from regolith_studio.ui.widgets.labels import ElidedLabel
 
 SHOW_DELAY = 250
@@ -92,10 +91,10 @@ class TasksPanel(QWidget):
         self.bar.setValue(first.done)
         steps = tr("{at} of {total}", at=first.done, total=first.total)
         count = f" ({steps})" if first.total else ""
-        message = f": {retold(first.message)}" if first.message else ""
+        message = f": {translate(first.message)}" if first.message else ""
         more = "   " + tr("and {count} more", count=others) if others else ""
         held = " – " + tr("held back") if first.paused else ""
-        self.text.setText(f"{retold(first.title)}{count}{message}{held}{more}")
+        self.text.setText(f"{translate(first.title)}{count}{message}{held}{more}")
 
     def _request(self) -> None:
         if self._tasks:

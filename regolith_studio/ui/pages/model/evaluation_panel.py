@@ -30,8 +30,7 @@ from regolith_studio.studies.population import PopulationStudy
 from regolith_studio.studies.population_tables import distance_table, pair_table, ranking_table, target_table
 from regolith_studio.ui.layout import tabs
 from regolith_studio.ui.pages.model.table_view import StudyTableView
-from regolith_studio.ui.translation import tr
-from regolith_studio.ui.translation.sentences import retold
+from regolith_studio.ui.translation import tr, translate
 from regolith_studio.ui.widgets.labels import remark, with_subscripts
 from regolith_studio.ui.widgets.study_frame import StudyFrame
 
@@ -230,7 +229,7 @@ class EvaluationPanel(QWidget):
                 if column:
                     item.setTextAlignment(NUMBERS)
                 self.ranking.setItem(row, column, item)
-        self.notes.setText(with_subscripts(retold(table.notes[0])))
+        self.notes.setText(with_subscripts(translate(table.notes[0])))
 
     def _options(self) -> QHBoxLayout:
         row = QHBoxLayout()

@@ -6,7 +6,7 @@ from pathlib import Path
 from PySide6.QtWidgets import QFileDialog, QWidget
 
 from regolith_studio.errors import RegolithError
-from regolith_studio.messages import N_
+from regolith_studio.messages import N_, Message
 from regolith_studio.readers.shape_files import ShapeSource
 from regolith_studio.shape_models.io import write_model
 from regolith_studio.shape_models.materials import MaterialCard, write_card
@@ -39,7 +39,8 @@ def save_card(parent: QWidget, toast: Toast, sample: Sample, source: ShapeSource
         return
     path = Path(name)
     key = re.sub(r"[^a-z0-9_]+", "_", path.stem.lower()).strip("_") or "material"
-    origin = f"Statistics of {len(sample)} particles of {source.name}, made by Regolith Studio."
+    template = N_("Statistics of {count} particles of {name}, made by Regolith Studio.")
+    origin = Message(template, count=len(sample), name=source.name)
     try:
         write_card(MaterialCard.of(sample, key, path.stem, origin), path)
     except (RegolithError, OSError) as error:

@@ -11,8 +11,7 @@ from regolith_studio.session.session import Session
 from regolith_studio.shape_models.materials import MaterialCard, materials
 from regolith_studio.shape_models.models import MODELS
 from regolith_studio.shape_models.sample import Sample
-from regolith_studio.ui.translation import tr
-from regolith_studio.ui.translation.sentences import retold
+from regolith_studio.ui.translation import tr, translate
 
 OPEN_PARTICLES = "open"
 """Key of the open particles."""
@@ -65,7 +64,7 @@ class SourceBox:
         content = self._files[key].content if key in self._files else materials()[key]
         match content:
             case MaterialCard():
-                return SourceKind(CARD_MODEL, content.l_max, retold(content.origin))
+                return SourceKind(CARD_MODEL, content.l_max, translate(content.origin))
             case Sample():
                 words = tr("{count} particles up to l = {degree}.", count=len(content), degree=content.l_max)
                 return SourceKind("", content.l_max, words)

@@ -7,8 +7,7 @@ from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.io.tables import Cell, Table
 from regolith_studio.messages import N_
 from regolith_studio.shape_models.models import MODELS
-from regolith_studio.ui.translation import tr
-from regolith_studio.ui.translation.sentences import retold
+from regolith_studio.ui.translation import tr, translate
 
 WORDS = {
     "wasserstein": "W",
@@ -71,11 +70,15 @@ class StudyTableView(QTableWidget):
         self.horizontalHeader().setSectionResizeMode(QHeaderView.ResizeMode.ResizeToContents)
 
 
+TEXTS = (*(N_("yes"), N_("no"), N_("number"), N_("volume")), *(N_("measured particles"), N_("figures")))
+"""Cells of the tables that are translated."""
+
+
 def _item(cell: Cell) -> QTableWidgetItem:
     if isinstance(cell, str):
         known = {key: model.label for key, model in MODELS.items()}
         descriptor = CATALOGUE.get(cell)
-        return QTableWidgetItem(retold(known.get(cell, descriptor.label if descriptor else cell)))
+        return QTableWidgetItem(translate(known.get(cell, descriptor.label if descriptor else cell)))
     item = QTableWidgetItem("" if cell is None else f"{cell:.3g}")
     item.setTextAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
     return item

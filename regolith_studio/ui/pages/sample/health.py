@@ -24,8 +24,7 @@ from regolith_studio.messages import N_
 from regolith_studio.scene.faults import COLOURS
 from regolith_studio.session.results import ParticleEntry
 from regolith_studio.session.sample_table import health_sentences
-from regolith_studio.ui.translation import tr
-from regolith_studio.ui.translation.sentences import retold
+from regolith_studio.ui.translation import tr, translate
 from regolith_studio.ui.widgets.labels import WrappedLabel
 from regolith_studio.ui.widgets.number_text import short_number
 from regolith_studio.ui.widgets.table import FontRowHeight
@@ -155,9 +154,9 @@ class HealthPanel(QWidget):
         layout.addWidget(scrolled, 2)
 
 
-def retold_health(entry: ParticleEntry) -> list[str]:
+def translated_health(entry: ParticleEntry) -> list[str]:
     """The report as text in the language of the window."""
-    return [retold(sentence) for sentence in health_sentences(entry).split("\n")]
+    return [translate(sentence) for sentence in health_sentences(entry)]
 
 
 def _rows(entry: ParticleEntry, now: MeshHealth) -> tuple[_Row, ...]:
@@ -202,4 +201,4 @@ def _percent(share: float) -> str:
 
 
 def _words(entry: ParticleEntry) -> str:
-    return "\n".join(f"• {sentence}" for sentence in retold_health(entry))
+    return "\n".join(f"• {sentence}" for sentence in translated_health(entry))

@@ -19,7 +19,7 @@ from regolith_studio.session.results import ParticleEntry
 from regolith_studio.session.sample_table import filter_of, sample_table
 from regolith_studio.ui.layout import equal_parts, side_by_side, stacked, tabs
 from regolith_studio.ui.page import PageContext, PageWidget
-from regolith_studio.ui.pages.sample.health import HealthPanel, retold_health
+from regolith_studio.ui.pages.sample.health import HealthPanel, translated_health
 from regolith_studio.ui.pages.sample.scatter import ScatterPanel
 from regolith_studio.ui.pages.sample.statistics import StatisticsPanel
 from regolith_studio.ui.pages.sample.table import FORM_WORDS, HEALTH_WORDS, SampleTable
@@ -189,7 +189,7 @@ class SamplePage(PageWidget):
             self.table.choose([entry.id], entry.id)
             self._show_pictures()
         mesh = entry.particle.mesh
-        self.frame.set_texts(tr("CT particle, {name}", name=entry.id), " ".join(retold_health(entry)))
+        self.frame.set_texts(tr("CT particle, {name}", name=entry.id), " ".join(translated_health(entry)))
         if mesh is not self._shown:
             self._shown = mesh
             self._faults = {}

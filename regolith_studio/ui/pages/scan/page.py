@@ -40,8 +40,7 @@ from regolith_studio.ui.pages.scan.slices_view import SlicesView
 from regolith_studio.ui.pages.scan.volume_dialog import RAW_SUFFIXES, VolumeDialog, needs_asking
 from regolith_studio.ui.pages.scan.workflow_panel import WorkflowPanel
 from regolith_studio.ui.theme import Theme
-from regolith_studio.ui.translation import tr
-from regolith_studio.ui.translation.sentences import retold
+from regolith_studio.ui.translation import tr, translate
 
 VOLUMES = N_(
     "Volumes (*.tif *.tiff *.h5 *.hdf5 *.nrrd *.nhdr *.mha *.mhd *.nii *.nii.gz *.npy *.raw);;All files (*)"
@@ -276,7 +275,7 @@ class ScanPage(PageWidget):
             return
         origin = VolumeSource.of(entry, extraction.particles)
         self._context.session.adopt(extraction.particles, origin=origin)
-        summary = retold(extraction.summary)
+        summary = translate(extraction.summary)
         self._context.toast.note(summary)
         self.workflow.set_particles(summary)
 

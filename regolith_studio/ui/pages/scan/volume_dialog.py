@@ -22,8 +22,7 @@ from regolith_studio.messages import N_
 from regolith_studio.readers.volume_formats import WITH_AXES
 from regolith_studio.readers.volumes.header import RawLayout, VolumeHeader
 from regolith_studio.ui.pages.scan.controls import choice
-from regolith_studio.ui.translation import tr
-from regolith_studio.ui.translation.sentences import retold
+from regolith_studio.ui.translation import tr, translate
 from regolith_studio.ui.widgets.labels import remark
 
 RAW_SUFFIXES = (".raw", ".bin", ".vol", ".dat")
@@ -200,7 +199,7 @@ class VolumeDialog(QDialog):
         parts = (
             tr("{edges} voxels, {dtype}.", edges=edges, dtype=self._header.dtype),
             size,
-            *map(retold, self._header.notes),
+            *map(translate, self._header.notes),
         )
         return " ".join(filter(None, parts))
 

@@ -6,8 +6,7 @@ from PySide6.QtWidgets import QHBoxLayout, QPushButton, QVBoxLayout, QWidget
 from regolith_studio.imaging.segmentation.segment import Segmentation
 from regolith_studio.jobs.volume_jobs import Scan
 from regolith_studio.messages import N_
-from regolith_studio.ui.translation import tr, tr_count
-from regolith_studio.ui.translation.sentences import retold
+from regolith_studio.ui.translation import tr, tr_count, translate
 from regolith_studio.ui.widgets.fixed_height_text import FixedHeightText
 from regolith_studio.ui.widgets.labels import WrappedLabel, heading
 
@@ -78,11 +77,11 @@ class WorkflowPanel(QWidget):
         elif not is_grey:
             self.found.setText(tr("The volume holds labels: its grains have been found already."))
         elif grains is not None:
-            self.found.setText(_sentences(retold(grains.summary), *_doubts(grains, least)))
+            self.found.setText(_sentences(translate(grains.summary), *_doubts(grains, least)))
         elif preview is not None:
             self.found.setText(
                 _sentences(
-                    tr("In the frame: {counts}.", counts=retold(preview.counts)),
+                    tr("In the frame: {counts}.", counts=translate(preview.counts)),
                     *_doubts(preview, least),
                     tr("Click into a slice to move the frame."),
                 )

@@ -11,8 +11,7 @@ from regolith_studio.messages import N_
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.study_requests import loss_names
 from regolith_studio.studies.loss_variants import ALONE, PAPER_LOSSES
-from regolith_studio.ui.translation import tr
-from regolith_studio.ui.translation.sentences import retold
+from regolith_studio.ui.translation import tr, translate
 from regolith_studio.ui.widgets.combo_box import ChoiceBox
 
 ARROW = "  ▾"
@@ -88,7 +87,7 @@ class LossSelector(QWidget):
             menu.addAction(words).triggered.connect(partial(self._choose, names))
         menu.addSeparator()
         for name, label in loss_names().items():
-            action = menu.addAction(retold(label))
+            action = menu.addAction(translate(label))
             action.setCheckable(True)
             action.toggled.connect(partial(self._toggled, name))
             self._actions[name] = action

@@ -26,8 +26,7 @@ from regolith_studio.ui.pages.studies.sweep_panel import SweepPanel
 from regolith_studio.ui.panels.coarsening_study import CoarseningStudyPanel
 from regolith_studio.ui.panels.lmax_study import LmaxStudyPanel
 from regolith_studio.ui.theme import Theme
-from regolith_studio.ui.translation import tr, tr_count
-from regolith_studio.ui.translation.sentences import retold
+from regolith_studio.ui.translation import tr, tr_count, translate
 from regolith_studio.ui.widgets.labels import heading
 
 LMAX_TITLE = N_("Error against l<sub>max</sub> (Fig. 3)")
@@ -124,7 +123,7 @@ class StudiesPage(PageWidget):
         shown = [*entries[first:], *entries[:first]][:MAX_PARTICLES]
         rows = chosen_rows(self.bar.names(), self._session.choices)
         self._drawn = [row.label for row in rows], [entry.particle.name for entry in shown]
-        self.gallery.begin([entry.id for entry in shown], [retold(row.label) for row in rows])
+        self.gallery.begin([entry.id for entry in shown], [translate(row.label) for row in rows])
         job = Job(
             coarsen_gallery, (tuple(entry.particle for entry in shown), self._session.choices.order, rows)
         )

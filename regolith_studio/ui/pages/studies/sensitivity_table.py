@@ -8,8 +8,7 @@ from PySide6.QtWidgets import QStackedLayout, QTableWidgetItem, QWidget
 from regolith_studio.studies.coarsening import CoarseningStudy
 from regolith_studio.studies.sweeps import differences, format_difference, significant
 from regolith_studio.ui.theme import Theme, current_theme
-from regolith_studio.ui.translation import tr
-from regolith_studio.ui.translation.sentences import retold
+from regolith_studio.ui.translation import tr, translate
 from regolith_studio.ui.widgets.heat_table import centred_remark, keep_legible, numbers_table
 from regolith_studio.ui.widgets.table import FontRowHeight
 
@@ -49,7 +48,7 @@ class SensitivityTable(QWidget):
         if study is None:
             self.table.setRowCount(0)
             return
-        labels = [retold(row.label) for row in study.rows[1:]]
+        labels = [translate(row.label) for row in study.rows[1:]]
         values, (low, high) = (100 * each for each in differences(study))
         sure, given = significant(study), 100 * study.rmsre
         top = float(np.abs(values).max(initial=0.0)) or 1.0

@@ -15,8 +15,7 @@ from regolith_studio.studies.sweeps import SWEEPS, descriptor_error, pareto_fron
 from regolith_studio.ui.pages.studies.band_plot import BandPlot, Series
 from regolith_studio.ui.pages.studies.sensitivity_table import SensitivityTable
 from regolith_studio.ui.theme import Theme
-from regolith_studio.ui.translation import tr, tr_count
-from regolith_studio.ui.translation.sentences import retold
+from regolith_studio.ui.translation import tr, tr_count, translate
 from regolith_studio.ui.widgets.labels import plain_symbol, rich_symbol
 from regolith_studio.ui.widgets.plots.curves import PlotCurve
 from regolith_studio.ui.widgets.study_frame import StudyFrame
@@ -91,7 +90,7 @@ class TradeoffPlot(BandPlot):
         )
         series = [
             Series(
-                retold(row.label),
+                translate(row.label),
                 DESCRIPTOR_COLOURS[r % len(DESCRIPTOR_COLOURS)],
                 (float(x[r]),),
                 (float(y[r]),),
