@@ -10,7 +10,7 @@ from functools import cache
 from pathlib import Path
 
 from regolith_studio.errors import FileError, GeometryError, MissingRequirement
-from regolith_studio.geometry import repair as mending
+from regolith_studio.geometry import repair as mesh_repair
 from regolith_studio.geometry.merge_vertices import merged_vertices
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.mesh_health import inspect
@@ -210,17 +210,17 @@ def _read_mesh(file: MeshFile, unit: str, repair: bool, sandbox: Sandbox | None)
         vertices, faces = merged_vertices(vertices, faces)
     mesh = Mesh(vertices * factor, faces)
     notes = tuple(answer.header["notes"])
-    mended = None
+    repaired = None
     try:
         if repair:
-            mended = mending.repair(mesh)
-            mesh, notes = mended.mesh, notes + mended.health_before.problems + mended.actions
+            repaired = mesh_repair.repair(mesh)
+            mesh, notes = repaired.mesh, notes + repaired.health_before.problems + repaired.actions
         else:
             notes += inspect(mesh).problems
     except GeometryError as error:
         raise GeometryError(message_about(path, f"holds no particle: {_lower(str(error))}")) from None
     source = Source(str(path), answer.header["sha256"], unit, repair)
-    return Particle(path.stem, mesh, file.group, source, notes, file.weight, mended)
+    return Particle(path.stem, mesh, file.group, source, notes, file.weight, repaired)
 
 
 def find_files(paths: Sequence[str | Path], problems: list[FileProblem]) -> list[MeshFile]:

@@ -131,16 +131,16 @@ def _sample(path: Path, document: Mapping[str, Any], digest: str) -> ShapeSource
     try:
         fits = fit_io.fits_from(document, arrays)
     except (KeyError, TypeError, ValueError):
-        said = "is a broken fit: the arrays in its NPZ file are not of the shape or type that a fit has."
-        raise FileError(message_about(path, said)) from None
+        reason = "is a broken fit: the arrays in its NPZ file are not of the shape or type that a fit has."
+        raise FileError(message_about(path, reason)) from None
     if not fits:
         raise FileError(message_about(path, "is a fit without a particle."))
     reached, stated = next(iter(fits.values())).l_max, document["l_max"]
     if reached != stated:
-        said = (
+        reason = (
             f"is a broken fit: it states l_max = {stated}, and its NPZ file has coefficients up to {reached}."
         )
-        raise FileError(message_about(path, said))
+        raise FileError(message_about(path, reason))
     rows = np.stack([radius_of(fit).values for fit in fits.values()]) * unit_factor(document["unit"])
     expanded = sum(fit.reference is not None for fit in fits.values())
     note = f"{expanded} of {len(fits)} fits are over an ellipsoid; their radii were expanded again."
