@@ -13,7 +13,7 @@ from regolith_studio.messages import N_
 from regolith_studio.scene.cameras import CameraPose
 from regolith_studio.scene.degrees import degree_animation
 from regolith_studio.scene.figure import three_views
-from regolith_studio.scene.shapes import Shape
+from regolith_studio.scene.shapes import SceneShape
 from regolith_studio.scene.turntable import turntable
 
 LEVEL = 4
@@ -29,7 +29,7 @@ def animate(particle: Mesh, fit: HarmonicFit, degrees: Sequence[int], path: Path
     return path
 
 
-def turn(shapes: Sequence[Shape], pose: CameraPose | None, path: Path, scale: int = 1) -> Steps:
+def turn(shapes: Sequence[SceneShape], pose: CameraPose | None, path: Path, scale: int = 1) -> Steps:
     """Write a GIF or WebP of the bodies turning once; returns its path."""
     yield from _apart(N_("Drawing the turntable"), path, _turn, tuple(shapes), pose, path, scale)
     return path
@@ -63,7 +63,7 @@ def _call(title: str, draw: Callable[..., None], arguments: tuple[Any, ...]) -> 
     draw(*arguments)
 
 
-def _turn(shapes: tuple[Shape, ...], pose: CameraPose | None, path: Path, scale: int) -> None:
+def _turn(shapes: tuple[SceneShape, ...], pose: CameraPose | None, path: Path, scale: int) -> None:
     turntable(shapes, pose, path, scale=scale)
 
 

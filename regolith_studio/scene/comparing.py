@@ -8,7 +8,7 @@ from regolith_studio.scene import extras, palette, sectioning
 from regolith_studio.scene.divider import Divider, clip
 from regolith_studio.scene.palette import Surroundings
 from regolith_studio.scene.sectioning import SectionPlane
-from regolith_studio.scene.shapes import MATERIALS, Shape, show_shape
+from regolith_studio.scene.shapes import MATERIALS, SceneShape, show_shape
 from regolith_studio.scene.surfaces import OUTLINE, SURFACE
 
 OTHER = "other_"
@@ -18,7 +18,7 @@ VEIL = 0.28
 
 
 def show_other(
-    plotter: Any, other: Shape | None, overlay: bool, surroundings: Surroundings = palette.LIGHT
+    plotter: Any, other: SceneShape | None, overlay: bool, surroundings: Surroundings = palette.LIGHT
 ) -> None:
     """The body that is compared with, as a veil or solid; or none."""
     show_shape(plotter, other, surroundings, OTHER, VEIL if overlay else 1.0)

@@ -25,7 +25,7 @@ MATERIALS: dict[str, Material] = {
 
 
 @dataclass(frozen=True, eq=False)
-class Shape:
+class SceneShape:
     """A body in the particle's frame.
 
     Parameters
@@ -58,7 +58,7 @@ class Shape:
 
 def show_shape(
     plotter: Any,
-    shape: Shape | None,
+    shape: SceneShape | None,
     surroundings: Surroundings = palette.LIGHT,
     layer: str = "",
     opacity: float = 1.0,

@@ -11,7 +11,7 @@ from regolith_studio.scene.cameras import CameraPose
 from regolith_studio.scene.figure import Picture
 from regolith_studio.scene.motions import TURN, orbited
 from regolith_studio.scene.moving_picture import save_animation
-from regolith_studio.scene.shapes import LABELS, Shape, show_shape
+from regolith_studio.scene.shapes import LABELS, SceneShape, show_shape
 
 SIZE = (380, 360)
 """Width and height of one body in pixels."""
@@ -21,7 +21,7 @@ SECONDS = 4.0
 
 
 def turntable(
-    shapes: Sequence[Shape], pose: CameraPose | None, path: Path, frames: int = FRAMES, scale: int = 1
+    shapes: Sequence[SceneShape], pose: CameraPose | None, path: Path, frames: int = FRAMES, scale: int = 1
 ) -> None:
     """Write one turn about the upright of the picture as GIF or WebP.
 
@@ -43,7 +43,9 @@ def turntable(
     save_animation(pictures, [SECONDS / frames] * frames, path)
 
 
-def _pictures(shapes: Sequence[Shape], pose: CameraPose | None, frames: int, scale: int) -> Iterator[Picture]:
+def _pictures(
+    shapes: Sequence[SceneShape], pose: CameraPose | None, frames: int, scale: int
+) -> Iterator[Picture]:
     width, height = (scale * each for each in SIZE)
     stage.choose_off_screen_window()
     plotter = pv.Plotter(

@@ -44,14 +44,16 @@ _UPSTREAM: Mapping[Kind, tuple[Kind, ...]] = {
 
 
 @dataclass(frozen=True)
-class Request:
+class ComputationRequest:
     """One piece of work, and the kinds whose present results it is made from."""
 
     kind: Kind
     needs: tuple[Kind, ...] = ()
 
 
-def plan(before: Choices | None, after: Choices, fitted: Collection[str] = ()) -> tuple[Request, ...]:
+def plan(
+    before: Choices | None, after: Choices, fitted: Collection[str] = ()
+) -> tuple[ComputationRequest, ...]:
     """The work that turning `before` into `after` makes necessary, in the order of dependence.
 
     Parameters
@@ -67,7 +69,7 @@ def plan(before: Choices | None, after: Choices, fitted: Collection[str] = ()) -
     due = [kind for kind in LIVE if before is None or depends(kind, before, after)]
     if after.selected in fitted and Kind.FIT in due:
         due.remove(Kind.FIT)
-    return tuple(Request(kind, needs(kind, after)) for kind in due)
+    return tuple(ComputationRequest(kind, needs(kind, after)) for kind in due)
 
 
 def depends(kind: Kind, before: Choices, after: Choices) -> bool:

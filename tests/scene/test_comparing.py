@@ -13,7 +13,7 @@ from regolith_studio.scene.comparing import OTHER, arrange, show_cuts, show_othe
 from regolith_studio.scene.divider import Divider
 from regolith_studio.scene.palette import PAPER
 from regolith_studio.scene.sectioning import SectionPlane
-from regolith_studio.scene.shapes import FIT, PARTICLE, POLYHEDRON, Shape
+from regolith_studio.scene.shapes import FIT, PARTICLE, POLYHEDRON, SceneShape
 from regolith_studio.scene.sight import Sight
 
 SIZE = 160
@@ -47,7 +47,7 @@ def yellowness(part):
 
 def show_two(plotter, ball, cube, direction="isometric"):
     surfaces.show_polyhedron(plotter, cube)
-    show_other(plotter, Shape(FIT, ball), False)
+    show_other(plotter, SceneShape(FIT, ball), False)
     apply_pose(plotter, framing_pose(cube.vertices, direction))
 
 
@@ -93,7 +93,7 @@ def test_that_the_frame_of_a_section_lies_in_its_plane_and_holds_the_particle(ba
 
 def test_that_a_veil_begins_at_the_line_where_both_are_asked_for(plotter, divider, ball, cube):
     show_two(plotter, ball, cube, "front")
-    show_other(plotter, Shape(FIT, ball), True)
+    show_other(plotter, SceneShape(FIT, ball), True)
     arrange(plotter, divider, wipe=True, overlay=True, section=None)
     assert plotter.actors[OTHER + surfaces.SURFACE].prop.opacity < 0.5
     assert not plotter.actors[surfaces.SURFACE].mapper.GetClippingPlanes()
@@ -166,7 +166,7 @@ def test_that_the_number_of_a_slanted_facet_is_read_whole(plotter, cube):
 
 
 def test_that_a_polyhedron_is_a_shape_where_its_centre_says(cube):
-    shape = Shape(POLYHEDRON, cube, np.array([5.0, 0.0, 0.0]))
+    shape = SceneShape(POLYHEDRON, cube, np.array([5.0, 0.0, 0.0]))
     assert np.allclose(shape.mesh.bounds.mean(axis=0), [5.0, 0.0, 0.0])
     assert shape.mesh.volume == pytest.approx(64000.0)
 
@@ -183,7 +183,7 @@ def test_that_the_pose_of_a_plotter_is_what_the_divider_follows(plotter, divider
 
 
 def test_that_the_same_actor_takes_the_colours_of_another_body(plotter, ball):
-    show_other(plotter, Shape(FIT, ball), False)
+    show_other(plotter, SceneShape(FIT, ball), False)
     one = plotter.actors[OTHER + surfaces.SURFACE].prop.color
-    show_other(plotter, Shape(PARTICLE, icosphere(1)), False)
+    show_other(plotter, SceneShape(PARTICLE, icosphere(1)), False)
     assert plotter.actors[OTHER + surfaces.SURFACE].prop.color != one

@@ -11,7 +11,7 @@ from regolith_studio.scene import stage, surfaces
 from regolith_studio.scene.cameras import apply_pose, framing_pose
 from regolith_studio.scene.figure import VIEW_SIZE, three_views
 from regolith_studio.scene.moving_picture import save_animation
-from regolith_studio.scene.shapes import FIT, PARTICLE, Shape
+from regolith_studio.scene.shapes import FIT, PARTICLE, SceneShape
 from regolith_studio.scene.turntable import SIZE, turntable
 
 STICK = icosphere(2).moved(rotation=np.diag([40.0, 6.0, 6.0]))
@@ -26,7 +26,7 @@ def dark_width(picture):
 @pytest.mark.parametrize("ending", [".gif", ".webp"])
 def test_that_a_stick_is_long_from_the_side_and_short_from_its_end(tmp_path, ending):
     path = tmp_path / f"turning{ending}"
-    shapes = (Shape(PARTICLE, STICK), Shape(FIT, STICK))
+    shapes = (SceneShape(PARTICLE, STICK), SceneShape(FIT, STICK))
     turntable(shapes, framing_pose(STICK.vertices, "front"), path, frames=8)
     widths = []
     with Image.open(path) as file:

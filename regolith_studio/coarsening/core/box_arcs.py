@@ -30,7 +30,7 @@ class Arc(NamedTuple):
     end: int
 
 
-class Sample(NamedTuple):
+class ArcSample(NamedTuple):
     """Angle, log volume and slope (3,) of a box on an arc, and its piece (7,)."""
 
     number: FloatArray
@@ -40,15 +40,15 @@ class Sample(NamedTuple):
 class Spare(NamedTuple):
     """Memory for :func:`arc_minimum`."""
 
-    low: Sample
-    high: Sample
-    here: Sample
+    low: ArcSample
+    high: ArcSample
+    here: ArcSample
 
 
 @kernel
-def empty_sample() -> Sample:
+def empty_sample() -> ArcSample:
     """A sample to be filled."""
-    return Sample(np.zeros(3), np.zeros(7, np.int64))
+    return ArcSample(np.zeros(3), np.zeros(7, np.int64))
 
 
 @kernel
@@ -58,7 +58,7 @@ def spare_samples() -> Spare:
 
 
 @kernel_noalloc
-def copied(source: Sample, target: Sample) -> None:
+def copied(source: ArcSample, target: ArcSample) -> None:
     """Copy a sample."""
     for c in range(3):
         target.number[c] = source.number[c]
@@ -80,7 +80,7 @@ def arc_between(solid: Solid, e: int) -> Arc:
 
 @kernel_noalloc
 def box_on_arc(
-    arc: Arc, angle: float, solid: Solid, limit: float, scratch: Scratch, touch: Touch, sample: Sample
+    arc: Arc, angle: float, solid: Solid, limit: float, scratch: Scratch, touch: Touch, sample: ArcSample
 ) -> float:
     """Volume of the box at an angle of the arc; fills `touch` and `sample`."""
     cosine, sine = np.cos(angle), np.sin(angle)
@@ -98,7 +98,7 @@ def box_on_arc(
 
 
 @kernel_noalloc
-def worth_a_look(one: Sample, two: Sample, limit: float) -> bool:
+def worth_a_look(one: ArcSample, two: ArcSample, limit: float) -> bool:
     """Whether the volume turns from falling to rising, and the tangents meet below `limit`."""
     if not (one.number[2] < 0.0 and two.number[2] > 0.0):
         return False
@@ -107,7 +107,7 @@ def worth_a_look(one: Sample, two: Sample, limit: float) -> bool:
 
 
 @kernel_noalloc
-def meeting(one: Sample, two: Sample) -> float:
+def meeting(one: ArcSample, two: ArcSample) -> float:
     """Angle at which the tangents of the log volume meet."""
     gap = two.number[0] - one.number[0]
     rise = two.number[1] - one.number[1]
@@ -116,7 +116,7 @@ def meeting(one: Sample, two: Sample) -> float:
 
 @kernel_noalloc
 def arc_minimum(
-    arc: Arc, one: Sample, two: Sample, solid: Solid, scratch: Scratch, touch: Touch, spare: Spare
+    arc: Arc, one: ArcSample, two: ArcSample, solid: Solid, scratch: Scratch, touch: Touch, spare: Spare
 ) -> tuple[int, int, float]:
     """Minimum of the volume between two samples of an arc, where the slope turns from falling to rising.
 
@@ -199,7 +199,7 @@ def same_side(one: IntArray, two: IntArray, axis: FloatArray, vertices: FloatArr
 
 
 @kernel_noalloc
-def tie_angle(arc: Arc, slot: int, i: int, j: int, sample: Sample, vertices: FloatArray) -> float:
+def tie_angle(arc: Arc, slot: int, i: int, j: int, sample: ArcSample, vertices: FloatArray) -> float:
     """Angle near a sample at which vertices i and j lie in one side of the box, by the secant method."""
     edge, apart = from_to(vertices, sample.piece[2], sample.piece[3]), from_to(vertices, j, i)
     before, angle, last = 0.0, sample.number[0], 0.0

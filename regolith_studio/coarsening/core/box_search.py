@@ -19,7 +19,7 @@ from regolith_studio.coarsening.core.box import (
 from regolith_studio.coarsening.core.box_arcs import (
     ON_FACET,
     Arc,
-    Sample,
+    ArcSample,
     Spare,
     arc_between,
     arc_minimum,
@@ -92,14 +92,14 @@ class OnFacets(NamedTuple):
     resting: IntArray
 
 
-class Work(NamedTuple):
+class BoxWorkspace(NamedTuple):
     """Memory that one search reuses."""
 
     scratch: Scratch
     touch: Touch
     fallback: Touch
-    one: Sample
-    two: Sample
+    one: ArcSample
+    two: ArcSample
     spare: Spare
 
 
@@ -130,7 +130,7 @@ def local_boxes(solid: Solid, margin: float, sample_angle: float, near: FloatArr
         np.empty((n, 7), np.int64),
         np.ones(n, np.int64),
     )
-    work = Work(
+    work = BoxWorkspace(
         scratch_for(solid), empty_touch(), empty_touch(), empty_sample(), empty_sample(), spare_samples()
     )
     count, best = search(solid, margin, sample_angle, near, boxes, facets, work)
@@ -171,7 +171,7 @@ def search(
     near: FloatArray,
     boxes: Boxes,
     facets: OnFacets,
-    work: Work,
+    work: BoxWorkspace,
 ) -> tuple[int, float]:
     """Fill `boxes`; how many there are, and the least volume."""
     scratch, touch, fallback, one, two, spare = work

@@ -13,7 +13,7 @@ from regolith_studio.scene.comparing import arrange, show_cuts, show_other
 from regolith_studio.scene.divider import Divider
 from regolith_studio.scene.palette import Surroundings
 from regolith_studio.scene.sectioning import show_frame
-from regolith_studio.scene.shapes import FIT, NAMES, PARTICLE, POLYHEDRON, Shape
+from regolith_studio.scene.shapes import FIT, NAMES, PARTICLE, POLYHEDRON, SceneShape
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.views.grips import DividerGrip, PlaneGrip
 from regolith_studio.ui.views.sections import Sections
@@ -49,7 +49,7 @@ class Comparison:
         self._frames, self._sections = frames, sections
         self.partners = dict(PARTNERS)
         self.overlay = self.wipe = False
-        self._shapes: Mapping[str, Shape] = {}
+        self._shapes: Mapping[str, SceneShape] = {}
         self._theme: Theme | None = None
         self.dividers: dict[str, Divider] = {}
         grip = PlaneGrip(lambda: sections.framed, sections.move_to)
@@ -60,7 +60,7 @@ class Comparison:
             frame.partnerChanged.connect(partial(self.set_partner, name))
         sections.changed.connect(partial(self.dress, *NAMES))
 
-    def set_shapes(self, shapes: Mapping[str, Shape], *changed: str) -> None:
+    def set_shapes(self, shapes: Mapping[str, SceneShape], *changed: str) -> None:
         """Other bodies; those that are named have changed."""
         self._shapes = shapes
         self._sections.set_shapes(shapes)

@@ -7,7 +7,7 @@ import numpy as np
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.scene import facets
 from regolith_studio.scene.palette import Surroundings
-from regolith_studio.scene.shapes import Shape
+from regolith_studio.scene.shapes import SceneShape
 from regolith_studio.scene.sight import Sight
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.views.protocol import SceneView
@@ -33,14 +33,14 @@ class FacetPointer:
     def __init__(
         self,
         view: SceneView,
-        shape: Callable[[], Shape | None],
+        shape: Callable[[], SceneShape | None],
         ink: Callable[[], Surroundings],
         seen: Callable[[FloatArray, float], bool],
         tell: Callable[[str], None],
     ) -> None:
         self._view, self._shape, self._ink, self._tell = view, shape, ink, tell
         self._seen = seen
-        self._known: tuple[Shape, int] | None = None
+        self._known: tuple[SceneShape, int] | None = None
         view.mouse.pointed.append(self._point)
         view.mouse.left.append(self.forget)
 

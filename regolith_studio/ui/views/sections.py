@@ -10,7 +10,7 @@ from regolith_studio.geometry.cross_section import CrossSection, cross_section
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.oriented_box import minimum_volume_box
 from regolith_studio.scene.sectioning import SectionPlane, frame_corners, normals_of, reach_along
-from regolith_studio.scene.shapes import PARTICLE, Shape
+from regolith_studio.scene.shapes import PARTICLE, SceneShape
 
 EYE = "eye"
 
@@ -30,8 +30,8 @@ class Sections(QObject):
         self.flipped = True
         self._share = 0.5
         self._eye = np.array([0.0, -1.0, 0.0])
-        self._shapes: Mapping[str, Shape] = {}
-        self._cuts: dict[str, tuple[Shape, SectionPlane, CrossSection]] = {}
+        self._shapes: Mapping[str, SceneShape] = {}
+        self._cuts: dict[str, tuple[SceneShape, SectionPlane, CrossSection]] = {}
         self._normals: tuple[Mesh, dict[str, FloatArray]] | None = None
 
     def set_shown(self, shown: bool) -> None:
@@ -39,7 +39,7 @@ class Sections(QObject):
         self.shown = shown
         self.changed.emit()
 
-    def set_shapes(self, shapes: Mapping[str, Shape]) -> None:
+    def set_shapes(self, shapes: Mapping[str, SceneShape]) -> None:
         """Cut other bodies from now on."""
         self._shapes = dict(shapes)
         if self.shown:

@@ -14,7 +14,7 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.oriented_box import minimum_volume_box
 from regolith_studio.harmonics.visibility import hidden_faces
 from regolith_studio.scene import extras, surfaces
-from regolith_studio.scene.shapes import FIT, NAMES, PARTICLE, POLYHEDRON, Shape
+from regolith_studio.scene.shapes import FIT, NAMES, PARTICLE, POLYHEDRON, SceneShape
 from regolith_studio.scene.sight import Sight
 from regolith_studio.session.results import ParticleEntry, Results
 from regolith_studio.ui.theme import Theme, current_theme
@@ -58,7 +58,7 @@ class Triptych(QSplitter):
             frame.setMinimumWidth(136)
             frame.enlargeRequested.connect(partial(self.enlarge, name))
         self.setSizes([1000, 1000, 1000])
-        self._shapes: dict[str, Shape] = {}
+        self._shapes: dict[str, SceneShape] = {}
         self._heat = False
         self._size_of_fit = ""
         self._extras: dict[str, bool] = {}
@@ -84,7 +84,7 @@ class Triptych(QSplitter):
         if entry is None or entry.particle.mesh is self._surface(PARTICLE):
             return
         mesh = entry.particle.mesh
-        self._shapes = {PARTICLE: Shape(PARTICLE, mesh)}
+        self._shapes = {PARTICLE: SceneShape(PARTICLE, mesh)}
         self._star_point = self._hidden = None
         self.pointer.forget()
         for name in NAMES[1:]:
@@ -104,7 +104,7 @@ class Triptych(QSplitter):
         """Show the surface of the fit."""
         if mesh is None or PARTICLE not in self._shapes:
             return
-        self._shapes[FIT] = Shape(FIT, mesh)
+        self._shapes[FIT] = SceneShape(FIT, mesh)
         degree = f"l<sub>max</sub>&nbsp;=&nbsp;{l_max}"
         count = (l_max + 1) ** 2
         self._size_of_fit = tr(
@@ -125,7 +125,7 @@ class Triptych(QSplitter):
         if found is None or found.polyhedron is None:
             return
         solid, centre = found.polyhedron, np.asarray(found.centre, dtype=np.float64)
-        self._shapes[POLYHEDRON] = Shape(POLYHEDRON, solid, centre)
+        self._shapes[POLYHEDRON] = SceneShape(POLYHEDRON, solid, centre)
         self.pointer.forget()
         self._draw_polyhedron()
         self.frames[POLYHEDRON].set_texts(
@@ -186,7 +186,7 @@ class Triptych(QSplitter):
             self.frames[NAMES[NAMES.index(seen[0]) + 1]].show()
 
     @property
-    def shapes(self) -> tuple[Shape, ...]:
+    def shapes(self) -> tuple[SceneShape, ...]:
         """What is shown, from left to right."""
         return tuple(self._shapes[name] for name in NAMES if name in self._shapes)
 

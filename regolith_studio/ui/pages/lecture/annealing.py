@@ -13,7 +13,7 @@ from regolith_studio.messages import N_
 from regolith_studio.scene import surfaces
 from regolith_studio.scene.comparing import OTHER, show_other
 from regolith_studio.scene.moves import show_move
-from regolith_studio.scene.shapes import FIT, Shape
+from regolith_studio.scene.shapes import FIT, SceneShape
 from regolith_studio.ui.layout import side_by_side, stacked
 from regolith_studio.ui.pages.lecture import texts
 from regolith_studio.ui.pages.lecture.playback_bar import PlaybackBar
@@ -170,7 +170,7 @@ class AnnealingView(QWidget):
             frame.set_texts(tr("Exact method"), tr("being found …"))
             self.exact_formula.set_lines()
             return
-        veil = Shape(FIT, lesson.imitated)
+        veil = SceneShape(FIT, lesson.imitated)
         solid, centre = exact.polyhedron, exact.centre
 
         def fill(plotter: Any) -> None:
