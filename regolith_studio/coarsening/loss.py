@@ -94,8 +94,8 @@ class LossFunction:
 
     def _measured(self, normals: FloatArray, offsets: FloatArray) -> FloatArray | None:
         """As :func:`evaluate`; ``None`` where there is no polyhedron with a box of some thickness."""
-        values = np.empty(6)
-        status = evaluate(normals, offsets, self._crossings, self._weight, self._with_box, values)
+        values, planes, distances = np.empty(6), np.array(normals), np.array(offsets)
+        status = evaluate(planes, distances, self._crossings, self._weight, self._with_box, values)
         return values if status == FINE and not values[SHORTEST] <= 0.0 else None
 
     def of(self, values: FloatArray) -> float:

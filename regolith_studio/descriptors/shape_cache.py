@@ -8,10 +8,9 @@ import numpy as np
 from regolith_studio.errors import GeometryError
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
-from regolith_studio.geometry.heuristic_box import heuristic_box
 from regolith_studio.geometry.mass_properties import ellipsoid_area, equal_ellipsoid, volume_and_area
 from regolith_studio.geometry.mesh import Mesh
-from regolith_studio.geometry.oriented_box import OrientedBox, minimum_volume_box
+from regolith_studio.geometry.oriented_box import OrientedBox, heuristic_box, minimum_volume_box
 
 FLAT = 1e-9
 """A mesh whose volume is below this share of its size cubed encloses nothing."""

@@ -3,9 +3,9 @@
 import numpy as np
 
 from regolith_studio.geometry.arrays import FloatArray, IntArray
-from regolith_studio.geometry.hull_graph import after, hull_graph
 from regolith_studio.geometry.kernels import kernel
 from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.minimum_box.hull_topology import after, hull_graph
 from regolith_studio.geometry.vectors import along, cross, dot, length, mixed, row
 
 PARALLEL = 1e-8

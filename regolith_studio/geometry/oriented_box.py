@@ -1,4 +1,4 @@
-"""The minimum-volume oriented bounding box, exact in the sense of O'Rourke."""
+"""Oriented bounding boxes of minimum volume, exact in the sense of O'Rourke; and trimesh's heuristic box."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -12,14 +12,14 @@ from scipy.spatial import cKDTree
 
 from regolith_studio.errors import GeometryError
 from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats
-from regolith_studio.geometry.box_search import minimum_box
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.kernels import kernel
 from regolith_studio.geometry.mesh import Mesh, bounds_of
+from regolith_studio.geometry.minimum_box.search import minimum_box
 from regolith_studio.geometry.sphere_points import fibonacci_directions
 from regolith_studio.geometry.vectors import length, mixed, row
 
-SHAKE = 1e-10
+JITTER = 1e-10
 WELD = 1e-8
 """Vertices of a hull of size 1 that are closer are one for the search."""
 
@@ -92,10 +92,9 @@ _of_meshes: WeakKeyDictionary[Mesh, OrientedBox] = WeakKeyDictionary()
 def minimum_volume_box(solid: Mesh | ConvexPolyhedron) -> OrientedBox:
     """The oriented bounding box of least volume.
 
-    Found by the branch and bound of :mod:`regolith_studio.geometry.box_search` (O'Rourke 1985: two adjacent
-    sides are flush with edges of the hull), and independent of unit and orientation. Of boxes that
-    tie in volume, the one with the least sum of edges is taken. That of a mesh is looked for once: who draws
-    it need not wait for what has been measured.
+    Found by the branch and bound of :mod:`regolith_studio.geometry.minimum_box.search` (O'Rourke 1985: two
+    adjacent sides are flush with edges of the hull), and independent of unit and orientation. Of boxes that
+    tie in volume, the one with the smallest sum of edges is taken. The box of a mesh is kept with it.
 
     Raises
     ------
@@ -109,6 +108,36 @@ def minimum_volume_box(solid: Mesh | ConvexPolyhedron) -> OrientedBox:
     return found
 
 
+def heuristic_box(solid: Mesh | ConvexPolyhedron) -> OrientedBox:
+    """``trimesh.bounds.oriented_bounds`` of the solid, centred and scaled to size 1 first.
+
+    For comparison only: the box of the paper's program. Its volume is up to 29 % above the minimum, and its
+    edges change by up to 23 % when the particle is turned, because it projects only one end of each
+    silhouette edge.
+
+    Raises
+    ------
+    GeometryError
+        If the vertices lie in one plane.
+    """
+    from trimesh.bounds import oriented_bounds
+
+    hull = solid.mesh.hull if isinstance(solid, ConvexPolyhedron) else solid.hull
+    low, high = hull.bounds
+    size = float((high - low).max())
+    middle = (low + high) / 2
+    try:
+        to_box, extents = oriented_bounds((hull.vertices - middle) / size)  # type: ignore[no-untyped-call]
+    except (ValueError, IndexError) as error:
+        raise GeometryError("The mesh is too small or too flat for trimesh's bounding box.") from error
+    order = np.argsort(-extents, kind="stable")
+    axes = np.asarray(to_box[:3, :3], dtype=np.float64)
+    centre = middle - size * axes.T @ to_box[:3, 3]
+    turned = axes[order]
+    turned[2] = np.cross(turned[0], turned[1])
+    return OrientedBox(centre, turned, np.asarray(extents, dtype=np.float64)[order] * size)
+
+
 def _searched(solid: Mesh | ConvexPolyhedron) -> OrientedBox:
     hull = solid.mesh if isinstance(solid, ConvexPolyhedron) else solid.hull
     low, high = hull.bounds
@@ -117,9 +146,9 @@ def _searched(solid: Mesh | ConvexPolyhedron) -> OrientedBox:
         raise GeometryError("The mesh is a single point and has no bounding box.")
     middle = (low + high) / 2
     points = (hull.vertices - middle) / size
-    axes = minimum_box(*_welded(points, hull.faces))
-    if not axes.any():
-        axes = _axes_of_shaken(points)
+    axes = np.empty((3, 3))
+    if not minimum_box(*_welded(points, hull.faces), axes):
+        axes = _axes_of_perturbed(points)
     low_ends, high_ends = bounds_of(points @ axes.T)
     axes = _right_handed(axes[np.argsort(low_ends - high_ends, kind="stable")])
     lows, highs = bounds_of(points @ axes.T)
@@ -153,11 +182,13 @@ def _shortest(points: FloatArray, faces: IntArray) -> float:
     return least
 
 
-def _axes_of_shaken(points: FloatArray) -> FloatArray:
+def _axes_of_perturbed(points: FloatArray) -> FloatArray:
     """For a hull whose triangles do not close (many points in one plane): move each point by 1e-10."""
-    shaken = Mesh(points + SHAKE * fibonacci_directions(len(points)), np.empty((0, 3), dtype=np.int64)).hull
-    axes = minimum_box(np.array(shaken.vertices), shaken.faces)
-    if not axes.any():
+    perturbed = Mesh(
+        points + JITTER * fibonacci_directions(len(points)), np.empty((0, 3), dtype=np.int64)
+    ).hull
+    axes = np.empty((3, 3))
+    if not minimum_box(np.array(perturbed.vertices), perturbed.faces, axes):
         raise GeometryError("The convex hull of the mesh does not close, so it has no bounding box.")
     return axes
 

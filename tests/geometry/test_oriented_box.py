@@ -13,8 +13,7 @@ from benchmarks.independent import least_box
 from regolith_studio.errors import GeometryError
 from regolith_studio.geometry import ConvexPolyhedron, HalfSpaces, Mesh, oriented_box
 from regolith_studio.geometry.arrays import FloatArray
-from regolith_studio.geometry.heuristic_box import heuristic_box
-from regolith_studio.geometry.oriented_box import OrientedBox, minimum_volume_box
+from regolith_studio.geometry.oriented_box import OrientedBox, heuristic_box, minimum_volume_box
 from regolith_studio.geometry.sphere_points import icosphere
 from tests.geometry.solids import cloud, cuboid, random_polyhedron, rotation, rough_stone, tetrahedron
 

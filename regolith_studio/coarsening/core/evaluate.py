@@ -13,10 +13,10 @@ from regolith_studio.coarsening.core.intersection import (
 )
 from regolith_studio.coarsening.core.overlap import shared_by_planes
 from regolith_studio.geometry.arrays import FloatArray, IntArray
-from regolith_studio.geometry.box_facets import Facets
-from regolith_studio.geometry.box_search import least_box
-from regolith_studio.geometry.box_widths import between, ends_along
 from regolith_studio.geometry.kernels import kernel
+from regolith_studio.geometry.minimum_box.extents import between, extreme_vertices
+from regolith_studio.geometry.minimum_box.hull_topology import Facets
+from regolith_studio.geometry.minimum_box.search import best_box
 from regolith_studio.geometry.vectors import along, cross, dot, length, row
 
 VOLUME, AREA, SHORTEST, LONGEST, SHARED, FACETS = 0, 1, 2, 3, 4, 5
@@ -42,7 +42,7 @@ def evaluate(
     Parameters
     ----------
     normals, offsets
-        Of the half-spaces; they may be locked.
+        Of the half-spaces.
     crossings, weight
         Of the particle, as from :func:`regolith_studio.coarsening.core.overlap.crossings_of`, and of a ray;
         without crossings the shared volume is not asked for.
@@ -51,35 +51,25 @@ def evaluate(
     """
     n = len(offsets)
     values[:] = np.nan
-    planes, heights, vertices, triples = (
-        np.empty((n, 3)),
-        np.empty(n),
-        np.empty((2 * n, 3)),
-        np.empty((2 * n, 3), np.int64),
-    )
-    for i in range(n):
-        heights[i] = offsets[i]
-        for c in range(3):
-            planes[i, c] = normals[i, c]
-    work, reach = work_for(n), REACH * heights.max()
-    status, count = cut_out(planes, heights, reach, work, vertices, triples)
+    vertices, triples = np.empty((2 * n, 3)), np.empty((2 * n, 3), np.int64)
+    work, reach = work_for(n), REACH * offsets.max()
+    status, count = cut_out(normals, offsets, reach, work, vertices, triples)
     if status != FINE:
         return status
-    edges, points = np.empty((3 * n, 4), np.int64), np.empty((3, count))
-    measure_facets(planes, heights, vertices[:count], triples, work, edges, values)
+    edges = np.empty((3 * n, 4), np.int64)
+    measure_facets(normals, offsets, vertices[:count], triples, work, edges, values)
     if with_box:
-        for v in range(count):
-            for c in range(3):
-                points[c, v] = vertices[v, c]
-        extents = least_extents(planes, points, edges[: 3 * count // 2])
+        points = np.ascontiguousarray(vertices[:count].T)
+        extents = least_extents(normals, points, edges[: 3 * count // 2])
         if not extents.min() > 0.0:
             return DEGENERATE
         values[SHORTEST], values[LONGEST] = extents.min(), extents.max()
     if crossings.shape[1] > 0:
+        dual = np.empty((n, 3))
         for i in range(n):
             for c in range(3):
-                planes[i, c] /= heights[i]
-        values[SHARED] = shared_by_planes(planes, crossings, weight)
+                dual[i, c] = normals[i, c] / offsets[i]
+        values[SHARED] = shared_by_planes(dual, crossings, weight)
     return status
 
 
@@ -122,7 +112,7 @@ def measure_facets(
 
 @kernel
 def least_extents(normals: FloatArray, points: FloatArray, edges: IntArray) -> FloatArray:
-    """Edges of the least box of all, by :func:`regolith_studio.geometry.box_search.least_box`.
+    """Edges of the least box of all, by :func:`regolith_studio.geometry.minimum_box.search.best_box`.
 
     Edges that are too short to have a direction are passed over, as if their ends were one vertex.
 
@@ -138,9 +128,9 @@ def least_extents(normals: FloatArray, points: FloatArray, edges: IntArray) -> F
         for k in range(4):
             long[count, k] = edges[e, k]
         count += length(between(points, edges[e, 1], edges[e, 0])) >= NO_EDGE
-    axes, extents = least_box(Facets(points, normals, long[:count]), np.inf).axes, np.empty(3)
+    axes, extents = best_box(Facets(points, normals, long[:count])).axes, np.empty(3)
     for k in range(3):
-        top, bottom = ends_along(points, row(axes, k))
+        top, bottom = extreme_vertices(points, row(axes, k))
         extents[k] = dot(between(points, top, bottom), row(axes, k))
     return extents
 

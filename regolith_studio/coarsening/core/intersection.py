@@ -6,7 +6,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from regolith_studio.geometry.arrays import FloatArray, IntArray
-from regolith_studio.geometry.eights import WIDTH, WORD, first_bit, load, positive, splat, store
 from regolith_studio.geometry.kernels import kernel, kernel_noalloc
 from regolith_studio.geometry.vectors import Vector, cross, dot, row
 
@@ -77,7 +76,7 @@ def intersect(normals: FloatArray, offsets: FloatArray) -> tuple[int, FloatArray
 @kernel
 def work_for(n: int) -> Work:
     """Memory for n planes."""
-    places = (4 * (n + 4) + 16) // WIDTH * WIDTH
+    places = 4 * (n + 4) + 16
     return Work(
         np.empty((4, places)),
         np.empty((places, 3), np.uint32),
@@ -130,17 +129,13 @@ def cut_out(
 @kernel_noalloc
 def above_plane(place: FloatArray, used: int, normal: Vector, offset: float, lists: PlaceArray) -> int:
     """Heights of all vertices above a plane; those above 0 are listed as dead, and counted."""
-    size, count = place.shape[1], np.uintp(0)
-    x, y, z, far = splat(normal[0]), splat(normal[1]), splat(normal[2]), splat(offset)
-    for first in range(0, used, WORD):
-        bits = 0
-        for at in range(first, min(used, first + WORD), WIDTH):
-            height = x * load(place, at) + y * load(place, size + at) + z * load(place, 2 * size + at) - far
-            store(place, HEIGHT * size + at, height)
-            bits |= positive(height) << (at - first)
-        while bits != 0:
-            lists[DEAD, count] = first + first_bit(bits)
-            bits &= bits - 1
+    x, y, z = normal
+    for v in range(used):
+        place[HEIGHT, v] = x * place[0, v] + y * place[1, v] + z * place[2, v] - offset
+    count = np.uintp(0)
+    for v in range(used):
+        if place[HEIGHT, v] > 0.0:
+            lists[DEAD, count] = v
             count += np.uintp(1)
     return count  # type: ignore[return-value]
 
@@ -153,9 +148,8 @@ def begun(work: Work, n: int, reach: float) -> int:
     """
     place, planes, owner, lists = work
     places = place.shape[1]
-    for at in range(0, places, WIDTH):
-        store(place, at, splat(np.nan))
-        store(place, HEIGHT * places + at, splat(np.nan))
+    for v in range(places):
+        place[0, v] = place[HEIGHT, v] = np.nan
     for a in range(n + 4):
         for b in range(n + 4):
             owner[a, b] = places - 1

@@ -1,4 +1,4 @@
-"""Boxes with two adjacent sides, each flush with a given edge: a curve of frames, and how small they can be.
+"""Boxes with two adjacent sides, each flush with a given edge: a curve of frames, and bounds on their volume.
 
 The outward normals a and b of the two sides lie on the Gauss arcs of their edges and are orthogonal, which
 leaves one freedom. With a(x) = a + x a' and b(y) = b + y b' (not normalised), where a' is the edge's
@@ -15,7 +15,7 @@ from typing import NamedTuple
 from regolith_studio.geometry.kernels import inline_kernel, kernel_noalloc
 from regolith_studio.geometry.vectors import Vector, cross, dot, length, mixed
 
-NO_LEVER = 1e-9
+MIN_LEVER = 1e-9
 """Where a is that close to the second edge's direction, b is not determined."""
 
 
@@ -84,7 +84,7 @@ def curve_between(
     a = unit(mixed(a_from, 1.0, a_to, 1.0))
     b = cross(edge_b, a)
     lever = length(b)
-    if lever < NO_LEVER:
+    if lever < MIN_LEVER:
         return Curve(a, a, b, b, 0.0, 0.0, 0.0, 0.0, 0.0)
     if dot(b, b_from) + dot(b, b_to) < 0.0:
         lever = -lever
@@ -175,7 +175,7 @@ def all_positive(factors: Factors, low: float, high: float) -> bool:
 
 
 @kernel_noalloc
-def nowhere_below(top: Quartic, bottom: Quartic, limit: float, low: float, high: float) -> bool:
+def is_above_limit(top: Quartic, bottom: Quartic, limit: float, low: float, high: float) -> bool:
     """Whether all Bernstein coefficients of top - limit * bottom on an interval are at least 0."""
     k0, k1, k2 = top.k0 - limit * bottom.k0, top.k1 - limit * bottom.k1, top.k2 - limit * bottom.k2
     k3, k4 = top.k3 - limit * bottom.k3, top.k4 - limit * bottom.k4
@@ -190,7 +190,7 @@ def nowhere_below(top: Quartic, bottom: Quartic, limit: float, low: float, high:
 
 
 @kernel_noalloc
-def least_ratio(top: Quartic, bottom: Quartic, low: float, high: float) -> float:
+def argmin_ratio(top: Quartic, bottom: Quartic, low: float, high: float) -> float:
     """Where top / bottom is least on an interval with one minimum; else some place that tends to it."""
     at_low = derivative(top, low) * value(bottom, low) - value(top, low) * derivative(bottom, low)
     at_high = derivative(top, high) * value(bottom, high) - value(top, high) * derivative(bottom, high)

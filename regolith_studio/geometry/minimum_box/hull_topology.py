@@ -1,19 +1,170 @@
-"""A convex solid by its facets, and which of its edges could matter for its least box."""
+"""Half-edges and plane facets of a convex solid, and which of its edges its minimum-volume box can touch."""
 
 from typing import NamedTuple
 
 import numpy as np
 
 from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray
-from regolith_studio.geometry.box_curve import unit
-from regolith_studio.geometry.box_widths import SpanTable, between, ends_along_each, span_near
-from regolith_studio.geometry.hull_graph import HullGraph, after
 from regolith_studio.geometry.kernels import inline_kernel, kernel, kernel_noalloc
+from regolith_studio.geometry.minimum_box.edge_pair import unit
+from regolith_studio.geometry.minimum_box.extents import (
+    SpanTable,
+    between,
+    extreme_vertices_of_each,
+    span_near,
+)
 from regolith_studio.geometry.vectors import Vector, cross, dot, length, mixed, row
 
+SLIVER = 1e-9
+"""A triangle of less height, at solid size 1, has no normal of its own."""
+
+EPSILON = 1e-15
+"""Rounding of coordinates, at solid size 1, with some reserve."""
+
+COPLANAR = 1e-9
+"""Neighbouring faces whose normals differ by less, in radians, are one facet."""
 QUARTER_TURNS = 24
-MOST_TILT = 0.1
+MAX_TILT = 0.1
 """Square of the sine of the angle beyond which a bound on the third side is not worth its time."""
+
+
+class HullGraph(NamedTuple):
+    """A closed triangulated convex solid as half-edges; half-edge 3 f + k starts at corner k of face f.
+
+    Parameters
+    ----------
+    points
+        Vertices, shape (n, 3).
+    normals
+        Outward unit normals of the faces, shape (m, 3); the same for all faces of a plane facet.
+    facet
+        First face of the facet that each face belongs to, shape (m,).
+    origin
+        Vertex at which each half-edge starts, shape (3 m,).
+    twin
+        The same edge run the other way, shape (3 m,); -1 where there is none.
+    outgoing
+        One half-edge that starts at each vertex, shape (n,).
+    closed
+        Whether half-edges pair up as twins, every vertex has a face and every face a normal; nothing else
+        works if not.
+    """
+
+    points: FloatArray
+    normals: FloatArray
+    facet: IntArray
+    origin: IntArray
+    twin: IntArray
+    outgoing: IntArray
+    closed: bool
+
+
+@kernel
+def hull_graph(points: FloatArray, faces: IntArray) -> HullGraph:
+    """Half-edges of outward triangles, faces of shape (m, 3)."""
+    origin = faces.reshape(-1)
+    first = np.zeros(len(points) + 1, np.int64)
+    for h in range(len(origin)):
+        first[origin[h] + 1] += 1
+    for v in range(len(points)):
+        first[v + 1] += first[v]
+    bucket = np.empty(len(origin), np.int64)
+    filled = first.copy()
+    for h in range(len(origin)):
+        bucket[filled[origin[h]]] = h
+        filled[origin[h]] += 1
+    twin, outgoing = np.full(len(origin), -1), np.full(len(points), -1)
+    closed = True
+    for h in range(len(origin)):
+        v = origin[after(h)]
+        for i in range(first[v], first[v + 1]):
+            if origin[after(bucket[i])] == origin[h]:
+                twin[h] = bucket[i]
+        closed = closed and twin[h] >= 0
+        outgoing[origin[h]] = h
+    for h in range(len(origin)):
+        closed = closed and twin[twin[h]] == h
+    for v in range(len(points)):
+        closed = closed and outgoing[v] >= 0
+    normals, blur = _face_normals(points, faces, twin)
+    for f in range(len(faces)):
+        closed = closed and length(row(normals, f)) > 0.0
+    facet = _facets(normals, blur, twin)
+    return HullGraph(points, normals, facet, origin, twin, outgoing, closed)
+
+
+@kernel
+def _face_normals(points: FloatArray, faces: IntArray, twin: IntArray) -> tuple[FloatArray, FloatArray]:
+    """Unit normals, and how far rounding may tilt them.
+
+    A sliver takes that of the neighbour across its longest edge.
+    """
+    normals, blur = np.zeros((len(faces), 3)), np.full(len(faces), EPSILON / SLIVER)
+    slivers = 0
+    for f in range(len(faces)):
+        a = row(points, faces[f, 0])
+        b, c = mixed(row(points, faces[f, 1]), 1.0, a, -1.0), mixed(row(points, faces[f, 2]), 1.0, a, -1.0)
+        normal = cross(b, c)
+        size = length(normal)
+        height = size / max(length(b), length(c), length(mixed(c, 1.0, b, -1.0)))
+        if height > SLIVER:
+            blur[f] = EPSILON / height
+            for k in range(3):
+                normals[f, k] = normal[k] / size
+        else:
+            slivers += 1
+    for attempt in range(2 * slivers):
+        for f in range(len(faces)):
+            if length(row(normals, f)) == 0.0:
+                _take_normal(points, faces, twin, f, normals, attempt >= slivers)
+    return normals, blur
+
+
+@kernel
+def _take_normal(
+    points: FloatArray, faces: IntArray, twin: IntArray, f: int, normals: FloatArray, known: bool
+) -> None:
+    """Give face `f` the normal across its longest edge; if `known`, its longest to one that has a normal."""
+    longest = 0.0
+    for k in range(3):
+        edge = mixed(row(points, faces[f, (k + 1) % 3]), 1.0, row(points, faces[f, k]), -1.0)
+        neighbour = twin[3 * f + k] // 3
+        if known and length(row(normals, neighbour)) == 0.0:
+            continue
+        if neighbour >= 0 and length(edge) > longest:
+            longest = length(edge)
+            for axis in range(3):
+                normals[f, axis] = normals[neighbour, axis]
+
+
+@kernel
+def _facets(normals: FloatArray, blur: FloatArray, twin: IntArray) -> IntArray:
+    """First face of the facet of each face; all its faces get the normal that rounding tilts least."""
+    facet = np.full(len(normals), -1)
+    stack = np.empty(len(normals), np.int64)
+    for seed in np.argsort(blur):
+        if facet[seed] >= 0:
+            continue
+        facet[seed], stack[0], n = seed, seed, 1
+        while n > 0:
+            n -= 1
+            face = stack[n]
+            for h in range(3 * face, 3 * face + 3):
+                f = twin[h] // 3
+                if f < 0 or facet[f] >= 0:
+                    continue
+                if length(mixed(row(normals, f), 1.0, row(normals, seed), -1.0)) < COPLANAR + blur[f]:
+                    facet[f], stack[n] = seed, f
+                    for k in range(3):
+                        normals[f, k] = normals[seed, k]
+                    n += 1
+    return facet
+
+
+@inline_kernel
+def after(h: int) -> int:
+    """The next half-edge around the face of half-edge `h`."""
+    return h - 2 if h % 3 == 2 else h + 1
 
 
 class Facets(NamedTuple):
@@ -67,7 +218,7 @@ def arcs_of(facets: Facets) -> FloatArray:
     for e in range(len(edges)):
         for c in range(3):
             between_facets[c, e] = normals[edges[e, 2], c] + normals[edges[e, 3], c]
-    lowest = ends_along_each(points, between_facets)[1]
+    lowest = extreme_vertices_of_each(points, between_facets)[1]
     for e in range(len(edges)):
         one, two = row(normals, edges[e, 2]), row(normals, edges[e, 3])
         direction = unit(between(points, edges[e, 1], edges[e, 0]))
@@ -80,7 +231,7 @@ def arcs_of(facets: Facets) -> FloatArray:
 
 
 @kernel_noalloc
-def least_third(arcs: FloatArray, table: SpanTable, i: int, k: int) -> float:
+def min_third_extent(arcs: FloatArray, table: SpanTable, i: int, k: int) -> float:
     """A bound on the width across two sides that are flush with edges i and k; 0 where there is no use in it.
 
     The third axis is normal to one axis on either arc, so its products with the middles m of the arcs are at
@@ -91,7 +242,7 @@ def least_third(arcs: FloatArray, table: SpanTable, i: int, k: int) -> float:
     h, g, cosine = arcs[i, 10], arcs[k, 10], abs(dot(one, two))
     apart = 1.0 - cosine * cosine
     tilt = h * h + g * g + 2.0 * cosine * h * g
-    if not tilt < MOST_TILT * apart:
+    if not tilt < MAX_TILT * apart:
         return 0.0
     third = cross(one, two)
     span = span_near(table, third)
@@ -101,7 +252,7 @@ def least_third(arcs: FloatArray, table: SpanTable, i: int, k: int) -> float:
 
 
 @kernel
-def worth_asking(facets: Facets, arcs: FloatArray, table: SpanTable, limit: float) -> BoolArray:
+def edges_that_may_bound(facets: Facets, arcs: FloatArray, table: SpanTable, limit: float) -> BoolArray:
     """Which edges some box below the limit could be flush with, shape (e,).
 
     With its first side normal to an axis of the edge's arc, the other two directions of a box are nearly
@@ -132,10 +283,10 @@ def worth_asking(facets: Facets, arcs: FloatArray, table: SpanTable, limit: floa
 
 
 @kernel_noalloc
-def nothing_on_facet(table: SpanTable, axis: Vector, height: float, limit: float) -> bool:
+def facet_excluded(table: SpanTable, axis: Vector, height: float, limit: float) -> bool:
     """Whether no box below the limit has a side normal to an axis, along which the solid is `height` wide.
 
-    As in :func:`worth_asking`, for one axis only.
+    As in :func:`edges_that_may_bound`, for one axis only.
     """
     first = unit(cross(axis, (1.0, 0.0, 0.0) if abs(axis[0]) < 0.6 else (0.0, 1.0, 0.0)))
     second, half = cross(axis, first), np.pi / 4.0 / QUARTER_TURNS
@@ -154,7 +305,7 @@ def nothing_on_facet(table: SpanTable, axis: Vector, height: float, limit: float
 
 
 @kernel
-def with_all_edges(facets: Facets, worth: BoolArray) -> BoolArray:
+def facets_with_all_edges(facets: Facets, worth: BoolArray) -> BoolArray:
     """Facets of which every edge is worth asking, shape (n,): a box on one is flush with all its edges."""
     asked = np.full(len(facets.normals), True)
     for e in range(len(worth)):

@@ -4,32 +4,36 @@ import numpy as np
 import pytest
 
 from regolith_studio.geometry.arrays import FloatArray
-from regolith_studio.geometry.box_branch import least_on_curve
-from regolith_studio.geometry.box_curve import (
+from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.minimum_box.edge_pair import (
     Curve,
     Quartic,
     all_positive,
+    argmin_ratio,
     crossing,
     curve_between,
     denominator,
     factors_of,
     frame_on,
-    least_ratio,
-    nowhere_below,
+    is_above_limit,
     numerator,
     value,
 )
-from regolith_studio.geometry.box_facets import arcs_of, facets_of, least_third, with_all_edges
-from regolith_studio.geometry.box_record import nothing_below
-from regolith_studio.geometry.box_widths import (
-    ends_along,
-    ends_along_axes,
-    ends_along_each,
+from regolith_studio.geometry.minimum_box.extents import (
+    extreme_vertices,
+    extreme_vertices_of_each,
     span_near,
     span_table,
 )
-from regolith_studio.geometry.hull_graph import hull_graph
-from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.minimum_box.hull_topology import (
+    arcs_of,
+    facet_excluded,
+    facets_of,
+    facets_with_all_edges,
+    hull_graph,
+    min_third_extent,
+)
+from regolith_studio.geometry.minimum_box.search import empty_record, min_on_curve
 from regolith_studio.geometry.oriented_box import minimum_volume_box
 from regolith_studio.geometry.sphere_points import icosphere
 from tests.geometry.solids import random_polyhedron
@@ -86,10 +90,10 @@ def test_that_what_is_proven_is_true_on_a_fine_grid(seed: int) -> None:
     limit = float(ratio.min() * rng.uniform(0.8, 1.2))
     if all_positive(factors, curve.low, curve.high):
         assert ratio.min() > 0.0
-        assert not nowhere_below(top, bottom, limit, curve.low, curve.high) or ratio.min() >= limit
-        assert not nowhere_below(top, bottom, 1.001 * ratio.min(), curve.low, curve.high)
-        assert nowhere_below.py_func(top, bottom, 0.0, curve.low, curve.high)  # type: ignore[attr-defined]
-        best = least_ratio(top, bottom, curve.low, curve.high)
+        assert not is_above_limit(top, bottom, limit, curve.low, curve.high) or ratio.min() >= limit
+        assert not is_above_limit(top, bottom, 1.001 * ratio.min(), curve.low, curve.high)
+        assert is_above_limit.py_func(top, bottom, 0.0, curve.low, curve.high)  # type: ignore[attr-defined]
+        best = argmin_ratio(top, bottom, curve.low, curve.high)
         at = value(top, best) / value(bottom, best)
         assert at == pytest.approx(ratio.min(), rel=1e-4)
 
@@ -106,7 +110,7 @@ def test_that_no_span_of_the_table_is_longer_than_the_solid_is_wide(seed: int) -
     table = span_table(on(points))
     for direction in np.random.default_rng(seed).normal(size=(200, 3)):
         way = unit(direction)
-        top, bottom = ends_along(on(points), tuple(way))
+        top, bottom = extreme_vertices(on(points), tuple(way))
         width = np.ptp(points @ way)
         assert way @ (points[top] - points[bottom]) == pytest.approx(width, rel=1e-14)
         assert 0.9 * width < abs(way @ np.array(span_near(table, tuple(way)))) <= width * (1 + 1e-14)
@@ -125,24 +129,14 @@ def test_that_the_table_holds_the_farthest_vertices_along_the_middles_of_its_cel
         assert along == pytest.approx(np.ptp(directions @ points, axis=1), rel=1e-8)
 
 
-@pytest.mark.parametrize("n", [5, 8, 50])
-def test_that_looking_along_three_axes_finds_what_three_looks_find(n: int) -> None:
-    rng = np.random.default_rng(n)
-    points, (axes, _) = rng.normal(size=(3, n)), np.linalg.qr(rng.normal(size=(3, 3)))
-    frame = [tuple(axis) for axis in axes]
-    ends = zip((axes @ points).argmax(axis=1), (axes @ points).argmin(axis=1), strict=True)
-    assert ends_along_axes(points, *frame) == tuple(ends)
-    assert ends_along_axes(points, *frame) == tuple(ends_along(points, axis) for axis in frame)
-
-
 @pytest.mark.parametrize("seed", range(4))
 def test_that_the_least_box_on_a_curve_is_that_of_a_fine_grid(seed: int) -> None:
     points = random_polyhedron(seed, 12).vertices
     curve, _, _ = random_curve(seed)
     x = np.linspace(curve.low, curve.high, 2_001)
     volumes = [np.prod(np.ptp(points @ np.array(frame_on(curve, each)).T, axis=0)) for each in x]
-    for search in (least_on_curve, least_on_curve.py_func):  # type: ignore[attr-defined]
-        volume, _ = search(on(points), span_table(on(points)), curve, 0, 0, 0.0, nothing_below(np.inf))
+    for search in (min_on_curve, min_on_curve.py_func):  # type: ignore[attr-defined]
+        volume, _ = search(on(points), span_table(on(points)), curve, 0, 0, 0.0, empty_record(np.inf))
         assert volume == pytest.approx(min(volumes), rel=1e-4)
         assert volume <= min(volumes) * (1 + 1e-12)
 
@@ -152,9 +146,9 @@ def test_that_a_facet_with_an_edge_that_is_ruled_out_is_not_asked() -> None:
     hull = random_polyhedron(0, 12).hull
     facets = facets_of(hull_graph(np.array(hull.vertices), hull.faces))
     worth = np.full(len(facets.edges), True)
-    assert with_all_edges(facets, worth).all()
+    assert facets_with_all_edges(facets, worth).all()
     worth[0] = False
-    assert set(np.flatnonzero(~with_all_edges(facets, worth))) == set(facets.edges[0, 2:].tolist())
+    assert set(np.flatnonzero(~facets_with_all_edges(facets, worth))) == set(facets.edges[0, 2:].tolist())
 
 
 @pytest.mark.slow
@@ -175,7 +169,7 @@ def test_that_no_box_is_narrower_than_the_bound_on_its_third_side() -> None:
     arcs, table, rng = arcs_of(facets), span_table(facets.points), np.random.default_rng(8)
     useful = 0
     for i, k in rng.integers(len(arcs), size=(4000, 2)):
-        bound = least_third(arcs, table, i, k)
+        bound = min_third_extent(arcs, table, i, k)
         if bound <= 0.0:
             continue
         for share in rng.random((4, 1)):
@@ -197,6 +191,24 @@ def test_that_looking_along_many_directions_finds_the_ends_of_each(m: int) -> No
     rng = np.random.default_rng(m)
     points, directions = rng.normal(size=(3, 50)), rng.normal(size=(3, m))
     reach = directions.T @ points
-    top, bottom = ends_along_each(points, directions)
+    top, bottom = extreme_vertices_of_each(points, directions)
     assert top.tolist() == reach.argmax(axis=1).tolist()
     assert bottom.tolist() == reach.argmin(axis=1).tolist()
+
+
+def test_that_a_facet_on_which_nothing_is_said_to_stand_bears_no_smaller_box() -> None:
+    hull = random_polyhedron(1, 20).hull
+    solid = facets_of(hull_graph(np.array(hull.vertices), hull.faces))
+    table, turns = span_table(solid.points), np.linspace(0.0, np.pi / 2, 401)
+    said = 0
+    for axis in solid.normals:
+        first = np.cross(axis, np.eye(3)[np.abs(axis).argmin()])
+        first /= np.linalg.norm(first)
+        second, height = np.cross(axis, first), float(np.ptp(axis @ solid.points))
+        b = np.outer(np.cos(turns), first) + np.outer(np.sin(turns), second)
+        c = np.cross(axis, b)
+        least = height * (np.ptp(b @ solid.points, axis=1) * np.ptp(c @ solid.points, axis=1)).min()
+        for share in (0.8, 0.9, 0.95):
+            said += facet_excluded(table, tuple(axis), height, share * least)
+        assert not facet_excluded(table, tuple(axis), height, 1.0001 * least)
+    assert said > 10

@@ -1,0 +1,111 @@
+"""Extents of a convex solid: how far its vertices reach along directions."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from regolith_studio.geometry.arrays import FloatArray, IntArray
+from regolith_studio.geometry.kernels import inline_kernel, kernel, kernel_noalloc
+from regolith_studio.geometry.vectors import Vector
+
+MIN_CELLS, MAX_CELLS = 12, 64
+"""Directions are told apart by a grid of so many cells along the edge of a cube: as many as the square root
+of the number of vertices."""
+BLOCK = 256
+"""Directions that are looked along together: they stay in the fastest cache."""
+
+
+class SpanTable(NamedTuple):
+    """A vector across the solid for each cell of directions.
+
+    Parameters
+    ----------
+    spans
+        Between the vertices farthest along and against the cell's middle, shape (3 cells^2, 3).
+    cells
+        Along the edge of a cube; those of one direction and of its opposite are the same.
+    """
+
+    spans: FloatArray
+    cells: int
+
+
+@kernel_noalloc
+def extreme_vertices(points: FloatArray, direction: Vector) -> tuple[int, int]:
+    """The vertices farthest along and against `direction`, the first of equal ones; points (3, n)."""
+    x, y, z = direction
+    low, high, bottom, top = np.inf, -np.inf, 0, 0
+    for i in range(points.shape[1]):
+        here = points[0, i] * x + points[1, i] * y + points[2, i] * z
+        if here < low:
+            low, bottom = here, i
+        if here > high:
+            high, top = here, i
+    return top, bottom
+
+
+@inline_kernel
+def between(points: FloatArray, one: int, two: int) -> Vector:
+    """Vector from vertex `two` to vertex `one`."""
+    return points[0, one] - points[0, two], points[1, one] - points[1, two], points[2, one] - points[2, two]
+
+
+@kernel
+def extreme_vertices_of_each(points: FloatArray, directions: FloatArray) -> IntArray:
+    """:func:`extreme_vertices` for all directions, shape (3, m): shape (2, m), top and bottom."""
+    m = directions.shape[1]
+    ends = np.empty((2, m), np.int64)
+    low, high, bottom, top = np.empty(BLOCK), np.empty(BLOCK), np.empty(BLOCK), np.empty(BLOCK)
+    for start in range(0, m, BLOCK):
+        count = min(BLOCK, m - start)
+        for k in range(count):
+            low[k], high[k], bottom[k], top[k] = np.inf, -np.inf, 0.0, 0.0
+        for i in range(points.shape[1]):
+            x, y, z, number = points[0, i], points[1, i], points[2, i], float(i)
+            for k in range(count):  # compiled to vectors: no branch, and only floats
+                at = start + k
+                here = x * directions[0, at] + y * directions[1, at] + z * directions[2, at]
+                bottom[k] = number if here < low[k] else bottom[k]
+                low[k] = here if here < low[k] else low[k]  # noqa: FURB136
+                top[k] = number if here > high[k] else top[k]
+                high[k] = here if here > high[k] else high[k]  # noqa: FURB136
+        for k in range(count):
+            ends[0, start + k], ends[1, start + k] = int(top[k]), int(bottom[k])
+    return ends
+
+
+@kernel
+def span_table(points: FloatArray) -> SpanTable:
+    """Look along the middle of every cell; points of shape (3, n)."""
+    cells = min(MAX_CELLS, max(MIN_CELLS, int(np.sqrt(points.shape[1]))))
+    directions = np.empty((3, 3 * cells * cells))
+    for k in range(3):
+        for i in range(cells):
+            for j in range(cells):
+                at = (k * cells + i) * cells + j
+                directions[k, at] = 1.0
+                directions[(k + 1) % 3, at] = (2.0 * i + 1.0) / cells - 1.0
+                directions[(k + 2) % 3, at] = (2.0 * j + 1.0) / cells - 1.0
+    ends = extreme_vertices_of_each(points, directions)
+    spans = np.empty((3 * cells * cells, 3))
+    for at in range(len(spans)):
+        for c in range(3):
+            spans[at, c] = points[c, ends[0, at]] - points[c, ends[1, at]]
+    return SpanTable(spans, cells)
+
+
+@inline_kernel
+def span_near(table: SpanTable, direction: Vector) -> Vector:
+    """A vector between two vertices that is nearly as long along `direction` as the solid is wide."""
+    x, y, z = direction
+    if abs(x) >= abs(y) and abs(x) >= abs(z):
+        k, u, v = 0, y / x, z / x
+    elif abs(y) >= abs(z):
+        k, u, v = 1, z / y, x / y
+    else:
+        k, u, v = 2, x / z, y / z
+    spans, cells = table
+    i = min(cells - 1, int((u + 1.0) * (0.5 * cells)))
+    j = min(cells - 1, int((v + 1.0) * (0.5 * cells)))
+    at = (k * cells + i) * cells + j
+    return spans[at, 0], spans[at, 1], spans[at, 2]
