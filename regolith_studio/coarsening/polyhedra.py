@@ -6,10 +6,10 @@ arrays that cannot be written.
 
 import numpy as np
 
-from regolith_studio.coarsening.core.intersection import FINE, edges_of, intersect
-from regolith_studio.coarsening.core.measures import facets_of
+from regolith_studio.coarsening.core.intersection import FINE
+from regolith_studio.coarsening.core.measures import fill_polyhedron
 from regolith_studio.errors import GeometryError
-from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.geometry.arrays import FloatArray, IntArray
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.half_spaces import HalfSpaces
 
@@ -23,12 +23,12 @@ def polyhedron_of(half_spaces: HalfSpaces) -> ConvexPolyhedron:
         If the intersection is unbounded.
     """
     size = float(half_spaces.offsets.max())
-    status, vertices, triples = intersect(np.array(half_spaces.normals), half_spaces.offsets / size)
+    status, vertices, edges, _ = intersect_half_spaces(half_spaces.normals, half_spaces.offsets / size)
     if status != FINE:
         return ConvexPolyhedron.from_half_spaces(half_spaces)
     n = len(half_spaces)
     following: list[dict[int, int]] = [{} for _ in range(n)]
-    for start, end, left, right in edges_of(triples, n).tolist():
+    for start, end, left, right in edges.tolist():
         following[left][start] = end
         following[right][end] = start
     kept = [plane for plane in range(n) if following[plane]]
@@ -54,8 +54,17 @@ def facet_areas(half_spaces: HalfSpaces) -> FloatArray:
     GeometryError
         If the intersection is unbounded.
     """
-    normals, offsets = np.array(half_spaces.normals), np.array(half_spaces.offsets)
-    status, vertices, triples = intersect(normals, offsets)
+    status, _, _, areas = intersect_half_spaces(half_spaces.normals, half_spaces.offsets)
     if status != FINE:
         raise GeometryError("The half-spaces bound no volume: their intersection is unbounded.")
-    return facets_of(normals, offsets, vertices, edges_of(triples, len(half_spaces)))[0]
+    return areas
+
+
+def intersect_half_spaces(
+    normals: FloatArray, offsets: FloatArray
+) -> tuple[int, FloatArray, IntArray, FloatArray]:
+    """Status, vertices (v, 3), edges (e, 4) and facet areas (n,); void unless the status is FINE."""
+    n = len(offsets)
+    vertices, edges, areas = np.empty((2 * n, 3)), np.empty((3 * n, 4), dtype=np.int64), np.zeros(n)
+    status, count = fill_polyhedron(np.array(normals), np.array(offsets), vertices, edges, areas)
+    return status, vertices[:count], edges[: 3 * count // 2], areas

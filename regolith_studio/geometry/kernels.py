@@ -22,8 +22,6 @@ from typing import Any, TypeVar, cast
 import numba
 from platformdirs import user_cache_path
 
-from regolith_studio.geometry.quiet_results import return_quietly
-
 F = TypeVar("F", bound=Callable[..., object])
 
 UNUSED_DAYS = 60
@@ -32,13 +30,16 @@ UNUSED_DAYS = 60
 _OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy", "fastmath": False}
 _CONFIG: Any = numba.config
 _PACKAGE = Path(__file__).resolve().parents[1]
-_MARKS = (b"@kernel", b"@inline_kernel", b"lower_builtin", b"_boxers")
-
-return_quietly()
+_MARKS = (b"@kernel", b"@inline_kernel")
 
 
 def kernel(function: F) -> F:
-    """Compile `function` with numba: cached on disk, no interpreter lock, IEEE arithmetic."""
+    """Compile `function` with numba: cached on disk, no interpreter lock, IEEE arithmetic.
+
+    A kernel that Python calls returns a number or a tuple of numbers, and fills arrays that it is given.
+    Numba makes the arrays and named tuples that a kernel returns by running Python, and does not look whether
+    that succeeded: where Ctrl+C raises its exception there, the interpreter ends with a segmentation fault.
+    """
     return _compiled(function, {})
 
 

@@ -1,16 +1,22 @@
-"""What is kept of compiled kernels on disk."""
+"""How kernels are called, and what is kept of compiled ones on disk."""
 
+import ast
 import importlib
 import os
+import re
+import signal
+import subprocess
 import sys
 import time
 from collections.abc import Iterator
 from pathlib import Path
 
 import numba
+import numpy as np
 import pytest
 
 from regolith_studio.geometry import kernels
+from regolith_studio.geometry.arrays import FloatArray
 
 CALLEE = """
 from regolith_studio.geometry.kernels import kernel
@@ -108,3 +114,86 @@ def test_that_kernels_compile_where_nothing_can_be_written(cache_below: Path) ->
         return 2
 
     assert two() == 2
+
+
+ROOT = Path(kernels.__file__).resolve().parents[2]
+NUMBERS = re.compile(r"None|(int|float|bool)|tuple\[(int|float|bool)(, (int|float|bool))*\]")
+
+
+def test_that_kernels_called_by_python_return_numbers_only() -> None:
+    """See :func:`regolith_studio.geometry.kernels.kernel`; kernels called by kernels may return anything."""
+    trees = {
+        ".".join(path.relative_to(ROOT).with_suffix("").parts): ast.parse(path.read_text("utf-8"))
+        for path in sorted((ROOT / "regolith_studio").rglob("*.py"))
+    }
+    returned = {
+        (module, each.name): ast.unparse(each.returns) if each.returns else "nothing said"
+        for module, tree in trees.items()
+        for each in tree.body
+        if isinstance(each, ast.FunctionDef) and is_kernel(each)
+    }
+    assert len(returned) > 100
+    called = {
+        known[each.id]
+        for module, tree in trees.items()
+        for known in [kernels_known_in(module, tree, returned)]
+        for part in tree.body
+        if not (isinstance(part, ast.FunctionDef) and is_kernel(part))
+        for each in ast.walk(part)
+        if isinstance(each, ast.Name) and each.id in known
+    }
+    assert {key: returned[key] for key in called if not NUMBERS.fullmatch(returned[key])} == {}
+
+
+def is_kernel(function: ast.FunctionDef) -> bool:
+    """Whether a function is compiled."""
+    names = {ast.unparse(each) for each in function.decorator_list}
+    return bool(names & {"kernel", "kernel_noalloc", "inline_kernel"})
+
+
+def kernels_known_in(
+    module: str, tree: ast.Module, kernels: dict[tuple[str, str], str]
+) -> dict[str, tuple[str, str]]:
+    """Kernels by the name that they have in a module: its own and imported ones."""
+    known = {name: (where, name) for where, name in kernels if where == module}
+    for each in ast.walk(tree):
+        if isinstance(each, ast.ImportFrom):
+            found = {one.asname or one.name: (str(each.module), one.name) for one in each.names}
+            known |= {name: key for name, key in found.items() if key in kernels}
+    return known
+
+
+@kernels.kernel
+def add_sines(n: int, sums: FloatArray) -> float:
+    """Work for some time."""
+    for i in range(n):
+        sums[0] += np.sin(float(i))
+    return float(sums[0])
+
+
+INTERRUPTED = """
+import signal
+import numpy as np
+from tests.geometry.test_kernels import add_sines
+
+def late(*_):
+    raise TimeoutError
+
+sums = np.zeros(3)
+add_sines(1, sums)
+signal.signal(signal.SIGALRM, late)
+for _ in range(10):
+    signal.setitimer(signal.ITIMER_REAL, 0.01)
+    try:
+        add_sines(5_000_000, sums)
+    except TimeoutError:
+        print("raised")
+"""
+
+
+@pytest.mark.skipif(not hasattr(signal, "setitimer"), reason="this system has no such signal")
+def test_that_a_signal_during_a_kernel_raises_where_it_was_called() -> None:
+    command = [sys.executable, "-c", INTERRUPTED]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=200)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.split() == ["raised"] * 10

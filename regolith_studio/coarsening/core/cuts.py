@@ -42,8 +42,8 @@ def with_all_facets(
     first: IntArray,
     distance: FloatArray,
     depth: float,
-) -> tuple[int, FloatArray, FloatArray]:
-    """Replace each redundant plane by a cut across the corner that hangs out farthest of the particle.
+) -> int:
+    """Replace each redundant plane, in place, by a cut across the corner that hangs out farthest.
 
     A cut takes at most the share `depth` of the way to the nearest neighbouring corner, so no other facet
     is lost.
@@ -52,15 +52,12 @@ def with_all_facets(
     -------
     n_cuts
         Planes replaced; -1 if the half-spaces bound nothing.
-    normals, offsets
-        All planes, in their old order.
     """
-    normals, offsets = normals.copy(), offsets.copy()
     n_cuts = 0
     for _ in range(len(offsets)):
         status, vertices, triples = intersect(normals, offsets)
         if status != FINE:
-            return -1, normals, offsets
+            return -1
         idle = redundant(normals, offsets, vertices, triples)
         if len(idle) == 0:
             break
@@ -69,7 +66,7 @@ def with_all_facets(
         normals[idle[0]] = normal
         offsets[idle[0]] = top - depth * room
         n_cuts += 1
-    return n_cuts, normals, offsets
+    return n_cuts
 
 
 @kernel

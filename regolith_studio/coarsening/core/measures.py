@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from regolith_studio.coarsening.core.intersection import FINE, edges_of, intersect
 from regolith_studio.geometry.arrays import FloatArray, IntArray
 from regolith_studio.geometry.kernels import kernel, kernel_noalloc
 from regolith_studio.geometry.vectors import cross, dot, row
@@ -36,6 +37,27 @@ def facets_of(
             inner = centroid[a, c] / area[a] if area[a] > 1e-14 else 0.0
             centroid[a, c] = normals[a, c] * offsets[a] + inner
     return area, centroid
+
+
+@kernel
+def fill_polyhedron(
+    normals: FloatArray,
+    offsets: FloatArray,
+    vertices: FloatArray,
+    edges: IntArray,
+    area: FloatArray,
+) -> tuple[int, int]:
+    """Status of the intersection of n half-spaces, and number of vertices.
+
+    Fills vertices (2 n, 3), edges (3 n, 4), of which there are 1.5 times as many, and areas of facets (n,).
+    """
+    status, corners, triples = intersect(normals, offsets)
+    if status == FINE:
+        vertices[: len(corners)] = corners
+        sides = edges_of(triples, len(offsets))
+        edges[: len(sides)] = sides
+        area[:] = facets_of(normals, offsets, corners, sides)[0]
+    return status, len(corners)
 
 
 @kernel

@@ -12,17 +12,11 @@ from regolith_studio.geometry.kernels import kernel
 from regolith_studio.geometry.vectors import cross, dot, length, mixed, row
 
 
-@kernel
 def tangents_of(normals: FloatArray) -> FloatArray:
     """Two tangents of each plane, shape (n, 2, 3)."""
-    frames = np.empty((len(normals), 2, 3))
-    for i in range(len(normals)):
-        helper = np.zeros(3)
-        helper[np.argmin(np.abs(normals[i]))] = 1.0
-        first = np.cross(normals[i], helper)
-        frames[i, 0] = first / np.sqrt(np.sum(first * first))
-        frames[i, 1] = np.cross(normals[i], frames[i, 0])
-    return frames
+    first = np.cross(normals, np.eye(3)[np.abs(normals).argmin(axis=1)])
+    first /= np.sqrt((first * first).sum(axis=1))[:, None]
+    return np.stack([first, np.cross(normals, first)], axis=1)
 
 
 @kernel

@@ -49,24 +49,29 @@ def fibonacci_bundle(n: int) -> RayBundle:
     return bundle_of(np.ascontiguousarray(fibonacci_directions(n)))
 
 
-@kernel
 def bundle_of(directions: FloatArray) -> RayBundle:
     """Sort unit `directions`, shape (k, 3), by cells."""
     k = len(directions)
     cells = max(1, int(np.sqrt(k / (6.0 * RAYS_IN_CELL))))
-    cell = np.empty(k, np.int64)
-    first = np.zeros(6 * cells * cells + 1, np.int64)
-    for i in range(k):
+    first, order = np.zeros(6 * cells * cells + 1, np.int64), np.empty(k, np.int64)
+    _fill_order(directions, cells, first, order)
+    return RayBundle(directions, directions[order], order, first, cells)
+
+
+@kernel
+def _fill_order(directions: FloatArray, cells: int, first: IntArray, order: IntArray) -> None:
+    """Fill `first`, which must be 0, and `order` of :class:`RayBundle`."""
+    cell = np.empty(len(directions), np.int64)
+    for i in range(len(directions)):
         side, u, v = on_cube(directions, i)
         cell[i] = (side * cells + step_of(u, cells)) * cells + step_of(v, cells)
         first[cell[i] + 1] += 1
     for c in range(6 * cells * cells):
         first[c + 1] += first[c]
-    order, filled = np.empty(k, np.int64), first.copy()
-    for i in range(k):
+    filled = first.copy()
+    for i in range(len(directions)):
         order[filled[cell[i]]] = i
         filled[cell[i]] += 1
-    return RayBundle(directions, directions[order], order, first, cells)
 
 
 @kernel_noalloc
@@ -89,7 +94,6 @@ def step_of(u: float, cells: int) -> int:
     return min(cells - 1, max(0, int((u + 1.0) * 0.5 * cells)))
 
 
-@kernel
 def cast(points: FloatArray, faces: IntArray, rays: RayBundle) -> tuple[IntArray, FloatArray, FloatArray]:
     """All crossings, sorted by ray and distance, in compressed rows.
 
@@ -105,28 +109,34 @@ def cast(points: FloatArray, faces: IntArray, rays: RayBundle) -> tuple[IntArray
     distance, sign
         Of each crossing; sign +1 where the ray leaves, -1 where it enters.
     """
-    n = len(rays.order)
-    size = 3 * n + 16
-    ray, distance, sign = np.empty(size, np.int64), np.empty(size), np.empty(size)
+    size = 3 * len(rays.order) + 16
+    ray, crossings = np.empty(size, np.int64), np.empty((2, size))
+    found = _fill_crossings(points, faces, rays, ray, crossings[0], crossings[1])
+    if found > size:
+        ray, crossings = np.empty(found, np.int64), np.empty((2, found))
+        _fill_crossings(points, faces, rays, ray, crossings[0], crossings[1])
+    first, (distance, sign) = np.zeros(len(rays.order) + 1, np.int64), np.empty((2, found))
+    _sort_by_ray(ray[:found], crossings[0], crossings[1], first, distance, sign)
+    return first, distance, sign
+
+
+@kernel
+def _fill_crossings(
+    points: FloatArray,
+    faces: IntArray,
+    rays: RayBundle,
+    ray: IntArray,
+    distance: FloatArray,
+    sign: FloatArray,
+) -> int:
+    """Number of crossings; fills ray, distance and sign of those that there is room for, face by face."""
     side, place = np.empty(len(points), np.int64), np.empty((len(points), 2))
     for i in range(len(points)):
         side[i], place[i, 0], place[i, 1] = on_cube(points, i)
     found = 0
     for f in range(len(faces)):
-        if found + n > size:
-            ray = np.concatenate((ray, np.empty(size, np.int64)))
-            distance, sign = (
-                np.concatenate((distance, np.empty(size))),
-                np.concatenate((sign, np.empty(size))),
-            )
-            size *= 2
         found = crossed_by(points, faces[f], side, place, rays, ray, distance, sign, found)
-    first = np.zeros(n + 1, np.int64)
-    for i in range(found):
-        first[ray[i] + 1] += 1
-    for k in range(n):
-        first[k + 1] += first[k]
-    return sorted_rows(first, ray[:found], distance[:found], sign[:found])
+    return found
 
 
 @kernel_noalloc
@@ -175,7 +185,8 @@ def crossed_by(
                 e2 = way * dot(ca, u)
                 if e2 < 0.0 or (e2 == 0.0 and way < 0.0) or e0 + e1 + e2 <= 0.0:
                     continue
-                ray[found], distance[found], sign[found] = rays.order[m], way * six / (e0 + e1 + e2), way
+                if found < len(ray):
+                    ray[found], distance[found], sign[found] = rays.order[m], way * six / (e0 + e1 + e2), way
                 found += 1
     return found
 
@@ -221,11 +232,19 @@ def bounds_on(points: FloatArray, face: IntArray, side: int) -> tuple[float, flo
 
 
 @kernel
-def sorted_rows(
-    first: IntArray, ray: IntArray, distance: FloatArray, sign: FloatArray
-) -> tuple[IntArray, FloatArray, FloatArray]:
-    """Crossings in the order of their rays, each row by rising distance."""
-    placed_distance, placed_sign = np.empty(len(ray)), np.empty(len(ray))
+def _sort_by_ray(
+    ray: IntArray,
+    distance: FloatArray,
+    sign: FloatArray,
+    first: IntArray,
+    placed_distance: FloatArray,
+    placed_sign: FloatArray,
+) -> None:
+    """Fill `first`, 0 before, and the crossings in the order of their rays, each by rising distance."""
+    for i in range(len(ray)):
+        first[ray[i] + 1] += 1
+    for k in range(len(first) - 1):
+        first[k + 1] += first[k]
     filled = first[:-1].copy()
     for i in range(len(ray)):
         k = ray[i]
@@ -235,4 +254,3 @@ def sorted_rows(
             placed_distance[j], placed_sign[j] = placed_distance[j - 1], placed_sign[j - 1]
             j -= 1
         placed_distance[j], placed_sign[j] = distance[i], sign[i]
-    return first, placed_distance, placed_sign

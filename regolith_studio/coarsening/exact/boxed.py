@@ -12,11 +12,11 @@ import numpy as np
 from regolith_studio.coarsening.core.cuts import SMALLEST_FACET
 from regolith_studio.coarsening.core.planes import tangents_of
 from regolith_studio.coarsening.exact.compromise import compromise
-from regolith_studio.coarsening.exact.course import NOWHERE, Attempt, attempt, course, onward
+from regolith_studio.coarsening.exact.course import Attempt, attempt, course, onward
 from regolith_studio.coarsening.exact.growth import ALIKE, with_more_facets
-from regolith_studio.coarsening.exact.polish import measured
 from regolith_studio.coarsening.exact.problem import SPHERICITY, Problem
 from regolith_studio.coarsening.exact.starts import grouped_planes
+from regolith_studio.coarsening.exact.steps import NOWHERE, measured
 from regolith_studio.coarsening.polyhedra import facet_areas
 from regolith_studio.coarsening.target import Target
 from regolith_studio.geometry.arrays import FloatArray

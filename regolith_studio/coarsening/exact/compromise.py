@@ -10,7 +10,6 @@ from regolith_studio.coarsening.core.planes import tangents_of
 from regolith_studio.coarsening.exact.course import (
     CHUNK,
     LONG_POLISH,
-    NOWHERE,
     POLISH_STEPS,
     Attempt,
     attempt,
@@ -18,19 +17,10 @@ from regolith_studio.coarsening.exact.course import (
     reach,
     steps_down,
 )
-from regolith_studio.coarsening.exact.descent import (
-    OVERLAP,
-    ROUGHER,
-    SMOOTHER,
-    TOLERANCE,
-    State,
-    descended,
-    first_metric,
-    started,
-)
+from regolith_studio.coarsening.exact.descent import OVERLAP, ROUGHER, SMOOTHER, TOLERANCE, State
 from regolith_studio.coarsening.exact.growth import with_more_facets
 from regolith_studio.coarsening.exact.in_turn import met_in_turn
-from regolith_studio.coarsening.exact.polish import Polished, measured, verified
+from regolith_studio.coarsening.exact.polish import Polished
 from regolith_studio.coarsening.exact.problem import (
     LONGEST,
     RATIO,
@@ -40,6 +30,14 @@ from regolith_studio.coarsening.exact.problem import (
     Problem,
     Shape,
     log_sphericity,
+)
+from regolith_studio.coarsening.exact.steps import (
+    NOWHERE,
+    descended,
+    first_metric,
+    measured,
+    started,
+    verified,
 )
 from regolith_studio.coarsening.loss import LossFunction
 from regolith_studio.coarsening.target import Target

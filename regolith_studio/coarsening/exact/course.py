@@ -6,26 +6,25 @@ from functools import cached_property
 
 import numpy as np
 
-from regolith_studio.coarsening.core.box_follow import Watched
 from regolith_studio.coarsening.core.cuts import SMALLEST_FACET, with_all_facets
 from regolith_studio.coarsening.core.evaluate import AREA, FACETS, LONGEST, SHARED, SHORTEST, VOLUME
-from regolith_studio.coarsening.core.intersection import DEGENERATE, FINE, intersect
+from regolith_studio.coarsening.core.intersection import DEGENERATE, FINE
 from regolith_studio.coarsening.core.planes import tangents_of
-from regolith_studio.coarsening.exact.descent import (
-    OVERLAP,
-    REACH,
-    TOLERANCE,
-    State,
-    descended,
-    first_metric,
-    objective_at,
-    started,
-    steady_metric,
-)
-from regolith_studio.coarsening.exact.polish import Polished, measured, polished, verified
+from regolith_studio.coarsening.exact.descent import OVERLAP, REACH, TOLERANCE, State, objective_at
+from regolith_studio.coarsening.exact.polish import Polished
 from regolith_studio.coarsening.exact.problem import Problem
 from regolith_studio.coarsening.exact.starts import grouped_planes
-from regolith_studio.coarsening.polyhedra import facet_areas, polyhedron_of
+from regolith_studio.coarsening.exact.steps import (
+    NOWHERE,
+    descended,
+    first_metric,
+    measured,
+    polished,
+    started,
+    steady_metric,
+    verified,
+)
+from regolith_studio.coarsening.polyhedra import facet_areas, intersect_half_spaces, polyhedron_of
 from regolith_studio.coarsening.target import Target
 from regolith_studio.descriptors.describe import Descriptors, describe
 from regolith_studio.errors import GeometryError
@@ -34,7 +33,6 @@ from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.half_spaces import HalfSpaces
 from regolith_studio.geometry.sphere_points import fibonacci_directions
 
-NOWHERE = Watched(np.empty((0, 3, 3)), np.empty((0, 13), dtype=np.int64), np.empty((0, 9, 3), dtype=np.int64))
 CUT_DEPTHS = (0.3, 0.3, 0.1, 0.03, 0.01)
 CHUNK = 8
 FREE_ROUNDS = 3
@@ -136,7 +134,7 @@ def touching_planes(
 
 
 def _bounds_a_solid(normals: FloatArray, offsets: FloatArray) -> bool:
-    status = intersect(normals, offsets)[0]
+    status = intersect_half_spaces(normals, offsets)[0]
     if status != DEGENERATE:
         return bool(status == FINE)
     try:  # not in general position?
@@ -266,5 +264,6 @@ def attempt(problem: Problem, point: Polished) -> Attempt:
 def _with_cuts(
     target: Target, normals: FloatArray, offsets: FloatArray, depth: float
 ) -> tuple[int, FloatArray, FloatArray]:
-    rays = target.rays
-    return with_all_facets(normals, offsets, rays.directions, rays.first, rays.distance, depth)
+    normals, offsets, rays = np.array(normals), np.array(offsets), target.rays
+    cuts = with_all_facets(normals, offsets, rays.directions, rays.first, rays.distance, depth)
+    return cuts, normals, offsets

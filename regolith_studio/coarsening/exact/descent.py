@@ -8,6 +8,7 @@ from regolith_studio.coarsening.core.measures import area_charge, volume_charge
 from regolith_studio.coarsening.core.overlap import jaccard, shared_charge
 from regolith_studio.coarsening.core.planes import carried, gradient_of, levers_of, moved
 from regolith_studio.coarsening.exact.conditions import AIM, Conditions
+from regolith_studio.coarsening.exact.memory import PointMemory, store_point
 from regolith_studio.coarsening.exact.polish import (
     LEAST_LEVER,
     Polished,
@@ -105,35 +106,21 @@ def objective_gradient(problem: Problem, shape: Shape, frames: FloatArray, goal:
 @kernel
 def first_metric(problem: Problem, shape: Shape) -> FloatArray:
     """A diagonal guess of the inverse second derivative: large facets resist."""
+    metric = np.zeros((3 * len(shape.offsets), 3 * len(shape.offsets)))
+    fill_first_metric(problem, shape, metric)
+    return metric
+
+
+@kernel
+def fill_first_metric(problem: Problem, shape: Shape, metric: FloatArray) -> None:
+    """Fill the diagonal of :func:`first_metric`."""
     n = len(shape.offsets)
-    metric = np.zeros((3 * n, 3 * n))
     mean = shape.surface / n
     for i in range(problem.held, n):
         area = max(shape.area[i], 0.3 * mean)
         metric[3 * i, 3 * i] = CURVATURE / area
         metric[3 * i + 1, 3 * i + 1] = 3.0 * CURVATURE / area
         metric[3 * i + 2, 3 * i + 2] = 3.0 * CURVATURE / area
-    return metric
-
-
-@kernel
-def steady_metric(problem: Problem, shape: Shape) -> FloatArray:
-    """A diagonal metric in which small facets hold still."""
-    n = len(shape.offsets)
-    metric = np.zeros((3 * n, 3 * n))
-    mean = shape.surface / n
-    for i in range(problem.held, n):
-        for k in range(3):
-            metric[3 * i + k, 3 * i + k] = max(shape.area[i] / mean, 1e-3)
-    return metric
-
-
-@kernel
-def started(problem: Problem, point: Polished, goal: int, radius: float) -> State:
-    """A descent from a polyhedron on which all conditions hold."""
-    gradient = objective_gradient(problem, point.shape, point.frames, goal)
-    value = objective_at(problem, point.shape, goal)
-    return State(point, value, gradient, first_metric(problem, point.shape), radius, False, 0)
 
 
 @kernel
@@ -200,11 +187,27 @@ def checked(problem: Problem, state: State, goal: int, polish_steps: int, cap: f
 
 
 @kernel
-def descended(problem: Problem, state: State, goal: int, iterations: int, polish_steps: int) -> State:
-    """At most `iterations` more steps of the descent; the polyhedron returned meets all conditions.
+def descend(
+    problem: Problem,
+    state: State,
+    goal: int,
+    iterations: int,
+    polish_steps: int,
+    memory: PointMemory,
+    numbers: FloatArray,
+    gradient: FloatArray,
+    metric: FloatArray,
+) -> None:
+    """At most `iterations` more steps of the descent; the polyhedron where it ends meets all conditions.
 
     Boxes are looked for everywhere after every few steps only. Where one has come in between that cannot be
     pushed away again without loss, these steps are taken back, and from then on each is checked.
+
+    Parameters
+    ----------
+    memory, numbers, gradient, metric
+        Filled with the new state: the point; value, radius, 1 if done, iterations; and the others, shapes
+        (4,), (3 n,) and (3 n, 3 n).
     """
     cap = REACH / np.sqrt(len(state.point.shape.offsets))
     safe, unchecked, patience, failures = state, 0, UNCHECKED, 0
@@ -214,9 +217,9 @@ def descended(problem: Problem, state: State, goal: int, iterations: int, polish
         better, state = stepped(problem, state, goal, polish_steps, cap)
         failures = 0 if better else failures + 1
         if not better and state.radius < SHORTEST_STEP:
-            metric = first_metric(problem, state.point.shape)
+            fresh = first_metric(problem, state.point.shape)
             done = failures > 3
-            state = State(state.point, state.value, state.gradient, metric, 0.02, done, state.iterations)
+            state = State(state.point, state.value, state.gradient, fresh, 0.02, done, state.iterations)
             failures += 2
         unchecked += better
         if unchecked >= patience or (unchecked > 0 and state.done):
@@ -224,7 +227,10 @@ def descended(problem: Problem, state: State, goal: int, iterations: int, polish
             unchecked = 0
     if unchecked > 0:
         _, state, _ = checked_or_back(problem, safe, state, goal, polish_steps, cap, patience)
-    return state
+    store_point(state.point, memory)
+    numbers[0], numbers[1] = state.value, state.radius
+    numbers[2], numbers[3] = 1.0 if state.done else 0.0, state.iterations
+    gradient[:], metric[:] = state.gradient, state.metric
 
 
 @kernel

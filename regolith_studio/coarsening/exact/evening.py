@@ -4,20 +4,23 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from regolith_studio.coarsening.core.planes import carried, gradient_of, levers_of, moved, tangents_of
-from regolith_studio.coarsening.exact.course import NOWHERE, POLISH_STEPS, Attempt, attempt, n_facets, reach
-from regolith_studio.coarsening.exact.descent import (
-    OVERLAP,
-    TOLERANCE,
-    UNCHECKED,
+from regolith_studio.coarsening.core.planes import tangents_of
+from regolith_studio.coarsening.exact.course import POLISH_STEPS, Attempt, attempt, n_facets, reach
+from regolith_studio.coarsening.exact.descent import OVERLAP, TOLERANCE, UNCHECKED, objective_at
+from regolith_studio.coarsening.exact.polish import Polished
+from regolith_studio.coarsening.exact.problem import Problem
+from regolith_studio.coarsening.exact.steps import (
+    NOWHERE,
+    after_step,
     first_metric,
     learned,
-    objective_at,
+    measured,
     objective_gradient,
+    polished,
+    slope_of_charge,
     tangent_step,
+    verified,
 )
-from regolith_studio.coarsening.exact.polish import LEAST_LEVER, Polished, measured, polished, verified
-from regolith_studio.coarsening.exact.problem import Problem
 from regolith_studio.coarsening.polyhedra import facet_areas
 from regolith_studio.geometry.arrays import FloatArray, IntArray
 from regolith_studio.geometry.half_spaces import HalfSpaces
@@ -110,11 +113,10 @@ def _stepped(
     problem: Problem, point: Polished, step: FloatArray, metric: FloatArray, least: float
 ) -> _Stand | None:
     """One step and back to the conditions; ``None`` where that fails."""
-    shape, levers = point.shape, levers_of(point.shape.area, LEAST_LEVER)
-    normals, offsets = moved(shape.normals, shape.centroid, shape.offsets, point.frames, levers, step)
+    normals, offsets, frames = after_step(point, step)
     if not offsets.min() > 0.0:
         return None
-    then = measured(problem, normals, offsets, carried(point.frames, normals), point.conditions.watched)
+    then = measured(problem, normals, offsets, frames, point.conditions.watched)
     then = polished(problem, then, metric, POLISH_STEPS, TOLERANCE, reach(point))
     return _stand(problem, then, least) if then.worst < TOLERANCE else None
 
@@ -124,25 +126,28 @@ def _stand(problem: Problem, point: Polished, least: float) -> _Stand:
     shape, n = point.shape, len(point.shape.offsets)
     areas = np.maximum(shape.area, 1e-12)
     short = np.maximum(0.0, np.log(least / areas))
-    charge = facet_charge(
-        shape.normals, shape.vertices, shape.edges, shape.centroid, -2.0 * WEIGHT * short / (n * areas)
-    )
-    slope = gradient_of(charge, point.frames, levers_of(shape.area, LEAST_LEVER))
+    charge, slope, gains = np.zeros((n, 4)), np.empty(3 * n), -2.0 * WEIGHT * short / (n * areas)
+    add_facet_charge(shape.normals, shape.vertices, shape.edges, shape.centroid, gains, charge)
+    slope_of_charge(shape, point.frames, charge, slope)
     jaccard = objective_at(problem, shape, OVERLAP)
     slope = slope + objective_gradient(problem, shape, point.frames, OVERLAP)
     return _Stand(point, jaccard, jaccard + WEIGHT * float(np.mean(short**2)), slope)
 
 
 @kernel
-def facet_charge(
-    normals: FloatArray, vertices: FloatArray, edges: IntArray, pivots: FloatArray, gains: FloatArray
-) -> FloatArray:
-    """Derivative of the sum of gains x facet areas as charges, shape (n, 4), as in `core.measures`.
+def add_facet_charge(
+    normals: FloatArray,
+    vertices: FloatArray,
+    edges: IntArray,
+    pivots: FloatArray,
+    gains: FloatArray,
+    charge: FloatArray,
+) -> None:
+    """Add the derivative of the sum of gains x facet areas as charges, shape (n, 4), as in `core.measures`.
 
     The edge of facets a and b moves in the plane of a at the speed (w_b - w_a cos) / sin, where w are the
     speeds of the planes there and the angle is that between their normals.
     """
-    charge = np.zeros((len(normals), 4))
     for e in range(len(edges)):
         p, q, a, b = edges[e]
         square, cosine = 0.0, 0.0
@@ -158,4 +163,3 @@ def facet_charge(
             middle = 0.5 * (vertices[p, c] + vertices[q, c])
             charge[a, 1 + c] += of_a * (middle - pivots[a, c])
             charge[b, 1 + c] += of_b * (middle - pivots[b, c])
-    return charge

@@ -11,9 +11,9 @@ from collections.abc import Iterator
 import numpy as np
 
 from regolith_studio.coarsening.core.planes import tangents_of
-from regolith_studio.coarsening.exact.course import NOWHERE, Attempt, attempt, course, mended, start_planes
-from regolith_studio.coarsening.exact.polish import measured
+from regolith_studio.coarsening.exact.course import Attempt, attempt, course, mended, start_planes
 from regolith_studio.coarsening.exact.problem import Problem
+from regolith_studio.coarsening.exact.steps import NOWHERE, measured
 from regolith_studio.coarsening.lower_bounds import max_sphericity
 from regolith_studio.coarsening.target import Target
 from regolith_studio.geometry.arrays import FloatArray

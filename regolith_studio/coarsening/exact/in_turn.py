@@ -4,10 +4,11 @@ import numpy as np
 
 from regolith_studio.coarsening.core.intersection import FINE
 from regolith_studio.coarsening.core.planes import tangents_of
-from regolith_studio.coarsening.exact.course import LONG_POLISH, NOWHERE, reach
-from regolith_studio.coarsening.exact.descent import TOLERANCE, first_metric
-from regolith_studio.coarsening.exact.polish import Polished, measured, verified
+from regolith_studio.coarsening.exact.course import LONG_POLISH, reach
+from regolith_studio.coarsening.exact.descent import TOLERANCE
+from regolith_studio.coarsening.exact.polish import Polished
 from regolith_studio.coarsening.exact.problem import LONGEST, RATIO, SHORTEST, VOLUME, Problem
+from regolith_studio.coarsening.exact.steps import NOWHERE, first_metric, measured, verified
 from regolith_studio.geometry.arrays import FloatArray
 
 ORDER = (VOLUME, LONGEST, SHORTEST, RATIO)

@@ -6,7 +6,6 @@ from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.kernels import kernel
 
 
-@kernel
 def grouped_planes(
     normals: FloatArray, areas: FloatArray, centres: FloatArray, numbers: FloatArray, rounds: int
 ) -> tuple[FloatArray, FloatArray]:
@@ -26,8 +25,23 @@ def grouped_planes(
     normals, offsets
         Mean normal of each group and the area-weighted mean of <n, x> over it, shapes (k, 3) and (k,).
     """
+    middle, offsets = np.empty((len(numbers), 3)), np.zeros(len(numbers))
+    _fill_groups(normals, areas, centres, numbers, rounds, middle, offsets)
+    return middle, offsets
+
+
+@kernel
+def _fill_groups(
+    normals: FloatArray,
+    areas: FloatArray,
+    centres: FloatArray,
+    numbers: FloatArray,
+    rounds: int,
+    middle: FloatArray,
+    offsets: FloatArray,
+) -> None:
+    """Fill mean normals (k, 3) and offsets (k,), which must be 0."""
     k, m = len(numbers), len(areas)
-    middle = np.empty((k, 3))
     far = np.full(m, 2.0)
     for j in range(k):
         total = np.cumsum(areas * far)
@@ -48,7 +62,7 @@ def grouped_planes(
             if length > 1e-9:
                 middle[j] = sums[j] / length
     assign(normals, middle, group)
-    offsets, weight = np.zeros(k), np.zeros(k)
+    weight = np.zeros(k)
     for i in range(m):
         j = group[i]
         weight[j] += areas[i]
@@ -59,7 +73,6 @@ def grouped_planes(
             offsets[j] /= weight[j]
         else:
             offsets[j] = support(centres, middle[j])
-    return middle, offsets
 
 
 @kernel

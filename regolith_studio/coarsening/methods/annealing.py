@@ -182,9 +182,8 @@ def _repaired(target: Target, points: FloatArray) -> FloatArray:
     """Every half-space with a facet; the points as they were where that cannot be."""
     offsets = np.linalg.norm(points, axis=1)
     rays = target.rays
-    cuts, normals, offsets = with_all_facets(
-        points / offsets[:, None], offsets, rays.directions, rays.first, rays.distance, CUT_DEPTH
-    )
+    normals = points / offsets[:, None]
+    cuts = with_all_facets(normals, offsets, rays.directions, rays.first, rays.distance, CUT_DEPTH)
     return np.asarray(normals * offsets[:, None]) if cuts > 0 else points
 
 

@@ -102,9 +102,8 @@ def test_that_a_redundant_plane_comes_back_as_a_facet(target: Target) -> None:
     normals = np.vstack([CUBE, [[0.6, 0.8, 0.0], [0.0, 0.6, 0.8]]])
     offsets = np.append(np.full(6, 0.55), [2.0, 2.0])
     rays = target.rays
-    cuts, new_normals, new_offsets = with_all_facets(
-        normals, offsets, rays.directions, rays.first, rays.distance, 0.3
-    )
+    new_normals, new_offsets = normals.copy(), offsets.copy()
+    cuts = with_all_facets(new_normals, new_offsets, rays.directions, rays.first, rays.distance, 0.3)
     assert cuts == 2
     _, _, triples = intersect(new_normals, new_offsets)
     assert len(np.unique(triples)) == 8
