@@ -15,7 +15,7 @@ from regolith_studio.cli.options import Json
 
 
 def check(json: Json = False) -> None:
-    """Print versions, the OpenGL renderer, the display, the DEM engines found and what is missing."""
+    """Print versions, OpenGL renderer, display, available DEM engines and missing requirements."""
     from regolith_studio.cli.terminal import print_json
 
     report = examine_machine()

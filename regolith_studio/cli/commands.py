@@ -1,4 +1,4 @@
-"""All commands, each with its one line of help."""
+"""All commands, each with its line of help."""
 
 from typing import Annotated
 

@@ -44,35 +44,53 @@ def build(
     representatives: Annotated[
         int,
         typer.Option(
-            "--representatives", min=0, help="Particles that stand for all; 0 for each.", metavar="N"
+            "--representatives",
+            min=0,
+            help="Number of representative particles; 0 keeps all particles.",
+            metavar="N",
         ),
     ] = 0,
     weighting: Annotated[
-        str, typer.Option("--weighting", help="What representatives count: number or volume.", metavar="W")
+        str,
+        typer.Option("--weighting", help="Weighting of the representatives: number or volume.", metavar="W"),
     ] = "number",
     size_importance: Annotated[
-        float, typer.Option("--size-importance", min=0.0, help="Of size in their choice.", metavar="X")
+        float,
+        typer.Option(
+            "--size-importance",
+            min=0.0,
+            help="Weight of the size, relative to a shape feature, in the choice of representatives.",
+            metavar="X",
+        ),
     ] = 0.0,
     sizes: Annotated[
         str,
         typer.Option(
             "--sizes",
-            help="measured classes:25,37,... fitted:log-normal log-normal:50,0.4 ...",
+            help="Size distribution: measured, classes:25,37,..., fitted:log-normal, log-normal:50,0.4, ...",
             metavar="SPEC",
         ),
     ] = "measured",
     quality_curve: Annotated[
         Path | None,
-        typer.Option("--quality-curve", help="CSV of the error over the number of them.", metavar="FILE"),
+        typer.Option(
+            "--quality-curve",
+            help="CSV file for the error over the number of representatives.",
+            metavar="FILE",
+        ),
     ] = None,
-    name: Annotated[str, typer.Option("--name", help="Name of the dataset; the folder's if left out.")] = "",
-    overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace what is in the folder.")] = False,
+    name: Annotated[
+        str, typer.Option("--name", help="Name of the dataset; that of the folder if omitted.")
+    ] = "",
+    overwrite: Annotated[
+        bool, typer.Option("--overwrite", help="Replace an existing dataset in the folder.")
+    ] = False,
     reading: ReadingOptions,
     json: Json = False,
     jobs: Jobs = 1,
     seed: Seed = 0,
 ) -> None:
-    """Coarsen the meshes, or N that stand for all of them, and write a dataset folder."""
+    """Coarsen the meshes, or N representatives of them, and write a dataset folder."""
     from regolith_studio.cli.inputs import exit_code
     from regolith_studio.cli.terminal import print_errors, print_json, run_with_progress
     from regolith_studio.dataset.quality import quality_table
@@ -116,7 +134,7 @@ def validate(
     jobs: Jobs = 1,
     seed: Seed = 0,
 ) -> None:
-    """Read a dataset back and check everything in it; problems are printed, one a line."""
+    """Validate a dataset folder and print its problems, one per line."""
     from regolith_studio.cli.terminal import print_json
     from regolith_studio.dataset.validation import validate_dataset
 
@@ -133,13 +151,13 @@ def validate(
 def list_(
     root: Annotated[Path, typer.Argument(metavar="FOLDER", help="A folder with datasets below it.")],
     words: Annotated[
-        str, typer.Option("--filter", help="Only entries with these words.", metavar="WORDS")
+        str, typer.Option("--filter", help="List only entries that contain these words.", metavar="WORDS")
     ] = "",
     json: Json = False,
     jobs: Jobs = 1,
     seed: Seed = 0,
 ) -> None:
-    """List the datasets below a folder, each with what was exported and simulated from it."""
+    """List the datasets below a folder, with their exports and simulations."""
     from regolith_studio.cli.terminal import print_json, run_with_progress
     from regolith_studio.dataset.catalog import provenance_tree
     from regolith_studio.jobs.dataset_jobs import list_library
@@ -161,13 +179,15 @@ def list_(
 @app.command("sample")
 def sample(
     folder: DatasetFolder,
-    count: Annotated[int, typer.Option("--number", "-n", min=0, help="Particles to draw.", metavar="N")],
+    count: Annotated[
+        int, typer.Option("--number", "-n", min=0, help="Number of particles to draw.", metavar="N")
+    ],
     output: Annotated[
         Path | None,
         typer.Option(
             "--output",
             "-o",
-            help="CSV file; the terminal if left out.",
+            help="CSV file; printed to the terminal if omitted.",
             metavar="FILE",
             callback=check_writable_file,
         ),
@@ -176,7 +196,7 @@ def sample(
     jobs: Jobs = 1,
     seed: Seed = 0,
 ) -> None:
-    """Draw particles: class, equivalent diameter and orientation, the same for the same seed."""
+    """Draw particles of a dataset: class, equivalent diameter and orientation."""
     from regolith_studio.cli.terminal import print_json
     from regolith_studio.dataset.folder_io import read_dataset
     from regolith_studio.dataset.sampling import drawn_csv, drawn_rows, sample_dataset
@@ -197,7 +217,7 @@ def sample(
 
 @app.command("formats")
 def formats(json: Json = False, jobs: Jobs = 1, seed: Seed = 0) -> None:
-    """List the formats of exports, with what each carries and loses."""
+    """List the export formats, with what each keeps and loses."""
     from regolith_studio.cli.terminal import print_json
     from regolith_studio.dataset.exporters import EXPORTERS
 
@@ -219,25 +239,37 @@ def export(
     folder: DatasetFolder,
     output: Folder,
     to: Annotated[
-        str, typer.Option("--to", help="Formats: rocky,yade,... or all; see dataset formats.", metavar="LIST")
+        str,
+        typer.Option(
+            "--to", help="Formats, such as rocky,yade, or all; listed by `dataset formats`.", metavar="LIST"
+        ),
     ],
     coarse_graining: Annotated[
         float,
-        typer.Option("--coarse-graining", help="Enlarges all particles; the paper has 10.", metavar="F"),
+        typer.Option(
+            "--coarse-graining", help="Coarse-graining factor on all diameters; 10 in the paper.", metavar="F"
+        ),
     ] = 10.0,
     particles: Annotated[
-        int, typer.Option("--particles", help="Bodies in formats that list single ones.", metavar="N")
+        int,
+        typer.Option(
+            "--particles", help="Number of particles in formats that list single ones.", metavar="N"
+        ),
     ] = 200,
     set_: Annotated[
         list[str] | None,
-        typer.Option("--set", help="Contact, cylinder or format: density, mass, ...", metavar="KEY=VALUE"),
+        typer.Option(
+            "--set",
+            help="A parameter of contact, cylinder or format, such as density; may be repeated.",
+            metavar="KEY=VALUE",
+        ),
     ] = None,
-    lossy: Annotated[bool, typer.Option("--lossy", help="Allow formats that change the shapes.")] = False,
+    lossy: Annotated[bool, typer.Option("--lossy", help="Allow formats that alter the shapes.")] = False,
     json: Json = False,
     jobs: Jobs = 1,
     seed: Seed = 0,
 ) -> None:
-    """Write a dataset for DEM programs, one folder a format; what a format loses is said."""
+    """Export a dataset for DEM programs, one folder per format, and report what a format loses."""
     from regolith_studio.cli.terminal import print_errors, print_json, run_with_progress
     from regolith_studio.dataset.export import ExportOptions
     from regolith_studio.jobs.dataset_jobs import chosen_exporters, export_dataset_folder

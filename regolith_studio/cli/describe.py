@@ -15,22 +15,22 @@ if TYPE_CHECKING:
 
 Statistics = Annotated[
     bool,
-    typer.Option("--statistics", help="Also mean, standard deviation and quantiles of each group."),
+    typer.Option("--statistics", help="Print also the mean, standard deviation and quantiles of each group."),
 ]
 Weighting = Annotated[
     str,
-    typer.Option("--weighting", help="Of the statistics: number or volume.", metavar="HOW"),
+    typer.Option("--weighting", help="Weighting of the statistics: number or volume.", metavar="HOW"),
 ]
 BorderWeights = Annotated[
     bool,
     typer.Option(
         "--border-weights/--no-border-weights",
-        help="Undo in the statistics that large grains were lost at the border of a scan.",
+        help="Correct the statistics for large grains that the border of a scan has cut off.",
     ),
 ]
 Csv = Annotated[
     Path | None,
-    typer.Option("--csv", help="Write all descriptors with their units to this table.", metavar="FILE"),
+    typer.Option("--csv", help="CSV file for all descriptors with their units.", metavar="FILE"),
 ]
 
 
@@ -47,7 +47,7 @@ def describe(
     jobs: Jobs = 1,
     seed: Seed = 0,
 ) -> None:
-    """Measure particles: volume, area, sphericity, diameters ..., and what is wrong with their meshes."""
+    """Measure particles: volume, area, sphericity, diameters ..., and the health of their meshes."""
     from regolith_studio.cli.inputs import exit_code, start_reader
 
     if weighting not in ("number", "volume"):

@@ -25,7 +25,7 @@ Stem = Annotated[
     typer.Option(
         "--output",
         "-o",
-        help="Writes FIT.json and FIT.npz.",
+        help="Stem of the files to write: FIT.json and FIT.npz.",
         metavar="FIT",
         show_default=False,
         callback=check_writable_file,

@@ -22,7 +22,10 @@ if TYPE_CHECKING:
     from regolith_studio.harmonics.fit import HarmonicFit
 
 Animation = Annotated[
-    bool, typer.Option("--animation/--no-animation", help="Also a GIF of l_max from 0 to the highest degree.")
+    bool,
+    typer.Option(
+        "--animation/--no-animation", help="Write also an animated GIF of l_max from 0 to the highest degree."
+    ),
 ]
 
 
@@ -37,7 +40,7 @@ def gallery(
     reading: ReadingOptions,
     json: Json = False,
 ) -> None:
-    """Draw each particle and its fits at several l_max (Fig. 2)."""
+    """Draw each particle and its fits at several values of l_max (Fig. 2)."""
     from regolith_studio.cli.inputs import exit_code
     from regolith_studio.cli.offscreen_process import draw_in_process
     from regolith_studio.cli.terminal import print_errors, print_json, run_with_progress

@@ -13,7 +13,6 @@ from regolith_studio.cli.options import (
     Json,
     Level,
     Seed,
-    Settings,
     usage_errors,
     values,
 )
@@ -29,7 +28,7 @@ Sources = Annotated[
         help="A fit or model (.json), a material card (file, or name of a shipped one), or mesh files.",
     ),
 ]
-Number = Annotated[int, typer.Option("--number", "-n", help="Particles to draw.", metavar="N")]
+Number = Annotated[int, typer.Option("--number", "-n", help="Number of particles to draw.", metavar="N")]
 Model = Annotated[
     str,
     typer.Option(
@@ -41,26 +40,47 @@ Model = Annotated[
 ]
 Degree = Annotated[
     int | None,
-    typer.Option("--l-max", help="Degree of the particles.", metavar="L", show_default="10, or the source's"),
+    typer.Option(
+        "--l-max",
+        help="Maximum degree of the particles' surfaces.",
+        metavar="L",
+        show_default="10, or the source's",
+    ),
 ]
 SizeRange = Annotated[
     tuple[float, float] | None,
     typer.Option(
-        "--size-range", help="Equivalent radii in micrometres.", metavar="MIN MAX", show_default="all"
+        "--size-range",
+        help="Range of equivalent radii in micrometres.",
+        metavar="MIN MAX",
+        show_default="all",
     ),
 ]
 Format = Annotated[
-    str, typer.Option("--format", help="stl: a mesh each; npz: coefficients of all.", metavar="F")
+    str,
+    typer.Option(
+        "--format", help="stl for one mesh per particle, npz for the coefficients of all.", metavar="F"
+    ),
 ]
 Names = Annotated[
     str,
     typer.Option(
-        "--names", help="Names of a mixture's parts, the most numerous first: basalt,glass.", metavar="LIST"
+        "--names",
+        help="Names of a mixture's components, the most numerous first, such as basalt,glass.",
+        metavar="LIST",
     ),
 ]
 ModelFile = Annotated[
     Path | None,
-    typer.Option("--save-model", help="Also write MODEL.json and MODEL.npz.", metavar="MODEL"),
+    typer.Option(
+        "--save-model", help="Stem of the fitted model, written to MODEL.json and MODEL.npz.", metavar="MODEL"
+    ),
+]
+
+
+ModelSettings = Annotated[
+    list[str] | None,
+    typer.Option("--set", help="A setting of the model; may be repeated.", metavar="KEY=VALUE"),
 ]
 
 
@@ -71,7 +91,7 @@ def generate(
     output: Folder,
     n: Number = 100,
     model: Model = "",
-    set_: Settings = None,
+    set_: ModelSettings = None,
     l_max: Degree = None,
     size_range: SizeRange = None,
     format_: Format = "stl",

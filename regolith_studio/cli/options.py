@@ -20,21 +20,24 @@ if TYPE_CHECKING:
 Meshes = Annotated[
     list[Path], typer.Argument(metavar="MESH...", help="Mesh files, or folders that hold some.")
 ]
-Json = Annotated[bool, typer.Option("--json", help="Print JSON for programs instead of a table.")]
-Seed = Annotated[int, typer.Option("--seed", help="Seed of all randomness.", metavar="N")]
+Json = Annotated[bool, typer.Option("--json", help="Print JSON instead of a table.")]
+Seed = Annotated[int, typer.Option("--seed", help="Seed of the random numbers.", metavar="N")]
 Jobs = Annotated[
-    int, typer.Option("--jobs", "-j", min=0, help="Processes at a time; 0 for one a core.", metavar="N")
+    int,
+    typer.Option(
+        "--jobs", "-j", min=0, help="Number of parallel processes; 0 for one per core.", metavar="N"
+    ),
 ]
 Unit = Annotated[
     str,
     typer.Option(
-        "--unit", help="Length unit of files that have none: um mm m nm cm voxel:SIZE.", metavar="U"
+        "--unit", help="Length unit of files without one: um, mm, m, nm, cm or voxel:SIZE.", metavar="U"
     ),
 ]
 
 Repair = Annotated[
     bool,
-    typer.Option("--repair/--no-repair", help="Mend what is wrong with meshes, and say what was done."),
+    typer.Option("--repair/--no-repair", help="Repair defects of the meshes and report the repairs."),
 ]
 
 
@@ -69,43 +72,65 @@ Folder = Annotated[
     Path, typer.Option("--output", "-o", help="Folder to write.", metavar="DIR", callback=check_writable)
 ]
 LMax = Annotated[
-    int, typer.Option("--l-max", help="Degree of the spherical harmonics, 0 to 30.", metavar="L")
+    int, typer.Option("--l-max", help="Maximum degree of the spherical harmonics, 0 to 30.", metavar="L")
 ]
-Degrees = Annotated[str, typer.Option("--degrees", help="Values of l_max: 1,2,5 or 1-20.", metavar="LIST")]
-Level = Annotated[int, typer.Option("--level", help="Subdivisions of the fits' surface.", metavar="N")]
-Facets = Annotated[int, typer.Option("--facets", help="Facets of each polyhedron.", metavar="N")]
+Degrees = Annotated[
+    str, typer.Option("--degrees", help="Values of l_max, such as 1,2,5 or 1-20.", metavar="LIST")
+]
+Level = Annotated[
+    int,
+    typer.Option("--level", help="Subdivisions of the icosahedron that surfaces are drawn on.", metavar="N"),
+]
+Facets = Annotated[int, typer.Option("--facets", help="Number of facets of each polyhedron.", metavar="N")]
 Triangles = Annotated[
     int | None,
-    typer.Option("--triangles", help="Most triangles of each polyhedron, instead of facets.", metavar="N"),
+    typer.Option(
+        "--triangles",
+        help="Maximum number of triangles of each polyhedron, instead of --facets.",
+        metavar="N",
+    ),
 ]
 MaxError = Annotated[
     float | None,
     typer.Option(
         "--max-error",
-        help="The fewest facets whose weighted errors are all below this, beyond what none can avoid.",
+        help="Maximum error of the weighted descriptors, met by the fewest facets, instead of --facets.",
         metavar="PERCENT",
     ),
 ]
 Resume = Annotated[
     bool,
-    typer.Option("--resume", help="Go on with a study into this folder that was stopped; else begin."),
+    typer.Option("--resume", help="Resume an interrupted study in the output folder."),
 ]
-Method = Annotated[str, typer.Option("--method", help="Coarsening method.", metavar="NAME")]
+Method = Annotated[
+    str,
+    typer.Option(
+        "--method",
+        help="Coarsening method: exact (default), annealing or quadric.",
+        metavar="NAME",
+    ),
+]
 Target = Annotated[
-    str, typer.Option("--target", help="What is imitated: fit (paper) or particle.", metavar="T")
+    str,
+    typer.Option(
+        "--target",
+        help="Surface to approximate: fit (spherical harmonics, as in the paper) or particle.",
+        metavar="T",
+    ),
 ]
-Preset = Annotated[str, typer.Option("--preset", help="Weights of the loss by name.", metavar="NAME")]
+Preset = Annotated[str, typer.Option("--preset", help="Preset of loss weights.", metavar="NAME")]
 Weights = Annotated[
     list[str] | None,
     typer.Option(
         "--weight",
-        help="One weight of the loss: those that are named are the only ones, or change a preset; 0 takes one"
-        " out of the preset.",
+        help="Weight of one term of the loss (Eq. 9); may be repeated. Without --preset all other "
+        "weights are 0, with it the named ones replace those of the preset.",
         metavar="KEY=VALUE",
     ),
 ]
 Settings = Annotated[
-    list[str] | None, typer.Option("--set", help="One setting of the method.", metavar="KEY=VALUE")
+    list[str] | None,
+    typer.Option("--set", help="A setting of the method; may be repeated.", metavar="KEY=VALUE"),
 ]
 
 

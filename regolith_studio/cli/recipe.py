@@ -13,19 +13,21 @@ if TYPE_CHECKING:
 
 
 def run(
-    recipe: Annotated[Path, typer.Argument(metavar="RECIPE.json", help="A recipe, as the window saves it.")],
+    recipe: Annotated[
+        Path, typer.Argument(metavar="RECIPE.json", help="A recipe file, as the window saves it.")
+    ],
     output: Folder = Path("regolith-results"),
     json: Json = False,
     jobs: Jobs = 1,
     resume: Annotated[
-        bool, typer.Option("--resume", help="Go on with a run into this folder that has not ended.")
+        bool, typer.Option("--resume", help="Resume an interrupted run in the output folder.")
     ] = False,
     chunk: Annotated[
         int | None,
         typer.Option(
             "--chunk",
             min=1,
-            help="Particles done and written together; by default 1, in batches of 200 or more 25 to 200.",
+            help="Particles per chunk; by default 1, and 25 to 200 in batches of 200 or more.",
             metavar="N",
             show_default=False,
         ),
@@ -33,14 +35,14 @@ def run(
     runner: Annotated[
         str,
         typer.Option(
-            "--runner", help="Who works: processes of this machine, or a dask cluster.", metavar="NAME"
+            "--runner", help="Executor: processes (of this machine) or dask (a cluster).", metavar="NAME"
         ),
     ] = "processes",
     address: Annotated[
         str,
         typer.Option(
             "--address",
-            help="Of the dask scheduler: tcp://HOST:8786 or tls://HOST:8786; without it one is started here.",
+            help="Dask scheduler, tcp://HOST:8786 or tls://HOST:8786; a local one is started if omitted.",
             metavar="URL",
             show_default=False,
         ),
@@ -55,10 +57,13 @@ def run(
         ),
     ] = None,
     seed: Annotated[
-        int | None, typer.Option("--seed", help="Seed in place of the recipe's.", metavar="N")
+        int | None,
+        typer.Option(
+            "--seed", help="Seed of the random numbers, instead of that of the recipe.", metavar="N"
+        ),
     ] = None,
 ) -> None:
-    """Do all that a recipe asks for: descriptors, fits, meshes, dataset, studies, summary."""
+    """Run a recipe: descriptors, fits, meshes, dataset, studies and summary."""
     from regolith_studio.cli.terminal import print_errors, print_json, run_with_progress
     from regolith_studio.jobs.executor import ExecutorSettings
     from regolith_studio.session.recipe import read_recipe

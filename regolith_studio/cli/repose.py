@@ -12,7 +12,6 @@ from regolith_studio.cli.options import (
     Jobs,
     Json,
     Seed,
-    Settings,
     check_writable,
     usage_errors,
     values,
@@ -28,20 +27,29 @@ app = typer.Typer(
 Figures = Annotated[
     Path | None,
     typer.Option(
-        "--output", "-o", help="Folder for the JSON and Fig. 9.", metavar="DIR", callback=check_writable
+        "--output",
+        "-o",
+        help="Folder for repose.json and the figure of the sections (Fig. 9).",
+        metavar="DIR",
+        callback=check_writable,
     ),
 ]
+EvaluationSetting = Annotated[
+    list[str] | None,
+    typer.Option("--set", help="A setting of the evaluation; may be repeated.", metavar="KEY=VALUE"),
+]
 PositionUnit = Annotated[
-    str, typer.Option("--unit", help="Length unit of files that have none: m mm um cm nm.", metavar="U")
+    str, typer.Option("--unit", help="Length unit of files without one: m, mm, um, cm or nm.", metavar="U")
 ]
 Diameter = Annotated[
-    float, typer.Option("--diameter", help="Of all particles, where the file has none.", metavar="D")
+    float,
+    typer.Option("--diameter", help="Diameter of all particles, for files without diameters.", metavar="D"),
 ]
 
 
 @app.command("engines")
 def engines(json: Json = False, jobs: Jobs = 1, seed: Seed = 0) -> None:
-    """What each engine represents of the paper's contact model, and whether it is here."""
+    """List the DEM engines: what each represents of the contact model, and its version if available."""
     del jobs, seed  # taken by every command
     from regolith_studio.cli.terminal import print_json
     from regolith_studio.dem.engines import CAPABILITY_LABELS, engine_rows
@@ -59,10 +67,11 @@ def engines(json: Json = False, jobs: Jobs = 1, seed: Seed = 0) -> None:
 @app.command("measure")
 def measure(
     file: Annotated[
-        Path, typer.Argument(metavar="FILE", help="Positions: final.npz, CSV, XYZ, LAMMPS dump, VTK.")
+        Path,
+        typer.Argument(metavar="FILE", help="File of positions: final.npz, CSV, XYZ, LAMMPS dump or VTK."),
     ],
     output: Figures = None,
-    set_: Settings = None,
+    set_: EvaluationSetting = None,
     diameter: Diameter = 0.0,
     unit: PositionUnit = "m",
     json: Json = False,
@@ -132,12 +141,20 @@ def run(
     coarse_graining: Annotated[
         float,
         typer.Option(
-            "--coarse-graining", help="Factor on sizes; by itself, what the mass asks.", metavar="F"
+            "--coarse-graining",
+            help="Coarse-graining factor on sizes; chosen from the mass if omitted.",
+            metavar="F",
         ),
     ] = 0.0,
-    spheres: Annotated[bool, typer.Option("--spheres", help="Balls instead of the polyhedra.")] = False,
-    cohesion: Annotated[str, typer.Option("--cohesion", help="none, given or scaled.", metavar="C")] = "none",
-    overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace an earlier run.")] = False,
+    spheres: Annotated[
+        bool, typer.Option("--spheres", help="Simulate spheres instead of polyhedra.")
+    ] = False,
+    cohesion: Annotated[
+        str, typer.Option("--cohesion", help="Cohesion: none, given or scaled.", metavar="C")
+    ] = "none",
+    overwrite: Annotated[
+        bool, typer.Option("--overwrite", help="Replace an existing run in the folder.")
+    ] = False,
     json: Json = False,
     jobs: Jobs = 1,
     seed: Seed = 0,
@@ -174,18 +191,20 @@ def study(
         str,
         typer.Option(
             "--vary",
-            help="A value of Table 1 or 2 in SI, shapes, cohesion, n_particles; else the datasets differ.",
+            help="Parameter to vary, of Table 1 or 2 in SI units, shapes, cohesion or n_particles.",
             metavar="KEY=V1,V2",
         ),
     ] = "",
-    repeats: Annotated[int, typer.Option("--repeats", min=1, help="Seeds a value.", metavar="N")] = 1,
+    repeats: Annotated[
+        int, typer.Option("--repeats", min=1, help="Number of seeds per value.", metavar="N")
+    ] = 1,
     particles: Particles = 1000,
     how: CaseOptions,
     json: Json = False,
     jobs: Jobs = 1,
     seed: Seed = 0,
 ) -> None:
-    """Angle of repose against one value or one dataset against others; goes on where it was stopped."""
+    """Measure the angle of repose against a parameter or for several datasets; resumes a stopped study."""
     from regolith_studio.cli.terminal import print_json, print_table, run_with_progress
     from regolith_studio.jobs.repose_jobs import ReposeVariant, study_repose, with_value
     from regolith_studio.studies.figures.repose import write_repose_study

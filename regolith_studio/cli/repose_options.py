@@ -7,22 +7,39 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from regolith_studio.cli.options import Settings, usage_errors, values
+from regolith_studio.cli.options import usage_errors, values
 
 if TYPE_CHECKING:
     from regolith_studio.dem.evaluation.settings import EvaluationSettings
     from regolith_studio.jobs.repose_jobs import ReposeRequest
 
-Particles = Annotated[int, typer.Option("--particles", "-n", help="Simulated particles.", metavar="N")]
-EngineKey = Annotated[str, typer.Option("--engine", help="See the command engines.", metavar="KEY")]
+Particles = Annotated[
+    int, typer.Option("--particles", "-n", help="Number of simulated particles.", metavar="N")
+]
+EngineKey = Annotated[
+    str, typer.Option("--engine", help="DEM engine; listed by `repose engines`.", metavar="KEY")
+]
 Contact = Annotated[
-    list[str] | None, typer.Option("--contact", help="One value of Table 1, in SI.", metavar="KEY=VALUE")
+    list[str] | None,
+    typer.Option(
+        "--contact", help="A contact parameter of Table 1 in SI units; may be repeated.", metavar="KEY=VALUE"
+    ),
+]
+EngineSettings = Annotated[
+    list[str] | None,
+    typer.Option("--set", help="A setting of the engine; may be repeated.", metavar="KEY=VALUE"),
 ]
 Test = Annotated[
-    list[str] | None, typer.Option("--test", help="One value of Table 2, in SI.", metavar="KEY=VALUE")
+    list[str] | None,
+    typer.Option(
+        "--test",
+        help="A parameter of the cylinder test of Table 2 in SI units; may be repeated.",
+        metavar="KEY=VALUE",
+    ),
 ]
 Measure = Annotated[
-    list[str] | None, typer.Option("--measure", help="One setting of the evaluation.", metavar="KEY=VALUE")
+    list[str] | None,
+    typer.Option("--measure", help="A setting of the evaluation; may be repeated.", metavar="KEY=VALUE"),
 ]
 
 
@@ -33,7 +50,7 @@ class CaseOptions:
     engine: EngineKey = "mujoco"
     contact: Contact = None
     test: Test = None
-    set_: Settings = None
+    set_: EngineSettings = None
     measure: Measure = None
 
     def order(self, **case: Any) -> "ReposeRequest":

@@ -44,7 +44,7 @@ if TYPE_CHECKING:
 Below = Annotated[
     float,
     typer.Option(
-        "--below", help="Ask for the smallest l_max with every error below this.", metavar="PERCENT"
+        "--below", help="Report the smallest l_max with every error below this limit.", metavar="PERCENT"
     ),
 ]
 
@@ -52,7 +52,7 @@ BoxMetric = Annotated[
     str,
     typer.Option(
         "--box",
-        help="Bounding box of the diameters: exact, or trimesh, the heuristic of the paper's program.",
+        help="Bounding box of the diameters: exact, or trimesh (the heuristic of the paper's program).",
         metavar="BOX",
     ),
 ]
@@ -61,7 +61,7 @@ Losses = Annotated[
     list[str] | None,
     typer.Option(
         "--loss",
-        help="A row: a preset, a descriptor alone (only_volume, ...), or chosen for --weight; else Fig. 8.",
+        help="A row: a preset, a single descriptor (only_volume, ...) or chosen; Fig. 8 if omitted.",
         metavar="NAME",
     ),
 ]
@@ -71,19 +71,23 @@ SampleSources = Annotated[
 ]
 Models = Annotated[
     str,
-    typer.Option("--models", help="Models by key, separated by commas.", metavar="LIST", show_default="all"),
+    typer.Option(
+        "--models", help="Keys of the models, separated by commas.", metavar="LIST", show_default="all"
+    ),
 ]
 Draws = Annotated[
     int,
     typer.Option(
         "--draws",
-        help="Particles of each drawing.",
+        help="Number of particles per draw.",
         metavar="N",
         show_default="half the sample, at most 1000",
     ),
 ]
-Splits = Annotated[int, typer.Option("--splits", help="Random halves to fit to.", metavar="N")]
-Repeats = Annotated[int, typer.Option("--repeats", help="Drawings from each fit.", metavar="N")]
+Splits = Annotated[
+    int, typer.Option("--splits", help="Number of random halves that models are fitted to.", metavar="N")
+]
+Repeats = Annotated[int, typer.Option("--repeats", help="Number of draws from each fit.", metavar="N")]
 DescriptorKeys = Annotated[
     str,
     typer.Option(
@@ -262,7 +266,7 @@ OverlapFactors = Annotated[
     str,
     typer.Option(
         "--factors",
-        help="Factors on the weight of the overlap; the exact method takes conditions on and off instead.",
+        help="Factors on the weight of the overlap; the exact method adds and drops constraints instead.",
         metavar="LIST",
     ),
 ]
@@ -322,7 +326,7 @@ def tradeoff(
     factors: OverlapFactors = "0,0.1,0.3,1,3,10,30",
     varied: VariedOptions,
 ) -> None:
-    """Overlap against descriptors: what one costs the other."""
+    """Trade-off between overlap and descriptor errors."""
     varied.run("tradeoff", factors, meshes, output, facets)
 
 
@@ -336,7 +340,7 @@ def sensitivity(
     factors: ChangeFactors = "0,4",
     varied: VariedOptions,
 ) -> None:
-    """What changing one weight of the loss changes in every descriptor."""
+    """Sensitivity of each descriptor's error to each weight of the loss."""
     varied.run("sensitivity", factors, meshes, output, facets)
 
 

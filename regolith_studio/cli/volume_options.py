@@ -17,38 +17,46 @@ if TYPE_CHECKING:
 class VolumeOptions:
     """What a volume file does not say of itself."""
 
-    kind: Annotated[str, typer.Option("--kind", help="labels or grey; else guessed.", metavar="KIND")] = ""
+    kind: Annotated[
+        str,
+        typer.Option("--kind", help="Kind of volume: labels or grey; detected if omitted.", metavar="KIND"),
+    ] = ""
     voxel_size: Annotated[
         str,
         typer.Option(
             "--voxel-size",
-            help="Edge of a voxel, or X,Y,Z, in the unit; else what the file says.",
+            help="Edge of a voxel, or X,Y,Z, in the unit of --unit; read from the file if omitted.",
             metavar="SIZE",
         ),
     ] = ""
     unit: Annotated[
-        str, typer.Option("--unit", help="Unit of the voxel size: um mm m nm cm.", metavar="U")
+        str, typer.Option("--unit", help="Unit of the voxel size: um, mm, m, nm or cm.", metavar="U")
     ] = ""
     dataset: Annotated[
-        str, typer.Option("--dataset", help="Which volume of an HDF5 file.", metavar="NAME")
+        str, typer.Option("--dataset", help="Name of the dataset in an HDF5 file.", metavar="NAME")
     ] = ""
     axes: Annotated[
         str,
         typer.Option(
-            "--axes", help="NPY and HDF5: order of the array's axes; else zyx, slices first.", metavar="AXES"
+            "--axes",
+            help="Order of the axes of NPY and HDF5 arrays; zyx (slices first) if omitted.",
+            metavar="AXES",
         ),
     ] = ""
     shape: Annotated[
-        str, typer.Option("--shape", help="Raw files: voxels along x, y, z.", metavar="NX,NY,NZ")
+        str,
+        typer.Option("--shape", help="Number of voxels of a raw file along x, y and z.", metavar="NX,NY,NZ"),
     ] = ""
     dtype: Annotated[
-        str, typer.Option("--dtype", help="Raw files: uint8, uint16, float32, ...", metavar="TYPE")
+        str,
+        typer.Option("--dtype", help="Data type of a raw file: uint8, uint16, float32, ...", metavar="TYPE"),
     ] = "uint8"
     byte_order: Annotated[
-        str, typer.Option("--byte-order", help="Raw files: little or big.", metavar="ORDER")
+        str, typer.Option("--byte-order", help="Byte order of a raw file: little or big.", metavar="ORDER")
     ] = "little"
     offset: Annotated[
-        int, typer.Option("--offset", help="Raw files: bytes before the first voxel.", metavar="N")
+        int,
+        typer.Option("--offset", help="Number of bytes before the first voxel of a raw file.", metavar="N"),
     ] = 0
 
     def of(self, volume: Path) -> "VolumeInput":
@@ -76,47 +84,59 @@ class GrainOptions:
     denoise: Annotated[
         str,
         typer.Option(
-            "--denoise", help="Grey volumes: none gaussian median non-local-means.", metavar="METHOD"
+            "--denoise",
+            help="Denoising of grey volumes: none, gaussian, median or non-local-means.",
+            metavar="METHOD",
         ),
     ] = "median"
     threshold: Annotated[
         str,
         typer.Option(
             "--threshold",
-            help="Grey volumes: otsu, multi-otsu, multi-otsu:CLASSES:BOUNDARY, a grey value, or "
+            help="Threshold of grey volumes: otsu, multi-otsu, multi-otsu:CLASSES:BOUNDARY, a grey value, or "
             "probability[:P] for a probability map.",
             metavar="HOW",
         ),
     ] = "otsu"
-    dark: Annotated[bool, typer.Option("--dark", help="Grains are darker than what is between them.")] = False
+    dark: Annotated[bool, typer.Option("--dark", help="Grains are darker than the matrix.")] = False
     opening: Annotated[
-        int, typer.Option("--opening", help="Remove specks and bridges, in voxels.", metavar="N")
+        int,
+        typer.Option(
+            "--opening",
+            help="Radius in voxels of the opening, which removes specks and bridges.",
+            metavar="N",
+        ),
     ] = 0
-    closing: Annotated[int, typer.Option("--closing", help="Close cracks, in voxels.", metavar="N")] = 0
+    closing: Annotated[
+        int,
+        typer.Option("--closing", help="Radius in voxels of the closing, which fills cracks.", metavar="N"),
+    ] = 0
     h_maxima: Annotated[
         float,
         typer.Option(
             "--h-maxima",
-            help="How far a bump must stand out to be a grain of its own, in voxels: the larger, the "
-            "fewer grains.",
+            help="Height in voxels of the maxima of the distance map that count as separate grains; "
+            "larger values give fewer grains.",
             metavar="H",
         ),
     ] = 0.8
-    split: Annotated[bool, typer.Option("--split/--no-split", help="Part touching grains.")] = True
+    split: Annotated[bool, typer.Option("--split/--no-split", help="Separate touching grains.")] = True
     min_voxels: Annotated[
-        int, typer.Option("--min-voxels", help="Leave out what has fewer voxels.", metavar="N")
+        int, typer.Option("--min-voxels", help="Minimum number of voxels of a grain.", metavar="N")
     ] = 268
     border: Annotated[
         str,
         typer.Option(
-            "--border", help="Grains that the border cuts: exclude (and weight) or keep.", metavar="HOW"
+            "--border",
+            help="Grains cut by the border: exclude (and weight the others) or keep.",
+            metavar="HOW",
         ),
     ] = "exclude"
     surface: Annotated[
         str,
         typer.Option(
             "--surface",
-            help="Grey volumes: take surfaces from the grey values about each grain, or from its mask.",
+            help="Source of the surfaces of grey volumes: grey (values) or mask.",
             metavar="FROM",
         ),
     ] = "grey"

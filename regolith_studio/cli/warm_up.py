@@ -6,7 +6,7 @@ from regolith_studio.cli.options import Jobs, Json
 
 
 def warm_up(json: Json = False, jobs: Jobs = 0) -> None:
-    """Compile all numerics now, so that the first use is as quick as the second."""
+    """Compile all kernels in advance, so that the first use is as fast as later ones."""
     from regolith_studio.cli.terminal import print_json, run_with_progress
     from regolith_studio.jobs.compile_kernels import compile_kernels
 

@@ -8,7 +8,10 @@ import typer
 
 def open_files(
     files: Annotated[list[Path], typer.Argument(metavar="FILE...", help="Meshes, folders or a recipe.")],
-    unit: Annotated[str | None, typer.Option("--unit", help="Length unit of files that have none.")] = None,
+    unit: Annotated[
+        str | None,
+        typer.Option("--unit", help="Length unit of files without one: um, mm, m, nm, cm or voxel:SIZE."),
+    ] = None,
 ) -> None:
     """Open files in the window."""
     open_window(files, unit)
