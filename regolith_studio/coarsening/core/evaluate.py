@@ -7,7 +7,7 @@ from regolith_studio.coarsening.core.intersection import (
     FINE,
     NUMBER,
     REACH,
-    Work,
+    IntersectionWorkspace,
     cut_out,
     work_for,
 )
@@ -79,7 +79,7 @@ def measure_facets(
     offsets: FloatArray,
     vertices: FloatArray,
     triples: IntArray,
-    work: Work,
+    work: IntersectionWorkspace,
     edges: IntArray,
     values: FloatArray,
 ) -> None:

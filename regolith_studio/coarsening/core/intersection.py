@@ -23,7 +23,7 @@ NUMBER = 0
 """Row of the lists in the end: which vertex lives in a place."""
 
 
-class Work(NamedTuple):
+class IntersectionWorkspace(NamedTuple):
     """Memory of one intersection; a vertex lives in a place that is used again when it has been cut off.
 
     Parameters
@@ -74,10 +74,10 @@ def intersect(normals: FloatArray, offsets: FloatArray) -> tuple[int, FloatArray
 
 
 @kernel
-def work_for(n: int) -> Work:
+def work_for(n: int) -> IntersectionWorkspace:
     """Memory for n planes."""
     places = 4 * (n + 4) + 16
-    return Work(
+    return IntersectionWorkspace(
         np.empty((4, places)),
         np.empty((places, 3), np.uint32),
         np.empty((n + 4, n + 4), np.uint32),
@@ -90,7 +90,7 @@ def cut_out(
     normals: FloatArray,
     offsets: FloatArray,
     reach: float,
-    work: Work,
+    work: IntersectionWorkspace,
     vertices: FloatArray,
     triples: IntArray,
 ) -> tuple[int, int]:
@@ -141,7 +141,7 @@ def above_plane(place: FloatArray, used: int, normal: Vector, offset: float, lis
 
 
 @kernel_noalloc
-def begun(work: Work, n: int, reach: float) -> int:
+def begun(work: IntersectionWorkspace, n: int, reach: float) -> int:
     """The first tetrahedron, with planes n .. n + 3 at distance `reach`; its four vertices.
 
     The last place belongs to nobody and counts as dead; the others are free, the first on top.
@@ -168,7 +168,12 @@ def begun(work: Work, n: int, reach: float) -> int:
 
 @kernel_noalloc
 def collected(
-    normals: FloatArray, offsets: FloatArray, work: Work, used: int, vertices: FloatArray, triples: IntArray
+    normals: FloatArray,
+    offsets: FloatArray,
+    work: IntersectionWorkspace,
+    used: int,
+    vertices: FloatArray,
+    triples: IntArray,
 ) -> tuple[int, int]:
     """Living vertices, refined against their planes; the bookkeeping is checked by Euler's formula."""
     place, planes, owner, _ = work
