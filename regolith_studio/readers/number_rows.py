@@ -56,43 +56,49 @@ def number_rows(
         raise FileError("is empty: it has no bytes at all.")
     if b"\0" in data[:4096]:
         raise FileError("is not a text of numbers: it holds zero bytes.")
-    header: bytes = b""
-    below: bytes = b""
-    comment: bytes = b""
-    words: list[list[bytes]] = []
-    width = headers = 0
-    decimal_comma = False
-    for number, raw in enumerate(data.splitlines(), start=1):
-        line = raw.strip()
-        if not line:
-            continue
+    lines = [(number, line) for number, raw in enumerate(data.splitlines(), 1) if (line := raw.strip())]
+    header, units, first = _header(lines, skip_headers, with_units)
+    words = _rows(lines[first:], numeric_headers)
+    width = len(words[0])
+    if width > MAX_COLUMNS:
+        raise FileError(f"has {width:,} columns; at most {MAX_COLUMNS:,} are read.")
+    return NumberRows(_names(header, width), _numbers(words, data), _names(units, width))
+
+
+def _header(lines: list[tuple[int, bytes]], skip_headers: int, with_units: bool) -> tuple[bytes, bytes, int]:
+    """The line with the names of the columns, that with their units, and the index of the first row."""
+    header = units = comment = b""
+    headers = 0
+    for place, (number, line) in enumerate(lines):
         if line.startswith(COMMENTS):
-            comment = line if not words else comment
-            continue
-        if not words and not _NUMBER.match(line):
-            headers += 1
-            if with_units and header and _are_units(line):
-                below, headers = line, headers - 1
-                continue
-            header = line
+            comment = line
+        elif _NUMBER.match(line):
+            return header or comment.lstrip(b"#%!/"), units, place
+        elif with_units and header and _are_units(line):
+            units = line
+        else:
+            header, headers = line, headers + 1
             if headers > skip_headers:
                 raise FileError(f"is not a table of numbers: line {number:,} begins with “{_shown(line)}”.")
+    raise FileError("holds no row of numbers.")
+
+
+def _rows(lines: list[tuple[int, bytes]], numeric_headers: int) -> list[list[bytes]]:
+    """The words of the rows, each as many as in the first one."""
+    words: list[list[bytes]] = []
+    decimal_comma = b";" in lines[0][1] and b"," in lines[0][1]
+    for number, line in lines:
+        if line.startswith(COMMENTS):
             continue
-        if not words:
-            decimal_comma = b";" in line and b"," in line
         row = _row(line, decimal_comma)
-        width = width or len(row)
-        if len(row) != width and len(words) <= numeric_headers:
-            words, width = [], len(row)
-        if len(row) != width:
-            raise FileError(f"has {len(row)} columns in line {number:,} and {width} in the first row.")
+        if words and len(row) != len(words[0]):
+            if len(words) > numeric_headers:
+                raise FileError(
+                    f"has {len(row)} columns in line {number:,} and {len(words[0])} in the first row."
+                )
+            words = []
         words.append(row)
-    if not words:
-        raise FileError("holds no row of numbers.")
-    if width > MAX_COLUMNS:
-        raise FileError(f"has {width:,} columns; no table here has so many.")
-    names = _names(header or comment.lstrip(b"#%!/"), width)
-    return NumberRows(names, _numbers(words, data), _names(below, width))
+    return words
 
 
 def _are_units(line: bytes) -> bool:
