@@ -39,7 +39,7 @@ MISSES_AT_MOST = N_(
 
 @dataclass(frozen=True, eq=False)
 class HarmonicFit:
-    """A particle in spherical harmonics, and how well they can hold it.
+    """Expansion of a particle in spherical harmonics, and its errors.
 
     Parameters
     ----------
@@ -48,17 +48,17 @@ class HarmonicFit:
     star_point
         Shape (3,), in the frame of the particle.
     hidden_surface_share
-        Share of the surface that is not visible from the star point: no radius function keeps it.
+        Share of the surface that is not visible from the star point, which no radius function represents.
     unrepresentable_volume_share
         Share of the volume behind the first crossing of a ray. By the default rule it is kept in sum
         but not in place.
     radial_error
         Root mean square over all directions of the difference between the expansion and the radius
         function, as a share of the mean radius (with a reference: of radius over reference):
-        truncation, and the swinging that flat grains suffer. Known at every lower degree by Parseval.
+        truncation, and oscillations on flat particles. Known at every lower degree by Parseval.
     largest_radial_error
-        Largest share of the local radius by which the expansion misses it, or ``None`` where it was not
-        worked out, as for a truncated fit.
+        Maximum error of the expansion as a share of the local radius; ``None`` where it was not computed, as
+        for a truncated fit.
     reference
         Ellipsoid that the radius was divided by, or ``None``.
     rule
@@ -66,7 +66,7 @@ class HarmonicFit:
     sampling_degree
         Degree of the ray grid.
     notes
-        One sentence for each thing about the particle to know before the fit is used.
+        Sentences about the particle that a user should know.
     """
 
     coefficients: ShCoefficients
@@ -168,7 +168,7 @@ def fit_harmonics(
 def expand_radius(
     radius: RadiusFunction, rays: RayGrid, l_max: int, reference: Ellipsoid | None = None
 ) -> HarmonicFit:
-    """The expansion of a radius function that was sampled on a grid; its mesh is not looked at."""
+    """The expansion of a radius function that was sampled on a grid; needs no mesh."""
     unit = 1.0 if reference is None else reference.radii(rays.directions)
     samples = radius.radii / unit
     coefficients = analyse(rays, samples, l_max)
@@ -188,7 +188,7 @@ def expand_radius(
 def _sampled(
     mesh: Mesh, star_point: ArrayLike | str | None, rays: RayGrid, rule: str
 ) -> tuple[RadiusFunction, tuple[str, ...]]:
-    """The radius function about the star point that was asked for, and what has to be said about it."""
+    """The radius function about the requested star point, and notes on it."""
     if isinstance(star_point, str):
         if star_point not in STAR_POINT_RULES:
             choices = ", ".join(STAR_POINT_RULES)

@@ -19,7 +19,7 @@ from regolith_studio.geometry.sphere_points import fibonacci_directions
 from regolith_studio.harmonics.radius_function import sample_radius
 
 SEARCH_RADIUS = 0.25
-"""The least hidden volume is sought within this share of the equivalent radius round the start."""
+"""Radius of the search for the least hidden volume, as a share of the equivalent radius."""
 N_SEARCH_RAYS = 1000
 
 
@@ -93,7 +93,7 @@ def least_hidden_volume(mesh: Mesh) -> FloatArray:
 
 
 def inner_point(mesh: Mesh) -> FloatArray:
-    """A point well inside: the middle of the longest stretch that a few lines spend in the solid, (3,).
+    """A point well inside, shape (3,): the middle of the longest segment of a few lines inside the mesh.
 
     Raises
     ------

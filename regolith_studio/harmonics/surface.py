@@ -14,7 +14,6 @@ from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.harmonics.coefficients import ShCoefficients
 from regolith_studio.harmonics.fit import HarmonicFit
 from regolith_studio.harmonics.legendre import fill_legendre, legendre_factors
-from regolith_studio.harmonics.radius_function import DEFAULT_RULE, sample_radius
 from regolith_studio.harmonics.reference_surface import Ellipsoid
 from regolith_studio.harmonics.synthesis import (
     icosphere_edges,
@@ -75,12 +74,6 @@ def radii(expansion: Expansion, directions: ArrayLike, l_max: int | None = None)
     rays = np.ascontiguousarray(directions, dtype=np.float64)
     found = radii_along(fit.coefficients, rays)
     return found if fit.reference is None else found * fit.reference.radii(rays)
-
-
-def particle_radii(fit: HarmonicFit, mesh: Mesh, level: int = DEFAULT_LEVEL) -> FloatArray:
-    """Radius function of the particle along the vertices of ``icosphere(level)``, shape (n,)."""
-    rule = fit.rule or DEFAULT_RULE
-    return sample_radius(mesh, fit.star_point, icosphere(level).vertices, rule).radii
 
 
 def as_fit(expansion: Expansion, l_max: int | None = None) -> HarmonicFit:

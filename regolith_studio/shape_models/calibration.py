@@ -1,10 +1,10 @@
-"""What a field drawn to its hull should come to, and what to ask of it so that it does.
+"""Calibration of the hull field: which features to ask for so that drawn particles have those of the sample.
 
-Drawing and cutting shift the numbers of :mod:`~regolith_studio.shape_models.shape_features`, so that
-others are asked for.
-The powers from the third degree on go up and down together until the mean sphericity is the sample's;
-between them, and in their deviations, they follow the sample's powers. Those of the first two degrees belong
-to the star point and the ellipsoid and are left alone, as is the form, which is set exactly.
+Moving a surface towards its hull and cutting it at l_max shift the features of
+:mod:`~regolith_studio.shape_models.shape_features`, so that others have to be asked for. The powers from the
+third degree on are shifted together until the mean sphericity is the sample's; between them, and in their
+deviations, they follow the sample's powers. Those of the first two degrees belong to the star point and the
+ellipsoid and stay as they are, as does the form, which is set exactly.
 """
 
 from dataclasses import dataclass
@@ -34,7 +34,7 @@ _QUANTILES = np.linspace(0.01, 0.99, 50)
 
 @dataclass(frozen=True, eq=False)
 class CalibrationOffset:
-    """What is asked for in place of drawn numbers: median + shift + spread (drawn - median).
+    """Features to ask for instead of drawn ones: median + shift + spread (drawn - median).
 
     Parameters
     ----------
@@ -48,14 +48,14 @@ class CalibrationOffset:
 
 @dataclass(frozen=True, eq=False)
 class CalibrationTarget:
-    """What particles should come to.
+    """Features that drawn particles should have.
 
     Parameters
     ----------
     mean, deviation
-        Of the numbers, shape (d,).
+        Of the features, shape (d,).
     outer
-        Outer numbers of the measured particles, shape (n, 3).
+        Outer features of the measured particles, shape (n, 3).
     """
 
     mean: FloatArray
@@ -64,7 +64,7 @@ class CalibrationTarget:
 
     @classmethod
     def of(cls, coefficients: FloatArray, numbers: FloatArray) -> "CalibrationTarget":
-        """That of measured particles, radius functions (n, (l_max + 1)^2) with their numbers (n, d)."""
+        """From measured particles: radius functions (n, (l_max + 1)^2) and their features (n, d)."""
         return cls(
             numbers.mean(axis=0),
             numbers.std(axis=0),
@@ -72,31 +72,31 @@ class CalibrationTarget:
         )
 
     def distance(self, outer: FloatArray) -> float:
-        """Mean difference of quantiles over the standard deviation, summed over the outer numbers."""
+        """Mean difference of quantiles over the standard deviation, summed over the outer features."""
         wanted, found = (np.quantile(table, _QUANTILES, axis=0) for table in (self.outer, outer))
         return float((np.abs(found - wanted).mean(axis=0) / (self.outer.std(axis=0) + 1e-9)).sum())
 
     def corrected(
-        self, request: CalibrationOffset, numbers: FloatArray, outer: FloatArray
+        self, offset: CalibrationOffset, numbers: FloatArray, outer: FloatArray
     ) -> CalibrationOffset:
-        """What to ask for next, where the last request came to these numbers (m, d) and (m, 3)."""
+        """The next offset, where the last one gave features (m, d) and outer features (m, 3)."""
         shift = RATE * (self.mean - numbers.mean(axis=0))
         too_round = outer[:, SPHERICITY].mean() - self.outer[:, SPHERICITY].mean()
         shift[_ROUGHNESS] += SPHERICITY_RATE * too_round - shift[_ROUGHNESS].mean()
         ratio = ((self.deviation + 1e-9) / (numbers.std(axis=0) + 1e-9)) ** RATE
         shift[: _ROUGHNESS.start], ratio[: _ROUGHNESS.start], ratio[CONVEXITY] = 0.0, 1.0, 1.0
         return CalibrationOffset(
-            np.clip(request.shift + shift, -MAX_SHIFT, MAX_SHIFT), np.clip(request.spread * ratio, *SPREADS)
+            np.clip(offset.shift + shift, -MAX_SHIFT, MAX_SHIFT), np.clip(offset.spread * ratio, *SPREADS)
         )
 
 
 def measured_features(rows: FloatArray, equivalent_radii: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Numbers (m, d) and outer numbers (m, 3) of drawn particles, expansions of ln r with these sizes."""
+    """Features (m, d) and outer features (m, 3) of drawn particles: expansions of ln r with these sizes."""
     numbers = log_shape_features(rows, equivalent_radii)
     return numbers, outer_features_of_log_radii(rows, numbers[:, CONVEXITY])
 
 
 def features_and_target(coefficients: FloatArray) -> tuple[FloatArray, CalibrationTarget]:
-    """The numbers (n, d) of measured particles, and the aim that they set."""
+    """The features (n, d) of measured particles, and the calibration target that they define."""
     numbers = shape_features(coefficients)
     return numbers, CalibrationTarget.of(coefficients, numbers)

@@ -1,8 +1,8 @@
-"""Randomness that neither the number of workers nor the number of particles can change.
+"""Reproducible drawing in chunks, independent of the number of workers and of particles.
 
-Particles are drawn in chunks of :data:`CHUNK`. Chunk i is drawn whole, by a generator of its own from
-``SeedSequence(seed, spawn_key=(i,))``, and cut if fewer are wanted. So the first particles of a longer
-draw are those of a shorter one, and chunks may be drawn anywhere, in any order.
+Particles are drawn in chunks of :data:`CHUNK`. Chunk i is drawn whole by its own generator, seeded with
+``SeedSequence(seed, spawn_key=(i,))``, and cut if fewer are wanted. The first particles of a longer draw are
+therefore those of a shorter one, and chunks may be drawn in any process and order.
 """
 
 from abc import ABC, abstractmethod
@@ -18,7 +18,7 @@ from regolith_studio.shape_models.realizations import Realizations
 
 CHUNK = 500
 MAX_ROUNDS = 200
-"""Rounds of redrawing in one chunk after which a range of sizes counts as out of reach."""
+"""Maximum rounds of redrawing in one chunk; then the range of sizes counts as unreachable."""
 
 
 def chunks(n: int, seed: int) -> Iterator[tuple[np.random.Generator, int]]:
@@ -37,7 +37,7 @@ def chunks(n: int, seed: int) -> Iterator[tuple[np.random.Generator, int]]:
 
 
 class ChunkedSampler(ABC):
-    """A fitted model that draws chunk by chunk: whoever draws many can tell how far it is, and stop."""
+    """Base of fitted models that draw chunk by chunk: long draws report progress and can be cancelled."""
 
     @abstractmethod
     def draw_chunks(self, n: int, seed: int, size_range: SizeRange | None = None) -> Iterator[Realizations]:
@@ -62,7 +62,7 @@ class ChunkedSampler(ABC):
 
 
 def joined(parts: Sequence[Realizations]) -> Realizations:
-    """The chunks, at least one, as one."""
+    """Concatenation of at least one chunk."""
     first = parts[0]
     return replace(
         first,

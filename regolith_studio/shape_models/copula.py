@@ -1,8 +1,8 @@
-"""A Gaussian copula: numbers of particles that hang together, each with the distribution it has.
+"""Gaussian copula: a joint distribution of d numbers from their quantiles and correlations.
 
-Sklar (1959): a joint distribution is its marginal distributions and a copula. Here the marginals are tables
-of quantiles, linear between them, and the copula is that of the normal law with the correlations of the
-sample's normal scores. The first number can be given, and the others are then drawn as they go with it.
+Sklar (1959): a joint distribution is its marginal distributions and a copula. The marginals are tables of
+quantiles with linear interpolation; the copula is that of a normal law with the correlations of the sample's
+normal scores. Realizations are conditional on the first number, which is given.
 """
 
 from collections.abc import Callable
@@ -35,7 +35,7 @@ class GaussianCopula:
     Raises
     ------
     InputError
-        If the numbers do not make a distribution.
+        If the numbers do not define a distribution.
     """
 
     quantiles: FloatArray
@@ -57,9 +57,9 @@ class GaussianCopula:
 
     @classmethod
     def of(cls, table: FloatArray) -> "GaussianCopula":
-        """That of a table (n, d), n >= 2.
+        """Fit to a table (n, d), n >= 2.
 
-        Correlations are shrunk towards none by d / (n + d), so that few particles are enough.
+        Correlations are shrunk towards zero by d / (n + d), so that few particles are enough.
         """
         n, d = table.shape
         ranks = np.argsort(np.argsort(table, axis=0, kind="stable"), axis=0, kind="stable")
@@ -71,7 +71,7 @@ class GaussianCopula:
     def draw(self, first: FloatArray, rng: np.random.Generator) -> FloatArray:
         """A row of numbers for each given first one, shape (n, d).
 
-        A first number beyond the tables goes with what the outermost one goes with.
+        First numbers beyond the table are treated as its outermost ones.
         """
         places = _places(len(self.quantiles))
         normal = rng.standard_normal((len(first), len(self.correlations)))
@@ -95,6 +95,6 @@ def _places(count: int) -> FloatArray:
 
 
 def _rising(values: FloatArray) -> FloatArray:
-    """The values, made to ascend strictly by less than matters."""
+    """The values, made strictly ascending by negligible steps."""
     step = 1e-12 * max(float(np.abs(values).max()), 1.0)
     return values + step * np.arange(len(values))

@@ -1,4 +1,4 @@
-"""How far drawn particles are from measured ones: distances of distributions, and whether they are new."""
+"""Goodness of fit of drawn particles: distances of distributions, a classifier test, and novelty."""
 
 from itertools import combinations
 
@@ -86,7 +86,7 @@ def pairs_of(n_columns: int) -> list[tuple[int, int]]:
 
 
 def classifier_accuracy(measured: FloatArray, drawn: FloatArray, rng: np.random.Generator) -> float:
-    """Share of particles whose origin a logistic classifier tells right; 0.5 is chance.
+    """Cross-validated accuracy of a logistic classifier of drawn against measured particles; 0.5 is chance.
 
     Features are the standardised columns with their squares and products; as many particles of either kind;
     five-fold cross-validation (Lopez-Paz and Oquab 2017).
@@ -112,7 +112,8 @@ def classifier_accuracy(measured: FloatArray, drawn: FloatArray, rng: np.random.
 
 
 def nearest_neighbour_ratio(measured: FloatArray, drawn: FloatArray) -> FloatArray:
-    """Distance of each drawn particle to the nearest measured one, in units of the sample's own, shape (m,).
+    """Distance of each drawn particle to the nearest measured one, relative to that within the sample, shape
+    (m,).
 
     Root-mean-square distance of radius functions of size one in the frames of their principal axes; the unit
     is the median distance of a measured particle to the nearest other one. Copies have 0, particles from the

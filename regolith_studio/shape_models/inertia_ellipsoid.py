@@ -1,4 +1,7 @@
-"""The ellipsoid of inertia of a radius function, and a frame that turns with the particle."""
+"""Ellipsoids of inertia about the star point: principal axes, form, and a frame that turns with the particle.
+
+The form of a particle is ln(long / middle) and ln(middle / short) of the axes of its ellipsoid of inertia.
+"""
 
 from dataclasses import dataclass
 
@@ -15,7 +18,7 @@ _MIN_MOMENT = 1e-30
 
 @dataclass(frozen=True, eq=False)
 class PrincipalAxes:
-    """Second moments about the star point of n bodies.
+    """Second moments about the star point of n particles.
 
     Parameters
     ----------
@@ -42,7 +45,10 @@ class PrincipalAxes:
 
 
 def principal_axes(coefficients: FloatArray) -> PrincipalAxes:
-    """Of radius functions (n, (l_max + 1)^2), by quadrature of r^5 u u / 5 and r^6 (u e)^3 / 6."""
+    """Principal axes of radius functions (n, (l_max + 1)^2).
+
+    By quadrature of r^5 u u / 5 and r^6 (u e)^3 / 6.
+    """
     parts = [_of_batch(coefficients[i : i + _BATCH]) for i in range(0, len(coefficients), _BATCH)]
     return PrincipalAxes(
         *(np.concatenate([getattr(part, name) for part in parts]) for name in PrincipalAxes.__annotations__)
@@ -115,10 +121,10 @@ def forms(log_radii: FloatArray, grid: SphereGrid) -> tuple[FloatArray, FloatArr
 
 
 def with_forms(log_radii: FloatArray, wanted: FloatArray, grid: SphereGrid, steps: int) -> FloatArray:
-    """The surfaces times ellipsoids along their own axes, so that they have the form wanted (n, 2).
+    """The surfaces multiplied by ellipsoids along their own axes, so that they have the form `wanted` (n, 2).
 
-    A product with an ellipsoid is the linear map of a sphere, and nearly that of another body: each of the
-    `steps` leaves a tenth of the difference or so.
+    Multiplying by an ellipsoid is a linear map of a sphere, and nearly one of other shapes: each of the
+    `steps` leaves about a tenth of the difference.
     """
     for _ in range(steps):
         found, axes = forms(log_radii, grid)

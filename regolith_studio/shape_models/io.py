@@ -1,4 +1,4 @@
-"""The two files of a fitted model: JSON says what it is and where it comes from, NPZ holds its arrays."""
+"""The two files of a fitted model: JSON with its values and provenance, and NPZ with its arrays."""
 
 import hashlib
 import io
@@ -26,7 +26,7 @@ def write_model(
     Parameters
     ----------
     provenance
-        Plain values that say what the model was fitted to and by what.
+        Plain values that describe the sample and the settings of the fit.
     """
     stem.parent.mkdir(parents=True, exist_ok=True)
     text, numbers = Path(f"{stem}.json"), Path(f"{stem}.npz")
@@ -50,7 +50,7 @@ def write_model(
 
 
 def model_from(document: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]], sha256: str) -> FittedModel:
-    """The model from what its two files held; reading them is the business of ``readers.shape_files``.
+    """The model from the contents of its two files, which ``readers.shape_files`` reads.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Shapes without size: the logarithm of the radius of the particle of equivalent radius one."""
+"""Size and shape of particles apart: the logarithm of the radius divided by the equivalent radius."""
 
 from dataclasses import dataclass
 
@@ -15,7 +15,7 @@ _BATCH = 500
 
 @dataclass(frozen=True, eq=False)
 class LogShapes:
-    """The particles of a sample, size and shape apart.
+    """The particles of a sample, with size and shape apart.
 
     Parameters
     ----------
@@ -73,7 +73,7 @@ def sized(shapes: FloatArray, equivalent_radii: FloatArray) -> FloatArray:
 
 
 def directed(powers: FloatArray, rng: np.random.Generator) -> FloatArray:
-    """Coefficients with given power at each degree (n, l_max + 1) and directions that are random."""
+    """Random coefficients with given power at each degree (n, l_max + 1), isotropic within a degree."""
     n, length = len(powers), powers.shape[1] ** 2
     rows = rng.standard_normal((n, length))
     starts = np.arange(powers.shape[1]) ** 2

@@ -1,4 +1,5 @@
-"""Mixtures of Gaussian fields, by expectation and maximisation, and how many parts the data ask for.
+"""Mixtures of Gaussian fields by expectation and maximisation, with the number of components by Bayes'
+criterion.
 
 Of a particle only its size x_i (ln r_eq, or c_00 for fields in r) and the power P_l of each degree enter:
 directions within a degree are even in an isotropic field. ::
@@ -32,7 +33,7 @@ class MixtureSettings:
     l_max
         Degree of the particles.
     n_components
-        Number of parts; 0 for the best by the criterion.
+        Number of components; 0 for the best by the criterion.
     max_components
         Highest number tried.
     n_starts
@@ -63,7 +64,7 @@ class MixtureSettings:
 
 @dataclass(frozen=True, eq=False)
 class Mixture:
-    """A fitted mixture with k parts.
+    """A fitted mixture with k components.
 
     Parameters
     ----------
@@ -94,7 +95,7 @@ class Mixture:
         return self.n_parameters * float(np.log(n)) - 2 * self.log_likelihood
 
     def responsibilities(self, sizes: FloatArray, powers: FloatArray) -> FloatArray:
-        """Probability of each part for each particle, shape (n, k)."""
+        """Probability of each component for each particle, shape (n, k)."""
         joint = self._joint(sizes, powers)
         return np.asarray(np.exp(joint - logsumexp(joint, axis=1, keepdims=True)))
 
@@ -107,7 +108,7 @@ class Mixture:
 
 
 class NamedComponents:
-    """What fitted mixtures have in common: parts with spectra, and names for them."""
+    """Base of fitted mixtures: components with spectra and names."""
 
     spectra: FloatArray
     names: tuple[str, ...]
@@ -119,11 +120,11 @@ class NamedComponents:
 
     @property
     def n_components(self) -> int:
-        """Number of parts."""
+        """Number of components."""
         return len(self.spectra)
 
     def renamed(self, names: Sequence[str]) -> Self:
-        """The same mixture with other names for its parts.
+        """The same mixture with other names of its components.
 
         Raises
         ------

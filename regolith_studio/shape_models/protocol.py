@@ -1,4 +1,4 @@
-"""What every model of particle shape offers: to be fitted, to draw, to be written down."""
+"""Protocols of shape models: fitting, drawing and storing."""
 
 from collections.abc import Iterator, Mapping
 from typing import Any, Protocol
@@ -13,7 +13,7 @@ SizeRange = tuple[float, float]
 
 
 class FittedModel(Protocol):
-    """A model with its numbers; frozen."""
+    """A model with fitted parameters; immutable."""
 
     @property
     def key(self) -> str:
@@ -28,17 +28,17 @@ class FittedModel(Protocol):
         """Length unit of the sample."""
 
     def draw(self, n: int, seed: int, size_range: SizeRange | None = None) -> Realizations:
-        """`n` particles; the first of them do not depend on `n`, nor on how the work is shared out."""
+        """`n` particles; the first of them do not depend on `n`."""
 
     def draw_chunks(self, n: int, seed: int, size_range: SizeRange | None = None) -> Iterator[Realizations]:
-        """The same particles some hundreds at a time."""
+        """The same particles in chunks of some hundreds."""
 
     def stored(self) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
         """Plain values for JSON, and arrays by name for NPZ."""
 
 
 class ShapeModel(Protocol):
-    """A kind of model; each is an object called ``MODEL`` in a module of ``shape_models.models``."""
+    """A kind of model: an object called ``MODEL`` in a module of ``shape_models.models``."""
 
     key: str
     label: str

@@ -1,4 +1,4 @@
-"""Virtual particles: coefficients that a model drew, and the closed surfaces they bound."""
+"""Virtual particles: coefficients drawn from a model, their closed surfaces, and tests of positive radii."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -23,7 +23,7 @@ Scale = Literal["radius", "log_radius"]
 EXPONENTIAL_DEGREE = 3
 """Grids for the exponential of an expansion have this many times its degree."""
 SAFE_SHARE = 0.15
-"""Lowest radius on the coarse grid, as a share of the mean, above which no closer look is taken."""
+"""Lowest radius on the coarse grid, as a share of the mean, above which the fine grid is not tested."""
 CLOSE_LEVEL = 5
 
 
@@ -40,13 +40,13 @@ class Realizations:
     model
         Key of the model.
     seed
-        That gives the same particles again.
+        Seed of the drawing; the same seed gives the same particles.
     unit
         Length unit of the radii.
     rejected
-        Draws that were thrown away because a radius was not positive or the size out of range.
+        Number of draws that were rejected because of a radius that is not positive or a size out of range.
     parents
-        Index of the measured particle that each draw began with, shape (n,); -1 where there is none.
+        Index of the measured particle that each draw is based on, shape (n,); -1 for none.
     components
         Index of the mixture's component, shape (n,); 0 where there is only one.
     """
@@ -81,7 +81,7 @@ class Realizations:
 
     @property
     def acceptance(self) -> float:
-        """Share of all draws that were kept."""
+        """Share of all draws that were accepted."""
         return len(self) / (len(self) + self.rejected) if len(self) else 1.0
 
     def equivalent_radii(self) -> FloatArray:
@@ -144,7 +144,7 @@ def virtual_mesh(draws: Realizations, index: int, level: int = DEFAULT_LEVEL) ->
 def positive_rows(coefficients: FloatArray) -> BoolArray:
     """Whether each radius function, rows of shape (n, (l_max + 1)^2), is positive, shape (n,).
 
-    First on a Gauss-Legendre grid of twice the degree; those that come near zero there are looked at on
+    First tested on a Gauss-Legendre grid of twice the degree; those that come near zero are tested again on
     ``icosphere(5)`` (10,242 directions).
     """
     l_max = isqrt(coefficients.shape[1]) - 1

@@ -1,11 +1,13 @@
-"""A particle in a few numbers: size, form, power of its surface at each degree, share of its convex hull.
+"""Shape features of particles for models: size, form, power at each degree, convexity, and outer features.
 
-The surface is what is left of ln r when that of the ellipsoid of inertia is taken away; its power at degree l
-is the sum of the squared coefficients. Columns of tables of numbers, with d = l_max + 4 of them::
+The surface is ln r minus that of the ellipsoid of inertia; its power at degree l is the sum of the squared
+coefficients. Columns of tables of features, with d = l_max + 4 of them::
 
     ln r_eq | ln(long / middle), ln(middle / short) | ln P_1 .. ln P_l_max | ln(s / (1 - s))
 
 where long, middle and short are the axes of the ellipsoid and s is the share of the hull that is filled.
+Outer features (extents, sphericity, share of the hull) stand for the descriptors of meshes where thousands of
+particles are compared at every step of a fit.
 """
 
 from functools import lru_cache
@@ -26,7 +28,7 @@ OVERSAMPLING = 1.6
 """Degree of the grid over that of the particles: with 1.3 hulls come out 0.8 % too large, with 1.6 0.1 %."""
 MIN_POWER = 1e-12
 MIN_SHARE = 1e-4
-"""Of the hull, or of what is missing to it."""
+"""Minimum share of the hull, and of the gap to it."""
 _MIN_RADIUS = 1e-3
 _BATCH = 500
 SPHERICITY = 1
@@ -34,12 +36,12 @@ _STEP = 1e-4
 
 
 def shape_grid(l_max: int) -> HullGrid:
-    """The grid on which shapes of degree `l_max` are measured and made."""
+    """The grid on which shapes of degree `l_max` are measured and drawn."""
     return hull_grid(max(MIN_DEGREE, int(OVERSAMPLING * l_max)), l_max)
 
 
 def shape_features(coefficients: FloatArray) -> FloatArray:
-    """The numbers of radius functions (n, (l_max + 1)^2), shape (n, d)."""
+    """Features of radius functions (n, (l_max + 1)^2), shape (n, d)."""
     parts = [_of_batch(coefficients[i : i + _BATCH]) for i in range(0, len(coefficients), _BATCH)]
     return np.concatenate(parts)
 
@@ -50,16 +52,16 @@ def powers(rows: FloatArray) -> FloatArray:
 
 
 def with_powers(rows: FloatArray, wanted: FloatArray) -> FloatArray:
-    """The rows with the power wanted (n, l_max + 1) at each degree from the first on."""
+    """The rows scaled to the power `wanted` (n, l_max + 1) at each degree from the first on."""
     factors = np.sqrt(wanted / np.maximum(powers(rows), 1e-300))
     factors[:, 0] = 1.0
     return np.asarray(rows * factors[:, degrees(rows.shape[1])])
 
 
 def log_shape_features(rows: FloatArray, equivalent_radii: FloatArray) -> FloatArray:
-    """The numbers of the exponentials of expansions (n, (l_max + 1)^2) with these sizes, shape (n, d).
+    """Features of the exponentials of expansions (n, (l_max + 1)^2) with these sizes, shape (n, d).
 
-    The exponential is not cut to the degree: that would take from the surface what it has beyond.
+    The exponential is not cut at the degree, which would change the surface.
     """
     shapes = shape_grid(round(rows.shape[1] ** 0.5) - 1)
     logs = rows @ shapes.grid.basis
@@ -69,7 +71,7 @@ def log_shape_features(rows: FloatArray, equivalent_radii: FloatArray) -> FloatA
 
 
 def log_share(shares: FloatArray) -> FloatArray:
-    """ln(s / (1 - s)), s kept off zero and one."""
+    """ln(s / (1 - s)) of shares that are clipped to :data:`MIN_SHARE` .. 1 - :data:`MIN_SHARE`."""
     kept = np.clip(shares, MIN_SHARE, 1 - MIN_SHARE)
     return np.asarray(np.log(kept / (1 - kept)))
 
@@ -115,7 +117,7 @@ def outer_features(log_radii: FloatArray, slopes: FloatArray, shares: FloatArray
 
 
 def outer_features_of_radii(coefficients: FloatArray, shares: FloatArray) -> FloatArray:
-    """Those of radius functions (n, (l_max + 1)^2)."""
+    """Outer features of radius functions (n, (l_max + 1)^2)."""
     l_max = round(coefficients.shape[1] ** 0.5) - 1
     rows = coefficients / (coefficients[:, :1] / np.sqrt(4 * np.pi))
     radii = np.maximum(rows @ shape_grid(l_max).grid.basis, _MIN_RADIUS)
@@ -123,7 +125,7 @@ def outer_features_of_radii(coefficients: FloatArray, shares: FloatArray) -> Flo
 
 
 def outer_features_of_log_radii(rows: FloatArray, shares: FloatArray) -> FloatArray:
-    """Those of the exponentials of expansions (n, (l_max + 1)^2)."""
+    """Outer features of the exponentials of expansions (n, (l_max + 1)^2)."""
     l_max = round(rows.shape[1] ** 0.5) - 1
     return outer_features(rows @ shape_grid(l_max).grid.basis, _squared_slopes(rows, l_max), shares, l_max)
 

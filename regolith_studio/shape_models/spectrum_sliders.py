@@ -1,6 +1,6 @@
-"""What a spectrum looks like on screen: amplitudes as shares of the mean radius, to be seen and edited.
+"""Amplitudes of a model's spectrum as shares of the mean radius, as plots and sliders show them.
 
-The amplitude of degree l is sqrt(A_l) / mu, as publications print it. For fields in ln r it is
+The amplitude of degree l is sqrt(A_l) / mu, as in publications. For fields in ln r it is
 sqrt(A_l / 4 pi), which is the same to first order.
 """
 

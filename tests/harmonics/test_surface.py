@@ -12,14 +12,13 @@ from regolith_studio.harmonics import synthesis
 from regolith_studio.harmonics.coefficients import ShCoefficients
 from regolith_studio.harmonics.fit import HarmonicFit, fit_harmonics
 from regolith_studio.harmonics.legendre import harmonics
-from regolith_studio.harmonics.radius_function import is_closed
+from regolith_studio.harmonics.radius_function import is_closed, sample_radius
 from regolith_studio.harmonics.reference_surface import Ellipsoid
 from regolith_studio.harmonics.surface import (
     _fill_radius,
     _flat_volume,
     enclosed_volume,
     gallery,
-    particle_radii,
     radii,
     reconstruct,
 )
@@ -104,7 +103,7 @@ def test_that_a_surface_lies_in_the_frame_of_its_particle(ellipsoid):
 def test_that_the_radial_error_of_a_good_fit_is_small_and_of_a_bad_one_is_not(ellipsoid):
     body = ellipsoid(2.0, 1.5, 1.0, level=4)
     fit, directions = fit_harmonics(body, 20), icosphere(3).vertices
-    wanted = particle_radii(fit, body, level=3)
+    wanted = sample_radius(body, fit.star_point, directions).radii
     assert np.abs(radii(fit, directions) - wanted).max() < 0.01
     assert np.abs(radii(fit, directions, 1) - wanted).max() > 0.2
 

@@ -128,7 +128,7 @@ class GaussianRadiusModel:
         return GaussianField(float(rows[:, 0].mean()), spectrum, sample.unit)
 
     def restored(self, values: Mapping[str, Any], _arrays: Mapping[str, NDArray[Any]]) -> GaussianField:
-        """The field from what it stored."""
+        """The field from its stored values."""
         return GaussianField(float(values["mean"]), values["spectrum"], str(values["unit"]))
 
 

@@ -1,9 +1,9 @@
 """The paper's outlook taken literally (section 4): a mixture of its Gaussian fields of the radius.
 
-Each part is a field of :mod:`~regolith_studio.shape_models.models.gaussian_field`: c_00 is N(mu_k, s_k^2),
-c_lm is N(0, A_lk).
-The number of parts is the one with the lowest information criterion of Bayes. Draws whose radius
-is not positive are thrown away and counted; ``mixture_field`` is the same for ln r, where there are none.
+Each component is a field of :mod:`~regolith_studio.shape_models.models.gaussian_field`: c_00 is N(mu_k,
+s_k^2), c_lm is N(0, A_lk). The number of components is the one with the lowest information criterion of
+Bayes. Draws whose radius is not positive are rejected and counted; ``mixture_field`` is the same for ln r,
+where there are none.
 """
 
 from collections.abc import Callable, Iterator, Mapping
@@ -35,7 +35,7 @@ KEY = "gaussian_mixture"
 
 @dataclass(frozen=True, eq=False)
 class GaussianMixture(NamedComponents, ChunkedSampler):
-    """The parts, the largest share first.
+    """A fitted mixture, the component with the largest share first.
 
     Parameters
     ----------
@@ -48,16 +48,16 @@ class GaussianMixture(NamedComponents, ChunkedSampler):
     unit
         Length unit of the sample.
     bic
-        Criterion for 1, 2, ... parts; empty if the number was given.
+        Criterion for 1, 2, ... components; empty if the number was given.
     names
-        Of the parts, for people.
+        Of the components, for display.
     labels
-        Most probable part of each measured particle, shape (n,).
+        Most probable component of each measured particle, shape (n,).
 
     Raises
     ------
     InputError
-        If a share or variance is negative, or there are not as many names as parts.
+        If a share or variance is negative, or there are not as many names as components.
     """
 
     weights: FloatArray
@@ -98,7 +98,7 @@ class GaussianMixture(NamedComponents, ChunkedSampler):
             yield Realizations(rows[:, :-1], "radius", KEY, seed, self.unit, rejected, components=component)
 
     def _propose(self, rng: np.random.Generator, n: int) -> FloatArray:
-        """Coefficients, and the part of each in a last column."""
+        """Coefficients, and the component of each in a last column."""
         component = rng.choice(len(self.weights), n, p=self.weights / self.weights.sum())
         length = (self.l_max + 1) ** 2
         rows = rng.standard_normal((n, length)) * np.sqrt(self.spectra)[component][:, degrees(length)]
@@ -138,7 +138,7 @@ class GaussianMixtureModel:
         Raises
         ------
         InputError
-            If there are fewer than four particles for each part, or the sample is not expanded so far.
+            If there are fewer than four particles for each component, or the sample is not expanded so far.
         """
         chosen = settings or MixtureSettings()
         rows = sample.truncated(chosen.l_max).coefficients
@@ -153,7 +153,7 @@ class GaussianMixtureModel:
         return GaussianMixture(best.weights, best.means * scale, spectra, sample.unit, curve, labels=labels)
 
     def restored(self, values: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> GaussianMixture:
-        """The mixture from what it stored."""
+        """The mixture from its stored values."""
         return GaussianMixture(
             values["weights"],
             values["means"],

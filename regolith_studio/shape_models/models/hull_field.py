@@ -1,12 +1,12 @@
-"""A parametric model whose particles have facets: a Gaussian field about an ellipsoid, drawn to its hull.
+"""Parametric model with facets: a Gaussian field about an ellipsoid that is moved towards its convex hull.
 
-Fields with random phases are too dented for how rough they are: the facets and edges of real grains are
-phases. Here a rough isotropic field in ln r about an ellipsoid is drawn most of the way to its convex hull,
-which makes the facets; its degrees are given their power; it is drawn once more towards its hull, or away
-from it, until it fills the share of it that it should; and it is stretched until its ellipsoid of inertia is
-the one wanted. Size, elongation, flatness, the power of each degree and that share come from a Gaussian
-copula. How far the first drawing goes, and what is asked for, are fitted so that what comes out has the
-sample's extents, sphericities and shares. No measured particle is kept; sizes beyond the sample get the
+Fields with random phases are too concave for their roughness: the facets and edges of real grains are in the
+phases. Here a rough isotropic field in ln r about an ellipsoid is moved most of the way to its convex hull,
+which makes facets; its degrees are scaled to their power; it is moved towards or away from its hull until it
+fills the wanted share of it; and it is stretched until its ellipsoid of inertia is the wanted one. Size,
+elongation, flatness, the power of each degree and the share of the hull come from a Gaussian copula. How far
+the first move goes (the faceting), and the offset of what is asked for, are calibrated so that the result has
+the sample's extents, sphericities and shares. No measured particle is stored; sizes beyond the sample get the
 shapes of its ends.
 """
 
@@ -40,15 +40,15 @@ from regolith_studio.shape_models.size_law import SIZE_LAWS, SizeLaw, checked_bo
 KEY = "hull_field"
 DEGREES = (3, 20)
 ROUGHNESS = 2.5
-"""Amplitude of the field that is drawn to its hull, over that of the finished surface."""
+"""Amplitude of the field that is moved to its hull, over that of the finished surface."""
 FACETINGS = (0.6, 0.7, 0.8, 0.9, 1.0)
-"""How far it may be drawn to its hull first; the fit chooses."""
+"""Shares of the distance to the hull of the first move; the fit chooses one."""
 DEFAULT_FACETING, MIN_TO_CHOOSE = 0.9, 50
-"""That of a fit to so few particles that they cannot tell."""
+"""Faceting of fits to fewer particles than the number to choose by."""
 N_TRIED, N_COMPARED = CHUNK, 2 * CHUNK
-"""Particles by which what comes out is compared with the sample: to choose, and after."""
+"""Particles drawn in a round of calibration: to choose the faceting, and after."""
 ROUNDS = 6
-"""Corrections of what is asked for, with each of the facetings, and after."""
+"""Rounds of calibration with each of the facetings, and after."""
 FORM_STEPS = (1, 2)
 """Corrections of the form before and after the share of the hull is set."""
 
@@ -71,7 +71,7 @@ class HullFieldSettings:
 
 @dataclass(frozen=True, eq=False)
 class HullField(ChunkedSampler):
-    """The field's numbers.
+    """A fitted hull field.
 
     Parameters
     ----------
@@ -80,13 +80,13 @@ class HullField(ChunkedSampler):
     sizes
         Law of equivalent radii.
     spectrum
-        A_l of ln r of the measured particles, shape (l_max + 1,), A_0 = 0; to be looked at.
+        A_l of ln r of the measured particles, shape (l_max + 1,), A_0 = 0; for display only.
     unit
         Length unit of the sample.
     shift, spread
-        What is asked for is median + shift + spread (drawn - median), shapes (l_max + 4,).
+        Features asked for are median + shift + spread (drawn - median), shapes (l_max + 4,).
     faceting
-        How far the rough field is drawn to its hull, 0 to 1.
+        Share of the distance to its hull by which the rough field is moved, 0 to 1.
     """
 
     numbers: GaussianCopula
@@ -132,32 +132,32 @@ class HullField(ChunkedSampler):
 
     def _shapes(self, numbers: FloatArray, rng: np.random.Generator) -> FloatArray:
         """Coefficients of ln r, up to size, of particles that come out with these numbers (n, d)."""
-        shapes, asked = shape_grid(self.l_max), self._asked(numbers)
+        shapes, wanted = shape_grid(self.l_max), self._with_offset(numbers)
         grid, form = shapes.grid, np.maximum(numbers[:, FORM], 0.0)
-        power = np.column_stack([np.zeros(len(asked)), np.exp(asked[:, POWERS])])
-        frames = Rotation.from_quat(rng.standard_normal((len(asked), 4))).as_matrix()
+        power = np.column_stack([np.zeros(len(wanted)), np.exp(wanted[:, POWERS])])
+        frames = Rotation.from_quat(rng.standard_normal((len(wanted), 4))).as_matrix()
         ellipsoids = log_ellipsoids(grid.directions, form, frames)
-        field = rng.standard_normal((len(asked), (self.l_max + 1) ** 2))
+        field = rng.standard_normal((len(wanted), (self.l_max + 1) ** 2))
         field[:, 0] = 0.0
         rough = ellipsoids + with_powers(field, ROUGHNESS**2 * power) @ grid.basis
         surface = grid.expanded(shapes.drawn(rough, self.faceting) - ellipsoids)
         finished = ellipsoids + with_powers(surface, power) @ grid.basis
-        shares = 1 / (1 + np.exp(-asked[:, CONVEXITY]))
+        shares = 1 / (1 + np.exp(-wanted[:, CONVEXITY]))
         filled = shapes.with_convexities(with_forms(finished, form, grid, FORM_STEPS[0]), shares)
         return grid.expanded(with_forms(filled, form, grid, FORM_STEPS[1]))
 
-    def _asked(self, numbers: FloatArray) -> FloatArray:
+    def _with_offset(self, numbers: FloatArray) -> FloatArray:
         middle = self.numbers.quantiles[len(self.numbers.quantiles) // 2]
         return np.asarray(middle + self.shift + np.asarray(self.spread) * (numbers - middle))
 
-    def corrected(self, aim: CalibrationTarget, n: int) -> tuple["HullField", float]:
-        """The field with one more round of correction, and how far its particles were from the aim."""
+    def corrected(self, target: CalibrationTarget, n: int) -> tuple["HullField", float]:
+        """The field after a round of calibration, and the distance of its draws from the target."""
         rng = np.random.default_rng(np.random.SeedSequence(0))
         radii, _ = self.sizes.draw(n, rng)
         numbers, outer = measured_features(self._shapes(self.numbers.draw(np.log(radii), rng), rng), radii)
-        request = CalibrationOffset(np.asarray(self.shift), np.asarray(self.spread))
-        better = aim.corrected(request, numbers, outer)
-        return replace(self, shift=better.shift, spread=better.spread), aim.distance(outer)
+        offset = CalibrationOffset(np.asarray(self.shift), np.asarray(self.spread))
+        better = target.corrected(offset, numbers, outer)
+        return replace(self, shift=better.shift, spread=better.spread), target.distance(outer)
 
     def stored(self) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
         """Plain values for JSON, no arrays."""
@@ -174,7 +174,7 @@ class HullField(ChunkedSampler):
 
 
 class HullFieldModel:
-    """Measures the numbers of a sample's particles, and corrects what is asked for until they come out."""
+    """Fits the features of a sample's particles, and calibrates what is asked for until draws have them."""
 
     key = KEY
     label = N_("Field drawn to its hull")
@@ -201,18 +201,18 @@ class HullFieldModel:
                 f"A field drawn to its hull has l_max {DEGREES[0]} to {DEGREES[1]}, got {chosen.l_max}."
             )
         usable = cut.star_shaped()
-        table, aim = features_and_target(usable.coefficients)
+        table, target = features_and_target(usable.coefficients)
         mean_powers = log_shapes(usable).powers.mean(axis=0)
         sizes = SIZE_LAWS[chosen.size_law](usable.equivalent_radii)
         spectrum = mean_powers / (2 * np.arange(chosen.l_max + 1) + 1)
         plain = HullField(GaussianCopula.of(table), sizes, spectrum, sample.unit)
         if len(usable) < MIN_TO_CHOOSE:
-            return _calibrated(plain, aim, N_COMPARED)[0]
-        tried = [_calibrated(replace(plain, faceting=share), aim, N_TRIED) for share in FACETINGS]
-        return _calibrated(min(tried, key=lambda each: each[1])[0], aim, N_COMPARED)[0]
+            return _calibrated(plain, target, N_COMPARED)[0]
+        tried = [_calibrated(replace(plain, faceting=share), target, N_TRIED) for share in FACETINGS]
+        return _calibrated(min(tried, key=lambda each: each[1])[0], target, N_COMPARED)[0]
 
     def restored(self, values: Mapping[str, Any], _arrays: Mapping[str, NDArray[Any]]) -> HullField:
-        """The field from what it stored."""
+        """The field from its stored values."""
         numbers = values["numbers"]
         return HullField(
             GaussianCopula(np.array(numbers["quantiles"]), np.array(numbers["correlations"])),
@@ -225,11 +225,11 @@ class HullFieldModel:
         )
 
 
-def _calibrated(field: HullField, aim: CalibrationTarget, n: int) -> tuple[HullField, float]:
-    """The field after some rounds of correction, and how far from the aim it was in the last."""
+def _calibrated(field: HullField, target: CalibrationTarget, n: int) -> tuple[HullField, float]:
+    """The field after all rounds of calibration, and its distance from the target in the last one."""
     distance = np.inf
     for _ in range(ROUNDS):
-        field, distance = field.corrected(aim, n)
+        field, distance = field.corrected(target, n)
     return field, distance
 
 

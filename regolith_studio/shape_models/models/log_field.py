@@ -197,7 +197,7 @@ class LogFieldModel:
         return replace(field, powers=powers[order], radii=radii[order])
 
     def restored(self, values: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> LogField:
-        """The field from what it stored."""
+        """The field from its stored values."""
         return LogField(
             values["spectrum"],
             size_law_from(values["sizes"]),

@@ -1,8 +1,8 @@
 """A mixture of Gaussian fields, which the paper names as future work (sections 3.1 and 4).
 
-Each part has a log-normal law of sizes and a spectrum of ln(r / r_eq): the constituents of a mixed material,
-or size classes of different shape. In ln r, so that no draw has a negative radius. The number of parts is the
-one with the lowest information criterion of Bayes.
+Each component has a log-normal law of sizes and a spectrum of ln(r / r_eq): the constituents of a mixed
+material, or size classes of different shape. In ln r, so that no draw has a negative radius. The number of
+components is the one with the lowest information criterion of Bayes.
 """
 
 from collections.abc import Callable, Iterator, Mapping
@@ -34,22 +34,22 @@ KEY = "mixture_field"
 
 @dataclass(frozen=True, eq=False)
 class MixtureField(NamedComponents, ChunkedSampler):
-    """The parts, the largest share first.
+    """A fitted mixture, the component with the largest share first.
 
     Parameters
     ----------
     sizes
-        Log-normal laws of the parts with their shares by number.
+        Log-normal laws of the components with their shares by number.
     spectra
         A_l of ln r, shape (k, l_max + 1).
     unit
         Length unit of the sample.
     bic
-        Criterion for 1, 2, ... parts; empty if the number was given.
+        Criterion for 1, 2, ... components; empty if the number was given.
     names
-        Of the parts, for people.
+        Of the components, for display.
     labels
-        Most probable part of each measured particle that was used, shape (n,).
+        Most probable component of each measured particle that was used, shape (n,).
     """
 
     sizes: LogNormalSizes
@@ -73,7 +73,7 @@ class MixtureField(NamedComponents, ChunkedSampler):
         return MixtureField, fields
 
     def draw_chunks(self, n: int, seed: int, size_range: SizeRange | None = None) -> Iterator[Realizations]:
-        """`n` particles; `components` of the draws tells the part of each.
+        """`n` particles; `components` of the draws holds the component of each.
 
         Raises
         ------
@@ -114,8 +114,8 @@ class MixtureFieldModel:
         Raises
         ------
         InputError
-            If there are fewer than four particles for each part, the sample is not expanded so far, or fewer
-            than two particles have a positive radius.
+            If there are fewer than four particles for each component, the sample is not expanded so far, or
+            fewer than two particles have a positive radius.
         """
         chosen = settings or MixtureSettings()
         shapes = log_shapes(sample.truncated(chosen.l_max))
@@ -126,7 +126,7 @@ class MixtureFieldModel:
         return MixtureField(sizes, best.spectra, sample.unit, curve, labels=labels)
 
     def restored(self, values: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> MixtureField:
-        """The mixture from what it stored."""
+        """The mixture from its stored values."""
         return MixtureField(
             LogNormalSizes(**values["sizes"]),
             values["spectra"],

@@ -279,7 +279,7 @@ class SampleMatchedModel:
         return fitted if usable.l_max >= OVERSAMPLING * chosen.l_max else fitted.roughened()
 
     def restored(self, values: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> SampleMatched:
-        """The model from what it stored."""
+        """The model from its stored values."""
         return SampleMatched(
             arrays["coefficients"],
             SampleMatchedSettings(**values["settings"]),
