@@ -1,8 +1,8 @@
-"""Performs a recipe: from files to everything that it asks for, in one folder.
+"""Run a recipe: from files to all results that it asks for, in one folder.
 
-Every particle is worked on by itself; what is known of it goes to disk at once (``journal/`` in the
-folder, see :mod:`regolith_studio.jobs.batch`) and becomes the files of the results in the end. So a run
-that was killed goes on where it was, and its size is limited by the disk and not by the memory.
+Every particle is processed independently, and its results go to disk at once (``journal/`` in the folder,
+see :mod:`regolith_studio.jobs.batch`); the result files are written from there in the end. So an interrupted
+run can be resumed, and the size of a run is limited by the disk and not by the memory.
 """
 
 import contextlib

@@ -7,6 +7,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any
 
+from psygnal import EmitLoopError
 from PySide6.QtCore import QTimer
 from PySide6.QtWidgets import QApplication
 
@@ -84,10 +85,12 @@ def make_excepthook(report: Callable[[str, str], None]) -> Hook:
             return
         details = "".join(traceback.format_exception(kind, error, trace))
         print(details, file=sys.stderr)  # noqa: T201
-        if isinstance(error, RegolithError):
-            report(str(error), details)
+        cause = error.__cause__ if isinstance(error, EmitLoopError) else None
+        reason = cause or error  # psygnal wraps what a listener of the session raises
+        if isinstance(reason, RegolithError):
+            report(str(reason), details)
         else:
-            name = kind.__name__
+            name = type(reason).__name__
             report(tr("Something went wrong in the program ({name}); the work goes on.", name=name), details)
 
     return hook

@@ -5,6 +5,7 @@ import time
 
 import numpy as np
 import pytest
+from psygnal import EmitLoopError
 from PySide6.QtCore import QMimeData, QPointF, Qt, QTimer, QUrl
 from PySide6.QtGui import QDropEvent
 from PySide6.QtTest import QTest
@@ -13,6 +14,7 @@ from PySide6.QtWidgets import QApplication, QLineEdit, QSlider, QWidget
 from regolith_studio.errors import InputError, MissingRequirement
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.resources import resource
+from regolith_studio.session.events import SessionEvents
 from regolith_studio.ui.app import make_excepthook, open_window
 from regolith_studio.ui.dialogs.export import ExportDialog
 from regolith_studio.ui.dialogs.unit import UnitDialog
@@ -222,6 +224,19 @@ def test_that_an_error_of_the_program_is_told_and_survived(window, capsys):
         assert window.toast.isVisible()
     assert window.toast.sentence.text() == "The seed must not be negative."
     assert "ValueError" in capsys.readouterr().err
+
+
+def test_that_the_sentence_of_a_listener_of_the_session_is_reported(capsys):
+    def refuse():
+        raise InputError("The seed must not be negative.")
+
+    events, reported = SessionEvents(), []
+    events.fit.connect(refuse)
+    with pytest.raises(EmitLoopError) as caught:
+        events.fit.emit()
+    make_excepthook(lambda sentence, _details: reported.append(sentence))(caught.type, caught.value, None)
+    assert reported == ["The seed must not be negative."]
+    assert "InputError" in capsys.readouterr().err
 
 
 def test_that_the_recipe_is_what_is_chosen(window, tmp_path, monkeypatch):
