@@ -46,8 +46,8 @@ def sparse(path: Path) -> None:
 
 
 ODD: dict[str, tuple[Callable[[Path], object], str]] = {
-    "pipe": (os.mkfifo, "is a device or a pipe, not a file|is no regular file"),
-    "folder": (os.mkdir, "is a folder, not a file|is no regular file|holds no slices"),
+    "pipe": (os.mkfifo, "is a device or a pipe, not a file|is not a regular file"),
+    "folder": (os.mkdir, "is a folder, not a file|is not a regular file|holds no slices"),
     "dangling": (lambda path: path.symlink_to("nowhere"), "there is no such file"),
     "circle": (lambda path: path.symlink_to(path.name), "its links go round in circles"),
     "nothing": (str, "there is no such file"),
@@ -101,7 +101,7 @@ def test_that_a_problem_names_its_path_once() -> None:
 def test_that_a_dataset_whose_document_is_a_pipe_is_a_finding(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "dataset.json")
     (problem,) = validate_dataset(tmp_path)
-    assert "is no regular file" in problem
+    assert "is not a regular file" in problem
 
 
 def test_that_links_in_circles_can_be_remembered_and_checked(tmp_path: Path) -> None:

@@ -211,7 +211,7 @@ def checked_size(path: Path, largest: int | None = MAX_FILE_BYTES) -> int:
     Raises
     ------
     FileError
-        If there is no such file, it is no regular file, or it is too large.
+        If there is no such file, it is not a regular file, or it is too large.
     """
     try:
         status = path.stat()

@@ -65,7 +65,7 @@ def slices_stamp(folder: Path, names: tuple[str, ...]) -> tuple[int, list[int]]:
     Raises
     ------
     FileError
-        If one of them is no regular file.
+        If one of them is not a regular file.
     """
     total, newest = 0, 0
     for name in names:
