@@ -144,7 +144,6 @@ class ScriptTimes:
 
 PAPER_FILL_HEIGHT = (0.025, 0.030)
 """Fill height of Table 2 in metres; here a result of mass and packing."""
-PAPER_PARTICLES = 378_000
 PAPER_COARSE_GRAINING = 10.0
 
 

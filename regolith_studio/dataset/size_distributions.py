@@ -95,16 +95,6 @@ class DiscreteSizeDistribution(SizeDistribution):
         values = np.asarray(diameters, dtype=np.float64).tolist()
         return cls(weighting=weighting, diameters_um=tuple(values), shares=normalised_shares(amounts))
 
-    @classmethod
-    def in_classes(
-        cls, diameters: ArrayLike, classes: ArrayLike, weighting: Weighting = "number"
-    ) -> "DiscreteSizeDistribution":
-        """Of measured diameters (µm), each moved to the class nearest in ln d; empty classes stay, with 0."""
-        values = np.asarray(classes, dtype=np.float64)
-        limits = np.sqrt(values[:-1] * values[1:])
-        place = np.searchsorted(limits, np.asarray(diameters, dtype=np.float64))
-        return cls.of(values, np.bincount(place, minlength=len(values)), weighting)
-
     def cdf(self, diameters: ArrayLike) -> FloatArray:
         place = np.searchsorted(self.diameters_um, np.asarray(diameters, dtype=np.float64), side="right")
         return np.asarray(np.concatenate([[0.0], _rising(self.shares)])[place])

@@ -5,8 +5,8 @@ import pytest
 from pydantic import ValidationError
 from scipy import integrate, stats
 
+from regolith_studio.dataset.build import ShapeClass
 from regolith_studio.dataset.size_distributions import (
-    PAPER_CLASSES_UM,
     DiscreteSizeDistribution,
     LogNormalSizeDistribution,
     RosinRammlerSizeDistribution,
@@ -15,6 +15,7 @@ from regolith_studio.dataset.size_distributions import (
     equivalent_diameter,
     normalised_shares,
 )
+from regolith_studio.dataset.size_parsing import parse_sizes
 from regolith_studio.errors import InputError
 
 PAPER = DiscreteSizeDistribution.of([25, 37, 56, 84, 125], [85.5, 12.6, 1.7, 0.23, 0.03])
@@ -105,7 +106,9 @@ def test_that_measured_sizes_become_their_empirical_distribution() -> None:
 
 
 def test_that_measured_sizes_go_to_the_nearest_class_of_the_paper() -> None:
-    sizes = DiscreteSizeDistribution.in_classes([1.0, 26.0, 30.0, 31.0, 84.0, 1000.0], PAPER_CLASSES_UM)
+    measured = DiscreteSizeDistribution.empirical([1.0, 26.0, 30.0, 31.0, 84.0, 1000.0])
+    sizes = parse_sizes("classes")(ShapeClass(1.0, measured))
+    assert isinstance(sizes, DiscreteSizeDistribution)
     assert sizes.diameters_um == (25.0, 37.0, 56.0, 84.0, 125.0)
     assert sizes.shares == pytest.approx((3 / 6, 1 / 6, 0, 1 / 6, 1 / 6))
 
