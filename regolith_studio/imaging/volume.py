@@ -75,8 +75,3 @@ class Volume:
     def read(self, z0: int, z1: int, /) -> NDArray[Any]:
         """The slices ``z0 <= z < z1``, shape (nx, ny, z1 - z0)."""
         return self.array[:, :, z0:z1]
-
-    @property
-    def voxel_volume(self) -> float:
-        """Volume of one voxel, in cubic micrometres."""
-        return float(np.prod(self.voxel_size))
