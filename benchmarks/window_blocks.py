@@ -67,7 +67,7 @@ def acts() -> dict[str, Act]:
         "first visit to Lecture": lambda window: window.pages.go("lecture"),
         "every tab of Lecture": _tabs,
         "back to every page": _round,
-        "the other theme": lambda window: window.looks.choose(theme="dark"),
+        "the other theme": lambda window: window.appearance.choose(theme="dark"),
         "copy for recovery": lambda window: window.projects._autosave(),
     }
 

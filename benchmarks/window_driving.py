@@ -69,10 +69,10 @@ def until(true: Callable[[], bool], seconds: float = PATIENCE) -> None:
 
 def settle(window: Any) -> None:
     """Wait until the window computes nothing and has shown all that it knows."""
-    from regolith_studio.ui.wiring import Wiring
+    from regolith_studio.ui.bindings import Bindings
 
     def rests() -> bool:
-        return not window.session.tasks and all(each.idle for each in window.findChildren(Wiring))
+        return not window.session.tasks and all(each.idle for each in window.findChildren(Bindings))
 
     until(rests)
     spin()

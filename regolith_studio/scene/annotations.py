@@ -8,7 +8,7 @@ import pyvista as pv
 from vtkmodules.vtkRenderingCore import vtkActor2D, vtkCoordinate, vtkPolyDataMapper2D, vtkTextActor
 
 from regolith_studio.scene import palette
-from regolith_studio.scene.palette import Surroundings
+from regolith_studio.scene.palette import ThemeColors
 
 TITLE = "title"
 _STEPS = (1.0, 2.0, 5.0)
@@ -61,7 +61,7 @@ class ScaleBar:
     def __init__(
         self,
         plotter: Any,
-        surroundings: Surroundings = palette.LIGHT,
+        surroundings: ThemeColors = palette.LIGHT,
         *,
         unit: bool = True,
         factor: float = 1.0,
@@ -82,7 +82,7 @@ class ScaleBar:
         self._shown: tuple[float, ...] = ()
         self._tag = before_each_picture(self._renderer, self)
 
-    def set_ink(self, surroundings: Surroundings) -> None:
+    def set_ink(self, surroundings: ThemeColors) -> None:
         """Draw with another ink."""
         red, green, blue = pv.Color(surroundings.ink).float_rgb
         self._bar.GetProperty().SetColor(red, green, blue)
@@ -150,7 +150,7 @@ def flat_actor(data: pv.PolyData, line_width: float = 2.0) -> vtkActor2D:
     return actor
 
 
-def show_title(plotter: Any, title: str, surroundings: Surroundings = palette.PAPER, size: int = 11) -> None:
+def show_title(plotter: Any, title: str, surroundings: ThemeColors = palette.PAPER, size: int = 11) -> None:
     """One line at the upper edge of the picture, or none for an empty text."""
     text = plotter.add_text(
         title,
@@ -165,9 +165,7 @@ def show_title(plotter: Any, title: str, surroundings: Surroundings = palette.PA
     text.prop.justification_vertical = "top"
 
 
-def show_colour_scale(
-    plotter: Any, mapper: Any, surroundings: Surroundings, numbers: str = "%.2g µm"
-) -> None:
+def show_colour_scale(plotter: Any, mapper: Any, surroundings: ThemeColors, numbers: str = "%.2g µm") -> None:
     """The scale of a colour map at the right; of distances in micrometres, unless `numbers` says so.
 
     Its numbers stand to the left of it, where they have room in a narrow view too.

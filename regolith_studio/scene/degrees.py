@@ -12,9 +12,9 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.harmonics.fit import HarmonicFit
 from regolith_studio.harmonics.surface import gallery
 from regolith_studio.messages import N_
-from regolith_studio.scene import annotations, cameras, palette, stage, surfaces
+from regolith_studio.scene import annotations, cameras, palette, plotter_setup, surfaces
+from regolith_studio.scene.animation import save_animation
 from regolith_studio.scene.figure import Picture
-from regolith_studio.scene.moving_picture import save_animation
 
 CELL_SIZE = (420, 400)
 """Width and height of one particle in pixels."""
@@ -58,13 +58,13 @@ def degree_picture(
     columns = min(N_COLUMNS, len(shown))
     rows = ceil(len(shown) / columns)
     size = [columns * CELL_SIZE[0], rows * CELL_SIZE[1]]
-    stage.choose_off_screen_window()
+    plotter_setup.choose_off_screen_window()
     plotter = pv.Plotter(off_screen=True, shape=(rows, columns), window_size=size, border=False)
     try:
         pose = cameras.framing_pose(particle.vertices, direction, CELL_SIZE[0] / CELL_SIZE[1])
         for place in range(rows * columns):
             plotter.subplot(*divmod(place, columns))
-            stage.set_stage(plotter, palette.PAPER)
+            plotter_setup.set_stage(plotter, palette.PAPER)
             if place < len(shown):
                 _fill(plotter, *shown[place], is_particle=place == 0)
             cameras.apply_pose(plotter, pose)
@@ -108,13 +108,13 @@ def _frames(
     particle: Mesh, fit: HarmonicFit, degrees: Sequence[int], level: int, direction: str
 ) -> Iterator[Picture]:
     width, height = CELL_SIZE
-    stage.choose_off_screen_window()
+    plotter_setup.choose_off_screen_window()
     plotter = pv.Plotter(off_screen=True, shape=(1, 2), window_size=[2 * width, height], border=False)
     try:
         pose = cameras.framing_pose(particle.vertices, direction, width / height)
         for column in (0, 1):
             plotter.subplot(0, column)
-            stage.set_stage(plotter, palette.PAPER)
+            plotter_setup.set_stage(plotter, palette.PAPER)
         plotter.subplot(0, 0)
         _fill(plotter, particle, N_("CT particle"), is_particle=True)
         cameras.apply_pose(plotter, pose)

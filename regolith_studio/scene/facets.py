@@ -11,8 +11,8 @@ from vtkmodules.vtkRenderingCore import vtkTextActor
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.scene import palette
-from regolith_studio.scene.extras import hide_named, show_named
-from regolith_studio.scene.palette import Surroundings
+from regolith_studio.scene.overlays import hide_named, show_named
+from regolith_studio.scene.palette import ThemeColors
 
 FACET, NUMBER = "facet", "facet_number"
 LIFT = 0.002
@@ -96,7 +96,7 @@ def show_facet(
     plotter: Any,
     facet: Facet | None,
     centre: ArrayLike = (0.0, 0.0, 0.0),
-    surroundings: Surroundings = palette.LIGHT,
+    surroundings: ThemeColors = palette.LIGHT,
     colour: str = palette.HIDDEN_COLOUR,
 ) -> None:
     """Outline one facet and write its number upon it, counted from 1; or no facet.
@@ -118,7 +118,7 @@ def show_facet(
     _show_number(plotter, str(facet.index + 1), corners.mean(axis=0), surroundings)
 
 
-def _show_number(plotter: Any, text: str, place: FloatArray, surroundings: Surroundings) -> None:
+def _show_number(plotter: Any, text: str, place: FloatArray, surroundings: ThemeColors) -> None:
     """In front of everything: letters that face the eye would sink into a facet that does not."""
     label = plotter.actors.get(NUMBER)
     if label is None:

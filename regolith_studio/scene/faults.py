@@ -7,7 +7,7 @@ import numpy as np
 import pyvista as pv
 
 from regolith_studio.geometry.arrays import FloatArray
-from regolith_studio.scene.extras import bring_forward, hide_named, show_named
+from regolith_studio.scene.overlays import bring_forward, hide_named, show_named
 
 COLOURS = {
     "filled": "#0072b2",

@@ -10,7 +10,7 @@ from regolith_studio.coarsening.result import CoarseningResult
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.messages import N_
-from regolith_studio.scene import annotations, cameras, palette, stage, surfaces
+from regolith_studio.scene import annotations, cameras, palette, plotter_setup, surfaces
 from regolith_studio.scene.cameras import CameraPose
 
 Picture = NDArray[np.uint8]
@@ -53,7 +53,7 @@ def three_views(
     -------
     The picture, shape (height, width, 3 or 4), uint8.
     """
-    stage.choose_off_screen_window()
+    plotter_setup.choose_off_screen_window()
     width, height = (scale * each for each in VIEW_SIZE)
     plotter = pv.Plotter(off_screen=True, shape=(1, 3), window_size=[3 * width, height], border=False)
     try:
@@ -61,7 +61,7 @@ def three_views(
         bars = []
         for column, title in enumerate(titles):
             plotter.subplot(0, column)
-            stage.set_stage(plotter, palette.PAPER)
+            plotter_setup.set_stage(plotter, palette.PAPER)
             plotter.renderer.SetGradientBackground(not transparent)
             _fill(plotter, column, particle, fit, polyhedron)
             surfaces.widen_lines(plotter, scale)

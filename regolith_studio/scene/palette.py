@@ -40,7 +40,7 @@ POLYHEDRON_MATERIAL = Material("#f6c56d", ambient=0.30, specular=0.0)
 
 
 @dataclass(frozen=True)
-class Surroundings:
+class ThemeColors:
     """What stands around a surface: background, letters and lines.
 
     Parameters
@@ -59,7 +59,7 @@ class Surroundings:
     outline: str
 
 
-LIGHT = Surroundings("#e9edf1", "#fbfcfd", "#2b2f36", "#4a3306")
-DARK = Surroundings("#1d2126", "#2d333b", "#dfe3e8", "#2a1d04")
-PAPER = Surroundings("#ffffff", "#ffffff", "#20242a", "#4a3306")
+LIGHT = ThemeColors("#e9edf1", "#fbfcfd", "#2b2f36", "#4a3306")
+DARK = ThemeColors("#1d2126", "#2d333b", "#dfe3e8", "#2a1d04")
+PAPER = ThemeColors("#ffffff", "#ffffff", "#20242a", "#4a3306")
 """For figures that go into a document."""

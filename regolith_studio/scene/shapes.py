@@ -12,7 +12,7 @@ from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.messages import N_
 from regolith_studio.scene import palette, surfaces
-from regolith_studio.scene.palette import Material, Surroundings
+from regolith_studio.scene.palette import Material, ThemeColors
 
 PARTICLE, FIT, POLYHEDRON = "particle", "fit", "polyhedron"
 NAMES = (PARTICLE, FIT, POLYHEDRON)
@@ -59,7 +59,7 @@ class SceneShape:
 def show_shape(
     plotter: Any,
     shape: SceneShape | None,
-    surroundings: Surroundings = palette.LIGHT,
+    surroundings: ThemeColors = palette.LIGHT,
     layer: str = "",
     opacity: float = 1.0,
 ) -> None:

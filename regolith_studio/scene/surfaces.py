@@ -14,7 +14,7 @@ from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.scene import annotations, palette
-from regolith_studio.scene.palette import Material, Surroundings
+from regolith_studio.scene.palette import Material, ThemeColors
 
 SURFACE = "surface"
 OUTLINE = "outline"
@@ -37,7 +37,7 @@ def show_fit(
     mesh: Mesh,
     distances: FloatArray | None = None,
     span: float | None = None,
-    surroundings: Surroundings = palette.LIGHT,
+    surroundings: ThemeColors = palette.LIGHT,
 ) -> None:
     """The fit, in its own colour or coloured by its distance from the particle.
 
@@ -74,7 +74,7 @@ def show_polyhedron(
     plotter: Any,
     polyhedron: ConvexPolyhedron,
     centre: ArrayLike = (0.0, 0.0, 0.0),
-    surroundings: Surroundings = palette.LIGHT,
+    surroundings: ThemeColors = palette.LIGHT,
     layer: str = "",
 ) -> None:
     """The coarsened polyhedron: flat facets, each outlined (facets, not triangles).

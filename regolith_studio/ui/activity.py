@@ -4,12 +4,12 @@ from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QDockWidget, QMainWindow
 
 from regolith_studio.session.session import Session
+from regolith_studio.ui.bindings import Bindings
 from regolith_studio.ui.layout import tabs
 from regolith_studio.ui.panels.log import LogPanel
 from regolith_studio.ui.panels.task_list import TaskListPanel
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.toast import Toast
-from regolith_studio.ui.wiring import Wiring
 
 
 class ActivityDock(QDockWidget):
@@ -25,10 +25,10 @@ class ActivityDock(QDockWidget):
         window.addDockWidget(Qt.DockWidgetArea.BottomDockWidgetArea, self)
         self.hide()
 
-    def wire(self, session: Session, wiring: Wiring, toast: Toast) -> None:
+    def wire(self, session: Session, bindings: Bindings, toast: Toast) -> None:
         """Follow the session and what the toast says, from now on."""
-        wiring.refresh("tasks", lambda: self.tasks.show_tasks(session.tasks), slow=True)
-        wiring.hear("exported", self._note_export)
+        bindings.refresh("tasks", lambda: self.tasks.show_tasks(session.tasks), slow=True)
+        bindings.listen("exported", self._note_export)
         self.tasks.cancelRequested.connect(session.cancel)
         self.tasks.pauseRequested.connect(session.pause)
         toast.shown.connect(self.log.add)

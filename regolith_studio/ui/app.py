@@ -17,8 +17,8 @@ from regolith_studio.jobs.events import Job
 from regolith_studio.jobs.runners.thread import ThreadRunner
 from regolith_studio.session.preferences import Preferences
 from regolith_studio.session.session import Session
+from regolith_studio.ui.main_thread import MainThreadInvoker
 from regolith_studio.ui.main_window import MainWindow
-from regolith_studio.ui.posting import Poster
 from regolith_studio.ui.tour import TOUR_SEEN
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.views.factory import best_kind
@@ -41,7 +41,7 @@ def open_window(
     preferences: Preferences | None = None,
 ) -> MainWindow:
     """A window with its own session; the particles arrive a moment later."""
-    poster = Poster()
+    poster = MainThreadInvoker()
     runner = ThreadRunner(poster.post)
     session = Session(runner)
     found = [Path(path) for path in paths]
@@ -69,8 +69,8 @@ def _warm_up_later(session: Session, runner: ThreadRunner) -> None:
 
 def _release_particles_when_idle(window: MainWindow) -> None:
     timer = QTimer(window, singleShot=True, interval=IDLE)
-    timer.timeout.connect(window.pages.let_go)
-    window.wiring.hear("tasks", lambda *_: timer.stop() if window.session.tasks else timer.start())
+    timer.timeout.connect(window.pages.refresh_hidden)
+    window.bindings.listen("tasks", lambda *_: timer.stop() if window.session.tasks else timer.start())
 
 
 Hook = Callable[[type[BaseException], BaseException, TracebackType | None], Any]

@@ -14,26 +14,26 @@ from regolith_studio.session.preferences import Preferences
 from regolith_studio.session.session import Session
 from regolith_studio.ui.actions import Actions
 from regolith_studio.ui.activity import ActivityDock
-from regolith_studio.ui.batches import Batches
+from regolith_studio.ui.appearance import Appearance
+from regolith_studio.ui.batch_runs import BatchRuns
+from regolith_studio.ui.bindings import Bindings
 from regolith_studio.ui.commands import Commands
 from regolith_studio.ui.dialogs.closing import may_close, worth_asking
 from regolith_studio.ui.dialogs.command_palette import CommandPalette
 from regolith_studio.ui.dialogs.help import about_dialog
 from regolith_studio.ui.dialogs.shortcuts import ShortcutsDialog
-from regolith_studio.ui.looks import Looks
-from regolith_studio.ui.memory import LayoutMemory
 from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.page_stack import PageStack
 from regolith_studio.ui.pages import PAGES
 from regolith_studio.ui.panels.tasks import TasksPanel
-from regolith_studio.ui.projects import Projects
-from regolith_studio.ui.refusals import tell_refusals
+from regolith_studio.ui.project_files import ProjectFiles
+from regolith_studio.ui.refusals import report_refusals
 from regolith_studio.ui.shortcuts import Shortcuts
 from regolith_studio.ui.theme import THEMES, apply_theme, current_theme
 from regolith_studio.ui.tour import start_tour
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.toast import Toast
-from regolith_studio.ui.wiring import Wiring
+from regolith_studio.ui.window_state import WindowState
 
 
 class MainWindow(QMainWindow):
@@ -58,14 +58,14 @@ class MainWindow(QMainWindow):
         self.setAcceptDrops(True)
         self.session, self.preferences = session, preferences
         self._views = views
-        self.looks = Looks(preferences, self._apply_theme, self)
+        self.appearance = Appearance(preferences, self._apply_theme, self)
         self.toast = Toast(self)
         self.commands = Commands(session, preferences, self.toast, self)
-        self.batches = Batches(session, preferences, self.toast, self)
-        self.wiring = Wiring(session, self.toast.problem, self)
+        self.batches = BatchRuns(session, preferences, self.toast, self)
+        self.bindings = Bindings(session, self.toast.problem, self)
         self.pages = PageStack(tuple(PAGES.values()), self._context)
-        self.projects = Projects(session, self.pages, self.toast, self)
-        self.memory = LayoutMemory(preferences)
+        self.projects = ProjectFiles(session, self.pages, self.toast, self)
+        self.window_state = WindowState(preferences)
         self.tasks = TasksPanel()
         self.activity = ActivityDock(self)
         self.setCentralWidget(self.pages)
@@ -76,7 +76,7 @@ class MainWindow(QMainWindow):
         self.pages.changed.connect(self.menus.show_page)
         self._apply_theme()
         self.resize(1480, 900)
-        self.memory.restore_window(self)
+        self.window_state.restore_window(self)
         self.go(str(preferences.window.get("page", "")) or next(iter(self.pages.pages)))
         self._wire()
         self.toast.raise_()
@@ -95,9 +95,9 @@ class MainWindow(QMainWindow):
         start_tour(self, self.go, self.preferences)
 
     def _context(self, key: str) -> PageContext:
-        wiring = Wiring(self.session, self.toast.problem, self)
+        bindings = Bindings(self.session, self.toast.problem, self)
         return PageContext(
-            key, self.session, wiring, self.preferences, self.toast, self.commands, self._views, self.go
+            key, self.session, bindings, self.preferences, self.toast, self.commands, self._views, self.go
         )
 
     def _command_table(self) -> dict[str, Callable[..., object]]:
@@ -105,14 +105,14 @@ class MainWindow(QMainWindow):
         copying = ("copy_command", "copy_python")
         return {
             **{name: getattr(self.commands, name) for name in (*ours, *copying)},
-            **{f"theme_{name}": partial(self.looks.choose, theme=name) for name in ("system", *THEMES)},
+            **{f"theme_{name}": partial(self.appearance.choose, theme=name) for name in ("system", *THEMES)},
             **{name: partial(self.activity.show_tab, name) for name in ("tasks", "log")},
             "run_batch": self.batches.ask,
             "save_project": self.projects.save,
             "save_project_as": self.projects.save_as,
             "repair": self._choose_repair,
             "palette": self._open_palette,
-            "preferences": self.looks.ask,
+            "preferences": self.appearance.ask,
             "standard_layout": self._standard_layout,
             "tour": self.show_round,
             "quit": self.close,
@@ -124,22 +124,22 @@ class MainWindow(QMainWindow):
         }
 
     def _wire(self) -> None:
-        session, wiring = self.session, self.wiring
-        self.activity.wire(session, wiring, self.toast)
+        session, bindings = self.session, self.bindings
+        self.activity.wire(session, bindings, self.toast)
         self.commands.openers[FileKind.PROJECT] = self.projects.open
         for page in self.pages.pages.values():
             self.commands.openers |= dict.fromkeys(page.opens, partial(self._open_in, page.key))
-        self.pages.built.connect(lambda key: self.memory.restore_parts(self.pages.widgets[key]))
-        self.memory.restore_parts(self)
+        self.pages.built.connect(lambda key: self.window_state.restore_parts(self.pages.widgets[key]))
+        self.window_state.restore_parts(self)
         self.projects.changed.connect(lambda: self.setWindowTitle(self.projects.title()))
-        wiring.refresh("tasks", lambda: self.tasks.setValue(session.tasks), slow=True)
-        wiring.refresh("tasks", self.commands.show_tasks, slow=True)
-        wiring.refresh("tasks", self.batches.show_tasks, slow=True)
-        wiring.hear("choices", self._show_choices)
+        bindings.refresh("tasks", lambda: self.tasks.setValue(session.tasks), slow=True)
+        bindings.refresh("tasks", self.commands.show_tasks, slow=True)
+        bindings.refresh("tasks", self.batches.show_tasks, slow=True)
+        bindings.listen("choices", self._show_choices)
         self._show_choices()
-        wiring.hear("failed", lambda failure: self.toast.problem(failure.sentence, failure.details))
-        wiring.hear("problems", lambda problems: tell_refusals(self.toast, problems))
-        wiring.hear("exported", self.commands.tell_exported)
+        bindings.listen("failed", lambda failure: self.toast.problem(failure.sentence, failure.details))
+        bindings.listen("problems", lambda problems: report_refusals(self.toast, problems))
+        bindings.listen("exported", self.commands.tell_exported)
         self.tasks.cancelRequested.connect(self.commands.stop)
         QGuiApplication.styleHints().colorSchemeChanged.connect(self._apply_theme)
         self.menus.recent.aboutToShow.connect(self._list_recent)
@@ -151,7 +151,7 @@ class MainWindow(QMainWindow):
         CommandPalette(self.menus.palette(self.pages.pages, self.pages.run), self).open()
 
     def _standard_layout(self) -> None:
-        self.memory.forget()
+        self.window_state.forget()
         self.toast.note(tr("The next window stands as a new one."))
 
     def _choose_repair(self, repair: bool) -> None:
@@ -187,13 +187,13 @@ class MainWindow(QMainWindow):
         if not may_close(self, reasons):
             event.ignore()
             return
-        self.memory.keep(self)
+        self.window_state.keep(self)
         self.preferences.window = self.preferences.window | {"page": self.pages.current}
         self.preferences.save()
         QGuiApplication.styleHints().colorSchemeChanged.disconnect(self._apply_theme)
         self.hide()
         self.closing.emit()
-        self.wiring.cut()
+        self.bindings.disconnect_all()
         self.projects.close()
         self.session.close()
         self.pages.close_pages()

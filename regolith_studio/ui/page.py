@@ -12,10 +12,10 @@ from regolith_studio.session.file_kinds import FileKind
 from regolith_studio.session.preferences import Preferences
 from regolith_studio.session.session import Session
 from regolith_studio.ui.action_spec import ActionSpec
+from regolith_studio.ui.bindings import Bindings
 from regolith_studio.ui.commands import Commands
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.widgets.toast import Toast
-from regolith_studio.ui.wiring import Wiring
 
 
 class PageWidget(QWidget):
@@ -82,7 +82,7 @@ class PageContext:
 
     key: str
     session: Session
-    wiring: Wiring
+    bindings: Bindings
     preferences: Preferences
     toast: Toast
     commands: Commands

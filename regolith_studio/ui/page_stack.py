@@ -6,7 +6,7 @@ from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QAbstractItemView, QHBoxLayout, QStackedWidget, QWidget
 
 from regolith_studio.ui.page import Page, PageContext, PageWidget
-from regolith_studio.ui.room import Room
+from regolith_studio.ui.scrollable_page import ScrollablePage
 from regolith_studio.ui.sidebar import Sidebar
 from regolith_studio.ui.theme import Theme, current_theme, ensure_polished, restyle
 
@@ -34,7 +34,7 @@ class PageStack(QWidget):
         self._current = ""
         self._unthemed: set[str] = set()
         self._stack = QStackedWidget()
-        self._rooms: dict[str, Room] = {}
+        self._rooms: dict[str, ScrollablePage] = {}
         self._bar = Sidebar(self.pages)
         self.buttons = self._bar.buttons
         self._bar.chosen.connect(self.go)
@@ -56,7 +56,7 @@ class PageStack(QWidget):
             self._current = key
             self._stack.setCurrentWidget(self._rooms[key])
             self.buttons[key].setChecked(True)
-            self._contexts[key].wiring.resume()
+            self._contexts[key].bindings.resume()
             widget.on_show()
             self.changed.emit(key)
         return widget
@@ -82,28 +82,28 @@ class PageStack(QWidget):
             self._apply_theme(self._current)
 
     @property
-    def rooms(self) -> tuple[Room, ...]:
+    def rooms(self) -> tuple[ScrollablePage, ...]:
         """With a page in each; they take another theme by :meth:`set_theme`."""
         return tuple(self._rooms.values())
 
-    def let_go(self) -> None:
+    def refresh_hidden(self) -> None:
         """Let hidden pages forget particles that have been closed."""
         for key in self.widgets.keys() - {self._current}:
-            self._contexts[key].wiring.let_go()
+            self._contexts[key].bindings.refresh_hidden()
 
     def close_pages(self) -> None:
         """Disconnect all pages and let them release what they hold."""
         for key, widget in self.widgets.items():
-            self._contexts[key].wiring.cut()
+            self._contexts[key].bindings.disconnect_all()
             widget.on_close()
 
     def _build(self, key: str) -> None:
         context = self._contexts[key] = self._context_of(key)
         widget = self.pages[key].build(context)
-        context.wiring.pause()
+        context.bindings.pause()
         for view in widget.findChildren(QAbstractItemView):
             view.setTabKeyNavigation(False)  # Tab leaves a table; arrows move in it
-        self._rooms[key] = Room(widget)
+        self._rooms[key] = ScrollablePage(widget)
         self._stack.addWidget(self._rooms[key])
         ensure_polished(widget)
         widget.set_theme(current_theme())
@@ -118,7 +118,7 @@ class PageStack(QWidget):
 
     def _hide_current(self) -> None:
         if self._current:
-            self._contexts[self._current].wiring.pause()
+            self._contexts[self._current].bindings.pause()
             self.widgets[self._current].on_hide()
 
     def _arrange(self) -> None:

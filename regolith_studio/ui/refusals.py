@@ -7,7 +7,7 @@ from regolith_studio.ui.translation import tr, translate
 from regolith_studio.ui.widgets.toast import Toast
 
 
-def tell_refusals(toast: Toast, problems: Sequence[FileProblem]) -> None:
+def report_refusals(toast: Toast, problems: Sequence[FileProblem]) -> None:
     """One sentence on the screen: the only one, or the first and how many more there are; all on demand."""
     first = translate(problems[0].sentence)
     if len(problems) == 1:

@@ -9,7 +9,7 @@ from PySide6.QtWidgets import QApplication, QWidget
 
 from regolith_studio.resources import resource
 from regolith_studio.scene import palette
-from regolith_studio.scene.palette import Surroundings
+from regolith_studio.scene.palette import ThemeColors
 
 GAP = 8
 """Space between neighbours, in pixels; half of it inside a group."""
@@ -50,7 +50,7 @@ class Theme:
     good: str
     doubtful: str
     bad: str
-    surroundings: Surroundings
+    surroundings: ThemeColors
 
 
 LIGHT = Theme(

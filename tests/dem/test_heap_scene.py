@@ -8,7 +8,7 @@ from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dem.case import ReposeCase, prepare
 from regolith_studio.dem.initial_packing import loose_column
 from regolith_studio.dem.snapshot import ParticleState
-from regolith_studio.scene import cameras, heap, stage
+from regolith_studio.scene import cameras, instancing, plotter_setup
 
 
 def _at(points: np.ndarray, wall: float = float("inf")) -> ParticleState:
@@ -20,9 +20,9 @@ def _at(points: np.ndarray, wall: float = float("inf")) -> ParticleState:
 
 @pytest.fixture
 def plotter():
-    stage.choose_off_screen_window()
+    plotter_setup.choose_off_screen_window()
     made = pv.Plotter(off_screen=True, window_size=[200, 160])
-    stage.set_stage(made)
+    plotter_setup.set_stage(made)
     yield made
     made.close()
 
@@ -44,28 +44,28 @@ def _seen(plotter: pv.Plotter, half_height: float) -> tuple[float, float, float,
 def test_that_a_particle_is_drawn_where_it_is_and_as_large(boxes: Dataset, plotter: pv.Plotter) -> None:
     shapes = tuple(each.shape.vertices for each in boxes.representatives)
     half = 1e3 * (np.pi / 6) ** (1 / 3)
-    heap.show_heap(plotter, shapes, _at(np.array([[0.003, 0.001, 0.0]])))
+    instancing.show_heap(plotter, shapes, _at(np.array([[0.003, 0.001, 0.0]])))
     assert _seen(plotter, 6000) == pytest.approx([3e3 - half, 3e3 + half, 1e3 - half, 1e3 + half], abs=120)
     eighth = ParticleState(np.zeros((1, 3)), [2e-3], [[np.cos(np.pi / 8), 0, 0, np.sin(np.pi / 8)]], [0])
-    heap.show_heap(plotter, shapes, eighth)
+    instancing.show_heap(plotter, shapes, eighth)
     corner = half * np.sqrt(2)
     assert _seen(plotter, 6000) == pytest.approx([-corner, corner, -corner, corner], abs=120)
-    heap.show_heap(plotter, shapes, _at(np.zeros((1, 3))), spheres=True)
+    instancing.show_heap(plotter, shapes, _at(np.zeros((1, 3))), spheres=True)
     assert _seen(plotter, 6000) == pytest.approx([-1e3, 1e3, -1e3, 1e3], abs=120)
 
 
 def test_that_the_next_moment_takes_the_same_actor(boxes: Dataset, plotter: pv.Plotter) -> None:
     prepared = prepare(boxes, ReposeCase(n_particles=200))
-    heap.show_heap(plotter, prepared.shapes, loose_column(prepared))
-    first = plotter.actors[heap.HEAP]
-    heap.show_heap(plotter, prepared.shapes, loose_column(prepared))
-    assert plotter.actors[heap.HEAP] is first
+    instancing.show_heap(plotter, prepared.shapes, loose_column(prepared))
+    first = plotter.actors[instancing.HEAP]
+    instancing.show_heap(plotter, prepared.shapes, loose_column(prepared))
+    assert plotter.actors[instancing.HEAP] is first
 
 
 def test_that_the_cylinder_rises_and_goes(plotter: pv.Plotter) -> None:
-    heap.show_apparatus(plotter, _at(np.zeros((1, 3)), wall=0.03), 0.02, 0.08, 0.05)
-    tube = plotter.actors[heap.CYLINDER]
+    instancing.show_apparatus(plotter, _at(np.zeros((1, 3)), wall=0.03), 0.02, 0.08, 0.05)
+    tube = plotter.actors[instancing.CYLINDER]
     assert tube.GetBounds()[4:] == pytest.approx((3e4, 1.1e5))
     assert tube.GetBounds()[:2] == pytest.approx((-1e4, 1e4), rel=1e-3)
-    heap.show_apparatus(plotter, _at(np.zeros((1, 3))), 0.02, 0.08, 0.05)
+    instancing.show_apparatus(plotter, _at(np.zeros((1, 3))), 0.02, 0.08, 0.05)
     assert not tube.GetVisibility()

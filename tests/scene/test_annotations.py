@@ -6,7 +6,7 @@ import pyvista as pv
 from regolith_studio.scene import palette
 from regolith_studio.scene.annotations import ScaleBar, bar_length, length_text, show_colour_scale
 from regolith_studio.scene.cameras import CameraPose, apply_pose
-from regolith_studio.scene.stage import is_software
+from regolith_studio.scene.plotter_setup import is_software
 
 
 @pytest.mark.parametrize(

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 import pyvista as pv
 
-from regolith_studio.scene.extras import show_hidden
 from regolith_studio.scene.faults import COLOURS, show_faults
+from regolith_studio.scene.overlays import show_hidden
 from regolith_studio.scene.surfaces import show_particle
 
 

@@ -4,7 +4,7 @@ import pyvista as pv
 
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.sphere_points import icosphere
-from regolith_studio.scene import stage
+from regolith_studio.scene import plotter_setup
 from regolith_studio.scene.cameras import apply_pose
 from regolith_studio.scene.gallery import gallery_pose, show_gallery
 
@@ -15,9 +15,9 @@ def ball(radius: float) -> Mesh:
 
 @pytest.fixture
 def plotter():
-    stage.choose_off_screen_window()
+    plotter_setup.choose_off_screen_window()
     made = pv.Plotter(off_screen=True, window_size=[600, 400])
-    stage.set_stage(made)
+    plotter_setup.set_stage(made)
     yield made
     made.close()
 

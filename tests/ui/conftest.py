@@ -22,10 +22,10 @@ from vtkmodules.vtkRenderingCore import vtkRenderer, vtkRenderWindow
 
 from regolith_studio.session.preferences import Preferences
 from regolith_studio.ui import main_window
+from regolith_studio.ui.bindings import Bindings
 from regolith_studio.ui.startup import make_application
 from regolith_studio.ui.translation.language import fall_silent, speak
 from regolith_studio.ui.widgets.formula import THREAD_NAME, all_outlines_made
-from regolith_studio.ui.wiring import Wiring
 
 
 @pytest.fixture(scope="session")
@@ -79,7 +79,7 @@ def settled(wait):
 
     def run(window, seconds=60.0):
         def rests():
-            refreshed = all(each.idle for each in window.findChildren(Wiring))
+            refreshed = all(each.idle for each in window.findChildren(Bindings))
             return refreshed and not window.session.tasks and all_outlines_made()
 
         wait(rests, seconds)

@@ -13,11 +13,11 @@ from regolith_studio.jobs.runners.thread import ThreadRunner
 from regolith_studio.session.recipe import Outputs, recipe_of
 from regolith_studio.session.run_recipe import run_recipe
 from regolith_studio.session.session import Session
-from regolith_studio.ui.batches import Batches
+from regolith_studio.ui.batch_runs import BatchRuns
+from regolith_studio.ui.bindings import Bindings
 from regolith_studio.ui.dialogs.batch import BatchDialog
-from regolith_studio.ui.posting import Poster
+from regolith_studio.ui.main_thread import MainThreadInvoker
 from regolith_studio.ui.widgets.toast import Toast
-from regolith_studio.ui.wiring import Wiring
 
 WISH = recipe_of(
     inputs=[],
@@ -44,14 +44,14 @@ def dialog(shown, tmp_path):
 @pytest.fixture
 def batches(shown, preferences):
     """Batches of an empty session, in a bare window."""
-    window, poster = shown(QWidget()), Poster()
+    window, poster = shown(QWidget()), MainThreadInvoker()
     session = Session(ThreadRunner(poster.post))
     toast = Toast(window)
-    wiring = Wiring(session, toast.problem, window)
-    made = Batches(session, preferences, toast, window)
-    wiring.refresh("tasks", made.show_tasks)
+    bindings = Bindings(session, toast.problem, window)
+    made = BatchRuns(session, preferences, toast, window)
+    bindings.refresh("tasks", made.show_tasks)
     yield made
-    wiring.cut()
+    bindings.disconnect_all()
     session.close()
     poster.close()
 

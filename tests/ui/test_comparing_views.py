@@ -8,10 +8,10 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 
 from regolith_studio.geometry.cross_section import cross_section
-from regolith_studio.scene import facets, sectioning
-from regolith_studio.scene.comparing import OTHER
+from regolith_studio.scene import clipping, facets
+from regolith_studio.scene.comparison import OTHER
 from regolith_studio.scene.distance import signed_distances
-from regolith_studio.scene.sight import Sight
+from regolith_studio.scene.projection import Projection
 from regolith_studio.scene.surfaces import OUTLINE, SURFACE
 from regolith_studio.ui.app import open_window
 from regolith_studio.ui.theme import DARK, LIGHT
@@ -95,10 +95,10 @@ def test_that_the_section_draws_and_measures_what_the_plane_cuts(window):
     assert labels[0] == f"CT particle {grouped_number(area)} µm²"
     assert [label.split()[0] for label in labels] == ["CT", "Fit", "Polyhedron"]
     for name in ("particle", "fit", "polyhedron"):
-        assert actor(window, name, sectioning.CAP) is not None
-        assert actor(window, name, sectioning.CUT + "polyhedron") is not None
+        assert actor(window, name, clipping.CAP) is not None
+        assert actor(window, name, clipping.CUT + "polyhedron") is not None
     switch(window, "section")
-    assert actor(window, "fit", sectioning.CAP) is None
+    assert actor(window, "fit", clipping.CAP) is None
     assert panel.plot.is_empty()
     assert window.page.plots.left.currentIndex() == 0, "what was in front before is in front again"
 
@@ -130,7 +130,7 @@ def test_that_the_frame_of_the_section_is_dragged_in_a_view(window):
     switch(window, "section")
     views.sections.set_direction("z", np.array([0.0, 0.0, 1.0]))
     view = views.views["particle"]
-    sight = Sight(view.pose, view.widget.width(), view.widget.height())
+    sight = Projection(view.pose, view.widget.width(), view.widget.height())
     corners = sight.seen(views.sections.framed[1])
     edges = (corners + np.roll(corners, -1, axis=0)) / 2
     inside = [(x, y) for x, y in edges if 12 < x < sight.width - 12 and 12 < y < sight.height - 12]
@@ -154,7 +154,7 @@ def test_that_the_facet_under_the_mouse_is_outlined_numbered_and_told(window):
     words = facets.facet_of(solid, number - 1).words
     assert views.frames["polyhedron"].detail.text() == words
     assert window.statusBar().currentMessage() == words
-    towards = -Sight(views.views["polyhedron"].pose, 1, 1).axes[2]
+    towards = -Projection(views.views["polyhedron"].pose, 1, 1).axes[2]
     assert solid.half_spaces.normals[number - 1] @ towards > 0.0
     hover(widget, 2, 2)
     assert actor(window, "polyhedron", facets.FACET) is None
@@ -197,7 +197,7 @@ def test_that_another_theme_measures_no_distances_again(window, wait, settled, m
         asked.append(arguments)
         return signed_distances(*arguments)
 
-    monkeypatch.setattr("regolith_studio.ui.views.distances.signed_distances", counted)
+    monkeypatch.setattr("regolith_studio.ui.views.distance_worker.signed_distances", counted)
     switch(window, "heat")
     wait(lambda: len(asked) == 1)
     settled(window)

@@ -19,6 +19,7 @@ from regolith_studio.jobs.runners.inline import InlineRunner
 from regolith_studio.session.recipe import Exports, Recipe, Representatives, read_recipe
 from regolith_studio.session.run_recipe import run_recipe
 from regolith_studio.session.session import Session
+from regolith_studio.ui.bindings import Bindings
 from regolith_studio.ui.commands import Commands
 from regolith_studio.ui.dialogs.folder import FolderDialog
 from regolith_studio.ui.page import PageContext
@@ -26,7 +27,6 @@ from regolith_studio.ui.pages.dataset import PAGE
 from regolith_studio.ui.theme import DARK, LIGHT
 from regolith_studio.ui.widgets.thumbnails import TRIANGLES_PER_STEP, paint_thumbnail, thumbnail
 from regolith_studio.ui.widgets.toast import Toast
-from regolith_studio.ui.wiring import Wiring
 
 
 def grains(count=8, first=0):
@@ -45,16 +45,16 @@ def page(shown, preferences):
     session.choose(method="quadric", target="particle")
     window = shown(QWidget())
     toast = Toast(window)
-    wiring = Wiring(session, toast.problem, window)
+    bindings = Bindings(session, toast.problem, window)
     commands = Commands(session, preferences, toast, window)
     context = PageContext(
-        "dataset", session, wiring, preferences, toast, commands, "image", lambda _key: None
+        "dataset", session, bindings, preferences, toast, commands, "image", lambda _key: None
     )
     made = shown(PAGE.build(context))
     made.resize(1300, 900)
     made.session, made.toast = session, toast
     yield made
-    wiring.cut()
+    bindings.disconnect_all()
     made.on_close()
     session.close()
 
@@ -362,7 +362,7 @@ def test_that_a_recipe_that_is_opened_sets_the_controls(page, wait, tmp_path) ->
     assert (options.contact.density, options.test.gravity) == (2500.0, 1.62)
     page.folder.name.setText("mine")
     page.session.events.opened_request.emit()
-    wait(lambda: page._context.wiring.idle)
+    wait(lambda: page._context.bindings.idle)
     assert page.folder.name.text() == "mine", "a recipe is taken once"
 
 

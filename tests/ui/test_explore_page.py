@@ -6,8 +6,8 @@ from PIL import Image
 from PySide6.QtWidgets import QApplication
 
 from regolith_studio.geometry.oriented_box import minimum_volume_box
-from regolith_studio.scene import extras
-from regolith_studio.scene.comparing import OTHER
+from regolith_studio.scene import overlays
+from regolith_studio.scene.comparison import OTHER
 from regolith_studio.scene.surfaces import SURFACE
 from regolith_studio.ui.app import open_window
 from regolith_studio.ui.pages.explore.pictures import PictureDialog
@@ -36,21 +36,21 @@ def test_that_box_star_point_and_overlay_come_and_go(window):
     for name in ("box", "star_point", "overlay"):
         window.menus.by_name[f"explore.{name}"].trigger()
     corners = minimum_volume_box(window.session.selected.particle.mesh).corners
-    drawn = seen(window, "particle", extras.BOX).mapper.dataset.points
+    drawn = seen(window, "particle", overlays.BOX).mapper.dataset.points
     assert np.allclose(drawn, corners, rtol=1e-4)
     results = window.session.results
     solid = results.coarsened
     inside = minimum_volume_box(solid.polyhedron).corners + solid.centre
-    assert np.allclose(seen(window, "polyhedron", extras.BOX).mapper.dataset.points, inside, rtol=1e-3)
-    star = seen(window, "fit", extras.STAR_POINT).mapper.dataset.center
+    assert np.allclose(seen(window, "polyhedron", overlays.BOX).mapper.dataset.points, inside, rtol=1e-3)
+    star = seen(window, "fit", overlays.STAR_POINT).mapper.dataset.center
     assert np.allclose(star, results.fit.star_point, rtol=1e-3, atol=1e-2)
-    assert seen(window, "polyhedron", extras.STAR_POINT) is None
+    assert seen(window, "polyhedron", overlays.STAR_POINT) is None
     assert seen(window, "particle", VEIL) is None
     assert seen(window, "polyhedron", VEIL) is not None
     for name in ("box", "star_point", "overlay"):
         window.menus.by_name[f"explore.{name}"].trigger()
     for view in ("particle", "fit", "polyhedron"):
-        assert not any(seen(window, view, each) for each in (extras.BOX, extras.STAR_POINT, VEIL))
+        assert not any(seen(window, view, each) for each in (overlays.BOX, overlays.STAR_POINT, VEIL))
 
 
 def test_that_the_picture_is_written_at_its_scale_and_without_background(window, tmp_path, monkeypatch, wait):

@@ -12,8 +12,9 @@ from PySide6.QtWidgets import QWidget
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.jobs.runners.inline import InlineRunner
-from regolith_studio.scene.moves import FACET_OLD, FRAME_NEW
+from regolith_studio.scene.lecture_scenes import FACET_OLD, FRAME_NEW
 from regolith_studio.session.session import Session
+from regolith_studio.ui.bindings import Bindings
 from regolith_studio.ui.commands import Commands
 from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.pages.lecture import PAGE, texts
@@ -21,7 +22,6 @@ from regolith_studio.ui.theme import DARK, LIGHT, choose_letters
 from regolith_studio.ui.widgets import formula
 from regolith_studio.ui.widgets.formula import FormulaLabel, outline
 from regolith_studio.ui.widgets.toast import Toast
-from regolith_studio.ui.wiring import Wiring
 
 EGG = icosphere(3).moved(rotation=np.diag([30.0, 20.0, 45.0]))
 CIGAR = icosphere(2).moved(rotation=np.diag([10.0, 12.0, 60.0]))
@@ -34,15 +34,15 @@ def page(shown, preferences):
     session.adopt([Particle(name="egg", mesh=EGG), Particle(name="cigar", mesh=CIGAR)])
     window = shown(QWidget())
     toast = Toast(window)
-    wiring = Wiring(session, toast.problem, window)
+    bindings = Bindings(session, toast.problem, window)
     commands = Commands(session, preferences, toast, window)
     context = PageContext(
-        "lecture", session, wiring, preferences, toast, commands, "image", lambda _key: None
+        "lecture", session, bindings, preferences, toast, commands, "image", lambda _key: None
     )
     made = shown(PAGE.build(context))
     made.resize(1200, 760)
     yield made
-    wiring.cut()
+    bindings.disconnect_all()
     made.on_close()
     session.close()
 

@@ -39,7 +39,7 @@ def test_that_drawn_particles_are_gone_when_others_are_opened(window, wait, sett
     session.open_sample()
     wait(lambda: len(session.particles) != DRAWN)
     settled(window)
-    window.pages.let_go()
+    window.pages.refresh_hidden()
 
     def gone():
         gc.collect()

@@ -18,6 +18,7 @@ from regolith_studio.session.tasks import Task
 from regolith_studio.shape_models.models import MODELS
 from regolith_studio.shape_models.sample import Sample
 from regolith_studio.studies.population import KEYS
+from regolith_studio.ui.bindings import Bindings
 from regolith_studio.ui.commands import Commands
 from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.pages.model import PAGE
@@ -26,7 +27,6 @@ from regolith_studio.ui.pages.model.evaluation_panel import EvaluationPanel
 from regolith_studio.ui.translation import translate
 from regolith_studio.ui.widgets.plots.spectrum_editor import SpectrumEditor
 from regolith_studio.ui.widgets.toast import Toast
-from regolith_studio.ui.wiring import Wiring
 from tests.ui.reading import english_left
 
 AMPLITUDES = np.array([0.02, 0.09, 0.03, 0.02])
@@ -54,14 +54,16 @@ def _opened(shown, preferences):
     session = Session(InlineRunner())
     window = shown(QWidget())
     toast = Toast(window)
-    wiring = Wiring(session, toast.problem, window)
+    bindings = Bindings(session, toast.problem, window)
     commands = Commands(session, preferences, toast, window)
-    context = PageContext("model", session, wiring, preferences, toast, commands, "image", lambda _key: None)
+    context = PageContext(
+        "model", session, bindings, preferences, toast, commands, "image", lambda _key: None
+    )
     made = shown(PAGE.build(context))
     made.resize(1100, 760)
 
     def end():
-        wiring.cut()
+        bindings.disconnect_all()
         made.on_close()
         session.close()
 

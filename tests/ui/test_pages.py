@@ -14,13 +14,13 @@ from regolith_studio.jobs.runners.inline import InlineRunner
 from regolith_studio.resources import resource
 from regolith_studio.session.session import Session
 from regolith_studio.ui.action_spec import PAGE_MENU, ActionSpec
+from regolith_studio.ui.bindings import Bindings
 from regolith_studio.ui.commands import Commands
 from regolith_studio.ui.page import Page, PageContext, PageWidget
 from regolith_studio.ui.page_stack import PageStack
 from regolith_studio.ui.pages import PAGES
 from regolith_studio.ui.theme import DARK
 from regolith_studio.ui.widgets.toast import Toast
-from regolith_studio.ui.wiring import Wiring
 
 
 class _Counter(PageWidget):
@@ -30,7 +30,7 @@ class _Counter(PageWidget):
         super().__init__()
         self.context, self.refreshed, self.heard, self.entries = context, 0, [], 0
         QVBoxLayout(self).addWidget(QLabel(context.key))
-        context.wiring.refresh("dataset_folder", self._refresh)
+        context.bindings.refresh("dataset_folder", self._refresh)
 
     def _refresh(self):
         self.refreshed += 1
@@ -73,8 +73,8 @@ def stack(shown, preferences):
     commands = Commands(session, preferences, toast, window)
 
     def context(key):
-        wiring = Wiring(session, toast.problem, window)
-        return PageContext(key, session, wiring, preferences, toast, commands, "image", lambda _key: window)
+        bindings = Bindings(session, toast.problem, window)
+        return PageContext(key, session, bindings, preferences, toast, commands, "image", lambda _key: window)
 
     made = PageStack((_page("one", 1), _page("two", 2)), context)
     made.setParent(window)
@@ -125,7 +125,7 @@ class _Holder(PageWidget):
     def __init__(self, context):
         super().__init__()
         self.context, self.held = context, None
-        context.wiring.refresh("dataset_folder", self._hold, holds=True)
+        context.bindings.refresh("dataset_folder", self._hold, keeps_particles=True)
 
     def _hold(self):
         self.held = self.context.session.dataset_folder
@@ -135,17 +135,17 @@ class _Holder(PageWidget):
 def test_that_a_hidden_page_lets_go_what_is_not_open_any_more(stack, slow):
     stack.pages["one"] = replace(stack.pages["one"], make=_Holder)
     one = stack.go("one")
-    one.context.wiring.refresh("dataset_folder", one._hold, slow=slow, holds=True)
+    one.context.bindings.refresh("dataset_folder", one._hold, slow=slow, keeps_particles=True)
     stack.session.dataset_folder = Path("old")
     stack.go("two")
     stack.go("one")
     stack.go("two")
     stack.session.dataset_folder = Path("new")
     assert one.held != Path("new")
-    stack.let_go()
+    stack.refresh_hidden()
     assert one.held == Path("new")
     one.held = "untouched"
-    stack.let_go()
+    stack.refresh_hidden()
     assert one.held == "untouched"
 
 

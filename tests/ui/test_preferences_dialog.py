@@ -38,7 +38,7 @@ def test_that_preferences_hold_at_once_or_at_the_next_start(opened, wait):
     dialog.letters.setValue(100)
     dialog.close()
     assert app.font().pointSizeF() == pytest.approx(before)
-    window.looks.choose(theme="system")
+    window.appearance.choose(theme="system")
     wait(lambda: window.findChild(QDialog, "preferences_dialog") is None)
 
 

@@ -16,7 +16,7 @@ from regolith_studio.session.project import Project, read_project
 from regolith_studio.session.session import Session
 from regolith_studio.ui.app import open_window
 from regolith_studio.ui.main_window import MainWindow
-from regolith_studio.ui.projects import autosave_path, stale_autosaves
+from regolith_studio.ui.project_files import autosave_path, stale_autosaves
 
 WORK = """
 from regolith_studio.ui import projects

@@ -19,6 +19,7 @@ from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.jobs.runners.inline import InlineRunner
 from regolith_studio.session.session import Session
 from regolith_studio.studies.repose import runs_from
+from regolith_studio.ui.bindings import Bindings
 from regolith_studio.ui.commands import Commands
 from regolith_studio.ui.dialogs.folder import FolderDialog
 from regolith_studio.ui.page import PageContext
@@ -26,7 +27,6 @@ from regolith_studio.ui.pages.repose import PAGE
 from regolith_studio.ui.pages.repose.section_plot import particle_text
 from regolith_studio.ui.widgets.forms import ParameterForm
 from regolith_studio.ui.widgets.toast import Toast
-from regolith_studio.ui.wiring import Wiring
 from tests.dem.conftest import box_dataset
 from tests.dem.packings import cone
 
@@ -38,14 +38,16 @@ def page(shown, preferences, tmp_path):
     session = Session(InlineRunner())
     window = shown(QWidget())
     toast = Toast(window)
-    wiring = Wiring(session, toast.problem, window)
+    bindings = Bindings(session, toast.problem, window)
     commands = Commands(session, preferences, toast, window)
-    context = PageContext("repose", session, wiring, preferences, toast, commands, "image", lambda _key: None)
+    context = PageContext(
+        "repose", session, bindings, preferences, toast, commands, "image", lambda _key: None
+    )
     made = shown(PAGE.build(context))
     made.resize(1200, 800)
     made.set_runs_folder(tmp_path / "runs")
     yield made
-    wiring.cut()
+    bindings.disconnect_all()
     made.on_close()
     session.close()
 

@@ -16,14 +16,14 @@ from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput,
 from regolith_studio.jobs.runners.thread import ThreadRunner
 from regolith_studio.readers.volumes.header import RawLayout
 from regolith_studio.session.session import Session
+from regolith_studio.ui.bindings import Bindings
 from regolith_studio.ui.commands import Commands
+from regolith_studio.ui.main_thread import MainThreadInvoker
 from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.pages.scan import PAGE
 from regolith_studio.ui.pages.scan.volume_dialog import VolumeDialog
-from regolith_studio.ui.posting import Poster
 from regolith_studio.ui.theme import current_theme
 from regolith_studio.ui.widgets.toast import Toast
-from regolith_studio.ui.wiring import Wiring
 
 SECONDS = 120.0
 
@@ -31,16 +31,16 @@ SECONDS = 120.0
 @pytest.fixture
 def page(shown, preferences, wait, monkeypatch):
     """The page alone, with a session of its own that keeps what it is handed and does no more with it."""
-    poster = Poster()
+    poster = MainThreadInvoker()
     session = Session(ThreadRunner(poster.post))
     adopted = []
     monkeypatch.setattr(session, "adopt", lambda particles, **_origin: adopted.extend(particles))
     frame = shown(QWidget())
     toast = Toast(frame)
-    wiring = Wiring(session, toast.problem, frame)
+    bindings = Bindings(session, toast.problem, frame)
     visited = []
     context = PageContext(
-        "scan", session, wiring, preferences, toast, Commands(session, preferences, toast, frame), "image",
+        "scan", session, bindings, preferences, toast, Commands(session, preferences, toast, frame), "image",
         visited.append,
     )  # fmt: skip
     session.events.failed.connect(lambda failure: toast.problem(failure.sentence))
@@ -52,7 +52,7 @@ def page(shown, preferences, wait, monkeypatch):
     yield made
     wait(lambda: not session.tasks, SECONDS)
     made.on_close()
-    wiring.cut()
+    bindings.disconnect_all()
     session.close()
     poster.deleteLater()
 

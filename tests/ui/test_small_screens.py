@@ -11,7 +11,7 @@ from regolith_studio.ui.dialogs.preferences import LETTERS
 from regolith_studio.ui.main_window import MainWindow
 from regolith_studio.ui.pages import PAGES
 from regolith_studio.ui.pages.explore.plot_area import LETTERS as LETTERS_OF_TWO
-from regolith_studio.ui.room import Room
+from regolith_studio.ui.scrollable_page import ScrollablePage
 from regolith_studio.ui.sidebar import Sidebar
 from regolith_studio.ui.theme import LIGHT, choose_letters
 from regolith_studio.ui.widgets.combo_box import text_room
@@ -78,7 +78,7 @@ def test_that_a_page_too_wide_for_the_window_scrolls_to_what_has_the_focus(shown
     for field in fields:
         field.setMinimumWidth(300)
         row.addWidget(field)
-    room = Room(page)
+    room = ScrollablePage(page)
     room.resize(500, 200)
     shown(room)
     assert page.width() >= 1200

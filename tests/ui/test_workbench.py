@@ -18,7 +18,7 @@ from regolith_studio.ui.app import open_window
 from regolith_studio.ui.dialogs.closing import worth_asking
 from regolith_studio.ui.dialogs.command_palette import CommandPalette
 from regolith_studio.ui.panels.task_list import TaskListPanel, time_left
-from regolith_studio.ui.projects import autosave_path, stale_autosaves
+from regolith_studio.ui.project_files import autosave_path, stale_autosaves
 from regolith_studio.ui.shortcuts import plain
 from regolith_studio.ui.tour import TOUR_SEEN, Tour, start_tour, steps
 
@@ -96,7 +96,7 @@ def test_that_shortcuts_of_a_page_do_not_collide_with_those_of_the_window(window
 def test_that_a_project_is_saved_and_brought_back(window, wait, tmp_path, monkeypatch):
     target = tmp_path / "work.regolith"
     monkeypatch.setattr(
-        "regolith_studio.ui.projects.QFileDialog.getSaveFileName", lambda *_: (str(target), "")
+        "regolith_studio.ui.project_files.QFileDialog.getSaveFileName", lambda *_: (str(target), "")
     )
     window.session.choose(selected="flat-1", n_facets=14, l_max=6)
     window.go("sample").filter.setText("flat")

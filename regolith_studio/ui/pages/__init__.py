@@ -31,7 +31,7 @@ and ``page.py``::
             self._context = context
             self.plot = CurvePlot("Grain", "Size [µm]", "Press Count.")
             QVBoxLayout(self).addWidget(self.plot)
-            context.wiring.refresh("particles", self._show_particles, slow=True)
+            context.bindings.refresh("particles", self._show_particles, slow=True)
 
         def commands(self):
             return {"count": self.count}
@@ -50,11 +50,11 @@ What a page can rely on
 * **State**: ``context.session`` is the one truth: ``particles``, ``choices``, ``results``,
   ``choose(...)``, ``adopt(particles)`` for particles made by a page (they replace or join the open
   ones and are measured and shown everywhere), ``dataset_folder`` and ``runs_folder`` (written last).
-* **Refreshing**: ``context.wiring.refresh("particles choices", action, ("l_max",))`` calls `action` soon
+* **Refreshing**: ``context.bindings.refresh("particles choices", action, ("l_max",))`` calls `action` soon
   after these events, and now; after a change of choices only if one of the fields named has changed.
   ``slow=True`` for tables and plots. Nothing is refreshed while the page is hidden;
-  what was missed follows at the next visit. What keeps particles says ``holds=True``, to let go of
-  those that have been closed. ``context.wiring.hear(event, action)`` is not held back.
+  what was missed follows at the next visit. What keeps particles says ``keeps_particles=True``, to let go of
+  those that have been closed. ``context.bindings.listen(event, action)`` is not held back.
 * **Work**: ``context.start(title, job, finished, partial=..., lane=...)`` runs a generator of
   ``Started``, ``Progress`` and ``Partial`` events in a thread; requests are numbered, the newest of a
   lane wins, what an older one says is dropped. Progress, time left and the stop button are in the

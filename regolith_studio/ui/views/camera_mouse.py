@@ -12,7 +12,7 @@ from PySide6.QtWidgets import QWidget
 
 from regolith_studio.scene.cameras import CameraPose
 from regolith_studio.scene.motions import orbited, panned, rolled, zoomed
-from regolith_studio.scene.sight import Sight
+from regolith_studio.scene.projection import Projection
 
 WHEEL_ZOOM = 1.12
 """Factor of one notch of the wheel."""
@@ -37,16 +37,16 @@ class Grip(Protocol):
 
     cursor: Qt.CursorShape
 
-    def holds(self, sight: Sight, x: float, y: float) -> bool:
+    def keeps_particles(self, sight: Projection, x: float, y: float) -> bool:
         """Whether it is under the mouse."""
         ...
 
-    def pull(self, sight: Sight, right: float, down: float) -> None:
+    def pull(self, sight: Projection, right: float, down: float) -> None:
         """Follow the mouse by so many pixels."""
         ...
 
 
-Pointed = Callable[[Sight, float, float], None]
+Pointed = Callable[[Projection, float, float], None]
 
 
 class CameraMouse:
@@ -143,10 +143,10 @@ class CameraMouse:
 
     def _under(self, place: QPointF) -> Grip | None:
         sight = self._sight()
-        return next((grip for grip in self.grips if grip.holds(sight, place.x(), place.y())), None)
+        return next((grip for grip in self.grips if grip.keeps_particles(sight, place.x(), place.y())), None)
 
-    def _sight(self) -> Sight:
-        return Sight(self._pose(), self._widget.width(), self._widget.height())
+    def _sight(self) -> Projection:
+        return Projection(self._pose(), self._widget.width(), self._widget.height())
 
     def _moved(
         self, buttons: Qt.MouseButton, keys: Qt.KeyboardModifier, right: float, up: float

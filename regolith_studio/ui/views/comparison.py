@@ -9,13 +9,12 @@ import numpy as np
 
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.messages import N_
-from regolith_studio.scene.comparing import arrange, show_cuts, show_other
-from regolith_studio.scene.divider import Divider
-from regolith_studio.scene.palette import Surroundings
-from regolith_studio.scene.sectioning import show_frame
+from regolith_studio.scene.clipping import show_frame
+from regolith_studio.scene.comparison import Divider, arrange, show_cuts, show_other
+from regolith_studio.scene.palette import ThemeColors
 from regolith_studio.scene.shapes import FIT, NAMES, PARTICLE, POLYHEDRON, SceneShape
 from regolith_studio.ui.theme import Theme
-from regolith_studio.ui.views.grips import DividerGrip, PlaneGrip
+from regolith_studio.ui.views.drag_handles import DividerGrip, PlaneGrip
 from regolith_studio.ui.views.sections import Sections
 from regolith_studio.ui.views.view_frame import ViewFrame
 
@@ -130,7 +129,7 @@ class Comparison:
         theme = self._theme
         if theme is None:
             return
-        ink: Surroundings = theme.surroundings
+        ink: ThemeColors = theme.surroundings
         own = self._shapes.get(name)
         partner = self.partners[name] if (self.overlay or self.wipe) and own is not None else ""
         other = self._shapes.get(partner)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 from PySide6.QtGui import QGuiApplication, QOffscreenSurface, QOpenGLContext, QSurfaceFormat
 from PySide6.QtWidgets import QWidget
 
-from regolith_studio.scene.palette import LIGHT, Surroundings
+from regolith_studio.scene.palette import LIGHT, ThemeColors
 
 if TYPE_CHECKING:  # geometry and its compiler: the splash is shown before they are there
     from regolith_studio.ui.views.protocol import SceneView
@@ -16,7 +16,7 @@ VARIABLE = "REGOLITH_STUDIO_VIEWS"
 _WITHOUT_OPENGL = ("offscreen", "minimal", "vnc", "linuxfb")
 
 
-def make_view(kind: str, surroundings: Surroundings = LIGHT, parent: QWidget | None = None) -> "SceneView":
+def make_view(kind: str, surroundings: ThemeColors = LIGHT, parent: QWidget | None = None) -> "SceneView":
     """A view of the kind ``live`` or ``image``."""
     if kind == "image":
         from regolith_studio.ui.views.image_view import ImageView

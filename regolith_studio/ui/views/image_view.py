@@ -9,22 +9,22 @@ from PySide6.QtCore import QEvent, QRect, Qt
 from PySide6.QtGui import QImage, QKeyEvent, QMouseEvent, QPainter, QPaintEvent, QResizeEvent, QWheelEvent
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
-from regolith_studio.scene import annotations, cameras, stage
+from regolith_studio.scene import annotations, cameras, plotter_setup
 from regolith_studio.scene.cameras import CameraPose
-from regolith_studio.scene.palette import LIGHT, Surroundings
+from regolith_studio.scene.palette import LIGHT, ThemeColors
 from regolith_studio.ui.views.camera_mouse import CameraMouse
+from regolith_studio.ui.views.keep_framed import Refitting
 from regolith_studio.ui.views.protocol import Picture
-from regolith_studio.ui.views.refitting import Refitting
 
 
 class ImageView(QWidget):
     """See :class:`~regolith_studio.ui.views.protocol.SceneView`."""
 
-    def __init__(self, surroundings: Surroundings = LIGHT, parent: QWidget | None = None) -> None:
+    def __init__(self, surroundings: ThemeColors = LIGHT, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        stage.choose_off_screen_window()
+        plotter_setup.choose_off_screen_window()
         self._plotter: Any = pv.Plotter(off_screen=True, window_size=[64, 64])
-        stage.set_stage(self._plotter, surroundings)
+        plotter_setup.set_stage(self._plotter, surroundings)
         self._scale_bar = annotations.ScaleBar(self._plotter, surroundings)
         self._image = QImage()
         self._stale = True
@@ -57,8 +57,8 @@ class ImageView(QWidget):
     def when_moved(self, callback: Callable[[CameraPose], None]) -> None:
         self._moved.append(callback)
 
-    def set_surroundings(self, surroundings: Surroundings) -> None:
-        stage.set_background(self._plotter, surroundings)
+    def set_surroundings(self, surroundings: ThemeColors) -> None:
+        plotter_setup.set_background(self._plotter, surroundings)
         self._scale_bar.set_ink(surroundings)
         self._ask()
 
@@ -72,7 +72,7 @@ class ImageView(QWidget):
         self._render()
         self._scale_bar.suspended = True
         try:
-            return stage.thumbnail(self._plotter, scale, transparent)
+            return plotter_setup.thumbnail(self._plotter, scale, transparent)
         finally:
             self._scale_bar.suspended = False
             self._ask()

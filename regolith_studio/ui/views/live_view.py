@@ -10,12 +10,12 @@ from PySide6.QtGui import QKeyEvent, QMouseEvent, QResizeEvent, QWheelEvent
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 from pyvistaqt import QtInteractor
 
-from regolith_studio.scene import annotations, cameras, stage
+from regolith_studio.scene import annotations, cameras, plotter_setup
 from regolith_studio.scene.cameras import CameraPose
-from regolith_studio.scene.palette import LIGHT, Surroundings
+from regolith_studio.scene.palette import LIGHT, ThemeColors
 from regolith_studio.ui.views.camera_mouse import CameraMouse
+from regolith_studio.ui.views.keep_framed import Refitting
 from regolith_studio.ui.views.protocol import Picture
-from regolith_studio.ui.views.refitting import Refitting
 
 
 class _Canvas(QtInteractor):
@@ -79,13 +79,13 @@ def _without_format_warning() -> Iterator[None]:
 class LiveView(QWidget):
     """See :class:`~regolith_studio.ui.views.protocol.SceneView`."""
 
-    def __init__(self, surroundings: Surroundings = LIGHT, parent: QWidget | None = None) -> None:
+    def __init__(self, surroundings: ThemeColors = LIGHT, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._canvas: Any = _Canvas(self)
         self.mouse = CameraMouse(lambda: self.pose, self._move, self)
         self._canvas.mouse = self.mouse
         self._canvas.setMouseTracking(True)
-        stage.set_stage(self._canvas, surroundings)
+        plotter_setup.set_stage(self._canvas, surroundings)
         self._scale_bar = annotations.ScaleBar(self._canvas, surroundings)
         self._moved: list[Callable[[CameraPose], None]] = []
         self._refitting = Refitting(self)
@@ -114,8 +114,8 @@ class LiveView(QWidget):
     def when_moved(self, callback: Callable[[CameraPose], None]) -> None:
         self._moved.append(callback)
 
-    def set_surroundings(self, surroundings: Surroundings) -> None:
-        stage.set_background(self._canvas, surroundings)
+    def set_surroundings(self, surroundings: ThemeColors) -> None:
+        plotter_setup.set_background(self._canvas, surroundings)
         self._scale_bar.set_ink(surroundings)
         self._canvas.update()
 
@@ -128,7 +128,7 @@ class LiveView(QWidget):
     def shot(self, scale: int = 1, transparent: bool = False) -> Picture:
         self._scale_bar.suspended = True
         try:
-            return stage.thumbnail(self._canvas, scale, transparent)
+            return plotter_setup.thumbnail(self._canvas, scale, transparent)
         finally:
             self._scale_bar.suspended = False
             self._canvas.update()

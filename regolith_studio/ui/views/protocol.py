@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from PySide6.QtWidgets import QWidget
 
 from regolith_studio.scene.cameras import CameraPose
-from regolith_studio.scene.palette import Surroundings
+from regolith_studio.scene.palette import ThemeColors
 from regolith_studio.ui.views.camera_mouse import CameraMouse
 
 Picture = NDArray[np.uint8]
@@ -44,7 +44,7 @@ class SceneView(Protocol):
         """Its ``grips`` can be dragged; ``pointed`` are told where the mouse rests, ``left`` when it left."""
         ...
 
-    def set_surroundings(self, surroundings: Surroundings) -> None:
+    def set_surroundings(self, surroundings: ThemeColors) -> None:
         """Change background and inks."""
         ...
 

@@ -9,7 +9,7 @@ from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.cross_section import CrossSection, cross_section
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.oriented_box import minimum_volume_box
-from regolith_studio.scene.sectioning import SectionPlane, frame_corners, normals_of, reach_along
+from regolith_studio.scene.clipping import SectionPlane, frame_corners, normals_of, reach_along
 from regolith_studio.scene.shapes import PARTICLE, SceneShape
 
 EYE = "eye"
@@ -46,7 +46,7 @@ class Sections(QObject):
             self.changed.emit()
 
     def set_direction(self, key: str, eye: FloatArray | None = None) -> None:
-        """Cut across one of :data:`~regolith_studio.scene.sectioning.DIRECTIONS`; `eye` points to the eye.
+        """Cut across one of :data:`~regolith_studio.scene.clipping.DIRECTIONS`; `eye` points to the eye.
 
         What lies on the side of the eye is taken away.
         """

@@ -7,7 +7,7 @@ from PySide6.QtCore import QLineF, QPointF, QRectF, QSizeF, Qt
 from PySide6.QtGui import QColor, QImage, QPainter, QPen, QPolygonF, QTextDocument
 
 from regolith_studio.scene.annotations import bar_length, length_text
-from regolith_studio.scene.sight import Sight
+from regolith_studio.scene.projection import Projection
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.views.protocol import Picture
 from regolith_studio.ui.views.view_frame import ViewFrame
@@ -79,7 +79,7 @@ def _draw_over(
 ) -> None:
     """Scale bar, and the line of the wipe if there is one; the origin is the picture's upper left."""
     height, width = picture.shape[:2]
-    sight = Sight(frame.view.pose, width, height)
+    sight = Projection(frame.view.pose, width, height)
     length = bar_length(width * sight.per_pixel)
     painter.setPen(QPen(QColor(theme.surroundings.ink), 2.0 * scale))
     if line is not None:

@@ -7,7 +7,7 @@ from PySide6.QtCore import QEvent, Qt, Signal
 from PySide6.QtGui import QMouseEvent, QResizeEvent
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QVBoxLayout, QWidget
 
-from regolith_studio.ui.keyboard_focus import FOCUSED
+from regolith_studio.ui.keyboard import FOCUSED
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.views.protocol import SceneView
 from regolith_studio.ui.widgets.combo_box import ChoiceBox
@@ -86,7 +86,7 @@ class ViewFrame(QFrame):
         self._detail = detail
         self.detail.setText(detail)
 
-    def whisper(self, words: str) -> None:
+    def show_status(self, words: str) -> None:
         """Words in place of the quiet line while they last; none bring it back."""
         self.detail.setText(words or self._detail)
 

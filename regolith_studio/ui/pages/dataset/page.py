@@ -84,9 +84,9 @@ class DatasetPage(PageWidget):
         self.gallery, self.losses, self.exports = RepresentativesGallery(), LossesLabel(), ExportsList()
         self._place()
         self._connect()
-        self._context.wiring.refresh("particles", self._show_particles, holds=True)
-        self._context.wiring.refresh("choices", self._show_choices, SHAPE_FIELDS, slow=True)
-        self._context.wiring.refresh("opened_request", self._take_opened)
+        self._context.bindings.refresh("particles", self._show_particles, keeps_particles=True)
+        self._context.bindings.refresh("choices", self._show_choices, SHAPE_FIELDS, slow=True)
+        self._context.bindings.refresh("opened_request", self._take_opened)
         self._show_losses()
 
     # --- the page of the window ----------------------------------------------------------------

@@ -7,7 +7,7 @@ from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QHBoxLayout, QMainWindow
 
 from regolith_studio.scene.cameras import DIRECTIONS
-from regolith_studio.ui.following import Following
+from regolith_studio.ui.latest_job import LatestJob
 from regolith_studio.ui.layout import CONTROLS_WIDTH, padded, scrolled_column, side_by_side, stacked
 from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.pages.explore.pictures import PictureExport
@@ -18,7 +18,7 @@ from regolith_studio.ui.panels.loss import LossPanel
 from regolith_studio.ui.panels.particle_list import ParticleListPanel
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import tr
-from regolith_studio.ui.views.triptych import Triptych
+from regolith_studio.ui.views.three_views import ThreeViews
 
 LIST_WIDTH = 40
 """Initial width of the particle list in digits."""
@@ -41,10 +41,10 @@ class ExplorePage(PageWidget):
         self._session = context.session
         self.particles, self.fit = ParticleListPanel(), FitPanel()
         self.coarsening, self.loss = CoarseningPanel(), LossPanel()
-        measuring = Following(context, tr("Measuring distances"), "distances")
-        self.triptych = Triptych(context.views, measuring.want)
+        measuring = LatestJob(context, tr("Measuring distances"), "distances")
+        self.triptych = ThreeViews(context.views, measuring.submit)
         self.plots = PlotArea(self.triptych)
-        self.triptych.whispered.connect(self._whisper)
+        self.triptych.hovered.connect(self._show_status)
         self.pictures = PictureExport(context, self.triptych, self)
         self._place()
         self._wire(context)
@@ -98,18 +98,20 @@ class ExplorePage(PageWidget):
         layout.addWidget(columns)
 
     def _wire(self, context: PageContext) -> None:
-        session, wiring = context.session, context.wiring
+        session, bindings = context.session, context.bindings
         for panel in (self.particles, self.fit, self.coarsening, self.loss):
-            wiring.edit(panel)
-        wiring.refresh("particles", lambda: self.particles.set_entries(session.particles), holds=True)
-        wiring.refresh(
+            bindings.edit(panel)
+        bindings.refresh(
+            "particles", lambda: self.particles.set_entries(session.particles), keeps_particles=True
+        )
+        bindings.refresh(
             "particles choices", lambda: self.triptych.show_particle(session.selected), ("selected",)
         )
-        wiring.refresh("fit", self._show_star_point)
-        wiring.refresh("fit choices", self._show_findings, ("l_max",), slow=True)
-        wiring.refresh("surface", self._show_fit)
-        wiring.refresh("coarsening", self._show_coarsening)
-        self.plots.wire(session, wiring)
+        bindings.refresh("fit", self._show_star_point)
+        bindings.refresh("fit choices", self._show_findings, ("l_max",), slow=True)
+        bindings.refresh("surface", self._show_fit)
+        bindings.refresh("coarsening", self._show_coarsening)
+        self.plots.wire(session, bindings)
 
     def _set_section(self, shown: bool) -> None:
         self.triptych.sections.set_shown(shown)
@@ -117,7 +119,7 @@ class ExplorePage(PageWidget):
             self.triptych.cut_across(self.triptych.sections.direction)
         self.plots.show_section(shown)
 
-    def _whisper(self, words: str) -> None:
+    def _show_status(self, words: str) -> None:
         window = self.window()
         if isinstance(window, QMainWindow):
             window.statusBar().showMessage(words)

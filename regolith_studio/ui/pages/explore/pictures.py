@@ -17,11 +17,11 @@ from PySide6.QtWidgets import (
 
 from regolith_studio.jobs.events import Job
 from regolith_studio.messages import N_
-from regolith_studio.scene.animating import animate, draw_figure, turn
 from regolith_studio.scene.figure import view_titles
+from regolith_studio.scene.picture_jobs import animate, draw_figure, turn
 from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.translation import tr
-from regolith_studio.ui.views.triptych import Triptych
+from regolith_studio.ui.views.three_views import ThreeViews
 from regolith_studio.ui.widgets.combo_box import ChoiceBox
 
 MAX_SCALE = 6
@@ -50,7 +50,7 @@ class PictureExport(QObject):
         The views.
     """
 
-    def __init__(self, context: PageContext, triptych: Triptych, parent: QWidget) -> None:
+    def __init__(self, context: PageContext, triptych: ThreeViews, parent: QWidget) -> None:
         super().__init__(parent)
         self._context, self._triptych, self._window = context, triptych, parent
         self._kind = ""

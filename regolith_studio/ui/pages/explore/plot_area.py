@@ -5,6 +5,7 @@ from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QSplitter
 
 from regolith_studio.session.session import Session
+from regolith_studio.ui.bindings import Bindings
 from regolith_studio.ui.layout import tabs
 from regolith_studio.ui.pages.explore.section_panel import SectionPanel
 from regolith_studio.ui.panels.descriptor_table import DescriptorTablePanel
@@ -13,8 +14,7 @@ from regolith_studio.ui.panels.loss_curve import LossCurvePanel
 from regolith_studio.ui.panels.spectrum import SpectrumPanel
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import tr
-from regolith_studio.ui.views.triptych import Triptych
-from regolith_studio.ui.wiring import Wiring
+from regolith_studio.ui.views.three_views import ThreeViews
 
 LETTERS = 48
 """Width in digits below which both groups become one."""
@@ -23,7 +23,7 @@ LETTERS = 48
 class PlotArea(QSplitter):
     """Two groups of tabs side by side, or one group in narrow windows."""
 
-    def __init__(self, triptych: Triptych) -> None:
+    def __init__(self, triptych: ThreeViews) -> None:
         super().__init__(Qt.Orientation.Horizontal)
         self.setChildrenCollapsible(False)
         self.setHandleWidth(7)
@@ -78,7 +78,7 @@ class PlotArea(QSplitter):
         elif self.left.currentWidget() is self.section:
             self.left.setCurrentIndex(self._before)
 
-    def wire(self, session: Session, wiring: Wiring) -> None:
+    def wire(self, session: Session, bindings: Bindings) -> None:
         """Connect the plots with the results of the session."""
 
         def errors() -> None:
@@ -87,7 +87,9 @@ class PlotArea(QSplitter):
         def spectrum() -> None:
             self.spectrum.show_results(session.results, session.choices)
 
-        wiring.refresh("descriptors coarsening choices", errors, ("selected", "target"), slow=True)
-        wiring.refresh("descriptors coarsening", lambda: self.table.show_results(session.results), slow=True)
-        wiring.refresh("coarsening", lambda: self.loss_curve.show_results(session.results), slow=True)
-        wiring.refresh("fit choices", spectrum, ("l_max",), slow=True)
+        bindings.refresh("descriptors coarsening choices", errors, ("selected", "target"), slow=True)
+        bindings.refresh(
+            "descriptors coarsening", lambda: self.table.show_results(session.results), slow=True
+        )
+        bindings.refresh("coarsening", lambda: self.loss_curve.show_results(session.results), slow=True)
+        bindings.refresh("fit choices", spectrum, ("l_max",), slow=True)

@@ -4,11 +4,11 @@ from PySide6.QtWidgets import QCheckBox, QHBoxLayout, QVBoxLayout, QWidget
 
 from regolith_studio.geometry.cross_section import CrossSection
 from regolith_studio.messages import N_
-from regolith_studio.scene.sectioning import DIRECTIONS
+from regolith_studio.scene.clipping import DIRECTIONS
 from regolith_studio.scene.shapes import LABELS, NAMES, PARTICLE
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import tr
-from regolith_studio.ui.views.triptych import Triptych
+from regolith_studio.ui.views.three_views import ThreeViews
 from regolith_studio.ui.widgets.combo_box import ChoiceBox
 from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec
 from regolith_studio.ui.widgets.number_text import grouped_number
@@ -30,7 +30,7 @@ PLACE = NumberSpec(
 class SectionPanel(QWidget):
     """Controls of the section plane, and the outlines below."""
 
-    def __init__(self, triptych: Triptych) -> None:
+    def __init__(self, triptych: ThreeViews) -> None:
         super().__init__()
         self.setObjectName("section")
         self._triptych, self._sections = triptych, triptych.sections

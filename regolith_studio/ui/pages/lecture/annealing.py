@@ -11,8 +11,8 @@ from PySide6.QtWidgets import QLabel, QSplitter, QVBoxLayout, QWidget
 from regolith_studio.jobs.lecture_jobs import AnnealingLesson, AnnealingStep
 from regolith_studio.messages import N_
 from regolith_studio.scene import surfaces
-from regolith_studio.scene.comparing import OTHER, show_other
-from regolith_studio.scene.moves import show_move
+from regolith_studio.scene.comparison import OTHER, show_other
+from regolith_studio.scene.lecture_scenes import show_move
 from regolith_studio.scene.shapes import FIT, SceneShape
 from regolith_studio.ui.layout import side_by_side, stacked
 from regolith_studio.ui.pages.lecture import texts

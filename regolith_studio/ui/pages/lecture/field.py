@@ -7,9 +7,9 @@ from PySide6.QtWidgets import QPushButton, QVBoxLayout, QWidget
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.jobs.events import Job
 from regolith_studio.jobs.lecture_jobs import DrawnField, draw_field_later
-from regolith_studio.scene.fields import show_field
+from regolith_studio.scene.lecture_scenes import show_field
 from regolith_studio.shape_models.materials import materials
-from regolith_studio.ui.following import Following
+from regolith_studio.ui.latest_job import LatestJob
 from regolith_studio.ui.layout import side_by_side
 from regolith_studio.ui.pages.lecture import texts
 from regolith_studio.ui.theme import Theme, current_theme
@@ -38,7 +38,7 @@ class FieldView(QWidget):
 
     seedChanged = Signal(int)  # noqa: N815
 
-    def __init__(self, kind: str, following: Following) -> None:
+    def __init__(self, kind: str, following: LatestJob) -> None:
         super().__init__()
         self.setObjectName("lesson_field")
         self._theme = current_theme()
@@ -91,7 +91,7 @@ class FieldView(QWidget):
         self.formula.set_lines(*texts.field_lines(amplitudes.tolist()))
         self._unframed |= again
         seed = self.seed
-        self._following.want(
+        self._following.submit(
             Job(draw_field_later, (self.material.value(), amplitudes, seed)),
             lambda drawn: self._take(drawn, amplitudes, seed),
             self.sentence.setText,

@@ -10,7 +10,7 @@ from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QTabWidget, QVBo
 from regolith_studio.jobs.events import Failed, Job
 from regolith_studio.jobs.lecture_jobs import trace_annealing, trace_degrees
 from regolith_studio.session.results import ParticleEntry
-from regolith_studio.ui.following import Following
+from regolith_studio.ui.latest_job import LatestJob
 from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.pages.lecture.annealing import AnnealingView
 from regolith_studio.ui.pages.lecture.degrees import DegreesView
@@ -41,7 +41,7 @@ class LecturePage(PageWidget):
     def build(self) -> None:
         context = self._context
         views = context.views
-        following = Following(context, tr("Drawing particles"), "field")
+        following = LatestJob(context, tr("Drawing particles"), "field")
         self.annealing, self.degrees = AnnealingView(views), DegreesView(views)
         self.field = FieldView(views, following)
         for lesson in (self.annealing, self.degrees, self.field):
@@ -59,8 +59,8 @@ class LecturePage(PageWidget):
         self.tabs.currentChanged.connect(self._turn)
         self.another.clicked.connect(self.draw_another)
         self.particle.currentIndexChanged.connect(self._select)
-        context.wiring.refresh("particles choices", self._show_particles, ("selected",))
-        context.wiring.refresh("particles choices fit surface", self._fill, slow=True)
+        context.bindings.refresh("particles choices", self._show_particles, ("selected",))
+        context.bindings.refresh("particles choices fit surface", self._fill, slow=True)
 
     # --- the page of the window ----------------------------------------------------------------
 

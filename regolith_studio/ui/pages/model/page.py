@@ -28,7 +28,7 @@ from regolith_studio.session.provenance import VirtualSource
 from regolith_studio.shape_models.protocol import FittedModel
 from regolith_studio.shape_models.sample import Sample
 from regolith_studio.shape_models.spectrum_sliders import can_be_edited, relative_amplitudes, with_amplitudes
-from regolith_studio.ui.following import Following
+from regolith_studio.ui.latest_job import LatestJob
 from regolith_studio.ui.layout import padded, scrolled_column, side_by_side, stacked, tabs
 from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.pages.model.controls import DrawControls, SourceControls, order_from
@@ -62,10 +62,14 @@ class ModelPage(PageWidget):
         self._model: FittedModel | None = None
         self._drawn: GenerationResult | None = None
         self._live_seed = 0
-        self._following = Following(context, tr("Drawing particles"), "live")
+        self._following = LatestJob(context, tr("Drawing particles"), "live")
 
     def build(self) -> None:
-        views, wiring, surroundings = self._context.views, self._context.wiring, current_theme().surroundings
+        views, bindings, surroundings = (
+            self._context.views,
+            self._context.bindings,
+            current_theme().surroundings,
+        )
         self.source = SourceControls()
         self.drawing = DrawControls()
         view = make_view(views, surroundings)
@@ -76,8 +80,8 @@ class ModelPage(PageWidget):
         self.evaluation = EvaluationPanel()
         self._place()
         self._connect()
-        wiring.refresh("particles", self._show_sources)
-        wiring.refresh("tasks", self._show_tasks, slow=True)
+        bindings.refresh("particles", self._show_sources)
+        bindings.refresh("tasks", self._show_tasks, slow=True)
 
     # --- the page of the window ----------------------------------------------------------------
 
@@ -265,7 +269,7 @@ class ModelPage(PageWidget):
         if self._model is None or fitted is None:
             self.live.show_mesh(None)
             return
-        self._following.want(
+        self._following.submit(
             Job(draw_live, (self._model, self._live_seed)),
             lambda mesh: self._show_live(fitted, mesh, again),
             lambda sentence: self.live.frame.set_texts(tr(DRAWN), sentence),

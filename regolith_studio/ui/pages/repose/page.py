@@ -68,7 +68,7 @@ class ReposePage(PageWidget):
         self._later.timeout.connect(self._preview)
         self._place()
         self._connect()
-        self._context.wiring.refresh("dataset_folder", self._take_dataset)
+        self._context.bindings.refresh("dataset_folder", self._take_dataset)
         self.setup.show_consequences([tr("Open a dataset, or make one from the open particles.")])
         self._list_runs()
 

@@ -11,7 +11,7 @@ from regolith_studio.dataset.parameters import LiftingCylinderTest
 from regolith_studio.dem.snapshot import ParticleState, read_particle_state
 from regolith_studio.errors import FileError
 from regolith_studio.geometry.arrays import FloatArray
-from regolith_studio.scene import heap
+from regolith_studio.scene import instancing
 from regolith_studio.scene.cameras import framing_pose
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import tr
@@ -75,7 +75,7 @@ class RunPlayer(QWidget):
         if fresh:
             widget = self.frame.view.widget
             aspect = max(0.2, widget.width() / max(1, widget.height()))
-            corners = heap.framing_corners(test.diameter, test.height)
+            corners = instancing.framing_corners(test.diameter, test.height)
             self.frame.view.set_pose(framing_pose(corners, "isometric", aspect, 0.95))
 
     def show_moment(self, pile: ParticleState, title: str, detail: str = "") -> None:
@@ -154,8 +154,8 @@ class RunPlayer(QWidget):
         reach = float(np.clip(1.05 * spread, 1.3 * self._test.diameter, 2.2 * self._test.diameter))
 
         def fill(plotter: object) -> None:
-            heap.show_heap(plotter, self._shapes, pile, self._spheres)
-            heap.show_apparatus(
+            instancing.show_heap(plotter, self._shapes, pile, self._spheres)
+            instancing.show_apparatus(
                 plotter, pile, self._test.diameter, self._test.height, reach, self._theme.surroundings
             )
 

@@ -46,7 +46,7 @@ class SamplePage(PageWidget):
         self._faults: dict[str, FloatArray] = {}
 
     def build(self) -> None:
-        wiring = self._context.wiring
+        bindings = self._context.bindings
         self.filter.setObjectName("sample_filter")
         self.filter.setAccessibleName(tr("Filter of the table"))
         self.filter.setPlaceholderText(tr("Filter: words and comparisons, such as  flat S<0.8 AR>1.5"))
@@ -61,8 +61,8 @@ class SamplePage(PageWidget):
         self._camera = CameraLink([self.frame.view])
         self._place()
         self._connect()
-        wiring.refresh("particles", self._show_particles, slow=True, holds=True)
-        wiring.refresh("choices", self._show_current, ("selected",))
+        bindings.refresh("particles", self._show_particles, slow=True, keeps_particles=True)
+        bindings.refresh("choices", self._show_current, ("selected",))
 
     def set_theme(self, theme: Theme) -> None:
         self.table.model_.set_theme(theme)

@@ -133,8 +133,8 @@ class VolumeDialog(QDialog):
             for field, edge in zip(self.edges, header.voxel_size, strict=True):
                 field.setValue(edge)
             self.unit.setCurrentIndex(max(0, self.unit.findData(header.unit or "um")))
-        looks = tr("labels of grains") if header.kind == "labels" else tr("grey values")
-        self.kind.setItemText(0, tr("What it looks like: {looks}", looks=looks))
+        appearance = tr("labels of grains") if header.kind == "labels" else tr("grey values")
+        self.kind.setItemText(0, tr("What it looks like: {looks}", appearance=appearance))
         for entry in header.datasets:
             self.dataset.addItem(
                 f"{entry.name}, {' × '.join(map(str, entry.shape))}, {entry.dtype}", entry.name

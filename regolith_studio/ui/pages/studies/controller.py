@@ -37,8 +37,8 @@ class SweepController:
         for key, panel in panels.items():
             panel.startRequested.connect(partial(self.start, key))
             panel.frame.cancelRequested.connect(self._session.cancel)
-        context.wiring.refresh("particles", self._follow_particles)
-        context.wiring.refresh("tasks choices", self._refresh, slow=True)
+        context.bindings.refresh("particles", self._follow_particles)
+        context.bindings.refresh("tasks choices", self._refresh, slow=True)
 
     @property
     def results(self) -> Mapping[str, CoarseningStudy]:

@@ -45,7 +45,7 @@ class StudiesPage(PageWidget):
         self._drawn: tuple[list[str], list[str]] = [], []
 
     def build(self) -> None:
-        wiring = self._context.wiring
+        bindings = self._context.bindings
         self.lmax_study = LmaxStudyPanel()
         self.coarsening_study = CoarseningStudyPanel()
         self.gallery, self.bar = GalleryPanel(), LossSelector()
@@ -59,9 +59,9 @@ class StudiesPage(PageWidget):
         self._wire(Kind.COARSENING_STUDY, self.coarsening_study)
         self.gallery.frame.startRequested.connect(self.draw_gallery)
         self.gallery.frame.cancelRequested.connect(self._session.cancel)
-        wiring.refresh("tasks", self._show_gallery_task, slow=True)
-        wiring.refresh("particles", self._name_gallery_button)
-        wiring.refresh("choices", self._show_l_max, ("l_max",), slow=True)
+        bindings.refresh("tasks", self._show_gallery_task, slow=True)
+        bindings.refresh("particles", self._name_gallery_button)
+        bindings.refresh("choices", self._show_l_max, ("l_max",), slow=True)
 
     def set_theme(self, theme: Theme) -> None:
         for part in (self.lmax_study, self.coarsening_study):
@@ -155,7 +155,7 @@ class StudiesPage(PageWidget):
         )
 
     def _wire(self, kind: Kind, panel: LmaxStudyPanel | CoarseningStudyPanel) -> None:
-        session, wiring = self._session, self._context.wiring
+        session, bindings = self._session, self._context.bindings
 
         def show() -> None:
             panel.show_study(getattr(session.results, kind.value), kind.value in session.results.outdated)
@@ -165,9 +165,9 @@ class StudiesPage(PageWidget):
 
         panel.frame.startRequested.connect(partial(self.start, kind))
         panel.frame.cancelRequested.connect(session.cancel)
-        wiring.refresh(kind.value, show, slow=True)
-        wiring.refresh("tasks", tasks, slow=True)
-        wiring.refresh("particles", lambda: panel.frame.set_count(len(session.particles)))
+        bindings.refresh(kind.value, show, slow=True)
+        bindings.refresh("tasks", tasks, slow=True)
+        bindings.refresh("particles", lambda: panel.frame.set_count(len(session.particles)))
 
     def _show_l_max(self) -> None:
         self.lmax_study.show_l_max(self._session.choices.l_max)

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from regolith_studio.geometry.arrays import BoolArray, FloatArray
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.scene import palette, surfaces
-from regolith_studio.scene.palette import Surroundings
+from regolith_studio.scene.palette import ThemeColors
 
 BOX = "bounding_box"
 STAR_POINT = "star_point"
@@ -23,7 +23,7 @@ STAR_SHARE = 0.02
 """Radius of the ball at the star point, as a share of the particle's size."""
 
 
-def show_box(plotter: Any, corners: FloatArray | None, surroundings: Surroundings = palette.LIGHT) -> None:
+def show_box(plotter: Any, corners: FloatArray | None, surroundings: ThemeColors = palette.LIGHT) -> None:
     """The twelve edges of a box.
 
     Parameters
@@ -41,7 +41,7 @@ def show_box(plotter: Any, corners: FloatArray | None, surroundings: Surrounding
 
 
 def show_star_point(
-    plotter: Any, point: ArrayLike | None, size: float = 1.0, surroundings: Surroundings = palette.LIGHT
+    plotter: Any, point: ArrayLike | None, size: float = 1.0, surroundings: ThemeColors = palette.LIGHT
 ) -> None:
     """A small ball where the radius function begins, and the surface about it translucent.
 

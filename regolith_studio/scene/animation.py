@@ -1,17 +1,50 @@
-"""Particle, fit and polyhedron turning side by side, as an animated file."""
+"""Animated files: GIF, WebP or a sequence of PNG files from frames, and the turntable of several shapes."""
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
 import pyvista as pv
+from PIL import Image
 
-from regolith_studio.scene import annotations, cameras, palette, stage, surfaces
+from regolith_studio.errors import InputError
+from regolith_studio.scene import annotations, cameras, palette, plotter_setup, surfaces
 from regolith_studio.scene.cameras import CameraPose
 from regolith_studio.scene.figure import Picture
 from regolith_studio.scene.motions import TURN, orbited
-from regolith_studio.scene.moving_picture import save_animation
 from regolith_studio.scene.shapes import LABELS, SceneShape, show_shape
+
+KINDS = (".gif", ".webp", ".png")
+
+
+def save_animation(frames: Sequence[Picture], seconds: Sequence[float], path: Path) -> None:
+    """Write frames of one size that follow each other for ever; PNG files are numbered from 000.
+
+    Parameters
+    ----------
+    seconds
+        How long each frame is seen.
+
+    Raises
+    ------
+    InputError
+        If the ending of the file is none of :data:`KINDS`.
+    """
+    kind = path.suffix.lower()
+    if kind not in KINDS:
+        raise InputError(f"Animations are written as {' or '.join(KINDS)}, not as {kind or 'that'}.")
+    images = [Image.fromarray(frame[..., :3]) for frame in frames]
+    if kind == ".png":
+        for number, image in enumerate(images):
+            image.save(path.with_name(f"{path.stem}-{number:03d}.png"))
+        return
+    durations = [round(1000 * each) for each in seconds]
+    if kind == ".gif":
+        # One palette for all frames: else the background flickers from frame to frame.
+        colours = images[-1].quantize(256, method=Image.Quantize.MEDIANCUT)
+        images = [image.quantize(palette=colours, dither=Image.Dither.NONE) for image in images]
+    images[0].save(path, save_all=True, append_images=images[1:], duration=durations, loop=0)
+
 
 SIZE = (380, 360)
 """Width and height of one body in pixels."""
@@ -47,7 +80,7 @@ def _pictures(
     shapes: Sequence[SceneShape], pose: CameraPose | None, frames: int, scale: int
 ) -> Iterator[Picture]:
     width, height = (scale * each for each in SIZE)
-    stage.choose_off_screen_window()
+    plotter_setup.choose_off_screen_window()
     plotter = pv.Plotter(
         off_screen=True, shape=(1, len(shapes)), window_size=[len(shapes) * width, height], border=False
     )
@@ -57,7 +90,7 @@ def _pictures(
         bars = []
         for column, shape in enumerate(shapes):
             plotter.subplot(0, column)
-            stage.set_stage(plotter, palette.PAPER)
+            plotter_setup.set_stage(plotter, palette.PAPER)
             show_shape(plotter, shape, palette.PAPER)
             surfaces.widen_lines(plotter, scale)
             annotations.show_title(plotter, LABELS[shape.name], size=10 * scale)

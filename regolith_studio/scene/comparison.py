@@ -1,16 +1,76 @@
-"""The wipe: a line across the picture, one body to its left and another to its right."""
+"""Overlay and wipe: another shape over or beside the one that is shown, and both clipped by a plane."""
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 import pyvista as pv
 from vtkmodules.vtkCommonDataModel import vtkPlane
 
-from regolith_studio.scene import palette
+from regolith_studio.geometry.cross_section import CrossSection
+from regolith_studio.scene import clipping, overlays, palette
 from regolith_studio.scene.annotations import before_each_picture, flat_actor
 from regolith_studio.scene.cameras import pose_of
-from regolith_studio.scene.palette import Surroundings
-from regolith_studio.scene.sight import Sight
+from regolith_studio.scene.clipping import SectionPlane
+from regolith_studio.scene.palette import ThemeColors
+from regolith_studio.scene.projection import Projection
+from regolith_studio.scene.shapes import MATERIALS, SceneShape, show_shape
+from regolith_studio.scene.surfaces import OUTLINE, SURFACE
+
+OTHER = "other_"
+"""Layer of the body that is compared with."""
+VEIL = 0.28
+"""Opacity of a body over another."""
+
+
+def show_other(
+    plotter: Any, other: SceneShape | None, overlay: bool, surroundings: ThemeColors = palette.LIGHT
+) -> None:
+    """The body that is compared with, as a veil or solid; or none."""
+    show_shape(plotter, other, surroundings, OTHER, VEIL if overlay else 1.0)
+
+
+def show_cuts(
+    plotter: Any,
+    own: str,
+    other: str,
+    cuts: Mapping[str, CrossSection],
+    colours: Mapping[str, str],
+) -> None:
+    """Fill the cuts of the bodies that are shown, and draw the outlines of all.
+
+    Parameters
+    ----------
+    own, other
+        Names of the bodies, empty for none.
+    cuts
+        By the name of the body.
+    colours
+        Of the outlines.
+    """
+    for name, layer in ((own, ""), (other, OTHER)):
+        cut = cuts.get(name) if name else None
+        clipping.show_cap(plotter, cut, MATERIALS[name].colour if name else "", layer)
+    for name, colour in colours.items():
+        clipping.show_cut(plotter, name, cuts.get(name), colour)
+
+
+def arrange(
+    plotter: Any, divider: "Divider", wipe: bool, overlay: bool, section: SectionPlane | None
+) -> None:
+    """Clip everything that is shown by the line of the wipe and by the plane of the section.
+
+    With overlay and wipe together the veil begins at the line.
+    """
+    cutting = [section.as_clip()] if section is not None else []
+    own = [divider.left] if wipe and not overlay else []
+    other = [divider.right] if wipe else []
+    divider.set_shown(wipe)
+    clip(plotter, (SURFACE, OUTLINE, overlays.HIDDEN), *cutting, *own)
+    clip(plotter, (clipping.CAP,), *own)
+    clip(plotter, (OTHER + SURFACE, OTHER + OUTLINE), *cutting, *other)
+    clip(plotter, (OTHER + clipping.CAP,), *other)
+
 
 HANDLE = 9.0
 """Half the height of the handle in pixels."""
@@ -27,7 +87,7 @@ class Divider:
         Whose ink it is drawn with.
     """
 
-    def __init__(self, plotter: Any, surroundings: Surroundings = palette.LIGHT) -> None:
+    def __init__(self, plotter: Any, surroundings: ThemeColors = palette.LIGHT) -> None:
         self._plotter, self._renderer = plotter, plotter.renderer
         self.share = 0.5
         self.left, self.right = vtkPlane(), vtkPlane()
@@ -39,7 +99,7 @@ class Divider:
         self.set_shown(False)
         self._tag = before_each_picture(self._renderer, self)
 
-    def set_ink(self, surroundings: Surroundings) -> None:
+    def set_ink(self, surroundings: ThemeColors) -> None:
         """Draw with another ink."""
         for actor in self._actors:
             actor.GetProperty().SetColor(*pv.Color(surroundings.ink).float_rgb)
@@ -59,7 +119,7 @@ class Divider:
         width, height = self._renderer.GetSize()
         if not (width and height and self.shown):
             return
-        sight = Sight(pose_of(self._plotter), width, height)
+        sight = Projection(pose_of(self._plotter), width, height)
         x = self.share * width
         place, _ = sight.ray(x, height / 2)
         right = sight.axes[0]

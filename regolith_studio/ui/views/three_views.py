@@ -13,23 +13,23 @@ from regolith_studio.geometry.arrays import BoolArray, FloatArray
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.oriented_box import minimum_volume_box
 from regolith_studio.harmonics.visibility import hidden_faces
-from regolith_studio.scene import extras, surfaces
+from regolith_studio.scene import overlays, surfaces
+from regolith_studio.scene.projection import Projection
 from regolith_studio.scene.shapes import FIT, NAMES, PARTICLE, POLYHEDRON, SceneShape
-from regolith_studio.scene.sight import Sight
 from regolith_studio.session.results import ParticleEntry, Results
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.views.camera_link import CameraLink
 from regolith_studio.ui.views.comparison import COMPARE, Comparison, partners_of
-from regolith_studio.ui.views.distances import Distances, Follow
-from regolith_studio.ui.views.facet_pointer import FacetPointer
+from regolith_studio.ui.views.distance_worker import Distances, Follow
+from regolith_studio.ui.views.facet_hover import FacetPointer
 from regolith_studio.ui.views.factory import make_view
 from regolith_studio.ui.views.sections import Sections
 from regolith_studio.ui.views.snapshot import snapshot
 from regolith_studio.ui.views.view_frame import ViewFrame
 
 
-class Triptych(QSplitter):
+class ThreeViews(QSplitter):
     """Three framed views under linked cameras; ``whispered`` tells what the mouse points at.
 
     Parameters
@@ -40,7 +40,7 @@ class Triptych(QSplitter):
         Does in the background what must be measured before it is drawn.
     """
 
-    whispered = Signal(str)
+    hovered = Signal(str)
 
     def __init__(self, kind: str, follow: Follow, parent: QWidget | None = None) -> None:
         super().__init__(Qt.Orientation.Horizontal, parent)
@@ -66,7 +66,7 @@ class Triptych(QSplitter):
         self._hidden: BoolArray | None = None
         self._distances = Distances(follow, self)
         self._distances.measured.connect(self._draw_fit)
-        self._distances.refused.connect(self._whisper)
+        self._distances.refused.connect(self._show_status)
         self.sections = Sections(self)
         self.comparison = Comparison(self.frames, self.sections)
         self.pointer = FacetPointer(
@@ -74,7 +74,7 @@ class Triptych(QSplitter):
             lambda: self._shapes.get(POLYHEDRON),
             lambda: self._theme.surroundings,
             partial(self.comparison.is_seen, POLYHEDRON),
-            self._whisper,
+            self._show_status,
         )
         self.set_theme(self._theme)
         self._empty_titles()
@@ -165,7 +165,7 @@ class Triptych(QSplitter):
     def cut_across(self, direction: str) -> None:
         """Cut the bodies across a direction and take the half away that is nearer to the eye."""
         view = self.views[PARTICLE]
-        towards = -Sight(view.pose, 1, 1).axes[2]
+        towards = -Projection(view.pose, 1, 1).axes[2]
         self.sections.set_direction(direction, towards)
 
     def enlarge(self, name: str) -> None:
@@ -214,9 +214,9 @@ class Triptych(QSplitter):
         for view in self.views.values():
             view.release()
 
-    def _whisper(self, words: str) -> None:
-        self.frames[POLYHEDRON].whisper(words)
-        self.whispered.emit(words)
+    def _show_status(self, words: str) -> None:
+        self.frames[POLYHEDRON].show_status(words)
+        self.hovered.emit(words)
 
     def _surface(self, name: str) -> Mesh | None:
         shape = self._shapes.get(name)
@@ -258,13 +258,13 @@ class Triptych(QSplitter):
         corners = minimum_volume_box(body).corners if boxed and body is not None else None
         if corners is not None and shape is not None:
             corners = corners + shape.origin
-        extras.show_box(plotter, corners, ink)
+        overlays.show_box(plotter, corners, ink)
         seen = self._extras.get("star_point") and shape is not None and name != POLYHEDRON
         particle = self._surface(PARTICLE)
         size = float(np.ptp(particle.vertices, axis=0).max()) if particle is not None else 1.0
-        extras.show_star_point(plotter, self._star_point if seen else None, size, ink)
+        overlays.show_star_point(plotter, self._star_point if seen else None, size, ink)
         if name == PARTICLE:
-            extras.show_hidden(plotter, particle, self._hidden_faces() if seen else None)
+            overlays.show_hidden(plotter, particle, self._hidden_faces() if seen else None)
 
     def _hidden_faces(self) -> BoolArray | None:
         """Faces of the particle that the star point cannot see; looked for once a fit."""

@@ -15,7 +15,7 @@ class _Wish:
     refuse: Callable[[str], None]
 
 
-class Following:
+class LatestJob:
     """Does one piece of work at a time in the background, and leaves out what was wished for in between.
 
     A lane alone would stop what is under way: who drags without a rest would see nothing.
@@ -35,7 +35,7 @@ class Following:
         self._busy = False
         self._next: _Wish | None = None
 
-    def want(self, job: Job, show: Callable[[Any], None], refuse: Callable[[str], None]) -> None:
+    def submit(self, job: Job, show: Callable[[Any], None], refuse: Callable[[str], None]) -> None:
         """Do this as soon as what is under way has ended, unless something newer is wanted by then.
 
         Parameters

@@ -6,9 +6,9 @@ import numpy as np
 from PySide6.QtCore import Qt
 
 from regolith_studio.geometry.arrays import FloatArray
-from regolith_studio.scene.divider import Divider
-from regolith_studio.scene.sectioning import SectionPlane
-from regolith_studio.scene.sight import Sight
+from regolith_studio.scene.clipping import SectionPlane
+from regolith_studio.scene.comparison import Divider
+from regolith_studio.scene.projection import Projection
 
 REACH = 8.0
 """Pixels from what is drawn at which it is still held."""
@@ -30,11 +30,11 @@ class DividerGrip:
     def __init__(self, divider: Divider, moved: Callable[[float], None]) -> None:
         self._divider, self._moved = divider, moved
 
-    def holds(self, sight: Sight, x: float, y: float) -> bool:  # noqa: ARG002
+    def keeps_particles(self, sight: Projection, x: float, y: float) -> bool:  # noqa: ARG002
         """Whether the line is under the mouse."""
         return self._divider.shown and abs(x - self._divider.share * sight.width) <= REACH
 
-    def pull(self, sight: Sight, right: float, down: float) -> None:  # noqa: ARG002
+    def pull(self, sight: Projection, right: float, down: float) -> None:  # noqa: ARG002
         """Follow the mouse."""
         share = self._divider.share + right / max(sight.width, 1.0)
         self._moved(min(max(share, EDGE), 1.0 - EDGE))
@@ -60,7 +60,7 @@ class PlaneGrip:
     ) -> None:
         self._plane, self._moved = plane, moved
 
-    def holds(self, sight: Sight, x: float, y: float) -> bool:
+    def keeps_particles(self, sight: Projection, x: float, y: float) -> bool:
         """Whether the frame is under the mouse."""
         known = self._plane()
         if known is None:
@@ -69,7 +69,7 @@ class PlaneGrip:
         following = np.roll(corners, -1, axis=0)
         return _distance(np.array([x, y]), corners, following) <= REACH
 
-    def pull(self, sight: Sight, right: float, down: float) -> None:
+    def pull(self, sight: Projection, right: float, down: float) -> None:
         """Follow the mouse along the normal."""
         known = self._plane()
         if known is not None:

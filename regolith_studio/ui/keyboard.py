@@ -1,11 +1,21 @@
-"""A frame about what has the keys, for those who use the keyboard: as ``:focus-visible`` on the web."""
+"""Keyboard: a visible focus, keys of the window in number boxes, and undo while typing."""
 
 from typing import cast
 
 import shiboken6
 from PySide6.QtCore import QEvent, QObject, Qt
-from PySide6.QtGui import QGuiApplication, QKeyEvent, QWindow
-from PySide6.QtWidgets import QAbstractButton, QApplication, QScrollArea, QTabBar, QTableView, QWidget
+from PySide6.QtGui import QGuiApplication, QKeyEvent, QKeySequence, QWindow
+from PySide6.QtWidgets import (
+    QAbstractButton,
+    QAbstractSpinBox,
+    QApplication,
+    QDoubleSpinBox,
+    QScrollArea,
+    QSpinBox,
+    QTabBar,
+    QTableView,
+    QWidget,
+)
 
 FOCUSED = "focused"
 """Property that the style sheet asks for; parts around a widget that have it are framed with it."""
@@ -84,7 +94,7 @@ _BY_KEYS = Qt.WidgetAttribute.WA_KeyboardFocusChange
 
 
 def _walks(event: QKeyEvent) -> bool:
-    """Whether who presses this key looks at what has the focus."""
+    """True for keys that move the focus."""
     if event.key() in (Qt.Key.Key_Tab, Qt.Key.Key_Backtab):
         return True
     return event.key() not in NOT_YET and not event.modifiers() & CHORDS
@@ -107,3 +117,45 @@ def _set(widget: QWidget, focused: bool) -> None:
     widget.style().unpolish(widget)
     widget.style().polish(widget)
     widget.update()
+
+
+_KEYS = (QKeySequence.StandardKey.Undo, QKeySequence.StandardKey.Redo)
+
+
+class UndoKeys(QObject):
+    """Watches the number box that has the focus.
+
+    Its line would take the keys for itself, also where it has nothing to undo, and undo of the window would
+    not be reached from where its choices are made.
+    """
+
+    def __init__(self, parent: QObject) -> None:
+        super().__init__(parent)
+        self._box: QWidget | None = None
+        cast(QApplication, QApplication.instance()).focusChanged.connect(self._move)
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
+        if event.type() == QEvent.Type.ShortcutOverride and isinstance(watched, QAbstractSpinBox):
+            wanted = any(cast(QKeyEvent, event).matches(key) for key in _KEYS)
+            if wanted and not is_being_typed(watched):
+                event.ignore()
+                return True
+        return super().eventFilter(watched, event)
+
+    def _move(self, _old: QWidget | None, now: QWidget | None) -> None:
+        if self._box is not None and shiboken6.isValid(self._box):
+            self._box.removeEventFilter(self)
+        self._box = now if isinstance(now, QAbstractSpinBox) else None
+        if self._box is not None:
+            self._box.installEventFilter(self)
+
+
+def is_being_typed(box: QAbstractSpinBox) -> bool:
+    """Whether a box shows another text than that of its value."""
+    if not isinstance(box, QSpinBox | QDoubleSpinBox):
+        return False
+    number = box.textFromValue(box.value())  # type: ignore[arg-type]
+    usual = f"{box.prefix()}{number}{box.suffix()}"
+    if box.value() == box.minimum():
+        usual = box.specialValueText() or usual
+    return box.text() != usual

@@ -25,7 +25,7 @@ if TYPE_CHECKING:  # what it brings is loaded when a batch runs
 TITLE = N_("Running the recipe")
 
 
-class Batches(QObject):
+class BatchRuns(QObject):
     """One batch at a time; its dialog can be closed and opened again while it runs.
 
     Parameters

@@ -15,8 +15,8 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.oriented_box import OrientedBox
 from regolith_studio.messages import N_
 from regolith_studio.scene import palette
-from regolith_studio.scene.extras import hide_named, show_named
-from regolith_studio.scene.palette import Surroundings
+from regolith_studio.scene.overlays import hide_named, show_named
+from regolith_studio.scene.palette import ThemeColors
 
 CAP = "section_cap"
 CUT = "section_cut_"
@@ -51,7 +51,7 @@ class SectionPlane:
     offset: float
 
     def as_clip(self) -> vtkPlane:
-        """For :func:`regolith_studio.scene.divider.clip`."""
+        """For :func:`regolith_studio.scene.comparison.clip`."""
         plane = vtkPlane()
         plane.SetNormal(*(-np.asarray(self.normal)))
         plane.SetOrigin(*(self.offset * np.asarray(self.normal)))
@@ -105,7 +105,7 @@ def show_cut(plotter: Any, shape: str, cut: CrossSection | None, colour: str) ->
     actor.prop.lighting = False
 
 
-def show_frame(plotter: Any, corners: FloatArray | None, surroundings: Surroundings = palette.LIGHT) -> None:
+def show_frame(plotter: Any, corners: FloatArray | None, surroundings: ThemeColors = palette.LIGHT) -> None:
     """The square that stands for the plane, or none."""
     if corners is None:
         hide_named(plotter, FRAME)

@@ -31,7 +31,7 @@ class ChoicePanel(Protocol):
     def setValue(self, value: Mapping[str, Any]) -> None: ...
 
 
-class Wiring(QObject):
+class Bindings(QObject):
     """Refreshes what has changed, not more often than can be seen, and hands choices to the session.
 
     Parameters
@@ -45,9 +45,9 @@ class Wiring(QObject):
     def __init__(self, session: Session, problem: Callable[[str], None], parent: QObject) -> None:
         super().__init__(parent)
         self._session, self._problem = session, problem
-        self._cuts: list[Callable[[], None]] = []
+        self._disconnectors: list[Callable[[], None]] = []
         self._holders: list[Callable[[], None]] = []
-        self._fast, self._slow = _Beat(FAST, self, at_once=True), _Beat(SLOW, self, at_once=False)
+        self._fast, self._slow = Throttle(FAST, self, at_once=True), Throttle(SLOW, self, at_once=False)
 
     def edit(self, panel: ChoicePanel) -> None:
         """Let a panel edit the choices it names, and show them whenever they change."""
@@ -75,7 +75,7 @@ class Wiring(QObject):
         fields: Collection[str] = (),
         *,
         slow: bool = False,
-        holds: bool = False,
+        keeps_particles: bool = False,
     ) -> None:
         """Call `action` soon after any of the events (words in one text), and now.
 
@@ -85,11 +85,12 @@ class Wiring(QObject):
             Of the choices, whose change matters to `action`; each of them if empty.
         slow
             For tables and plots.
-        holds
-            Whether `action` keeps particles, and is called by :meth:`let_go` too while nothing else is.
+        keeps_particles
+            Whether `action` keeps references to particles; :meth:`refresh_hidden` calls it while the page is
+            hidden.
         """
         beat = self._slow if slow else self._fast
-        if holds:
+        if keeps_particles:
             self._holders.append(partial(beat.run_now, action))
         for event in events.split():
             self._listen(event, lambda: beat.add(action), fields)
@@ -100,22 +101,22 @@ class Wiring(QObject):
         """Nothing waits to be refreshed, or all of it waits for :meth:`resume`."""
         return self._fast.idle and self._slow.idle
 
-    def hear(self, event: str, action: Callable[..., None]) -> None:
+    def listen(self, event: str, action: Callable[..., None]) -> None:
         """Call `action` with the arguments of an event, at once."""
         signal = getattr(self._session.events, event)
         signal.connect(action)
-        self._cuts.append(lambda: signal.disconnect(action))
+        self._disconnectors.append(lambda: signal.disconnect(action))
 
     def _listen(self, event: str, action: Callable[[], None], fields: Collection[str]) -> None:
         if event != "choices" or not fields:
-            self.hear(event, action)
+            self.listen(event, action)
             return
 
         def act_on(changed: frozenset[str]) -> None:
             if not changed.isdisjoint(fields):
                 action()
 
-        self.hear(event, act_on)
+        self.listen(event, act_on)
 
     def pause(self) -> None:
         """Refresh nothing until :meth:`resume`; what is due meanwhile is kept."""
@@ -127,22 +128,22 @@ class Wiring(QObject):
         self._fast.resume()
         self._slow.resume()
 
-    def let_go(self) -> None:
+    def refresh_hidden(self) -> None:
         """Refresh, although it is not seen, what would else keep particles that have been closed."""
         for holder in self._holders:
             holder()
 
-    def cut(self) -> None:
+    def disconnect_all(self) -> None:
         """Disconnect everything."""
         self._fast.stop()
         self._slow.stop()
-        for cut in self._cuts:
-            cut()
-        self._cuts.clear()
+        for disconnect_all in self._disconnectors:
+            disconnect_all()
+        self._disconnectors.clear()
         self._holders.clear()
 
 
-class _Beat(QObject):
+class Throttle(QObject):
     """Calls what has been added, each at most every `seconds`."""
 
     def __init__(self, seconds: float, parent: QObject, *, at_once: bool) -> None:

@@ -13,7 +13,7 @@ END_ON = 0.25
 
 
 @dataclass(frozen=True)
-class Sight:
+class Projection:
     """A camera pose and the size of the picture that it fills.
 
     Parameters

@@ -7,23 +7,22 @@ import pyvista as pv
 from regolith_studio.geometry.cross_section import cross_section
 from regolith_studio.geometry.ray_casting import radial_hits
 from regolith_studio.geometry.sphere_points import icosphere
-from regolith_studio.scene import facets, sectioning, stage, surfaces
+from regolith_studio.scene import clipping, facets, plotter_setup, surfaces
 from regolith_studio.scene.cameras import apply_pose, framing_pose, pose_of
-from regolith_studio.scene.comparing import OTHER, arrange, show_cuts, show_other
-from regolith_studio.scene.divider import Divider
+from regolith_studio.scene.clipping import SectionPlane
+from regolith_studio.scene.comparison import OTHER, Divider, arrange, show_cuts, show_other
 from regolith_studio.scene.palette import PAPER
-from regolith_studio.scene.sectioning import SectionPlane
+from regolith_studio.scene.projection import Projection
 from regolith_studio.scene.shapes import FIT, PARTICLE, POLYHEDRON, SceneShape
-from regolith_studio.scene.sight import Sight
 
 SIZE = 160
 
 
 @pytest.fixture
 def plotter():
-    stage.choose_off_screen_window()
+    plotter_setup.choose_off_screen_window()
     made = pv.Plotter(off_screen=True, window_size=[SIZE, SIZE])
-    stage.set_stage(made, PAPER)
+    plotter_setup.set_stage(made, PAPER)
     yield made
     made.close()
 
@@ -74,19 +73,19 @@ def test_that_a_section_is_as_large_as_the_cut_and_hides_the_half_before_it(plot
     cut = cross_section(ball, plane.normal, plane.offset)
     show_cuts(plotter, PARTICLE, "", {PARTICLE: cut}, {PARTICLE: "#000000"})
     arrange(plotter, divider, wipe=False, overlay=False, section=plane)
-    cap = plotter.actors[sectioning.CAP].mapper.dataset
+    cap = plotter.actors[clipping.CAP].mapper.dataset
     assert cap.area == pytest.approx(cut.area, rel=1e-5)
     assert np.allclose(cap.points[:, 1], -10.0, atol=1e-5)
     seen = picture(plotter)
     assert np.ptp(seen[70:90, 70:90].reshape(-1, 3), axis=0).max() <= 2  # flat: the cut, not the ball
     show_cuts(plotter, PARTICLE, "", {}, {PARTICLE: "#000000"})
     arrange(plotter, divider, wipe=False, overlay=False, section=None)
-    assert not plotter.actors[sectioning.CAP].GetVisibility()
+    assert not plotter.actors[clipping.CAP].GetVisibility()
     assert np.abs(picture(plotter) - seen).max() > 20
 
 
 def test_that_the_frame_of_a_section_lies_in_its_plane_and_holds_the_particle(ball):
-    corners = sectioning.frame_corners(ball, SectionPlane((0.6, 0.0, 0.8), 12.0))
+    corners = clipping.frame_corners(ball, SectionPlane((0.6, 0.0, 0.8), 12.0))
     assert np.allclose(corners @ [0.6, 0.0, 0.8], 12.0)
     assert np.linalg.norm(corners[0] - corners[1]) >= 60.0
 
@@ -102,7 +101,7 @@ def test_that_a_veil_begins_at_the_line_where_both_are_asked_for(plotter, divide
 
 @pytest.mark.parametrize("direction", ["isometric", "left", "bottom"])
 def test_that_a_point_is_seen_where_its_ray_passes(direction, ball):
-    sight = Sight(framing_pose(ball.vertices, direction), 320, 200)
+    sight = Projection(framing_pose(ball.vertices, direction), 320, 200)
     place = np.array([3.0, -7.0, 11.0])
     x, y = sight.seen(place)[0]
     start, towards = sight.ray(x, y)
@@ -110,7 +109,7 @@ def test_that_a_point_is_seen_where_its_ray_passes(direction, ball):
 
 
 def test_that_a_drag_moves_a_plane_with_the_mouse(ball):
-    sight = Sight(framing_pose(ball.vertices, "front"), 200, 200)
+    sight = Projection(framing_pose(ball.vertices, "front"), 200, 200)
     for direction, drag in (((1, 0, 0), (30, 5)), ((0, 0, 1), (5, -30)), ((0, 0, -1), (5, 30))):
         before, after = sight.seen([np.zeros(3), sight.along(direction, *drag) * np.array(direction)])
         wanted = np.array(drag) * (np.abs(np.array(direction)[[0, 2]]) > 0)
@@ -177,7 +176,7 @@ def test_that_the_pose_of_a_plotter_is_what_the_divider_follows(plotter, divider
     divider.set_shown(True)
     divider.share = 0.25
     picture(plotter)
-    sight = Sight(pose_of(plotter), SIZE, SIZE)
+    sight = Projection(pose_of(plotter), SIZE, SIZE)
     assert np.allclose(divider.right.GetNormal(), sight.axes[0])
     assert sight.seen(divider.right.GetOrigin())[0, 0] == pytest.approx(SIZE / 4)
 

@@ -7,12 +7,11 @@ from PIL import Image
 
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.sphere_points import icosphere
-from regolith_studio.scene import stage, surfaces
+from regolith_studio.scene import plotter_setup, surfaces
+from regolith_studio.scene.animation import SIZE, save_animation, turntable
 from regolith_studio.scene.cameras import apply_pose, framing_pose
 from regolith_studio.scene.figure import VIEW_SIZE, three_views
-from regolith_studio.scene.moving_picture import save_animation
 from regolith_studio.scene.shapes import FIT, PARTICLE, SceneShape
-from regolith_studio.scene.turntable import SIZE, turntable
 
 STICK = icosphere(2).moved(rotation=np.diag([40.0, 6.0, 6.0]))
 
@@ -66,13 +65,13 @@ def test_that_the_scale_bar_of_a_figure_is_true_at_any_scale(ball, cube, scale):
 
 @pytest.mark.parametrize("scale", [1, 2])
 def test_that_a_picture_without_background_covers_the_body_only(ball, scale):
-    stage.choose_off_screen_window()
+    plotter_setup.choose_off_screen_window()
     plotter = pv.Plotter(off_screen=True, window_size=[120, 100])
-    stage.set_stage(plotter)
+    plotter_setup.set_stage(plotter)
     surfaces.show_particle(plotter, ball)
     apply_pose(plotter, framing_pose(ball.vertices))
-    found = stage.thumbnail(plotter, scale, transparent=True)
-    plain = stage.thumbnail(plotter, scale)
+    found = plotter_setup.thumbnail(plotter, scale, transparent=True)
+    plain = plotter_setup.thumbnail(plotter, scale)
     plotter.close()
     assert found.shape == (100 * scale, 120 * scale, 4)
     covered = (found[..., 3] > 128).mean()

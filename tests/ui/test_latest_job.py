@@ -3,7 +3,7 @@
 import pytest
 
 from regolith_studio.jobs.events import Failed, Job
-from regolith_studio.ui.following import Following
+from regolith_studio.ui.latest_job import LatestJob
 
 
 class Bench:
@@ -33,12 +33,12 @@ def told():
 
 @pytest.fixture
 def drag(bench, told):
-    following = Following(bench, "Work", "hand")
+    following = LatestJob(bench, "Work", "hand")
 
-    def want(number):
-        following.want(Job(lambda: None, (number,)), told.append, told.append)
+    def submit(number):
+        following.submit(Job(lambda: None, (number,)), told.append, told.append)
 
-    return want
+    return submit
 
 
 def test_that_the_first_and_the_last_of_a_drag_are_shown_and_nothing_in_between(bench, drag, told):
@@ -63,14 +63,14 @@ def test_that_the_newest_wish_follows_what_has_failed_or_was_stopped(bench, drag
 
 
 def test_that_a_wish_made_while_a_result_is_shown_is_done_once(bench):
-    following, shown = Following(bench, "Work", "hand"), []
+    following, shown = LatestJob(bench, "Work", "hand"), []
 
     def show(number):
         shown.append(number)
         if number == 1:
-            following.want(Job(lambda: None, (2,)), show, shown.append)
+            following.submit(Job(lambda: None, (2,)), show, shown.append)
 
-    following.want(Job(lambda: None, (1,)), show, shown.append)
+    following.submit(Job(lambda: None, (1,)), show, shown.append)
     bench.end()
     assert len(bench.under_way) == 1
     bench.end()
@@ -78,9 +78,9 @@ def test_that_a_wish_made_while_a_result_is_shown_is_done_once(bench):
 
 
 def test_that_an_error_while_showing_does_not_end_the_following(bench, told):
-    following = Following(bench, "Work", "hand")
-    following.want(Job(lambda: None, (1,)), lambda _: 1 / 0, told.append)
-    following.want(Job(lambda: None, (2,)), told.append, told.append)
+    following = LatestJob(bench, "Work", "hand")
+    following.submit(Job(lambda: None, (1,)), lambda _: 1 / 0, told.append)
+    following.submit(Job(lambda: None, (2,)), told.append, told.append)
     with pytest.raises(ZeroDivisionError):
         bench.end()
     bench.end()

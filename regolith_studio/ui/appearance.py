@@ -8,12 +8,11 @@ from PySide6.QtWidgets import QApplication, QWidget
 
 from regolith_studio.session.preferences import Preferences
 from regolith_studio.ui.dialogs.preferences import LETTERS, PreferencesDialog
-from regolith_studio.ui.keyboard_focus import KeyboardFocus
+from regolith_studio.ui.keyboard import KeyboardFocus, UndoKeys
 from regolith_studio.ui.theme import apply_letters, choose_letters, choose_theme
-from regolith_studio.ui.undo_keys import UndoKeys
 
 
-class Looks(QObject):
+class Appearance(QObject):
     """Knows what was chosen before; letters have their size before other widgets are made.
 
     Parameters

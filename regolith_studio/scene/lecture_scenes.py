@@ -1,4 +1,4 @@
-"""One step of an annealing as a picture: the polyhedron, the other one, and the facet that was moved."""
+"""What the lecture shows: one move of the annealing, and a random field on the sphere with its particle."""
 
 from typing import Any
 
@@ -8,9 +8,11 @@ from numpy.typing import ArrayLike
 
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
-from regolith_studio.scene import palette, surfaces
-from regolith_studio.scene.extras import hide_named, show_named
-from regolith_studio.scene.palette import Surroundings
+from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.scene import annotations, palette, surfaces
+from regolith_studio.scene.overlays import hide_named, show_named
+from regolith_studio.scene.palette import ThemeColors
+from regolith_studio.scene.surfaces import smooth_surface
 
 FACET_OLD, FACET_NEW, FRAME_NEW = "moved_facet", "proposed_facet", "proposed_edges"
 LIFT = 2e-3
@@ -25,7 +27,7 @@ def show_move(
     other_facet: int | None,
     centre: ArrayLike,
     colour: str,
-    surroundings: Surroundings = palette.LIGHT,
+    surroundings: ThemeColors = palette.LIGHT,
 ) -> None:
     """Paint the facet that was moved, and draw the edges of the other polyhedron.
 
@@ -70,3 +72,41 @@ def _paint(
     polygon = pv.PolyData(np.asarray(corners + lift), faces=np.array([len(corners), *range(len(corners))]))
     actor = show_named(plotter, name, polygon, colour, opacity)
     actor.prop.lighting = False
+
+
+FIELD = "field"
+
+
+def show_field(
+    plotter: Any,
+    mesh: Mesh,
+    values: FloatArray,
+    span: float,
+    surroundings: ThemeColors = palette.LIGHT,
+    scale: str = "",
+) -> None:
+    """A surface coloured by the values at its vertices.
+
+    Parameters
+    ----------
+    values
+        Shape (n,); blue below zero, red above.
+    span
+        Value at the ends of the colour map.
+    scale
+        Format of the numbers at the scale, such as ``%.2g``; no scale if empty.
+    """
+    surface = smooth_surface(mesh)
+    surface.point_data["field"] = np.asarray(values, dtype=np.float32)
+    actor = show_named(plotter, FIELD, surface, "#ffffff")
+    actor.prop.interpolation = "Phong"
+    mapper = actor.mapper
+    reach = span if span > 0.0 else 1.0
+    mapper.lookup_table = pv.LookupTable(palette.ERROR_MAP, scalar_range=(-reach, reach))
+    mapper.scalar_range = (-reach, reach)
+    mapper.scalar_visibility = True
+    mapper.SetScalarModeToUsePointFieldData()
+    mapper.SelectColorArray("field")
+    annotations.hide_colour_scale(plotter)
+    if scale:
+        annotations.show_colour_scale(plotter, mapper, surroundings, scale)

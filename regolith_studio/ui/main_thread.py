@@ -7,7 +7,7 @@ from PySide6.QtCore import QObject, Qt, Signal
 Call = Callable[[], None]
 
 
-class Poster(QObject):
+class MainThreadInvoker(QObject):
     """``post`` may be called from any thread; the function runs soon, in order, where this object lives."""
 
     _posted = Signal(object)

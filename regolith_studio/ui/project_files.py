@@ -23,7 +23,7 @@ AUTOSAVE_SECONDS = 10
 """Between a change and the copy of it that is kept for the case of a crash."""
 
 
-class Projects(QObject):
+class ProjectFiles(QObject):
     """Knows which file the work belongs to, and whether it has changed since.
 
     Parameters

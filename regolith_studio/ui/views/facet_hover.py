@@ -6,9 +6,9 @@ import numpy as np
 
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.scene import facets
-from regolith_studio.scene.palette import Surroundings
+from regolith_studio.scene.palette import ThemeColors
+from regolith_studio.scene.projection import Projection
 from regolith_studio.scene.shapes import SceneShape
-from regolith_studio.scene.sight import Sight
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.views.protocol import SceneView
 
@@ -34,7 +34,7 @@ class FacetPointer:
         self,
         view: SceneView,
         shape: Callable[[], SceneShape | None],
-        ink: Callable[[], Surroundings],
+        ink: Callable[[], ThemeColors],
         seen: Callable[[FloatArray, float], bool],
         tell: Callable[[str], None],
     ) -> None:
@@ -51,7 +51,7 @@ class FacetPointer:
             self._view.draw(lambda plotter: facets.show_facet(plotter, None))
             self._tell("")
 
-    def _point(self, sight: Sight, x: float, y: float) -> None:
+    def _point(self, sight: Projection, x: float, y: float) -> None:
         shape = self._shape()
         if shape is None or shape.polyhedron is None:
             return

@@ -15,7 +15,7 @@ from regolith_studio.dem.snapshot import ParticleState
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.scene import palette
-from regolith_studio.scene.palette import Surroundings
+from regolith_studio.scene.palette import ThemeColors
 
 HEAP, PLATE, CYLINDER = "heap", "plate", "cylinder"
 MICROMETRES = 1e6
@@ -75,7 +75,7 @@ def show_apparatus(
     diameter: float,
     height: float,
     reach: float,
-    surroundings: Surroundings = palette.LIGHT,
+    surroundings: ThemeColors = palette.LIGHT,
 ) -> None:
     """Plate and cylinder.
 

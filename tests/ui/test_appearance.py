@@ -19,10 +19,10 @@ from PySide6.QtWidgets import (
 from regolith_studio.jobs.runners.inline import InlineRunner
 from regolith_studio.session.session import Session
 from regolith_studio.ui.app import open_window
+from regolith_studio.ui.appearance import Appearance
 from regolith_studio.ui.dialogs.preferences import LETTERS
 from regolith_studio.ui.icons import pixmap
 from regolith_studio.ui.layout import padded
-from regolith_studio.ui.looks import Looks
 from regolith_studio.ui.main_window import MainWindow
 from regolith_studio.ui.theme import (
     DARK,
@@ -44,12 +44,12 @@ def usual_looks():
 @pytest.mark.usefixtures("app", "usual_looks")
 def test_that_only_another_look_is_applied(shown, preferences):
     applied = []
-    looks = Looks(preferences, lambda: applied.append(current_theme()), shown(QWidget()))
-    looks.choose(theme="dark")
-    looks.choose(theme="dark")
-    looks.choose(language="de")
+    appearance = Appearance(preferences, lambda: applied.append(current_theme()), shown(QWidget()))
+    appearance.choose(theme="dark")
+    appearance.choose(theme="dark")
+    appearance.choose(language="de")
     assert applied == [DARK]
-    looks.choose(**{LETTERS: 120})
+    appearance.choose(**{LETTERS: 120})
     assert applied == [DARK, DARK]
     assert preferences.window["language"] == "de"
 
@@ -70,7 +70,7 @@ def test_that_letters_of_another_size_reach_every_widget_at_the_start_and_later(
     assert sizes_of_letters(window) == {round(of_system * first / 100, 1)}
     slider = window.page.loss.sliders["min_diameter"]
     for percent in (200, 80, 150):
-        window.looks.choose(**{LETTERS: percent})
+        window.appearance.choose(**{LETTERS: percent})
         app.processEvents()
         assert sizes_of_letters(window) == {round(of_system * percent / 100, 1)}
         letters = QFontMetrics(app.font())
@@ -78,7 +78,7 @@ def test_that_letters_of_another_size_reach_every_widget_at_the_start_and_later(
         assert window.page.particles.table.rowHeight(0) in (0, letters.height() + 9)
         assert slider.field.width() > letters.horizontalAdvance("-100.00")
         assert slider.label.width() >= slider.label.sizeHint().width()
-    window.looks.choose(**{LETTERS: 100})
+    window.appearance.choose(**{LETTERS: 100})
     app.setFont(usual)
 
 
@@ -96,7 +96,7 @@ def test_that_large_letters_leave_the_views_their_room(shown, preferences, app, 
     assert names == sorted(names), "no name ends in dots"
     for box in (page.coarsening.method, page.coarsening.target):
         assert box.width() >= box.sizeHint().width() - 2, box.objectName()
-    window.looks.choose(**{LETTERS: 100})
+    window.appearance.choose(**{LETTERS: 100})
     app.setFont(usual)
 
 
@@ -178,7 +178,7 @@ def test_that_a_theme_chosen_later_looks_as_one_from_the_start(shown, preference
 
     changed = opened("light")
     light = pictures_of_pages(changed, keys, wait, settled)
-    changed.looks.choose(theme="dark")
+    changed.appearance.choose(theme="dark")
     later = pictures_of_pages(changed, keys, wait, settled)
     dark = pictures_of_pages(opened("dark"), keys, wait, settled)
     for key in keys:
@@ -190,7 +190,7 @@ def test_that_a_theme_chosen_later_looks_as_one_from_the_start(shown, preference
 def test_that_another_theme_gives_no_widget_another_style(shown, preferences):
     """Qt polishes every widget of the window again when its sheet is another: a quarter of a second."""
     window = shown(MainWindow(Session(InlineRunner()), preferences, "image"))
-    window.looks.choose(theme="light")
+    window.appearance.choose(theme="light")
     told = []
 
     class Ear(QObject):
@@ -202,7 +202,7 @@ def test_that_another_theme_gives_no_widget_another_style(shown, preferences):
     ear = Ear()
     for widget in (window, *window.findChildren(QWidget)):
         widget.installEventFilter(ear)
-    window.looks.choose(theme="dark")
+    window.appearance.choose(theme="dark")
     assert told == []
     assert window.palette().window().color() == QColor(DARK.window)
 

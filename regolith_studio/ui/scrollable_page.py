@@ -7,7 +7,7 @@ SMALLEST = QSize(240, 160)
 """That the window grants a page, in pixels: a small screen must hold the whole window."""
 
 
-class Room(QScrollArea):
+class ScrollablePage(QScrollArea):
     """A page that is never squeezed, and never makes the window larger than its screen."""
 
     def __init__(self, page: QWidget) -> None:

@@ -9,7 +9,7 @@ import pyvista as pv
 from numpy.typing import NDArray
 
 from regolith_studio.scene import palette
-from regolith_studio.scene.palette import Surroundings
+from regolith_studio.scene.palette import ThemeColors
 
 Picture = NDArray[np.uint8]
 
@@ -22,7 +22,7 @@ def choose_off_screen_window() -> None:
         os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
 
 
-def set_stage(plotter: Any, surroundings: Surroundings = palette.LIGHT) -> None:
+def set_stage(plotter: Any, surroundings: ThemeColors = palette.LIGHT) -> None:
     """Background, light and projection of one plotter's active renderer; no surface yet."""
     set_background(plotter, surroundings)
     plotter.enable_parallel_projection()
@@ -31,7 +31,7 @@ def set_stage(plotter: Any, surroundings: Surroundings = palette.LIGHT) -> None:
         plotter.add_light(light)
 
 
-def set_background(plotter: Any, surroundings: Surroundings) -> None:
+def set_background(plotter: Any, surroundings: ThemeColors) -> None:
     """A gradient from the lower to the upper colour."""
     plotter.set_background(surroundings.background_low, top=surroundings.background_high, all_renderers=False)
 

@@ -12,7 +12,7 @@ from regolith_studio.session.preferences import Preferences
 LAYOUT = "layout"
 
 
-class LayoutMemory:
+class WindowState:
     """Keeps geometry and splitters in the preferences; splitters without an object name are left alone.
 
     Parameters

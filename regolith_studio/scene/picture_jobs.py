@@ -1,4 +1,4 @@
-"""Pictures and animations as jobs, drawn in a process of their own: OpenGL belongs to the window's thread."""
+"""Jobs that draw pictures and animations in a separate process: OpenGL belongs to the window's thread."""
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -10,11 +10,11 @@ from regolith_studio.harmonics.fit import HarmonicFit
 from regolith_studio.jobs.events import Job, Started, Steps
 from regolith_studio.jobs.executor import open_executor, value_of
 from regolith_studio.messages import N_
+from regolith_studio.scene.animation import turntable
 from regolith_studio.scene.cameras import CameraPose
 from regolith_studio.scene.degrees import degree_animation
 from regolith_studio.scene.figure import three_views
 from regolith_studio.scene.shapes import SceneShape
-from regolith_studio.scene.turntable import turntable
 
 LEVEL = 4
 _PROCESSES = 2
