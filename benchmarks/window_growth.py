@@ -112,7 +112,7 @@ def coarsened_and_drawn(window: Any, count: int) -> Growth:
 
 def samples_opened(window: Any, count: int) -> Growth:
     """Drawn particles are opened, some are looked at, and the shipped sample is opened again."""
-    from regolith_studio.ui.app import REST
+    from regolith_studio.ui.app import IDLE
 
     page, session = window.go("model"), window.session
     session.choose(method="quadric", level=2)
@@ -137,7 +137,7 @@ def samples_opened(window: Any, count: int) -> Growth:
 
     def rest() -> None:
         settle(window)
-        spin(REST / 1_000 + 0.5)  # then hidden pages have let go what is closed
+        spin(IDLE / 1_000 + 0.5)  # then hidden pages have let go what is closed
         settle(window)
 
     return followed("samples opened", act, rest, count, (5.0, 1), samples=count)

@@ -385,7 +385,7 @@ class DatasetPage(PageWidget):
             lambda: self.find_representatives() if self._survey else None
         )
         self.sizes.sizesChanged.connect(self._show_sizes)
-        self.folder.buildRequested.connect(self.build)
+        self.folder.buildRequested.connect(self.build_dataset)
         self.folder.openRequested.connect(self.open_dataset)
         self.library.openRequested.connect(self._use)
         self.targets.exportRequested.connect(self.export)
