@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from regolith_studio.harmonics.fit import fit_harmonics
     from regolith_studio.harmonics.surface import reconstruct
     from regolith_studio.readers.particles import read_mesh, read_particles, sample_particles
-    from regolith_studio.shape_models.models.gaussian_field import GaussianRadiusModel as GaussianRadiusModel
+    from regolith_studio.shape_models.models.gaussian_field import GaussianRadiusModel
 
 __version__ = "0.1.0"
 __all__ = [
@@ -51,13 +51,13 @@ _LAZY_EXPORTS = {
     "coarsen": "coarsening.coarsen:coarsen",
     "describe": "descriptors.describe:describe",
     "fit_harmonics": "harmonics.fit:fit_harmonics",
-    "measure_repose": "dem.repose:measure_repose",
-    "read_dataset": "dataset.folder:read_dataset",
+    "measure_repose": "dem.angle_of_repose:measure_repose",
+    "read_dataset": "dataset.folder_io:read_dataset",
     "read_mesh": "readers.particles:read_mesh",
     "read_particles": "readers.particles:read_particles",
     "reconstruct": "harmonics.surface:reconstruct",
     "sample_particles": "readers.particles:sample_particles",
-    "write_dataset": "dataset.folder:write_dataset",
+    "write_dataset": "dataset.folder_io:write_dataset",
 }
 
 

@@ -104,12 +104,12 @@ def test_that_a_signal_ends_a_command_without_a_traceback_or_half_an_output(
     ready = tmp_path / "ready"
     code = (
         "import sys, pathlib\n"
-        "from regolith_studio.jobs import coarsening\n"
+        "from regolith_studio.jobs import coarsening_jobs\n"
         "def forever(*_, **__):\n"
         f"    pathlib.Path({str(ready)!r}).write_text('')\n"
         "    while True:\n"
-        "        yield coarsening.Progress(0, 1, '')\n"
-        "coarsening.coarsen_sample = forever\n"
+        "        yield coarsening_jobs.Progress(0, 1, '')\n"
+        "coarsening_jobs.coarsen_sample = forever\n"
         "from regolith_studio.__main__ import main\n"
         "main()\n"
     )

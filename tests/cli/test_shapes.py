@@ -220,7 +220,7 @@ def test_that_a_volume_without_voxel_size_asks_for_it(command, tmp_path: Path) -
     tifffile.imwrite(tmp_path / "labels.tif", labels_of_two_balls())
     said = command("extract", tmp_path / "labels.tif", "-o", tmp_path / "x")
     assert said.code == 1
-    assert "how large a voxel is" in said.err
+    assert "does not state the size of a voxel" in said.err
 
 
 @pytest.mark.parametrize("content", [b"", b"II*\0\x08\0\0\0", b"no picture at all"])
