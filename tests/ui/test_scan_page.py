@@ -269,7 +269,7 @@ def test_that_a_probability_map_is_thresholded_by_its_share(page, tmp_path, wait
     wait(lambda: page.preview is not None, SECONDS)
     page.controls.threshold.setCurrentIndex(page.controls.threshold.findData("probability"))
     assert page.slices.histogram.line.value() == pytest.approx(127.5)
-    page._level_dragged(0.8 * 255)
+    page._on_level_dragged(0.8 * 255)
     assert page.controls.value().segmentation.threshold.value == pytest.approx(0.8)
     wait(lambda: page.preview.level == pytest.approx(0.8 * 255), SECONDS)
     sizes = np.bincount(page.preview.labels.array.ravel())[1:]

@@ -129,3 +129,33 @@ def test_that_what_was_found_in_a_scan_is_told_anew(grains, bodies, speaking):
     assert translate(found.summary) == f"{counts} beim Grauwert 103.5; 2 zu klein."
     made = Extraction((), (1, 2), (3,), grains).summary
     assert translate(made) == f"{grains} Partikel; weggelassen: 2 am Rand, 1 zu klein."
+
+
+def _literal(node: ast.expr) -> str | None:
+    """The text of a string, or of a string marked for translation."""
+    if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "N_":
+        node = node.args[0]
+    return node.value if isinstance(node, ast.Constant) and isinstance(node.value, str) else None
+
+
+def _mismatches(path: Path) -> list[str]:
+    """Calls whose keywords are not the placeholders of their template."""
+    found = []
+    for call in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        name = call.func.id if isinstance(call, ast.Call) and isinstance(call.func, ast.Name) else ""
+        if name not in ("tr", "tr_count", "Message", "count_message"):
+            continue
+        counts = name in ("tr_count", "count_message")
+        templates = [_literal(each) for each in call.args[: 2 if counts else 1]]
+        keywords = {each.arg for each in call.keywords}
+        if None in keywords or None in templates:
+            continue  # values or templates that are only known when the program runs
+        needed = {name for each in templates for _, name, _, _ in string.Formatter().parse(each) if name}
+        given = keywords | ({"count"} if counts else set())
+        if needed - given or keywords - needed:
+            found.append(f"{path.relative_to(PACKAGE)}:{call.lineno} {templates[0]!r}")
+    return found
+
+
+def test_that_every_placeholder_of_a_text_is_given_its_value() -> None:
+    assert [each for path in sorted(PACKAGE.rglob("*.py")) for each in _mismatches(path)] == []

@@ -134,7 +134,7 @@ class VolumeDialog(QDialog):
                 field.setValue(edge)
             self.unit.setCurrentIndex(max(0, self.unit.findData(header.unit or "um")))
         appearance = tr("labels of grains") if header.kind == "labels" else tr("grey values")
-        self.kind.setItemText(0, tr("What it looks like: {looks}", appearance=appearance))
+        self.kind.setItemText(0, tr("What it looks like: {looks}", looks=appearance))
         for entry in header.datasets:
             self.dataset.addItem(
                 f"{entry.name}, {' × '.join(map(str, entry.shape))}, {entry.dtype}", entry.name
