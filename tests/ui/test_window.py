@@ -290,7 +290,7 @@ def test_that_the_window_follows_dark_and_light(window, wait):
 def test_that_closed_particles_are_released_when_work_has_ended(monkeypatch, shown, preferences, wait):
     busy = []
     monkeypatch.setattr("regolith_studio.ui.app.IDLE", 20)
-    monkeypatch.setattr(PageStack, "let_go", lambda _stack: busy.append(len(window.session.tasks)))
+    monkeypatch.setattr(PageStack, "refresh_hidden", lambda _stack: busy.append(len(window.session.tasks)))
     window = open_window(views="image", preferences=preferences)
     shown(window)
     wait(lambda: window.session.results.coarsened is not None and bool(busy), SECONDS)
