@@ -161,17 +161,15 @@ class Walk:
 
 def follow_command(*arguments: str) -> Walk:
     """Walk of a command; a run before it imports and compiles."""
-    from regolith_studio.__main__ import main
+    from regolith_studio.cli.entry import run
 
     walk = Walk()
     with redirect_stdout(io.StringIO()), redirect_stderr(io.StringIO()) as errors:
-        for context in (Walk(), walk):
-            with context.followed():
-                try:
-                    main(list(arguments))
-                except SystemExit as end:
-                    if end.code:
-                        raise RuntimeError(errors.getvalue()) from end
+        for each in (Walk(), walk):
+            with each.followed():
+                code = run(arguments)
+            if code:
+                raise RuntimeError(errors.getvalue())
     return walk
 
 

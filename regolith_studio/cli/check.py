@@ -36,8 +36,8 @@ _OPENGL_QUESTION = """
 import json, os, sys
 os.environ.setdefault("PYVISTA_OFF_SCREEN", "true")
 import pyvista
-from regolith_studio.scene import stage
-stage.choose_off_screen_window()
+from regolith_studio.scene import plotter_setup
+plotter_setup.choose_off_screen_window()
 plotter = pyvista.Plotter(off_screen=True, window_size=[64, 64])
 plotter.add_mesh(pyvista.Sphere())
 plotter.screenshot(return_img=True)

@@ -94,6 +94,7 @@ def test_that_check_answers_without_a_display_and_survives_a_broken_opengl() -> 
     assert set(report["engines"]) >= {"mujoco", "lammps"}
     if sys.platform.startswith("linux"):
         assert "no display" in report["display"]["problem"]
+        assert "OpenGL renderer string" in report["opengl"]
 
 
 @pytest.mark.skipif(os.name == "nt", reason="signals are a matter of POSIX")

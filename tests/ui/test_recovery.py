@@ -19,11 +19,11 @@ from regolith_studio.ui.main_window import MainWindow
 from regolith_studio.ui.project_files import autosave_path, stale_autosaves
 
 WORK = """
-from regolith_studio.ui import projects
+from regolith_studio.ui import project_files
 from regolith_studio.ui.startup import make_application
 app = make_application(["killed"])
 from regolith_studio.ui.app import open_window
-projects.AUTOSAVE_SECONDS = 0
+project_files.AUTOSAVE_SECONDS = 0
 window = open_window(views="image")
 window.show()
 window.session.events.particles.connect(lambda: window.session.choose(n_facets=17, seed=4))
