@@ -174,9 +174,9 @@ def _largest_share(fit: HarmonicFit) -> float:
 @pytest.mark.parametrize(
     ("changes", "sentence"),
     [
-        ({"star_point": "middle"}, "The star point must be one of centre_of_mass"),
-        ({"rule": "second"}, "The rule must be one of volume"),
-        ({"reference": "cube"}, "The reference must be one of sphere"),
+        ({"star_point": "middle"}, "The setting star_point must be one of centre_of_mass"),
+        ({"rule": "second"}, "The setting rule must be one of volume"),
+        ({"reference": "cube"}, "The setting reference must be one of sphere"),
     ],
 )
 def test_that_an_unknown_choice_is_refused_with_what_there_is(changes: dict[str, str], sentence: str) -> None:

@@ -12,6 +12,7 @@ from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.descriptors.distributions import Distribution
 from regolith_studio.harmonics.coefficients import degrees
 from regolith_studio.jobs.runners.inline import InlineRunner
+from regolith_studio.messages import Message
 from regolith_studio.readers.shape_files import ShapeSource, read_shape_source
 from regolith_studio.session.session import Session
 from regolith_studio.session.tasks import Task
@@ -297,8 +298,13 @@ def test_that_the_outcome_of_a_judgement_is_told_in_german(opened, speaking):
     assert words.endswith("1 Teilung, 2-mal 20 Ziehungen je Fit, Startwert 0.")
     wanted = {page.evaluation.tables["targets"].item(row, 3).text().split()[0] for row in range(3)}
     assert wanted <= {"mindestens", "höchstens"}
-    assert translate("Mixture of fields, split 2, draw 3") == "Mischung von Feldern, Teilung 2, Ziehung 3"
-    assert translate("noise of sampling, split 30") == "Rauschen der Stichprobe, Teilung 30"
+    values = {"name": Message("Mixture of fields"), "split": 2, "draw": 3}
+    step = Message("{name}, split {split}, draw {draw}", **values)
+    assert translate(step) == "Mischung von Feldern, Teilung 2, Ziehung 3"
+    assert (
+        translate(Message("noise of sampling, split {split}", split=30))
+        == "Rauschen der Stichprobe, Teilung 30"
+    )
 
 
 def test_that_the_means_of_distributions_have_units_and_the_same_digits():

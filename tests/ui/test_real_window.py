@@ -187,7 +187,7 @@ def test_that_a_file_becomes_a_dataset_by_mouse_and_keys_alone(window, wait, dra
 
     drag_slider(window.findChild(QSlider, "weight_volume_slider"), 0.95)
     wait(lambda: window.session.choices.weights["volume"] > 1.5)
-    drag_slider(window.findChild(QSlider, "n_faces_slider"), 0.1)
+    drag_slider(window.findChild(QSlider, "n_facets_slider"), 0.1)
     wait(lambda: window.session.choices.n_facets < 16)
     drawn(window)
     third = pictures(window)

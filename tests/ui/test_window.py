@@ -101,7 +101,7 @@ def test_that_l_max_changes_the_fit_and_the_polyhedron_but_not_the_particle(wind
 
 
 def test_that_a_dragged_slider_is_one_step_of_undo(window, wait):
-    slider = window.findChild(QSlider, "n_faces_slider")
+    slider = window.findChild(QSlider, "n_facets_slider")
     slider.setSliderDown(True)
     for value in range(21, 31):
         slider.setValue(value)
