@@ -187,7 +187,7 @@ def test_that_a_theme_chosen_later_looks_as_one_from_the_start(shown, preference
 
 
 @pytest.mark.usefixtures("usual_looks")
-def test_that_another_theme_gives_no_widget_another_style(shown, preferences):
+def test_that_another_theme_gives_no_widget_another_style(shown, preferences, wait):
     """Qt polishes every widget of the window again when its sheet is another: a quarter of a second."""
     window = shown(MainWindow(Session(InlineRunner()), preferences, "image"))
     window.appearance.choose(theme="light")
@@ -203,8 +203,8 @@ def test_that_another_theme_gives_no_widget_another_style(shown, preferences):
     for widget in (window, *window.findChildren(QWidget)):
         widget.installEventFilter(ear)
     window.appearance.choose(theme="dark")
+    wait(lambda: window.palette().window().color() == QColor(DARK.window))
     assert told == []
-    assert window.palette().window().color() == QColor(DARK.window)
 
 
 def test_that_an_icon_is_drawn_in_the_colour_that_is_asked_for():

@@ -119,7 +119,7 @@ def test_that_sizes_are_drawn_as_they_are_typed_and_nonsense_is_explained(chosen
     assert chosen.distribution.classes[0].sizes.median_um == 80.0
     QTest.keyClicks(sizes.numbers, "x")
     assert sizes.problem.isVisibleTo(chosen)
-    assert "Numbers are written as" in sizes.problem.text()
+    assert "Numbers must be separated by commas" in sizes.problem.text()
     assert chosen.distribution.is_empty()
 
 

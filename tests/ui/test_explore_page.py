@@ -71,7 +71,7 @@ def test_that_the_picture_dialog_keeps_what_is_written_into_it(shown):
     dialog = shown(PictureDialog())
     dialog.scale.setValue(4)
     dialog.transparent.setChecked(True)
-    assert dialog.value() == ("seen", 4, True)
+    assert dialog.value() == ("screenshot", 4, True)
     dialog.kind.setCurrentIndex(1)
     assert dialog.value() == ("figure", 4, True)
 

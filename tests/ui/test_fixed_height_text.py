@@ -148,8 +148,9 @@ def test_that_no_control_of_studies_moves_with_a_study(window, watched):
 def test_that_no_control_of_the_angle_of_repose_moves_with_consequences_and_problems(watched):
     page = watched.go("repose")
     watched.does("a dataset", page.make_dataset)
-    watched.does("scaling_report", page.setup.tell, [f"This follows, number {n}." for n in range(30)])
-    watched.does("a problem", page.setup.tell, [], "It cannot be. " * 30)
+    sentences = [f"This follows, number {n}." for n in range(30)]
+    watched.does("scaling_report", page.setup.show_consequences, sentences)
+    watched.does("a problem", page.setup.show_consequences, [], "It cannot be. " * 30)
     watched.does("other shapes", page.setup.shapes.setCurrentIndex, 1)
     watched.does("more", page.setup.particles.setValue, 30_000)
 
