@@ -30,14 +30,14 @@ from regolith_studio.readers.voxels.header import (
 )
 
 MAX_CHUNK_BYTES = 1 << 29
-_CACHE = {"rdcc_nbytes": MAX_CACHED_BYTES + (1 << 25), "rdcc_nslots": 1_000_003, "rdcc_w0": 1.0}
-"""Of unpacked chunks; many slots, since two chunks in one slot expel each other."""
+CACHE_SLOTS = 1_000_003
+"""Of the cache of unpacked chunks: many, since two chunks in one slot expel each other."""
 
 
 class Hdf5Voxels:
     """A dataset of an open ``h5py.File``, read in slices.
 
-    `layer` is the depth of a chunk along z. HDF5's cache of unpacked chunks holds a layer of up to
+    `layer` is the depth of a chunk along z. HDF5's cache of unpacked chunks holds one layer of them, up to
     `MAX_CACHED_BYTES`, so that its chunks are unpacked once even where it is asked for in parts.
     """
 
@@ -78,7 +78,7 @@ def open_hdf5(path: Path, options: Mapping[str, Any]) -> Hdf5Voxels:
 
     file: Any = None
     try:
-        file = h5py.File(path, "r", locking=False, **_CACHE)
+        file = h5py.File(path, "r", locking=False)
         return _chosen(file, options.get("dataset"), str(options.get("axes") or ""))
     except Exception as error:
         if file is not None:
@@ -120,7 +120,27 @@ def _chosen(file: Any, wanted: Any, axes: str) -> Hdf5Voxels:
         tuple(DatasetEntry(each.name, each.spatial[::-1], each.dtype) for each in candidates),
         candidate.name,
     )
+    if dataset.chunks and "z" in candidate.axes:
+        layer = _layer_bytes(dataset, candidate.axes.index("z"))
+        del dataset  # the cache of a dataset is set when it is opened first
+        dataset = _open_with_cache(file, candidate.path, min(layer, MAX_CACHED_BYTES))
     return Hdf5Voxels(file, dataset, candidate, header)
+
+
+def _layer_bytes(dataset: Any, z: int) -> int:
+    """Unpacked size of the chunks at one depth along axis `z`, with those that reach beyond the edges."""
+    edges = [-(-n // chunk) * chunk for n, chunk in zip(dataset.shape, dataset.chunks, strict=True)]
+    edges[z] = dataset.chunks[z]
+    return int(prod(edges) * dataset.dtype.itemsize)
+
+
+def _open_with_cache(file: Any, path: str, size: int) -> Any:
+    """A dataset with room for `size` bytes of unpacked chunks; more room would fill up with old ones."""
+    import h5py
+
+    access = h5py.h5p.create(h5py.h5p.DATASET_ACCESS)
+    access.set_chunk_cache(CACHE_SLOTS, size, 1.0)
+    return h5py.Dataset(h5py.h5d.open(file.id, path.encode(), access))
 
 
 def _choose(candidates: list[Hdf5Volume], wanted: Any) -> Hdf5Volume:
