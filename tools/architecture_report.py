@@ -160,14 +160,14 @@ class Walk:
 
 
 def follow_command(*arguments: str) -> Walk:
-    """Walk of a command; a run before it imports and compiles."""
+    """Walk of a command; a run before it imports and compiles. ``{}`` in an argument is the run's number."""
     from regolith_studio.cli.entry import run
 
     walk = Walk()
     with redirect_stdout(io.StringIO()), redirect_stderr(io.StringIO()) as errors:
-        for each in (Walk(), walk):
+        for number, each in enumerate((Walk(), walk)):
             with each.followed():
-                code = run(arguments)
+                code = run([argument.format(number) for argument in arguments])
             if code:
                 raise RuntimeError(errors.getvalue())
     return walk
@@ -214,13 +214,12 @@ def walk_rows() -> list[tuple[str, str]]:
         os.environ["REGOLITH_STUDIO_CONFIG"] = folder
         mesh = Path(folder) / "ellipsoid.stl"
         mesh.write_bytes(stl_bytes(corners, "ellipsoid"))
-        out = f"{folder}/out"
         return [
             ("walk from a slider to its picture", str(follow_slider())),
             ("walk from a file to its descriptors", str(follow_command("describe", str(mesh)))),
             (
                 "walk from a command to a polyhedron",
-                str(follow_command("coarsen", str(mesh), "-o", out, "--overwrite", "--jobs", "1")),
+                str(follow_command("coarsen", str(mesh), "-o", f"{folder}/out{{}}", "--jobs", "1")),
             ),
         ]
 
