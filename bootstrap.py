@@ -349,7 +349,6 @@ def start(words: "list[str]") -> int:
     folder = str(ROOT) if testing else str(Path.cwd())
     environment = dict(os.environ)
     environment.setdefault("OPENBLAS_NUM_THREADS", "1")
-    environment.setdefault("MALLOC_ARENA_MAX", "1")  # glibc: one heap for all threads holds less memory
     if draws_in_memory(words):
         with virtual_display() as display:
             environment.pop("WAYLAND_DISPLAY", None)

@@ -21,7 +21,7 @@ def shared_volume(
     Parameters
     ----------
     first, distance, sign
-        Crossings of the particle by ray, as from :func:`regolith_studio.coarsening.core.rays.cast_fibonacci`.
+        Crossings of the particle by ray, as from :func:`regolith_studio.coarsening.core.rays.cast`.
     weight
         Of each ray.
     radius

@@ -158,8 +158,8 @@ def read_volume(
     path, dataset, axes, raw, sandbox
         As for `describe_volume`.
     voxel_size
-        One edge, or three along x, y and z, in `unit` (micrometres without one); by default what
-        that of the file.
+        One edge, or three along x, y and z, in `unit` (micrometres without one); by default that
+        of the file.
     unit
         Unit of `voxel_size`, or of the file's own numbers; ``voxel:SIZE`` gives both.
     kind
