@@ -36,7 +36,7 @@ def main(folder: Path) -> None:
     right.set_xlabel("facets a particle")
     _save(figure, "repose_trends.png")
     pile = read_particle_state(usual[0].folder / "final.npz")
-    measured = measure_repose(pile.points, pile.diameters, base=0.0)
+    measured = measure_repose(pile.points, pile.diameters)
     _save(section_figure(pile.points, pile.diameters, measured), "repose_sections.png")
 
 

@@ -34,6 +34,15 @@ Figures = Annotated[
         callback=check_writable,
     ),
 ]
+Base = Annotated[
+    float | None,
+    typer.Option(
+        "--base",
+        help="Height of the plate in the file's unit; otherwise 0, or where the lowest particles reach to "
+        "if that is more than a mean diameter away.",
+        metavar="Z",
+    ),
+]
 EvaluationSetting = Annotated[
     list[str] | None,
     typer.Option("--set", help="A setting of the evaluation; may be repeated.", metavar="KEY=VALUE"),
@@ -74,6 +83,7 @@ def measure(
     set_: EvaluationSetting = None,
     diameter: Diameter = 0.0,
     unit: PositionUnit = "m",
+    base: Base = None,
     json: Json = False,
     jobs: Jobs = 1,
     seed: Seed = 0,
@@ -85,7 +95,8 @@ def measure(
     del jobs  # taken by every command
     settings = evaluation_settings([f"seed={seed}", *(set_ or ())])
     points, diameters = positions_in(file, unit, diameter)
-    measurement = measure_repose(points, diameters, settings)
+    metres = 1.0 if file.suffix.lower() == ".npz" else metres_in(unit)
+    measurement = measure_repose(points, diameters, settings, None if base is None else base * metres)
     document = {"file": str(file), "length_unit": "m"} | measurement_document(measurement)
     if output is not None:
         from regolith_studio.io.atomic import staged_folder
@@ -114,13 +125,11 @@ def positions_in(file: Path, unit: str, diameter: float) -> tuple[Any, Any]:
     from regolith_studio.dem.snapshot import read_particle_state
     from regolith_studio.errors import FileError
     from regolith_studio.readers.positions import read_positions
-    from regolith_studio.readers.units import unit_factor
 
     if file.suffix.lower() == ".npz":
         pile = read_particle_state(file)
         return pile.points, pile.diameters
-    with usage_errors():
-        metres = unit_factor(unit) * 1e-6
+    metres = metres_in(unit)
     found = read_positions(file, unit)
     print_errors(found.notes)
     if diameter > 0.0:
@@ -128,6 +137,14 @@ def positions_in(file: Path, unit: str, diameter: float) -> tuple[Any, Any]:
     if found.diameters is None:
         raise FileError(f"{file.name} holds no diameters; name one for all particles with --diameter.")
     return found.points, found.diameters
+
+
+def metres_in(unit: str) -> float:
+    """Metres in a unit of length; an unknown one is bad use."""
+    from regolith_studio.readers.units import unit_factor
+
+    with usage_errors():
+        return unit_factor(unit) * 1e-6
 
 
 @app.command("run")

@@ -85,7 +85,8 @@ def measure_repose(
     settings
         Parameters of the procedure.
     base
-        Height of the plate; by default estimated from the lowest particles.
+        Height of the plate; by default that of
+        :func:`~regolith_studio.dem.evaluation.profile.base_level`: 0, or where the lowest particles reach to.
 
     Raises
     ------

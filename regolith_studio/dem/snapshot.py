@@ -84,7 +84,7 @@ def particle_state_bytes(pile: ParticleState) -> bytes:
     buffer = io.BytesIO()
     np.savez_compressed(
         buffer,
-        points_m=pile.points.astype(np.float32),
+        points_m=pile.points,
         diameters_m=pile.diameters,
         orientations=pile.orientations.astype(np.float32),
         class_index=pile.class_index.astype(np.int32),

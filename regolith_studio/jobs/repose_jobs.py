@@ -173,9 +173,9 @@ def _finish_run(record: _RunWriter, ending: SimulationResult, evaluation: Evalua
 def measure_result(
     ending: SimulationResult, evaluation: EvaluationSettings
 ) -> ReposeMeasurement | NotAPileError:
-    """The angle of a finished run; a refusal is a result too. The plate is at z = 0."""
+    """The angle of a finished run; a refusal is a result too."""
     try:
-        return measure_repose(ending.particles.points, ending.particles.diameters, evaluation, base=0.0)
+        return measure_repose(ending.particles.points, ending.particles.diameters, evaluation)
     except NotAPileError as refusal:
         return refusal
 
@@ -192,7 +192,7 @@ def remeasure(pile: ParticleState, evaluation: EvaluationSettings) -> Steps:
     """The angle of a pile once more, with other choices; returns the measurement or the refusal."""
     yield Started(N_("Measuring"))
     try:
-        return measure_repose(pile.points, pile.diameters, evaluation, base=0.0)
+        return measure_repose(pile.points, pile.diameters, evaluation)
     except NotAPileError as refusal:
         return refusal
 

@@ -65,7 +65,7 @@ def test_that_strays_around_and_above_a_pile_do_not_count() -> None:
 def test_that_unit_place_and_heading_do_not_matter() -> None:
     pile = cone(30, 1200, 3)
     here = measure_repose(pile, 1.0)
-    there = measure_repose(pile * 2e-3 + [1.0, -2.0, 0.7], 2e-3)
+    there = measure_repose(pile * 2e-3 + [1.0, -2.0, 0.7], 2e-3, base=0.7)
     quarter = np.column_stack([-pile[:, 1], pile[:, 0], pile[:, 2]])
     assert there.angle == pytest.approx(here.angle, abs=1e-6)
     assert there.height == pytest.approx(2e-3 * here.height)
@@ -75,6 +75,13 @@ def test_that_unit_place_and_heading_do_not_matter() -> None:
 def test_that_the_interval_holds_the_truth_of_most_cones() -> None:
     found = [measure_repose(cone(32, 1500, seed), 1.0) for seed in range(6)]
     assert sum(each.interval[0] - 0.5 <= 32 <= each.interval[1] + 0.5 for each in found) >= 5
+
+
+def test_that_flat_particles_do_not_lower_the_plate() -> None:
+    """The centre of a brick that lies flat is a quarter of its diameter above the plate."""
+    pile = cone(30, 400, 2) - [0.0, 0.0, 0.25]
+    assert measure_repose(pile, 1.0).base == 0.0
+    assert measure_repose(pile, 1.0).angle == measure_repose(pile, 1.0, base=0.0).angle
 
 
 def _refused(points: np.ndarray) -> NotAPileError:
@@ -140,7 +147,7 @@ def test_that_sections_show_x_z_and_y_z() -> None:
     assert project(points, np.ones(3), 0.0, 0.0).u == pytest.approx([1, 0, 0])
     assert project(points, np.ones(3), 0.0, np.pi / 2).u == pytest.approx([0, 2, 0])
     assert len(project(points, np.ones(3), 0.0, 0.0, slab=1.0).u) == 2
-    assert base_level(points, np.ones(3)) == pytest.approx(0.0)
+    assert base_level(points + np.array([0.0, 0.0, 7.0]), np.ones(3)) == pytest.approx(7.0)
     assert azimuths_of(EvaluationSettings(azimuths=4)) == [0.0, 90.0, 45.0, 135.0]
 
 

@@ -74,6 +74,22 @@ def test_that_a_run_leaves_everything_that_it_followed_from(finished: Path, boxe
     assert "restitution" in document["not_given_in_the_paper"]
 
 
+def test_that_a_run_and_a_measurement_of_its_file_are_one_answer(
+    boxes_folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Bricks lie flat, so the plate cannot be told from the lowest particles."""
+    mild = ["min_particles=20", "min_points=3", "bin_width=0.2", "toe=0.3", "min_height=1", "azimuths=2"]
+    where = ["repose", "run", str(boxes_folder), "-o", str(tmp_path / "run"), *COMMAND]
+    assert run([*where, *[word for each in mild for word in ("--measure", each)]]) == 0
+    capsys.readouterr()
+    final = ["repose", "measure", str(tmp_path / "run" / "final.npz"), "--json"]
+    assert run([*final, *[word for each in mild for word in ("--set", each)]]) == 0
+    measured = json.loads(capsys.readouterr().out)
+    own = read_run(tmp_path / "run").document["measurement"]
+    assert own["angle_deg"] is not None
+    assert {key: measured[key] for key in own} == own
+
+
 def test_that_the_snapshots_tell_the_whole_test(finished: Path) -> None:
     piles = [read_particle_state(path) for path in snapshot_files(finished)]
     assert [pile.time for pile in piles] == sorted(pile.time for pile in piles)
@@ -98,9 +114,7 @@ def test_that_the_same_seed_gives_the_same_pile(finished: Path, boxes_folder: Pa
             ending = end.value
             break
     assert isinstance(ending, SimulationResult)
-    assert np.array_equal(
-        ending.particles.points.astype(np.float32), read_particle_state(finished / "final.npz").points
-    )
+    assert np.array_equal(ending.particles.points, read_particle_state(finished / "final.npz").points)
     assert [moment.share for moment in moments] == sorted(moment.share for moment in moments)
 
 
