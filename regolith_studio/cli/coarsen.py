@@ -40,7 +40,7 @@ def coarsen(
     order = wish.order
     loaded = reading.read(meshes)
     done = run_with_progress(coarsen_sample(loaded.particles, order, jobs))
-    with staged_folder(output) as stage:
+    with staged_folder(output, "coarsen") as stage:
         write_coarsening(stage, order, done)
     failed = [each for each in done if each.coarsened is None]
     print_errors(f"{each.name}: {each.problem}" for each in failed)

@@ -7,7 +7,7 @@ import typer
 
 from regolith_studio.cli.dataclass_options import with_dataclass_options
 from regolith_studio.cli.inputs import ReadingOptions
-from regolith_studio.cli.options import Jobs, Json, Meshes, Seed
+from regolith_studio.cli.options import Jobs, Json, Meshes, Seed, claim_file, output_path
 
 if TYPE_CHECKING:
     from regolith_studio.io.tables import Table
@@ -30,7 +30,13 @@ BorderWeights = Annotated[
 ]
 Csv = Annotated[
     Path | None,
-    typer.Option("--csv", help="CSV file for all descriptors with their units.", metavar="FILE"),
+    typer.Option(
+        "--csv",
+        help="CSV file for all descriptors with their units.",
+        metavar="FILE",
+        parser=output_path,
+        callback=claim_file,
+    ),
 ]
 
 

@@ -1,11 +1,13 @@
 """From arguments to an exit code: 0 done, 1 bad input, 2 bad use, 130 interrupted; never a traceback."""
 
+import io
 import os
 import sys
 import traceback
 from collections.abc import Sequence
 
 from regolith_studio.errors import JobCancelled, RegolithError, format_os_error
+from regolith_studio.readers.error_messages import printable
 
 DONE, BAD_INPUT, BAD_USE, INTERRUPTED = 0, 1, 2, 130
 STOPPED = "Stopped."
@@ -18,6 +20,9 @@ def run(arguments: Sequence[str]) -> int:
     """
     from regolith_studio.cli.commands import app
 
+    for stream in (sys.stdout, sys.stderr):  # names of files may hold what the terminal cannot show
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")
     try:
         app(list(arguments), prog_name="regolith-studio")
     except SystemExit as end:
@@ -41,5 +46,5 @@ def run(arguments: Sequence[str]) -> int:
 def _say(sentence: str, code: int) -> int:
     if os.environ.get("REGOLITH_STUDIO_DEBUG"):
         traceback.print_exc()
-    print(sentence, file=sys.stderr)  # noqa: T201  the only output of a failed command
+    print(printable(sentence), file=sys.stderr)  # noqa: T201  the only output of a failed command
     return code

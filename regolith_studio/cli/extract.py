@@ -44,7 +44,7 @@ def extract(
     with usage_errors():
         given = contents.of(volume)
         settings = read_grain_settings(recipe) if recipe else grains.recipe
-    with staged_folder(output) as stage:
+    with staged_folder(output, "extract") as stage:
         folder = ExtractionFolder(stage)
         done = run_with_progress(extract_measured(given, settings, output.parent, folder.add, jobs))
         document = folder.finish(given, settings, done)

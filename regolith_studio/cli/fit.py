@@ -14,21 +14,23 @@ from regolith_studio.cli.options import (
     LMax,
     Meshes,
     Seed,
-    check_writable,
-    check_writable_file,
+    claim_folder,
+    claim_json,
+    output_path,
     usage_errors,
 )
 from regolith_studio.harmonics.fit_options import FitOptions
 
-Stem = Annotated[
+FitFile = Annotated[
     Path,
     typer.Option(
         "--output",
         "-o",
-        help="Stem of the files to write: FIT.json and FIT.npz.",
-        metavar="FIT",
+        help="JSON file of the fits to write.",
+        metavar="FIT.json",
         show_default=False,
-        callback=check_writable_file,
+        parser=output_path,
+        callback=claim_json,
     ),
 ]
 Surfaces = Annotated[
@@ -37,7 +39,8 @@ Surfaces = Annotated[
         "--surfaces",
         help="Folder for the surface of each fit as STL.",
         metavar="DIR",
-        callback=check_writable,
+        parser=output_path,
+        callback=claim_folder,
     ),
 ]
 
@@ -46,7 +49,7 @@ Surfaces = Annotated[
 def fit(
     *,
     meshes: Meshes,
-    output: Stem,
+    output: FitFile,
     l_max: LMax = 30,
     radii: FitOptions,
     surfaces: Surfaces = None,
@@ -66,18 +69,17 @@ def fit(
     with usage_errors():
         Choices(l_max=l_max, seed=seed, level=level)
         order = FitRequest(l_max, radii)
-    stem = output.with_suffix("") if output.suffix in (".json", ".npz") else output
     loaded = reading.read(meshes)
     sample = FittedSample.of(loaded.particles, run_with_progress(fit_sample(loaded.particles, order, jobs)))
     print_errors(f"{name}: {sentence}" for name, sentence in sample.failed)
     holes: dict[str, str] = {}
     if sample.fits:
-        paths = write_fits(stem, sample)
+        write_fits(output, sample)
         if surfaces is not None:
             holes = write_surfaces(surfaces, sample, level)
             print_errors(f"{name}: {sentence}" for name, sentence in holes.items())
         if json:
-            print_json(fits_document(sample) | {"arrays": paths[1].name})
+            print_json(fits_document(sample))
         else:
-            typer.echo(f"{len(sample.fits)} fits up to l = {l_max} in {paths[0]} and {paths[1]}")
+            typer.echo(f"{len(sample.fits)} fits up to l = {l_max} in {output}")
     raise typer.Exit(exit_code(meshes, loaded, len(sample.failed) + len(holes)))

@@ -55,7 +55,7 @@ def gallery(
     fits = run_with_progress(fit_sample(loaded.particles, order))
     drawn: list[str] = []
     failed = 0
-    with staged_folder(output) as stage:
+    with staged_folder(output, "gallery") as stage:
         for particle, fit in zip(loaded.particles, fits, strict=True):
             if not isinstance(fit, HarmonicFit):
                 print_errors([f"{particle.name}: {fit}"])

@@ -13,6 +13,8 @@ from regolith_studio.cli.options import (
     Json,
     Level,
     Seed,
+    claim_json,
+    output_path,
     usage_errors,
     values,
 )
@@ -73,7 +75,11 @@ Names = Annotated[
 ModelFile = Annotated[
     Path | None,
     typer.Option(
-        "--save-model", help="Stem of the fitted model, written to MODEL.json and MODEL.npz.", metavar="MODEL"
+        "--save-model",
+        help="JSON file for the fitted model.",
+        metavar="MODEL.json",
+        parser=output_path,
+        callback=claim_json,
     ),
 ]
 
@@ -120,7 +126,7 @@ def generate(
     fitted = _named(run_with_progress(fit_model(source, order)), names)
     draws = run_with_progress(draw(fitted, order))
     made = Generated(source, order, fitted, draws, groups_of(draws, fitted))
-    with staged_folder(output) as stage:
+    with staged_folder(output, "generate") as stage:
         extra = _write(stage, made, format_, level, jobs)
         document = write_document(stage, made, extra)
     if save_model is not None:
@@ -183,8 +189,7 @@ def _write(stage: Path, made: Any, format_: str, level: int, jobs: int) -> dict[
     return {"level": level, "files": ["*.stl", virtual_particles.TABLE]}
 
 
-def _save(stem: Path, made: Any) -> None:
+def _save(path: Path, made: Any) -> None:
     from regolith_studio.shape_models.io import write_model
 
-    bare = stem.with_suffix("") if stem.suffix in (".json", ".npz") else stem
-    write_model(bare, made.model, {"source": made.source.name, "sha256": made.source.sha256 or None})
+    write_model(path, made.model, {"source": made.source.name, "sha256": made.source.sha256 or None})

@@ -11,6 +11,7 @@ import typer
 
 from regolith_studio.errors import FileError, InputError
 from regolith_studio.harmonics.fit_options import FitOptions
+from regolith_studio.io.output_lock import output_lock
 
 if TYPE_CHECKING:
     from regolith_studio.coarsening.weights import LossWeights
@@ -41,35 +42,64 @@ Repair = Annotated[
 ]
 
 
-def check_writable(folder: Path | None) -> Path | None:
-    """The folder, if it is one that can be written or made: said before hours of work and not after them.
+def output_path(text: str) -> Path:
+    """The path of an output, which has a name."""
+    if not text:
+        raise typer.BadParameter("Name a place for the results, got an empty name.")
+    return Path(text)
+
+
+def claim_folder(context: typer.Context, folder: Path | None) -> Path | None:
+    """The folder, locked against other processes, if it can be written: checked before hours of work.
 
     Raises
     ------
     FileError
-        If a file stands there, or the place may not be written.
+        If a file stands there, the place may not be written, or another process is writing to it.
     """
-    if folder is None:
-        return None
+    if folder is not None:
+        _check_folder(folder)
+        context.with_resource(output_lock(folder))
+    return folder
+
+
+def claim_file(context: typer.Context, path: Path | None) -> Path | None:
+    """The same for a file."""
+    if path is not None:
+        _check_folder(path.parent)
+        if path.is_dir():
+            raise FileError(f"{path} is a folder; name a file.")
+        context.with_resource(output_lock(path))
+    return path
+
+
+def claim_json(context: typer.Context, path: Path | None) -> Path | None:
+    """The same for a JSON file, whose name may be given without its suffix."""
+    if path is not None and path.suffix != ".json" and not path.is_dir():
+        path = path.with_name(f"{path.name}.json")
+    return claim_file(context, path)
+
+
+def _check_folder(folder: Path) -> None:
     there = next(place for place in (folder, *folder.absolute().parents) if os.path.lexists(place))
+    if not there.exists():
+        raise FileError(f"{there} is a link that leads nowhere; name a folder for the results.")
     if not there.is_dir():
         raise FileError(f"{there} is a file; name a folder for the results.")
     if not os.access(there, os.W_OK | os.X_OK):
         raise FileError(f"The folder {there} cannot be written (Permission denied).")
-    return folder
-
-
-def check_writable_file(path: Path | None) -> Path | None:
-    """The path of a file, or the stem of several, if its folder can be written."""
-    if path is not None:
-        check_writable(path.parent)
-        if path.is_dir():
-            raise FileError(f"{path} is a folder; name a file.")
-    return path
 
 
 Folder = Annotated[
-    Path, typer.Option("--output", "-o", help="Folder to write.", metavar="DIR", callback=check_writable)
+    Path,
+    typer.Option(
+        "--output",
+        "-o",
+        help="Folder to write.",
+        metavar="DIR",
+        parser=output_path,
+        callback=claim_folder,
+    ),
 ]
 LMax = Annotated[
     int, typer.Option("--l-max", help="Maximum degree of the spherical harmonics, 0 to 30.", metavar="L")

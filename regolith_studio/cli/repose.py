@@ -12,7 +12,8 @@ from regolith_studio.cli.options import (
     Jobs,
     Json,
     Seed,
-    check_writable,
+    claim_folder,
+    output_path,
     usage_errors,
     values,
 )
@@ -31,7 +32,8 @@ Figures = Annotated[
         "-o",
         help="Folder for repose.json and the figure of the sections (Fig. 9).",
         metavar="DIR",
-        callback=check_writable,
+        parser=output_path,
+        callback=claim_folder,
     ),
 ]
 Base = Annotated[
@@ -103,7 +105,7 @@ def measure(
         from regolith_studio.io.json_text import json_bytes
         from regolith_studio.studies.figures.repose import write_section_figure
 
-        with staged_folder(output) as stage:
+        with staged_folder(output, "repose") as stage:
             (stage / "repose.json").write_bytes(json_bytes(document))
             write_section_figure(points, diameters, measurement, stage)
     print_errors(measurement.warnings)

@@ -369,7 +369,7 @@ def conclude(kind: str, study: Callable[..., "Steps"], folder: Path, json: bool,
 
     with StudyCheckpoint(folder / "journal" / f"{kind}.sqlite", resume) as answers:
         found = run_with_progress(study(answers=answers))
-        with staged_folder(folder) as stage:
+        with staged_folder(folder, kind) as stage:
             files = [path.name for path in STUDIES[kind].write(found, stage)]
     if json:
         print_json({"folder": str(folder), "files": files})

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
+from regolith_studio.readers.error_messages import printable
+
 if TYPE_CHECKING:
     from regolith_studio.io.tables import Table
     from regolith_studio.jobs.events import Steps
@@ -94,4 +96,4 @@ def print_table(table: "Table") -> None:
 def print_errors(sentences: Iterable[str]) -> None:
     """One line each on stderr."""
     for sentence in sentences:
-        typer.echo(sentence, err=True)
+        typer.echo(printable(sentence), err=True)

@@ -30,7 +30,15 @@ _THREAD_LIMITS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", 
 
 
 class EngineError(RegolithError):
-    """An engine ended before its work was done; its snapshots are in the run's folder."""
+    """An engine ended before its work was done; its snapshots are in the run's folder.
+
+    Attributes
+    ----------
+    document
+        Of the failed run, once it is written.
+    """
+
+    document: dict[str, Any]
 
 
 def run_engine(

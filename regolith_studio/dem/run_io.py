@@ -2,7 +2,8 @@
 
 import io
 import os
-import shutil
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -17,8 +18,9 @@ from regolith_studio.dem.engine import Engine, RunChecks, SimulationResult
 from regolith_studio.dem.evaluation.errors import NotAPileError
 from regolith_studio.dem.scaling_report import scaling_report
 from regolith_studio.dem.snapshot import ParticleState, particle_state_bytes
-from regolith_studio.errors import FileError
+from regolith_studio.errors import FileError, os_error_reason
 from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.io.atomic import exchange, hidden_folder
 from regolith_studio.io.json_text import canonical_json, parse_strict_json
 
 FORMAT = "regolith-studio-repose"
@@ -41,29 +43,43 @@ class RunSummary:
         return None if angle is None else float(angle)
 
 
-def claim_folder(folder: Path, overwrite: bool) -> None:
-    """Create an empty folder; an earlier run in it is removed if that is allowed.
+@contextmanager
+def staged_run(folder: Path, overwrite: bool) -> Iterator[Path]:
+    """A hidden folder to save a run in, which takes the place of `folder` in one step at the end.
+
+    Without a document in it there is nothing to keep, and a run that did not finish replaces no finished one.
 
     Raises
     ------
     FileError
-        If it holds something else, or may not be replaced, or cannot be written.
+        If `folder` holds something else, or may not be replaced, or cannot be written.
     """
     try:
-        folder.mkdir(parents=True, exist_ok=True)
-        inside = {path.name for path in folder.iterdir()}
-        if inside and not inside <= OWN:
-            raise FileError(f"{folder} holds other files ({min(inside - OWN)}); choose an empty folder.")
-        if inside and not overwrite:
-            raise FileError(
-                f"{folder} holds a run already; choose another folder or allow it to be overwritten."
-            )
-        for name in inside:
-            path = folder / name
-            shutil.rmtree(path) if path.is_dir() else path.unlink()
-        (folder / SNAPSHOTS).mkdir()
+        _check_replaceable(folder, overwrite)
+        with hidden_folder(folder) as stage:
+            (stage / SNAPSHOTS).mkdir()
+            try:
+                yield stage
+            finally:
+                if (stage / DOCUMENT).is_file() and (_is_finished(stage) or not _is_finished(folder)):
+                    exchange(stage, Path(os.path.realpath(folder)))
     except OSError as error:
-        raise FileError(f"The folder {folder} cannot be written ({error.strerror}).") from error
+        raise FileError(f"The folder {folder} cannot be written ({os_error_reason(error)}).") from error
+
+
+def _check_replaceable(folder: Path, overwrite: bool) -> None:
+    inside = {path.name for path in folder.iterdir()} if folder.exists() else set()
+    if foreign := inside - OWN:
+        raise FileError(f"{folder} holds other files ({min(foreign)}); choose an empty folder.")
+    if inside and not overwrite:
+        raise FileError(f"{folder} holds a run already; choose another folder or allow it to be overwritten.")
+
+
+def _is_finished(folder: Path) -> bool:
+    try:
+        return bool(read_run(folder).document.get("state") == "finished")
+    except FileError:
+        return False
 
 
 def save_snapshot(folder: Path, number: int, particles: ParticleState) -> Path:

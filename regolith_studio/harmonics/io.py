@@ -60,10 +60,7 @@ def fits_from(document: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -
     """
     entries, rows, points = document["particles"], arrays["coefficients"], arrays["star_points"]
     if not len(entries) == len(rows) == len(points):
-        raise InputError(
-            f"The fit names {len(entries)} particles but holds coefficients of {len(rows)}: its two files do "
-            "not belong together."
-        )
+        raise InputError(f"The fit names {len(entries)} particles but holds coefficients of {len(rows)}.")
     return {
         entry["name"]: _fit(entry, row, point)
         for entry, row, point in zip(entries, rows, points, strict=True)

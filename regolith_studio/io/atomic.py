@@ -8,11 +8,10 @@ process dies in between.
 
 import contextlib
 import ctypes
-import glob
+import hashlib
 import os
 import shutil
 import sys
-import time
 import uuid
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -22,10 +21,8 @@ from functools import cache
 from pathlib import Path
 from typing import IO
 
-from regolith_studio.errors import FileError
-
-LEFTOVER_AGE = 3600.0
-"""Seconds after which the hidden folder of an interrupted write is removed."""
+from regolith_studio.errors import FileError, RegolithError, os_error_reason
+from regolith_studio.io.output_lock import LOCK, NEW, hidden_beside, output_lock
 
 CONCURRENT_SYNCS = 16
 """Files flushed to the disk at the same time."""
@@ -44,10 +41,9 @@ def staged_file(path: Path) -> Iterator[IO[bytes]]:
     Raises
     ------
     FileError
-        If it cannot be written.
+        If it cannot be written, or its folder is not there.
     """
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
         hidden = _hidden_name(path)
         try:
             with hidden.open("xb") as stream:
@@ -57,7 +53,7 @@ def staged_file(path: Path) -> Iterator[IO[bytes]]:
             hidden.unlink(missing_ok=True)
             raise
     except OSError as error:
-        raise FileError(f"The file {path} cannot be written ({error.strerror}).") from error
+        raise FileError(f"The file {path} cannot be written ({os_error_reason(error)}).") from error
 
 
 def write_bytes(path: Path, content: bytes) -> None:
@@ -73,25 +69,26 @@ def write_bytes(path: Path, content: bytes) -> None:
 
 
 @contextmanager
-def staged_folder(folder: Path) -> Iterator[Path]:
-    """A hidden folder beside `folder`, which takes its name if no exception is raised.
+def staged_folder(folder: Path, kind: str) -> Iterator[Path]:
+    """A hidden folder beside `folder`, which takes its place if no exception is raised.
 
-    Where `folder` exists, files of the same names are replaced one by one and other files are kept.
+    The list of its files with their SHA-256, ``<kind>.sha256`` as sha256sum writes it, says what belongs
+    together. A folder that holds only what an earlier list names is replaced in one step. In a folder with
+    other files, which are kept, the new files take the places of the earlier ones one by one.
 
     Raises
     ------
     FileError
-        If it cannot be written.
+        If it cannot be written, or another process is writing to it.
     """
     try:
-        with _stage(folder) as stage:
+        with hidden_folder(folder) as stage:
             yield stage
-            if folder.exists():
-                _move_files(stage, folder)
-            else:
-                stage.replace(folder)
+            listed = f"{kind}.sha256"
+            (stage / listed).write_bytes(_sha256_list(stage))
+            _replace_listed(stage, Path(os.path.realpath(folder)), listed)
     except OSError as error:
-        raise FileError(f"The folder {folder} cannot be written ({error.strerror}).") from error
+        raise FileError(f"The folder {folder} cannot be written ({os_error_reason(error)}).") from error
 
 
 def replace_folder(target: Path, files: Mapping[str, Content] | Iterable[tuple[str, Content]]) -> None:
@@ -103,11 +100,12 @@ def replace_folder(target: Path, files: Mapping[str, Content] | Iterable[tuple[s
     ------
     OSError
         If something cannot be written; `target` is then unchanged.
+    FileError
+        If another process is writing to it.
     """
-    with _stage(target) as stage:
+    with hidden_folder(target) as stage:
         _fill(stage, files)
-        _exchange(stage, target)
-    _remove_old_leftovers(target)
+        exchange(stage, target)
     with contextlib.suppress(OSError):
         sync_folder(target.parent)
 
@@ -119,11 +117,6 @@ def recover_folder(target: Path) -> Path:
         with contextlib.suppress(OSError):
             os.rename(aside, target)  # noqa: PTH104 - all steps on the disk go through os
     return target
-
-
-def leftovers(target: Path) -> list[Path]:
-    """Hidden folders beside `target` of interrupted writes, or of others that are writing."""
-    return sorted(target.parent.glob(f".{glob.escape(target.name)}.????????????.regolith-new"))
 
 
 def remove_quietly(folder: Path) -> None:
@@ -150,28 +143,57 @@ def swap_folders(first: Path, second: Path) -> bool:
 
 
 @contextmanager
-def _stage(target: Path) -> Iterator[Path]:
+def hidden_folder(target: Path) -> Iterator[Path]:
     """A new hidden folder beside `target`, removed at the end if it is still there."""
-    target.parent.mkdir(parents=True, exist_ok=True)
-    stage = _hidden_name(target)
-    try:
-        os.mkdir(stage)  # noqa: PTH102
-        yield stage
-    finally:
-        remove_quietly(stage)
+    with output_lock(target):
+        stage = _hidden_name(Path(os.path.realpath(target)))
+        try:
+            os.mkdir(stage)  # noqa: PTH102
+            yield stage
+        except RegolithError as error:
+            error.args = tuple(str(each).replace(str(stage), str(target)) for each in error.args)
+            raise
+        finally:
+            remove_quietly(stage)
 
 
 def _hidden_name(target: Path) -> Path:
-    return target.parent / f".{target.name}.{uuid.uuid4().hex[:12]}.regolith-new"
+    return hidden_beside(target, f".{uuid.uuid4().hex[:12]}{NEW}")
 
 
-def _move_files(stage: Path, folder: Path) -> None:
-    for path in sorted(stage.rglob("*")):
-        target = folder / path.relative_to(stage)
-        if path.is_dir():
-            target.mkdir(exist_ok=True)
-        else:
-            path.replace(target)
+def _sha256_list(folder: Path) -> bytes:
+    lines = []
+    for name in sorted(_files_in(folder)):
+        with (folder / name).open("rb") as stream:
+            lines.append(f"{hashlib.file_digest(stream, 'sha256').hexdigest()}  {name}\n")
+    return os.fsencode("".join(lines))
+
+
+def _files_in(folder: Path) -> set[str]:
+    """Paths of the files below a folder, relative to it, with slashes."""
+    found = (path for path in folder.rglob("*") if not path.is_dir() and path.suffix not in (NEW, LOCK))
+    return {path.relative_to(folder).as_posix() for path in found}
+
+
+def _replace_listed(stage: Path, folder: Path, listed: str) -> None:
+    """Let the files of `stage` take the place of those in `folder` that its list names."""
+    there = _files_in(folder)
+    names = [line[66:] for line in os.fsdecode(_read_if_there(folder / listed)).splitlines()]
+    earlier = there & {*names, listed}
+    if earlier == there and folder != Path.cwd():
+        exchange(stage, folder)
+        return
+    (stage / listed).replace(folder / listed)
+    fresh = _files_in(stage)
+    for name in earlier - fresh - {listed}:
+        (folder / name).unlink()
+    for name in sorted(fresh):
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (stage / name).replace(folder / name)
+
+
+def _read_if_there(path: Path) -> bytes:
+    return path.read_bytes() if path.is_file() else b""
 
 
 def _fill(folder: Path, files: Mapping[str, Content] | Iterable[tuple[str, Content]]) -> None:
@@ -240,8 +262,8 @@ def _sync_and_close(handle: int) -> None:
         os.close(handle)
 
 
-def _exchange(fresh: Path, target: Path) -> None:
-    """Move `fresh` to `target`; afterwards `fresh` holds the old content, if there was any."""
+def exchange(fresh: Path, target: Path) -> None:
+    """Move a folder to `target` in one step; afterwards `fresh` holds the old content, if there was any."""
     if not target.exists():
         os.rename(fresh, target)  # noqa: PTH104
         return
@@ -273,10 +295,3 @@ def _system_swap() -> Callable[[bytes, bytes], int] | None:
 
 def _aside(target: Path) -> Path:
     return target.with_name(f".{target.name}.regolith-old")
-
-
-def _remove_old_leftovers(target: Path) -> None:
-    for folder in leftovers(target):
-        with contextlib.suppress(OSError):
-            if time.time() - folder.stat().st_mtime > LEFTOVER_AGE:
-                remove_quietly(folder)

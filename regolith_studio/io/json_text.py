@@ -7,6 +7,9 @@ from typing import IO, Any
 
 from regolith_studio.errors import FileError
 
+UNPRINTABLE = "backslashreplace"
+"""What becomes of the bytes of a file's name that are not UTF-8: an escape that JSON reads back."""
+
 
 class _Pairs(list[tuple[str, Any]]):
     """An object as it stood in the text, duplicates included."""
@@ -86,7 +89,7 @@ def json_bytes(document: Any) -> bytes:
     ValueError
         If a number is not finite.
     """
-    return _indented(document, 0).encode("utf-8") + b"\n"
+    return _indented(document, 0).encode("utf-8", UNPRINTABLE) + b"\n"
 
 
 class JsonListWriter:
@@ -123,7 +126,7 @@ class JsonListWriter:
         self._write("\n}\n" if self._depth else "\n")
 
     def _write(self, text: str) -> None:
-        self._stream.write(text.encode("utf-8"))
+        self._stream.write(text.encode("utf-8", UNPRINTABLE))
 
 
 def _indented(value: Any, depth: int) -> str:

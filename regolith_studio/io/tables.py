@@ -8,6 +8,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from regolith_studio.io.json_text import UNPRINTABLE
+
 Cell = str | int | float | None
 """What a table may hold; ``None`` and NaN stand for a missing value."""
 
@@ -92,7 +94,7 @@ def csv_text(table: Table) -> str:
 
 def csv_bytes(rows: Iterable[Sequence[object]]) -> bytes:
     """Rows as CSV in UTF-8: floats by ``repr``, ``None`` as an empty cell, text quoted where necessary."""
-    return _csv(rows).encode("utf-8")
+    return _csv(rows).encode("utf-8", UNPRINTABLE)
 
 
 def json_text(table: Table) -> str:

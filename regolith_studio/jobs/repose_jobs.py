@@ -19,15 +19,15 @@ from regolith_studio.dem.evaluation.settings import EvaluationSettings
 from regolith_studio.dem.initial_packing import loose_column
 from regolith_studio.dem.run_io import (
     case_document,
-    claim_folder,
     read_run,
     run_document,
     save_result,
     save_shapes,
     snapshot_files,
+    staged_run,
 )
 from regolith_studio.dem.snapshot import ParticleState, Snapshot
-from regolith_studio.errors import FileError, InputError, MissingRequirement, RegolithError
+from regolith_studio.errors import FileError, InputError, MissingRequirement
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.jobs.coarsening_jobs import CoarseningRequest
 from regolith_studio.jobs.dataset_jobs import DatasetOptions, build_dataset_folder
@@ -90,7 +90,7 @@ def simulate_repose(dataset_folder: Path, folder: Path, request: ReposeRequest) 
     """Draw particles from a dataset on disk, simulate, measure, write; returns :class:`ReposeRun`.
 
     Partial results are :class:`~regolith_studio.dem.engine.Snapshot`. What was saved stays when the run
-    is stopped or fails, and ``repose.json`` says so.
+    is stopped or fails, and ``repose.json`` says so; but it replaces no finished run.
     """
     yield Started(N_("Angle of repose"), PROGRESS_STEPS)
     prepared = prepare(read_dataset(dataset_folder), request.case, dataset_hash(dataset_folder))
@@ -103,25 +103,29 @@ def simulate_prepared(prepared: PreparedCase, folder: Path, request: ReposeReque
     settings = engine.Settings() if request.settings is None else request.settings
     if problem := engine.find().problem:
         raise MissingRequirement(problem)
-    claim_folder(folder, request.overwrite)
-    save_shapes(folder, prepared)
-    record = _RunWriter(prepared, engine, settings, folder)
-    steps = run_engine(engine.key, prepared, settings, folder)
+    with staged_run(folder, request.overwrite) as stage:
+        save_shapes(stage, prepared)
+        return (yield from _simulate(_RunWriter(prepared, engine, settings, stage), folder, request))
+
+
+def _simulate(record: "_RunWriter", folder: Path, request: ReposeRequest) -> Steps:
+    """Run the engine and save how it ends."""
+    steps = run_engine(record.engine.key, record.prepared, record.settings, record.folder)
     share, message = 0.0, "starting"
     try:
         while True:
             try:
                 moment = next(steps)
             except StopIteration as end:
-                return _finish_run(record, end.value, request.evaluation)
+                return _finish_run(record, end.value, folder, request.evaluation)
             if isinstance(moment, Snapshot):
                 share, message = moment.share, moment.message
                 yield Partial(moment)
             yield Progress(round(PROGRESS_STEPS * share), PROGRESS_STEPS, message)
-    except RegolithError as error:
-        record.save("failed", problem=str(error))
+    except EngineError as error:
+        error.document = record.save("failed", problem=str(error))
         raise
-    except GeneratorExit:
+    except (GeneratorExit, KeyboardInterrupt):
         record.save("stopped")
         raise
     finally:
@@ -160,14 +164,16 @@ class _RunWriter:
         return document
 
 
-def _finish_run(record: _RunWriter, ending: SimulationResult, evaluation: EvaluationSettings) -> ReposeRun:
+def _finish_run(
+    record: _RunWriter, ending: SimulationResult, folder: Path, evaluation: EvaluationSettings
+) -> ReposeRun:
     measured = measure_result(ending, evaluation)
     if isinstance(measured, ReposeMeasurement):
         from regolith_studio.studies.figures.repose import write_section_figure  # matplotlib
 
         write_section_figure(ending.particles.points, ending.particles.diameters, measured, record.folder)
     document = record.save("finished", ending, measured)
-    return ReposeRun(record.folder, document, ending, measured)
+    return ReposeRun(folder, document, ending, measured)
 
 
 def measure_result(
@@ -257,8 +263,8 @@ def _study_run(
             if isinstance(step, Progress):
                 message = f"{row.varied} {row.value}: {step.message}"
                 yield Progress(PROGRESS_STEPS * number + step.done, PROGRESS_STEPS * total, message)
-    except EngineError:
-        return dict(read_run(place).document)
+    except EngineError as error:
+        return error.document
     finally:
         steps.close()
 

@@ -16,7 +16,7 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.mesh_health import inspect
 from regolith_studio.geometry.particle import Particle, Source
 from regolith_studio.readers.coefficient_tables import TABLE_SUFFIXES, TEXT_SUFFIXES, read_table_particle
-from regolith_studio.readers.error_messages import display_name, message_about, plural
+from regolith_studio.readers.error_messages import display_name, message_about, plural, printable
 from regolith_studio.readers.formats import mesh_suffixes
 from regolith_studio.readers.sandbox.parent import Sandbox, shared_sandbox
 from regolith_studio.readers.units import unit_factor
@@ -26,6 +26,9 @@ ProblemListener = Callable[[Path, str], None]
 """Called for each file that could not be read, with its path and one sentence."""
 
 _log = logging.getLogger(__name__)
+
+MAX_NAME_BYTES = 150
+"""Of a particle's name, in UTF-8: file systems allow 255 bytes, and endings follow."""
 
 
 @dataclass(frozen=True)
@@ -165,15 +168,24 @@ def unique_names(particles: Sequence[Particle], taken: Sequence[str] = ()) -> tu
 
 
 def unique_name(name: str, group: str, used: set[str]) -> str:
-    """The name; if it is `used`, the name with its group, then with a number. It is added to `used`."""
+    """The name; if it is `used`, the name with its group, then with a number. It is added to `used`.
+
+    Files are called by it: what cannot be printed becomes a line, and what is too long is cut.
+    """
+    name = _file_stem(name)
     if name in used and group:
-        name = f"{group.replace('/', '_')}_{name}"
+        name = _file_stem(f"{group.replace('/', '_')}_{name}")
     base, number = name, 1
     while name in used:
         number += 1
         name = f"{base}_{number}"
     used.add(name)
     return name
+
+
+def _file_stem(name: str) -> str:
+    shown = "".join(sign if sign.isprintable() else "_" for sign in name)
+    return shown.encode()[:MAX_NAME_BYTES].decode(errors="ignore")
 
 
 def read_file(
@@ -266,7 +278,7 @@ def _in_folder(folder: Path, several: bool) -> Iterator[MeshFile]:
     for where, folders, files in os.walk(folder):
         folders[:] = sorted(inner for inner in folders if not inner.startswith("."))
         inside = Path(where).relative_to(folder).as_posix()
-        group = name if inside == "." else f"{name}/{inside}" if several else inside
+        group = printable(name if inside == "." else f"{name}/{inside}" if several else inside)
         for file in sorted(files):
             if not file.startswith(".") and Path(file).suffix.lower() in suffixes:
                 yield MeshFile(Path(where) / file, group)

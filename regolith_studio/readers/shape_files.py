@@ -16,8 +16,9 @@ from regolith_studio.harmonics.coefficients import CONVENTION, ShCoefficients
 from regolith_studio.harmonics.fit import HarmonicFit
 from regolith_studio.harmonics.sphere_grid import sphere_grid
 from regolith_studio.harmonics.surface import radii
+from regolith_studio.io.json_arrays import arrays_from
 from regolith_studio.readers.error_messages import message_about, printable
-from regolith_studio.readers.file_bytes import read_bytes, read_npz
+from regolith_studio.readers.file_bytes import read_bytes
 from regolith_studio.readers.units import unit_factor
 from regolith_studio.shape_models import io as model_io
 from regolith_studio.shape_models.materials import MaterialCard, card_from, materials
@@ -44,7 +45,7 @@ class ShapeSource:
     name
         Short, for people and for provenance.
     sha256
-        Of the file's bytes (of its JSON where there are two files); empty where there is no file.
+        Of the file's bytes; empty where there is no file.
     notes
         Sentences about the source for the user.
     """
@@ -60,8 +61,8 @@ def is_shape_source(text: str) -> bool:
     path = Path(text)
     if path.is_dir():
         return False
-    if path.suffix in (".json", ".npz") or path.exists():
-        return path.suffix in (".json", ".npz")
+    if path.suffix == ".json" or path.exists():
+        return path.suffix == ".json"
     return Path(f"{text}.json").is_file() or text in materials()
 
 
@@ -103,9 +104,7 @@ def radius_of(fit: HarmonicFit) -> ShCoefficients:
 
 
 def _text_file(path: Path) -> Path:
-    if path.suffix == ".json":
-        return path
-    return path.with_suffix(".json") if path.suffix == ".npz" else Path(f"{path}.json")
+    return path if path.suffix == ".json" else Path(f"{path}.json")
 
 
 def _document(path: Path, content: bytes) -> Mapping[str, Any]:
@@ -125,21 +124,18 @@ def _document(path: Path, content: bytes) -> Mapping[str, Any]:
 
 def _sample(path: Path, document: Mapping[str, Any], digest: str) -> ShapeSource:
     check_document(FitDocument, document, path, "fit")
-    arrays, _ = read_npz(path.with_suffix(".npz"))
-    if not {"coefficients", "star_points"} <= arrays.keys():
-        raise FileError(message_about(path, "is a broken fit: its NPZ file holds other arrays than a fit's."))
     try:
-        fits = fit_io.fits_from(document, arrays)
+        fits = fit_io.fits_from(document, arrays_from(document["arrays"]))
+    except FileError as error:
+        raise FileError(message_about(path, f"is a broken fit: {_lower(str(error))}")) from None
     except (KeyError, TypeError, ValueError):
-        reason = "is a broken fit: the arrays in its NPZ file are not of the shape or type that a fit has."
+        reason = "is a broken fit: its arrays are not of the shape or type that a fit has."
         raise FileError(message_about(path, reason)) from None
     if not fits:
         raise FileError(message_about(path, "is a fit without a particle."))
     reached, stated = next(iter(fits.values())).l_max, document["l_max"]
     if reached != stated:
-        reason = (
-            f"is a broken fit: it states l_max = {stated}, and its NPZ file has coefficients up to {reached}."
-        )
+        reason = f"is a broken fit: it states l_max = {stated}, and its coefficients reach up to {reached}."
         raise FileError(message_about(path, reason))
     rows = np.stack([radius_of(fit).values for fit in fits.values()]) * unit_factor(document["unit"])
     expanded = sum(fit.reference is not None for fit in fits.values())
@@ -149,9 +145,8 @@ def _sample(path: Path, document: Mapping[str, Any], digest: str) -> ShapeSource
 
 def _model(path: Path, document: Mapping[str, Any]) -> FittedModel:
     check_document(ModelDocument, document, path, "model")
-    arrays, digest = read_npz(path.with_suffix(".npz"))
     try:
-        model = model_io.model_from(document, arrays, digest)
+        model = model_io.model_from(document)
         unit_factor(model.unit)
     except InputError as error:
         raise FileError(message_about(path, f"is a broken model: {_lower(str(error))}")) from None
@@ -193,6 +188,13 @@ class _Grain(_Document):
     notes: list[str]
 
 
+class _Array(_Document):
+    dtype: str
+    shape: list[Annotated[int, Field(ge=0)]]
+    sha256: Annotated[str, Field(pattern=r"^[0-9a-f]{64}$")]
+    base64: str
+
+
 class _Coefficients(_Document):
     version: Literal[1]
     convention: str
@@ -216,10 +218,11 @@ class _Coefficients(_Document):
 
 
 class FitDocument(_Coefficients):
-    """The JSON of a fitted sample; its NPZ holds the coefficients."""
+    """A fitted sample."""
 
     l_max: Annotated[int, Field(ge=0)]
     particles: list[_Grain]
+    arrays: dict[str, _Array]
 
     @field_validator("particles")
     @classmethod
@@ -232,16 +235,12 @@ class FitDocument(_Coefficients):
         return particles
 
 
-class _Arrays(_Document):
-    sha256: Annotated[str, Field(pattern=r"^[0-9a-f]{64}$")]
-
-
 class ModelDocument(_Coefficients):
-    """The JSON of a fitted model; its NPZ holds what does not fit into text."""
+    """A fitted model."""
 
     model: str
     values: dict[str, Any]
-    arrays: _Arrays
+    arrays: dict[str, _Array]
 
 
 def check_document(

@@ -232,7 +232,7 @@ def _assembled(done: RecipeRun, batch: Batch) -> Part:
         if wish.meshes:
             sinks.append(stack.enter_context(mesh_writer(done.folder / "meshes", done.choices.order)))
         if wish.fits:
-            sinks.append(stack.enter_context(fit_writer(done.folder / "fit")))
+            sinks.append(stack.enter_context(fit_writer(done.folder / "fit.json")))
         for record in _records(done, batch):
             for sink in sinks:
                 sink.add(record)
@@ -267,6 +267,8 @@ def _records(done: RecipeRun, batch: Batch) -> Iterator[CheckpointRecord]:
 def _tell_of_volumes(done: RecipeRun, prepared: PreparedInputs) -> None:
     """Write beside the results how the grains of each volume were found, and which were left out."""
     taken: set[str] = set()
+    if done.recipe.volumes:
+        (done.folder / "volumes").mkdir(exist_ok=True)
     for entry, source in zip(done.recipe.volumes, prepared.volumes, strict=True):
         name = unique_name(Path(entry.file).stem, "", taken)
         write_bytes(done.folder / "volumes" / f"{name}.json", (source / EXTRACTION).read_bytes())
@@ -352,5 +354,5 @@ def _study(done: RecipeRun, name: str, study: Callable[..., Steps]) -> Part:
             done.problems.append(str(error))
             return
         done.studies.append(name)
-        with staged_folder(done.folder / "studies") as stage:
+        with staged_folder(done.folder / "studies", name) as stage:
             STUDIES[name].write(found, stage)

@@ -4,7 +4,6 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from regolith_studio.errors import FileError
 from regolith_studio.readers.particles import unique_name
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.provenance import (
@@ -87,12 +86,9 @@ class SessionRecipe:
         population = self.recipe.population
         if self.model is None or population is None:
             return self.recipe
-        stem = path.with_name(f"{path.stem}-model")
-        try:
-            write_model(stem, self.model, {"source": population.name, "notes": []})
-        except OSError as error:
-            raise FileError(f"The model {stem} cannot be written ({error.strerror}).") from error
-        told = population.model_copy(update={"sources": [str(stem) if whole_path else stem.name]})
+        model = path.with_name(f"{path.stem}-model.json")
+        write_model(model, self.model, {"source": population.name, "notes": []})
+        told = population.model_copy(update={"sources": [str(model) if whole_path else model.name]})
         return self.recipe.model_copy(update={"population": told})
 
 

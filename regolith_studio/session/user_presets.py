@@ -1,5 +1,6 @@
 """Presets that a user has saved: named sets of numbers, one JSON file a kind beside the preferences."""
 
+import contextlib
 import json
 from pathlib import Path
 from typing import Any
@@ -75,4 +76,6 @@ class OwnPresets:
 
     def _write(self, presets: dict[str, dict[str, Any]]) -> None:
         text = json.dumps({"presets": presets}, indent=1, ensure_ascii=False, allow_nan=False)
+        with contextlib.suppress(OSError):  # the writing says why
+            self.path.parent.mkdir(parents=True, exist_ok=True)
         write_bytes(self.path, text.encode("utf-8") + b"\n")

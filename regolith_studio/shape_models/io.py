@@ -1,38 +1,34 @@
-"""The two files of a fitted model: JSON with its values and provenance, and NPZ with its arrays."""
+"""The file of a fitted model: JSON with its values, arrays and provenance."""
 
-import hashlib
-import io
-import json
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from regolith_studio.errors import FileError
 from regolith_studio.harmonics.coefficients import CONVENTION
+from regolith_studio.io.atomic import write_bytes
+from regolith_studio.io.json_arrays import arrays_document, arrays_from
+from regolith_studio.io.json_text import json_bytes
 from regolith_studio.shape_models.models import MODELS
 from regolith_studio.shape_models.protocol import FittedModel
 
 FORMAT = "regolith-studio model"
 
 
-def write_model(
-    stem: Path, model: FittedModel, provenance: Mapping[str, Any] | None = None
-) -> tuple[Path, Path]:
-    """Write ``stem.json`` and ``stem.npz``; the same model gives the same bytes.
+def write_model(path: Path, model: FittedModel, provenance: Mapping[str, Any] | None = None) -> None:
+    """Write a model; the same model gives the same bytes.
 
     Parameters
     ----------
     provenance
         Plain values that describe the sample and the settings of the fit.
+
+    Raises
+    ------
+    FileError
+        If it cannot be written.
     """
-    stem.parent.mkdir(parents=True, exist_ok=True)
-    text, numbers = Path(f"{stem}.json"), Path(f"{stem}.npz")
     values, arrays = model.stored()
-    packed = io.BytesIO()
-    np.savez_compressed(packed, **arrays)  # type: ignore[arg-type]
     document = {
         "format": FORMAT,
         "version": 1,
@@ -42,32 +38,23 @@ def write_model(
         "convention": CONVENTION,
         "provenance": dict(provenance or {}),
         "values": values,
-        "arrays": {"file": numbers.name, "sha256": hashlib.sha256(packed.getvalue()).hexdigest()},
+        "arrays": arrays_document(arrays),
     }
-    text.write_text(json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False) + "\n", "utf-8")
-    numbers.write_bytes(packed.getvalue())
-    return text, numbers
+    write_bytes(path, json_bytes(document))
 
 
-def model_from(document: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]], sha256: str) -> FittedModel:
-    """The model from the contents of its two files, which ``readers.shape_files`` reads.
-
-    Parameters
-    ----------
-    sha256
-        Of the NPZ file's bytes.
+def model_from(document: Mapping[str, Any]) -> FittedModel:
+    """The model from the content of its file, which ``readers.shape_files`` reads.
 
     Raises
     ------
     FileError
-        If the files do not belong together, or hold no model.
+        If it is damaged, or holds no model.
     """
     try:
-        expected, key, values = document["arrays"]["sha256"], document["model"], document["values"]
-        if sha256 != expected:
-            raise FileError("The two files of the model do not belong together.")
+        key, values, arrays = document["model"], document["values"], arrays_from(document["arrays"])
         if key not in MODELS:
             raise FileError(f"There is no model called {key!r}, only {', '.join(MODELS)}.")
         return MODELS[key].restored(values, arrays)
-    except (KeyError, TypeError, ValueError, AttributeError, LookupError) as error:
+    except (KeyError, TypeError, ValueError, AttributeError, LookupError, OverflowError) as error:
         raise FileError("The numbers in it make no model of its kind; fit it again.") from error

@@ -5,7 +5,6 @@ log-normal law of sizes: what publications print. Its model is a field in ln r. 
 ln(r / mean) = r / mean - 1, so that A_l of ln r is 4 pi times the squared relative amplitude.
 """
 
-import json
 from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
@@ -16,6 +15,8 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from regolith_studio.errors import FileError, InputError, format_validation_error, os_error_reason
+from regolith_studio.io.atomic import write_bytes
+from regolith_studio.io.json_text import json_bytes
 from regolith_studio.resources import resource
 from regolith_studio.shape_models.models.log_field import LogField, LogFieldModel, LogFieldSettings
 from regolith_studio.shape_models.sample import Sample
@@ -140,8 +141,7 @@ def card_from(content: bytes, name: str) -> MaterialCard:
 
 def write_card(card: MaterialCard, path: Path) -> Path:
     """Write the card; the same card gives the same bytes."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(json.dumps(card.model_dump(), indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
+    write_bytes(path, json_bytes(card.model_dump()))
     return path
 
 

@@ -1692,8 +1692,8 @@
         <translation>Fits</translation>
     </message>
     <message>
-        <source>Fits, models and material cards (*.json *.npz);;All files (*)</source>
-        <translation>Fits, Modelle und Materialkarten (*.json *.npz);;Alle Dateien (*)</translation>
+        <source>Fits, models and material cards (*.json);;All files (*)</source>
+        <translation>Fits, Modelle und Materialkarten (*.json);;Alle Dateien (*)</translation>
     </message>
     <message>
         <source>Fitting a model of shapes</source>
@@ -3740,10 +3740,6 @@
         <translation>Drehung speichern</translation>
     </message>
     <message>
-        <source>Saved {first} and {second}.</source>
-        <translation>{first} und {second} sind gespeichert.</translation>
-    </message>
-    <message>
         <source>Saved {name}.</source>
         <translation>{name} ist gespeichert.</translation>
     </message>
@@ -4434,10 +4430,6 @@
     <message>
         <source>The method keeps descriptors exactly: each is asked for or not, whatever its weight.</source>
         <translation>Das Verfahren hält Deskriptoren genau ein: jeder wird verlangt oder nicht, gleich mit welchem Gewicht.</translation>
-    </message>
-    <message>
-        <source>The model {name} cannot be written ({reason}).</source>
-        <translation>Das Modell {name} lässt sich nicht schreiben ({reason}).</translation>
     </message>
     <message>
         <source>The nearest to the sample first</source>

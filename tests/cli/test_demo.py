@@ -19,7 +19,6 @@ EXPECTED = {
     "dataset/dataset.json",
     "descriptors.csv",
     "fit.json",
-    "fit.npz",
     "meshes/coarsening.json",
 }
 

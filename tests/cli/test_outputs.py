@@ -1,6 +1,8 @@
 """Where results go: refused in one sentence before the work, and what a full disk says."""
 
 import errno
+import os
+import sys
 from pathlib import Path
 
 import pytest
@@ -75,3 +77,46 @@ def test_that_a_full_disk_is_a_sentence_of_the_system(
     ending = run_job(Job(full), lambda _step: None, lambda: False)
     assert isinstance(ending, Failed)
     assert ending.sentence == sentence
+
+
+def test_that_links_that_lead_nowhere_and_places_without_a_name_are_refused(
+    command, grains: Path, tmp_path: Path
+) -> None:
+    (tmp_path / "circle").symlink_to("circle")
+    (tmp_path / "dangling").symlink_to("nowhere")
+    for name in ("circle", "dangling"):
+        said = command("coarsen", grains, "-o", tmp_path / name)
+        assert said.code == 1
+        assert "is a link that leads nowhere; name a folder for the results." in said.err
+    said = command("coarsen", grains, "-o", "")
+    assert said.code == 2
+    assert "got an empty name" in said.err
+
+
+def test_that_a_model_that_cannot_be_saved_is_said_before_the_work(command, tmp_path: Path) -> None:
+    (tmp_path / "taken").write_text("mine")
+    said = command("generate", "ma165", "-o", tmp_path / "v", "--save-model", tmp_path / "taken" / "m")
+    assert said.code == 1
+    assert "is a file" in said.err
+    assert not (tmp_path / "v").exists()
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="other systems refuse such names")
+def test_that_odd_names_cost_nothing(command, grains: Path, tmp_path: Path) -> None:
+    """Not UTF-8, as long as a name can be, and with a code that changes the colour of a terminal."""
+    odd = [b"lat\xff.stl", b"x" * 251 + b".stl", b"red\x1b[31m.stl"]
+    place = tmp_path / "grains"
+    place.mkdir()
+    for name in odd:
+        (place / os.fsdecode(name)).write_bytes((grains / "grain-a.stl").read_bytes())
+    (place / os.fsdecode(b"no\x1bmesh\xff.stl")).write_text("no mesh")
+    said = command("fit", place, "-o", tmp_path / "fit", "--l-max", 2, "--surfaces", tmp_path / "s", "--json")
+    assert said.code == 0, said.err
+    assert len(said.json["particles"]) == 3
+    names = {each["name"] for each in said.json["particles"]}
+    assert names == {"lat_", "x" * 150, "red_[31m"}
+    assert {path.stem for path in (tmp_path / "s").glob("*.stl")} == names
+    described = command("describe", place, "--csv", tmp_path / "t.csv")
+    assert described.code == 0
+    assert "\x1b" not in described.out + described.err
+    assert command("generate", tmp_path / "fit", "-o", tmp_path / "v", "-n", 1, "--level", 1).code in (0, 1)

@@ -18,7 +18,7 @@ def test_that_a_recipe_leaves_everything_it_asks_for(command, grains: Path, tmp_
     said = command("run", wish, "-o", tmp_path / "out", "--json")
     assert said.code == 0
     files = set(said.json["files"])
-    expected = {"recipe.json", "summary.html", "descriptors.csv", "descriptors.json", "fit.json", "fit.npz"}
+    expected = {"recipe.json", "summary.html", "descriptors.csv", "descriptors.json", "fit.json"}
     assert expected <= files
     assert {"meshes/coarsening.json", "meshes/grain-a.stl", "dataset/dataset.json"} <= files
     page = (tmp_path / "out" / "summary.html").read_text()

@@ -1,5 +1,6 @@
 """``fit``, ``coarsen``, ``extract`` and ``study``: what they write, and that a stranger can read it."""
 
+import base64
 import json
 from pathlib import Path
 
@@ -18,8 +19,8 @@ def test_that_a_fit_holds_the_mean_radius_of_a_ball(command, tmp_path: Path) -> 
     said = command("fit", tmp_path / "ball.stl", "-o", tmp_path / "fit", "--l-max", 6)
     assert said.code == 0
     document = json.loads((tmp_path / "fit.json").read_text())
-    with np.load(tmp_path / "fit.npz") as arrays:
-        coefficients = arrays["coefficients"]
+    entry = document["arrays"]["coefficients"]
+    coefficients = np.frombuffer(base64.b64decode(entry["base64"]), "<f8").reshape(entry["shape"])
     assert coefficients.shape == (1, 49)
     assert coefficients[0, 0] / np.sqrt(4 * np.pi) == pytest.approx(25.0, rel=2e-3)
     assert document["particles"][0]["mean_radius"] == pytest.approx(25.0, rel=2e-3)
@@ -59,9 +60,9 @@ def test_that_a_gallery_is_a_picture_and_an_animation_of_all_degrees(
         assert animation.n_frames == 5
 
 
-def test_that_a_fit_can_be_named_by_either_of_its_files(command, grains: Path, tmp_path: Path) -> None:
+def test_that_a_fit_is_one_file(command, grains: Path, tmp_path: Path) -> None:
     assert command("fit", grains, "-o", tmp_path / "sample.json", "--l-max", 2).code == 0
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["sample.json", "sample.npz"]
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["sample.json"]
 
 
 def test_that_coarsening_writes_convex_bodies_that_another_program_reads(
@@ -96,7 +97,8 @@ def test_that_the_number_of_processes_changes_no_byte(command, grains: Path, tmp
     names = sorted(path.name for path in (tmp_path / "one").iterdir())
     assert names == sorted(path.name for path in (tmp_path / "two").iterdir())
     for name in names:
-        assert without_seconds(tmp_path / "one" / name) == without_seconds(tmp_path / "two" / name)
+        if name != "coarsen.sha256":  # of a document with seconds
+            assert without_seconds(tmp_path / "one" / name) == without_seconds(tmp_path / "two" / name)
 
 
 @pytest.mark.parametrize(

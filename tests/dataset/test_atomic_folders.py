@@ -12,7 +12,8 @@ from regolith_studio.dataset.folder_io import read_dataset, write_dataset
 from regolith_studio.dataset.validation import validate_dataset
 from regolith_studio.errors import DatasetError
 from regolith_studio.io import atomic
-from regolith_studio.io.atomic import leftovers, recover_folder, replace_folder
+from regolith_studio.io.atomic import recover_folder, replace_folder
+from regolith_studio.io.output_lock import leftovers
 
 CALLS = ("mkdir", "open", "write", "fsync", "close", "rename")
 """Every function of ``os`` that writing a folder goes through; ``swap_folders`` is counted beside them."""
@@ -107,6 +108,7 @@ import json, os, random, signal, sys, time
 from pathlib import Path
 from regolith_studio.io import atomic
 from regolith_studio.io.atomic import replace_folder
+from regolith_studio.io.output_lock import leftovers
 from regolith_studio.dataset.folder_io import dataset_files, read_dataset
 from regolith_studio.dataset.validation import validate_dataset
 
@@ -162,7 +164,7 @@ for run in range(runs):
     problems = validate_dataset(folder)
     assert not problems, problems
     found[names[0] != "grain-0"] += 1
-    for rest in atomic.leftovers(folder):
+    for rest in leftovers(folder):
         atomic.remove_quietly(rest)
     if mode != "time" and not os.WIFSIGNALED(status):
         break
@@ -251,13 +253,12 @@ def test_that_without_a_swap_the_folder_is_still_replaced(tmp_path: Path, monkey
     assert [path.name for path in tmp_path.iterdir()] == ["set"]
 
 
-def test_that_leftovers_of_dead_writers_are_cleared_after_an_hour(tmp_path: Path, make_dataset) -> None:
-    old, young = (tmp_path / f".set.{digit * 12}.regolith-new" for digit in "ab")
-    for folder in (old, young):
-        folder.mkdir()
-    os.utime(old, (0, 0))
+def test_that_leftovers_of_dead_writers_are_cleared_by_the_next_one(tmp_path: Path, make_dataset) -> None:
+    (tmp_path / f".set.{'a' * 12}.regolith-new").mkdir()
+    other = tmp_path / f".set.b.{'b' * 12}.regolith-new"
+    other.mkdir()
     write_dataset(tmp_path / "set", make_dataset(1))
-    assert leftovers(tmp_path / "set") == [young]
+    assert sorted(path.name for path in tmp_path.iterdir()) == [other.name, "set"]
 
 
 def test_that_a_folder_that_cannot_be_made_is_one_sentence(tmp_path: Path, make_dataset) -> None:

@@ -15,7 +15,7 @@ from regolith_studio.dataset.export import NOTES, Exporter, ExportOptions, load_
 from regolith_studio.dataset.exporters import EXPORTERS
 from regolith_studio.dataset.lifting_cylinder import particle_count
 from regolith_studio.errors import DatasetError, InputError
-from regolith_studio.io.atomic import leftovers
+from regolith_studio.io.output_lock import leftovers
 
 OPTIONS = ExportOptions(n_particles=12, n_spheres=4)
 EXPECTED = {

@@ -30,6 +30,7 @@ def test_that_a_saved_pile_is_measured_and_drawn(
     assert document["sections"][0]["plane"] == "x-z"
     assert {path.name for path in (tmp_path / "out").iterdir()} == {
         "repose.json",
+        "repose.sha256",
         "sections.png",
         "sections.svg",
     }

@@ -2,6 +2,7 @@
 
 import json
 import shutil
+import subprocess
 import sys
 import time
 from dataclasses import replace
@@ -221,7 +222,8 @@ def test_that_a_run_that_cannot_write_says_so(boxes_folder: Path, tmp_path: Path
         prepared, tmp_path / "run", replace(ORDER, settings=replace(QUICK, snapshots=500))
     )
     _until_moment(steps)
-    shutil.rmtree(tmp_path / "run" / "snapshots")
+    (stage,) = tmp_path.glob(".run.*.regolith-new")
+    shutil.rmtree(stage / "snapshots")
     with pytest.raises(EngineError, match="could not go on"):
         list(steps)
 
@@ -236,6 +238,31 @@ def test_that_a_folder_is_not_overwritten_unless_asked(boxes_folder: Path, tmp_p
         list(simulate_repose(boxes_folder, tmp_path / "run", ORDER))
     with pytest.raises(FileError, match="no result"):
         read_run(tmp_path / "run")
+
+
+def test_that_a_stopped_run_replaces_no_finished_one(
+    finished: Path, boxes_folder: Path, tmp_path: Path
+) -> None:
+    shutil.copytree(finished, tmp_path / "run")
+    steps = simulate_repose(boxes_folder, tmp_path / "run", replace(ORDER, overwrite=True))
+    _until_moment(steps)
+    steps.close()
+    assert read_run(tmp_path / "run").document == read_run(finished).document
+    assert [path.name for path in tmp_path.iterdir()] == ["run"]
+
+
+def test_that_a_second_run_into_a_folder_is_one_sentence(boxes_folder: Path, tmp_path: Path) -> None:
+    holder = "from pathlib import Path; from regolith_studio.io.output_lock import output_lock\n"
+    holder += f"with output_lock(Path({str(tmp_path / 'run')!r})): print('locked', flush=True); input()"
+    with subprocess.Popen(
+        [sys.executable, "-c", holder], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+    ) as other:
+        assert other.stdout is not None
+        assert other.stdout.readline() == "locked\n"
+        with pytest.raises(FileError, match="Another process is writing to"):
+            list(simulate_repose(boxes_folder, tmp_path / "run", ORDER))
+        other.communicate("\n")
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_that_bad_wishes_are_one_sentence(

@@ -1,6 +1,8 @@
 """Outputs appear whole or not at all."""
 
+import hashlib
 import os
+import shutil
 from pathlib import Path
 
 import pytest
@@ -10,13 +12,13 @@ from regolith_studio.io.atomic import staged_folder, write_bytes
 
 
 def write_and_fail(folder: Path) -> None:
-    with staged_folder(folder) as stage:
+    with staged_folder(folder, "test") as stage:
         (stage / "half.txt").write_text("half")
         raise KeyboardInterrupt
 
 
 def test_that_a_folder_appears_with_all_its_files(tmp_path: Path) -> None:
-    with staged_folder(tmp_path / "new" / "place") as stage:
+    with staged_folder(tmp_path / "new" / "place", "test") as stage:
         (stage / "deep").mkdir()
         (stage / "deep" / "a.txt").write_text("a")
         assert not (tmp_path / "new" / "place").exists()
@@ -40,14 +42,52 @@ def test_that_an_interruption_leaves_what_was_there(tmp_path: Path) -> None:
 
 def test_that_other_files_of_the_folder_are_left_alone(tmp_path: Path) -> None:
     (tmp_path / "thesis.txt").write_text("important")
-    with staged_folder(tmp_path) as stage:
+    with staged_folder(tmp_path, "test") as stage:
         (stage / "a.txt").write_text("a")
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["a.txt", "thesis.txt"]
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["a.txt", "test.sha256", "thesis.txt"]
+
+
+def write(folder: Path, **files: str) -> None:
+    with staged_folder(folder, "test") as stage:
+        for name, text in files.items():
+            (stage / name).write_text(text)
+
+
+def test_that_fewer_files_replace_more_and_that_sha256sum_agrees(tmp_path: Path) -> None:
+    write(tmp_path / "out", a="1", b="1", c="1")
+    write(tmp_path / "out", a="2", document="a")
+    assert sorted(path.name for path in (tmp_path / "out").iterdir()) == ["a", "document", "test.sha256"]
+    expected = {name: hashlib.sha256(text).hexdigest() for name, text in (("a", b"2"), ("document", b"a"))}
+    lines = (tmp_path / "out" / "test.sha256").read_text().splitlines()
+    assert dict(reversed(line.split("  ")) for line in lines) == expected
+
+
+def test_that_earlier_files_go_and_other_files_stay_in_a_folder_that_holds_both(tmp_path: Path) -> None:
+    write(tmp_path / "out", a="1", b="1")
+    (tmp_path / "out" / "thesis.txt").write_text("important")
+    write(tmp_path / "out", a="2")
+    found = {path.name: path.read_text() for path in (tmp_path / "out").iterdir()}
+    assert found.pop("test.sha256")
+    assert found == {"a": "2", "thesis.txt": "important"}
+
+
+def test_that_a_folder_whose_stage_was_removed_is_not_said_to_be_written(tmp_path: Path) -> None:
+    def remove(folder: Path) -> None:
+        with staged_folder(folder / "out", "test") as stage:
+            (stage / "a.txt").write_text("a")
+            shutil.rmtree(folder)
+
+    (tmp_path / "place").mkdir()
+    with pytest.raises(FileError, match="cannot be written"):
+        remove(tmp_path / "place")
+    with pytest.raises(FileError, match="cannot be written"):
+        write_bytes(tmp_path / "place" / "a.txt", b"a")
+    assert not (tmp_path / "place").exists()
 
 
 def test_that_a_place_that_cannot_be_written_is_one_sentence(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("in the way")
-    with pytest.raises(FileError, match="cannot be written"), staged_folder(tmp_path / "file" / "x"):
+    with pytest.raises(FileError, match="cannot be written"), staged_folder(tmp_path / "file" / "x", "test"):
         pass
     with pytest.raises(FileError, match="cannot be written"):
         write_bytes(tmp_path / "file" / "x.json", b"")

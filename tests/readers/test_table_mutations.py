@@ -23,7 +23,6 @@ from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.harmonics.fit import fit_harmonics
 from regolith_studio.readers.coefficient_tables import read_coefficients
-from regolith_studio.readers.file_bytes import read_npz
 from regolith_studio.readers.sandbox.tasks import read_number_rows
 from regolith_studio.readers.sandbox.volume_tasks import open_volume_file, read_checked_slices
 from regolith_studio.readers.shape_files import read_shape_source
@@ -81,11 +80,8 @@ CASES: dict[str, Reader] = {
     "complex/grain.anm": table,
     "shtools/grain.shc": table,
     "fit/fit.json": source,
-    "fit/fit.npz": source,
     "model/model.json": source,
-    "model/model.npz": source,
     "card/card.json": source,
-    "arrays/arrays.npz": read_npz,
     "recipe/recipe.json": read_recipe,
     "project/a.regolith": read_project,
     "dataset/dataset.json": dataset,
@@ -112,18 +108,17 @@ def write_all(place: Path) -> None:
     bodies = [Mesh(sphere.vertices * axes, sphere.faces) for axes in ((3, 2, 1.5), (2, 2, 1), (4, 3, 2))]
     fits = [fit_harmonics(body, 3, sampling_degree=8) for body in bodies]
     write_fits(
-        place / "fit/fit",
+        place / "fit/fit.json",
         FittedSample.of([Particle(name, body) for name, body in zip("abc", bodies, strict=True)], fits),
     )
     sample = Sample(np.stack([fit.coefficients.values for fit in fits]))
     model = MODELS["gaussian_field"]
-    write_model(place / "model/model", model.fit(sample, model.Settings(3)))
+    write_model(place / "model/model.json", model.fit(sample, model.Settings(3)))
     write_card(materials()["ma165"], place / "card/card.json")
     recipe = Recipe.model_validate({"volumes": [{"file": "a.tif"}], "population": {"sources": ["x"], "n": 5}})
     (place / "recipe/recipe.json").write_text(recipe.to_json())
     (place / "project/a.regolith").write_text(Project(recipe=recipe).model_dump_json(indent=1))
     (place / "dataset/dataset.json").write_bytes(dataset_files(example_dataset(2))["dataset.json"])
-    np.savez_compressed(place / "arrays/arrays.npz", a=np.arange(12).reshape(3, 4), b=np.array(["x", "yz"]))
     voxels = np.random.default_rng(1).integers(0, 9, (4, 5, 6)).astype(np.uint8)
     for suffix in ("png", "bmp"):
         for number, image in enumerate(voxels):

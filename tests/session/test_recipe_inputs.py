@@ -181,7 +181,7 @@ def test_that_particles_are_drawn_like_measured_ones_with_the_model_named(
 
 def test_that_a_model_file_a_card_and_its_file_draw_the_same_particles(tmp_path: Path) -> None:
     card = materials()["ma165"]
-    write_model(tmp_path / "ma165-model", card.model(6))
+    write_model(tmp_path / "ma165-model.json", card.model(6))
     (tmp_path / "mine.json").write_text(card.model_dump_json())
     wish = {"n": 3, "l_max": 6}
     volumes = []

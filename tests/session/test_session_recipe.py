@@ -227,7 +227,7 @@ def test_that_particles_of_a_card_are_the_same_in_a_run(session: Session, tmp_pa
 def test_that_particles_of_an_edited_card_are_the_same_in_a_run(session: Session, tmp_path: Path) -> None:
     drawn(session, of_card(), GenerationRequest(l_max=5, n=3, seed=8), rougher)
     assert_that_a_run_gives_the_dataset_of(session, tmp_path)
-    assert (tmp_path / "recipe-model.npz").is_file()
+    assert (tmp_path / "recipe-model.json").is_file()
 
 
 @pytest.mark.parametrize("model", ["sample_matched", "gaussian_field", "mixture_field"])

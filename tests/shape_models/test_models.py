@@ -106,12 +106,13 @@ def test_that_a_negative_number_of_particles_is_refused(key: str, fitted: dict[s
 def test_that_a_model_read_back_draws_the_same_bytes(
     key: str, fitted: dict[str, FittedModel], tmp_path: Path
 ) -> None:
-    paths = write_model(tmp_path / "a" / key, fitted[key], {"sample": "synthetic"})
-    again = read_shape_source(str(paths[0])).content
+    first, second = tmp_path / "a.json", tmp_path / "b.json"
+    write_model(first, fitted[key], {"sample": "synthetic"})
+    again = read_shape_source(str(first)).content
     assert isinstance(again, type(fitted[key]))
     assert again.draw(20, 5).coefficients.tobytes() == fitted[key].draw(20, 5).coefficients.tobytes()
-    copies = write_model(tmp_path / "b" / key, again, {"sample": "synthetic"})
-    assert [path.read_bytes() for path in paths] == [path.read_bytes() for path in copies]
+    write_model(second, again, {"sample": "synthetic"})
+    assert first.read_bytes() == second.read_bytes()
 
 
 @keys

@@ -38,7 +38,7 @@ from regolith_studio.shape_models.io import write_model
 from regolith_studio.shape_models.materials import materials
 
 INDEX = "grains.json"
-MODEL = "model"
+MODEL = "model.json"
 SAMPLE_VOLUMES: dict[str, SampleVolume] = {"sample:labels": "labels", "sample:grey": "grey"}
 """The scan that ships with the program, by the names that recipes know it by."""
 
@@ -151,7 +151,7 @@ def _grains(entry: VolumeEntry, base: Path, place: Path, over: bool) -> Steps:
     folder = place / f"volume-{_digest(told, settings.as_document(), volume_sha256(given.path))}"
     if (folder / INDEX).is_file() and (over or _is_whole(folder)):
         return folder
-    with _tidy(place), staged_folder(folder) as stage:
+    with _tidy(place), staged_folder(folder, "prepared") as stage:
         rows: dict[int, dict[str, Any]] = {}
 
         def keep(found: ExtractedParticle) -> None:
@@ -206,12 +206,12 @@ def _model(recipe: Recipe, population: Population, base: Path, place: Path, exec
         marks = [sha256_of(file.path) for file in find_files(paths, problems)]
     told = population.model_dump(mode="json", exclude={"n", "size_range"})
     folder = place / f"model-{_digest(told, recipe.seed, recipe.unit, recipe.repair, marks)}"
-    if not (folder / f"{MODEL}.npz").is_file():
+    if not (folder / MODEL).is_file():
         if not named:
             loaded = yield from load_particles(paths, recipe.unit, recipe.repair)
             source = yield from sample_of_meshes(loaded.particles, fit_request_for(order), executor)
         fitted = yield from fit_model(source, order)
-        with _tidy(place), staged_folder(folder) as stage:
+        with _tidy(place), staged_folder(folder, "prepared") as stage:
             write_model(stage / MODEL, fitted, {"source": source.name, "notes": list(source.notes)})
     return folder, tuple(problems)
 

@@ -108,7 +108,7 @@ class _Meshes:
 @contextmanager
 def mesh_writer(folder: Path, order: CoarseningRequest) -> Iterator[ResultWriter]:
     """Writes one STL a polyhedron, and ``coarsening.json``."""
-    with staged_folder(folder) as stage, (stage / "coarsening.json").open("wb") as stream:
+    with staged_folder(folder, "coarsen") as stage, (stage / "coarsening.json").open("wb") as stream:
         sink = _Meshes(stage, JsonListWriter(stream, document_head(order), "particles"))
         yield sink
         sink.entries.close({"failed": sink.failed})
@@ -132,11 +132,11 @@ class _Fits:
 
 
 @contextmanager
-def fit_writer(stem: Path) -> Iterator[ResultWriter]:
+def fit_writer(path: Path) -> Iterator[ResultWriter]:
     """Writes the coefficients of all particles: nine kilobytes of memory each."""
     sink = _Fits()
     yield sink
-    write_fits(stem, FittedSample(tuple(sink.origins), tuple(sink.fits), tuple(sink.failed)))
+    write_fits(path, FittedSample(tuple(sink.origins), tuple(sink.fits), tuple(sink.failed)))
 
 
 @dataclass

@@ -1,12 +1,9 @@
-"""Coefficients of a sample: ``FIT.json`` (what they are, the spectrum) and ``FIT.npz`` (the numbers)."""
+"""Coefficients of a sample as ``FIT.json``: what they are, the numbers, the spectrum."""
 
-import io
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Protocol
-
-import numpy as np
 
 from regolith_studio.errors import GeometryError
 from regolith_studio.geometry.particle import Particle, Source
@@ -14,7 +11,8 @@ from regolith_studio.harmonics import io as fit_io
 from regolith_studio.harmonics.fit import HarmonicFit
 from regolith_studio.harmonics.spectrum import PowerSpectrum, power_spectrum, roughness_split, sample_spectrum
 from regolith_studio.harmonics.surface import reconstruct
-from regolith_studio.io.atomic import write_bytes
+from regolith_studio.io.atomic import staged_folder, write_bytes
+from regolith_studio.io.json_arrays import arrays_document
 from regolith_studio.io.json_text import json_bytes
 from regolith_studio.io.stl import stl_bytes
 
@@ -63,15 +61,9 @@ class FittedSample:
         return sample_spectrum([fit.coefficients for fit in self.fits]) if self.fits else None
 
 
-def write_fits(stem: Path, sample: FittedSample) -> tuple[Path, Path]:
-    """Write ``<stem>.json`` and ``<stem>.npz``, as :mod:`regolith_studio.harmonics.io` defines them."""
-    names = [particle.name for particle in sample.particles]
-    text, numbers = (stem.with_name(stem.name + suffix) for suffix in (".json", ".npz"))
-    arrays = io.BytesIO()
-    np.savez_compressed(arrays, **fit_io.fits_arrays(names, sample.fits))  # type: ignore[arg-type]
-    write_bytes(numbers, arrays.getvalue())
-    write_bytes(text, json_bytes(fits_document(sample) | {"arrays": numbers.name}))
-    return text, numbers
+def write_fits(path: Path, sample: FittedSample) -> None:
+    """Write a fit's JSON file, as :mod:`regolith_studio.harmonics.io` defines it."""
+    write_bytes(path, json_bytes(fits_document(sample)))
 
 
 def write_surfaces(folder: Path, sample: FittedSample, level: int) -> dict[str, str]:
@@ -83,19 +75,20 @@ def write_surfaces(folder: Path, sample: FittedSample, level: int) -> dict[str, 
         Icosphere level of the surfaces.
     """
     reasons = {}
-    for particle, fit in zip(sample.particles, sample.fits, strict=True):
-        header = f"Regolith Studio, spherical-harmonics fit, l_max {fit.l_max}, micrometres"
-        try:
-            surface = reconstruct(fit, level=level)
-        except GeometryError as error:
-            reasons[particle.name] = str(error)
-        else:
-            write_bytes(folder / f"{particle.name}.stl", stl_bytes(surface.triangles, header))
+    with staged_folder(folder, "fit") as stage:
+        for particle, fit in zip(sample.particles, sample.fits, strict=True):
+            header = f"Regolith Studio, spherical-harmonics fit, l_max {fit.l_max}, micrometres"
+            try:
+                surface = reconstruct(fit, level=level)
+            except GeometryError as error:
+                reasons[particle.name] = str(error)
+            else:
+                write_bytes(stage / f"{particle.name}.stl", stl_bytes(surface.triangles, header))
     return reasons
 
 
 def fits_document(sample: FittedSample) -> dict[str, Any]:
-    """What ``FIT.json`` holds: the fits, the sample's spectrum, sources and notes, and what failed."""
+    """What ``FIT.json`` holds: fits, coefficients, the sample's spectrum, sources, notes, and what failed."""
     names = [particle.name for particle in sample.particles]
     document = fit_io.fits_document(names, sample.fits)
     for entry, particle, fit in zip(document["particles"], sample.particles, sample.fits, strict=True):
@@ -106,6 +99,7 @@ def fits_document(sample: FittedSample) -> dict[str, Any]:
         entry["deviation_by_scale"] = roughness_split(spectrum)
         entry["notes"] = list(particle.notes)
     document["spectrum"] = _spectrum(sample.spectrum)
+    document["arrays"] = arrays_document(fit_io.fits_arrays(names, sample.fits))
     document["failed"] = [{"name": name, "reason": sentence} for name, sentence in sample.failed]
     return document
 

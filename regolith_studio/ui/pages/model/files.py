@@ -19,17 +19,17 @@ MODELS, CARDS = N_("Models (*.json)"), N_("Cards (*.json)")
 
 
 def save_model(parent: QWidget, toast: Toast, model: FittedModel, source: ShapeSource) -> None:
-    """Ask for a name and write ``<name>.json`` and ``<name>.npz``."""
+    """Ask for a name and write the model."""
     name, _ = QFileDialog.getSaveFileName(parent, tr("Save the model"), "model.json", tr(MODELS))
     if not name:
         return
-    stem = Path(name).with_suffix("") if name.endswith(".json") else Path(name)
+    path = Path(name if name.endswith(".json") else f"{name}.json")
     try:
-        paths = write_model(stem, model, {"source": source.name, "sha256": source.sha256 or None})
-    except OSError as error:
-        toast.problem(tr("The model {name} cannot be written ({reason}).", name=name, reason=error.strerror))
+        write_model(path, model, {"source": source.name, "sha256": source.sha256 or None})
+    except RegolithError as error:
+        toast.problem(str(error))
         return
-    toast.note(tr("Saved {first} and {second}.", first=paths[0].name, second=paths[1].name))
+    toast.note(tr("Saved {name}.", name=path.name))
 
 
 def save_card(parent: QWidget, toast: Toast, sample: Sample, source: ShapeSource) -> None:

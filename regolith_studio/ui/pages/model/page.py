@@ -42,7 +42,7 @@ from regolith_studio.ui.translation import tr
 from regolith_studio.ui.views.factory import make_view
 from regolith_studio.ui.widgets.labels import rich_symbol
 
-SOURCE_FILTER = N_("Fits, models and material cards (*.json *.npz);;All files (*)")
+SOURCE_FILTER = N_("Fits, models and material cards (*.json);;All files (*)")
 DRAWN = N_("A drawn particle")
 POPULATION_LEVEL = 4
 MAX_ADOPTED = 2000

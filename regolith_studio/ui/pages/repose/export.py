@@ -31,7 +31,7 @@ def export_measurement(
     if not name:
         return
     try:
-        with staged_folder(Path(name)) as stage:
+        with staged_folder(Path(name), "repose") as stage:
             document = {"length_unit": "m"} | measurement_document(measured)
             (stage / "repose.json").write_bytes(json_bytes(document))
             write_section_figure(pile.points, pile.diameters, measured, stage)
