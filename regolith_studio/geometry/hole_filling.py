@@ -182,6 +182,8 @@ of the volume wrapped once, and that one 0.78 of it inside. Half an ellipsoid wi
 """
 N_RAYS = 1500
 N_POINTS = 400
+COVER_CHUNK = 4096
+"""Triangles of the cover that are seen from all points at the same time, for the memory."""
 OFF_CENTRE = (0.0123, 0.0171, 0.0087)
 """Shares of the box's edges by which the rays begin beside its middle, where models have symmetry planes."""
 
@@ -215,7 +217,8 @@ def enclosure(closed: Mesh, n_cover: int) -> Enclosure:
         return Enclosure(0.0, 0.0, 0.0)
     chosen = points[once][_systematic_sample(volumes[once])]
     cover = closed.triangles[len(closed.faces) - n_cover :]
-    missing = np.abs(solid_angles(cover, chosen)) / (4 * np.pi)
+    parts = np.array_split(cover, 1 + len(cover) // COVER_CHUNK)
+    missing = np.abs(sum(solid_angles(part, chosen) for part in parts)) / (4 * np.pi)
     return Enclosure(
         float(volumes[once].sum() / volumes[wrapped].sum()),
         float(np.mean(missing < 0.5)),

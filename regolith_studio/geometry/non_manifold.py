@@ -4,10 +4,13 @@ import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
+from regolith_studio.errors import GeometryError
 from regolith_studio.geometry.arrays import FloatArray, IntArray
 from regolith_studio.geometry.topology import EdgeTable, edge_table, neighbours
 
-MAX_ROUNDS = 100
+MIN_ROUNDS = 10
+MAX_FACES_IN_ROUNDS = 2_000_000
+"""Faces of all rounds together after the first ones: a few seconds."""
 
 
 def split_non_manifold_edges(vertices: FloatArray, faces: IntArray) -> tuple[FloatArray, IntArray]:
@@ -17,12 +20,18 @@ def split_non_manifold_edges(vertices: FloatArray, faces: IntArray) -> tuple[Flo
     Vertices are doubled where that parts the pairs; where the surface closes again about both ends
     of the edge, each pair gets its own vertex in the middle of it. The faces must run
     counter-clockwise seen from outside. A triangle that finds no partner is left with an open edge.
+
+    Raises
+    ------
+    GeometryError
+        If that would take too much work.
     """
     vertices, faces = _split_vertices(vertices, faces)
-    for _ in range(MAX_ROUNDS):
-        table = edge_table(faces, len(vertices))
-        if not table.non_manifold_edges:
-            break
+    rounds = work = 0
+    while (table := edge_table(faces, len(vertices))).non_manifold_edges:
+        rounds, work = rounds + 1, work + len(faces)
+        if rounds > MIN_ROUNDS and work > MAX_FACES_IN_ROUNDS:
+            raise GeometryError("The mesh is a tangle: too many of its faces meet at the same edges.")
         vertices, faces = _insert_midpoints(vertices, faces, table)
     return vertices, faces
 
@@ -35,39 +44,44 @@ def wedge_neighbours(vertices: FloatArray, faces: IntArray, table: EdgeTable, ac
     before it, if that runs the other way.
     """
     across = across.copy()
-    order = np.argsort(table.edge, kind="stable")
-    first = np.cumsum(table.uses) - table.uses
-    for edge in np.flatnonzero(table.uses > 2):
-        halves = order[first[edge] : first[edge] + table.uses[edge]]
-        low, high = vertices[table.ends[edge]]
-        thirds = vertices[faces.ravel()[halves - halves % 3 + (halves + 2) % 3]] - low
-        ring = halves[np.argsort(_angles(high - low, thirds), kind="stable")].tolist()
-        for half, behind in _wedges(ring, table):
-            across[half], across[behind] = behind, half
+    halves = np.argsort(table.edge, kind="stable")
+    halves = halves[table.uses[table.edge[halves]] > 2]
+    edge = table.edge[halves]
+    low, high = vertices[table.ends[edge, 0]], vertices[table.ends[edge, 1]]
+    thirds = vertices[faces.ravel()[halves - halves % 3 + (halves + 2) % 3]] - low
+    halves = halves[np.lexsort((_angles(high - low, thirds), edge))]
+    rings = np.split(halves, np.flatnonzero(np.diff(edge)) + 1)
+    pairs = [pair for ring in rings for pair in _wedges(ring.tolist(), table.forward[ring].tolist())]
+    half, behind = np.array(pairs, dtype=np.int64).reshape(-1, 2).T
+    across[half], across[behind] = behind, half
     return across
 
 
-def _wedges(ring: list[int], table: EdgeTable) -> list[tuple[int, int]]:
-    """Forward half-edges of a ring in angular order, each with the backward one before it."""
-    pairs = []
-    place = 0
-    while len(ring) > 1 and place < len(ring):
-        half, behind = ring[place], ring[place - 1]
-        if table.forward[half] and not table.forward[behind]:
-            pairs.append((half, behind))
-            ring = [other for other in ring if other not in (half, behind)]
-            place = 0
+def _wedges(ring: list[int], forward: list[bool]) -> list[tuple[int, int]]:
+    """Forward half-edges of a ring in angular order, each with the backward one before it.
+
+    They pair as brackets do, a backward one opening and a forward one closing, around the ring.
+    """
+    pairs, early, opened = [], [], []
+    for half, closes in zip(ring, forward, strict=True):
+        if not closes:
+            opened.append(half)
+        elif opened:
+            pairs.append((half, opened.pop()))
         else:
-            place += 1
-    return pairs
+            early.append(half)
+    return pairs + list(zip(early, reversed(opened), strict=False))
 
 
-def _angles(axis: FloatArray, spokes: FloatArray) -> FloatArray:
-    """Angle of each spoke about the axis, counter-clockwise seen against it."""
-    first = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
-    second = np.cross(axis, first)
+def _angles(axes: FloatArray, spokes: FloatArray) -> FloatArray:
+    """Angle of each spoke about its axis, counter-clockwise seen against it; all of shape (n, 3)."""
+    first = np.cross(axes, np.eye(3)[np.argmin(np.abs(axes), axis=1)])
+    second = np.cross(axes, first)
     return np.asarray(
-        np.arctan2(spokes @ second * np.linalg.norm(first), spokes @ first * np.linalg.norm(second))
+        np.arctan2(
+            (spokes * second).sum(axis=1) * np.linalg.norm(first, axis=1),
+            (spokes * first).sum(axis=1) * np.linalg.norm(second, axis=1),
+        )
     )
 
 

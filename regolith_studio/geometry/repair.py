@@ -27,6 +27,9 @@ MAX_TWISTED_SHARE = 0.05
 
 TWIST_ROUNDS = 5
 
+MAX_FOLDS = 50
+"""How many times the surface of its convex hull a body may have: a line crosses it twice that often."""
+
 MIN_VOLUME = 1e-9
 """Share of its bounding cube that a mesh must enclose, or it is flat."""
 
@@ -126,6 +129,7 @@ def repair(mesh: Mesh) -> Repair:
         _drop_duplicates,
         _wind,
         _keep_largest,
+        _require_few_folds,
         _fill,
         _face_outwards,
     ):
@@ -290,6 +294,20 @@ def _keep_largest(draft: _Draft) -> _Draft:
         dropped_bodies=parts.count - 1,
         kept_volume_share=float(share),
     )
+
+
+def _require_few_folds(draft: _Draft) -> _Draft:
+    """Refuse a tangle before the work that grows with the square of how often a line crosses it."""
+    used = Mesh(draft.vertices[np.unique(draft.faces)], draft.faces[:0])
+    try:
+        folds = Mesh(draft.vertices, draft.faces).surface_area / used.hull.surface_area
+    except GeometryError:  # flat
+        return draft
+    if folds > MAX_FOLDS:
+        raise GeometryError(
+            f"The mesh is a tangle: its faces have {folds:,.0f} times the surface of a body around them."
+        )
+    return draft
 
 
 def _fill(draft: _Draft) -> _Draft:

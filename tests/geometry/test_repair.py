@@ -11,8 +11,10 @@ from regolith_studio.errors import GeometryError
 from regolith_studio.geometry.hole_filling import fill_holes, hole_boundaries, least_area_triangles
 from regolith_studio.geometry.merge_vertices import merged_vertices
 from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.non_manifold import wedge_neighbours
 from regolith_studio.geometry.repair import repair
 from regolith_studio.geometry.sphere_points import icosphere
+from regolith_studio.geometry.topology import edge_table, neighbours
 from tests.filling import filled
 
 CORNERS = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], dtype=float)
@@ -279,6 +281,29 @@ def test_that_what_encloses_nothing_is_refused_in_one_sentence(kind):
     with pytest.raises(GeometryError, match=expected) as caught:
         repair(mesh)
     assert str(caught.value).endswith(".")
+
+
+def test_that_a_tangle_is_refused_before_it_is_closed():
+    """Twenty thousand random triangles between points about a centre."""
+    rng = np.random.default_rng(0)
+    with pytest.raises(GeometryError, match=r"is a tangle: its faces have [0-9,]+ times the surface"):
+        repair(Mesh(rng.normal(size=(300, 3)), rng.integers(0, 300, (20_000, 3))))
+
+
+def test_that_a_book_of_many_pages_pairs_them_in_the_order_of_their_angles():
+    """2,000 pages of alternating direction about one edge: 1,000 wedges, each of two neighbours."""
+    angle = 2 * np.pi * np.arange(2000) / 2000
+    pages = np.column_stack([np.cos(angle), np.sin(angle), np.full(2000, 0.5)])
+    order = np.random.default_rng(0).permutation(2000)
+    start = np.where(np.arange(2000)[order] % 2, 0, 1)
+    faces = np.column_stack([start, 1 - start, np.arange(2000) + 2])
+    vertices = np.concatenate([[[0, 0, 0], [0, 0, 1]], pages[order]])
+    table = edge_table(faces, len(vertices))
+    across = wedge_neighbours(vertices, faces, table, neighbours(table))
+    pairs = np.flatnonzero(across >= 0)
+    steps = (order[pairs // 3] - order[across[pairs] // 3]) % 2000
+    assert len(pairs) == 2000
+    assert set(steps.tolist()) == {1, 1999}
 
 
 def test_that_a_moebius_strip_is_refused():
