@@ -73,7 +73,7 @@ class Checkpoint:
 
     @classmethod
     def resume(cls, path: Path, subject: Mapping[str, Any], kind: str = "run") -> Self:
-        """The checkpoint as it was left; damaged records are dropped, so that their items are done again.
+        """The checkpoint as it was left; damaged records are dropped, an empty file is a beginning.
 
         Parameters
         ----------
@@ -89,6 +89,8 @@ class Checkpoint:
             first key that does.
         """
         with _errors_of(path):
+            if not path.stat().st_size:  # a full disk or a kill at the very beginning
+                return cls.create(path, subject)
             checkpoint = cls(path, _open(path))
             try:
                 checkpoint._check_subject(subject, kind)
@@ -191,24 +193,27 @@ class Checkpoint:
 
 
 def read_note(path: Path, name: str) -> Any:
-    """A note of a checkpoint that is not open, or ``None``.
+    """A note of a checkpoint that is not open, or ``None``; an empty file has none.
 
     Raises
     ------
     FileError
         If the file is damaged or another process has it open.
     """
-    with _errors_of(path), contextlib.closing(_open(path)) as connection:
-        return _note(connection, name)
+    with _errors_of(path):
+        if not path.stat().st_size:
+            return None
+        with contextlib.closing(_open(path)) as connection:
+            return _note(connection, name)
 
 
 def _new(path: Path, notes: Mapping[str, Any]) -> sqlite3.Connection:
     connection = _locked(path)
     try:
-        connection.executescript(f"PRAGMA application_id = {_APPLICATION_ID};BEGIN;{_SCHEMA}COMMIT;")
-        with connection:
-            rows = [(name, _to_json(value)) for name, value in notes.items()]
-            connection.executemany("INSERT INTO notes VALUES (?, ?)", rows)
+        connection.executescript(f"BEGIN;PRAGMA application_id = {_APPLICATION_ID};{_SCHEMA}")
+        rows = [(name, _to_json(value)) for name, value in notes.items()]
+        connection.executemany("INSERT INTO notes VALUES (?, ?)", rows)
+        connection.commit()
     except BaseException:
         connection.close()
         raise

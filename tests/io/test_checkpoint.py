@@ -49,7 +49,7 @@ def test_that_another_subject_is_refused_by_the_name_of_what_differs(path: Path)
     Checkpoint.resume(path, ABOUT).close()  # the refusals have released the file
 
 
-@pytest.mark.parametrize("content", [b"", b"{}\n", b"SQLite format 3\0 and then nothing"])
+@pytest.mark.parametrize("content", [b"{}\n", b"SQLite format 3\0 and then nothing"])
 def test_that_a_file_that_is_no_checkpoint_is_refused_and_may_be_replaced(path: Path, content: bytes) -> None:
     path.parent.mkdir(parents=True)
     path.write_bytes(content)
@@ -57,6 +57,17 @@ def test_that_a_file_that_is_no_checkpoint_is_refused_and_may_be_replaced(path: 
         Checkpoint.resume(path, ABOUT)
     Checkpoint.create(path, ABOUT).close()
     Checkpoint.resume(path, ABOUT).close()
+
+
+def test_that_an_empty_file_is_a_beginning(path: Path) -> None:
+    """As a full disk leaves it: SQLite makes the file and then cannot write to it."""
+    path.parent.mkdir(parents=True)
+    path.touch()
+    assert read_note(path, "ended") is None
+    with Checkpoint.resume(path, ABOUT) as checkpoint:
+        checkpoint.add([CheckpointRecord(0, {})])
+    with Checkpoint.resume(path, ABOUT) as checkpoint:
+        assert checkpoint.indices == {0}
 
 
 def test_that_the_database_of_another_program_is_refused(path: Path) -> None:
