@@ -1,15 +1,23 @@
 """What the program remembers between sittings; a file that is damaged costs the memory, nothing else."""
 
+import contextlib
 import json
 import os
-import tempfile
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, Self
 
 import platformdirs
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, PrivateAttr, ValidationError
+
+from regolith_studio.errors import FileError
+from regolith_studio.io.atomic import write_bytes
+from regolith_studio.io.output_lock import output_lock
 
 RECENT_LIMIT = 12
+LOCK_TRIES = 50
 
 
 class Preferences(BaseModel):
@@ -24,26 +32,33 @@ class Preferences(BaseModel):
     units: dict[str, str] = Field(default_factory=dict)
     window: dict[str, Any] = Field(default_factory=dict)
 
+    _known: dict[str, Any] = PrivateAttr(default_factory=dict)
+    """As the file was when it was last read or written."""
+
     @classmethod
     def load(cls, path: Path | None = None) -> Self:
         """Read them; the defaults if there is no file or it is damaged."""
         try:
-            return cls.model_validate_json((path or preferences_path()).read_bytes())
+            found = cls.model_validate_json((path or preferences_path()).read_bytes())
         except (OSError, ValidationError, RecursionError):
             return cls()
+        found._known = found.model_dump(mode="json")
+        return found
 
     def save(self, path: Path | None = None) -> bool:
-        """Write them in one step; says whether that was possible."""
+        """Write what has changed here into the file, which other windows share; whether that was possible."""
         target = path or preferences_path()
-        text = json.dumps(self.model_dump(mode="json"), indent=1, sort_keys=True)
         try:
-            target.parent.mkdir(parents=True, exist_ok=True)
-            handle, name = tempfile.mkstemp(dir=target.parent, prefix=target.name)
-            with os.fdopen(handle, "w", encoding="utf-8") as file:
-                file.write(text)
-            Path(name).replace(target)
-        except OSError:
+            with _locked(target):
+                there = type(self).load(target).model_dump(mode="json")
+                merged = _merged(there, self.model_dump(mode="json"), self._known)
+                merged["recent"] = merged["recent"][:RECENT_LIMIT]
+                write_bytes(target, json.dumps(merged, indent=1, sort_keys=True).encode("utf-8"))
+        except (OSError, FileError):
             return False
+        self._known = merged
+        for name, value in merged.items():
+            setattr(self, name, value)
         return True
 
     def remember_opened(self, path: Path, unit: str) -> None:
@@ -55,6 +70,47 @@ class Preferences(BaseModel):
     def unit_for(self, path: Path) -> str | None:
         """The unit in which files of this folder were opened last."""
         return self.units.get(_folder(path))
+
+
+@contextmanager
+def _locked(target: Path) -> Iterator[None]:
+    """The lock of the file, waited for as long as another window may take to save."""
+    for _ in range(LOCK_TRIES):
+        with contextlib.ExitStack() as stack:
+            try:
+                stack.enter_context(output_lock(target))
+            except FileError:
+                time.sleep(0.02)
+                continue
+            yield
+            return
+    raise FileError(f"Another process is writing to {target}.")
+
+
+def _merged(theirs: Any, ours: Any, known: Any) -> Any:
+    """What `theirs` becomes by the changes that lead from `known` to `ours`."""
+    if isinstance(theirs, dict) and isinstance(ours, dict):
+        before = known if isinstance(known, dict) else {}
+        return {
+            key: _merged(theirs.get(key, ours.get(key)), ours.get(key, theirs.get(key)), before.get(key))
+            for key in {**theirs, **ours}
+            if (key in theirs or ours[key] != before.get(key)) and (key in ours or key not in before)
+        }
+    if ours == known:
+        return theirs
+    if isinstance(theirs, list) and isinstance(ours, list):  # recent files
+        opened = _opened_since(known or [], ours)
+        return [*opened, *(each for each in theirs if each not in opened)]
+    return ours
+
+
+def _opened_since(known: list[Any], ours: list[Any]) -> list[Any]:
+    """The first of `ours`, behind which the others stand as they did in `known`."""
+    for count in range(len(ours)):
+        rest = [each for each in known if each not in ours[:count]]
+        if ours[count:] == rest[: len(ours) - count]:
+            return ours[:count]
+    return ours
 
 
 def preferences_path() -> Path:

@@ -8,6 +8,25 @@ import pytest
 from regolith_studio.session.preferences import RECENT_LIMIT, Preferences, preferences_path
 
 
+def test_that_two_windows_keep_what_each_of_them_has_changed(tmp_path: Path) -> None:
+    path = tmp_path / "preferences.json"
+    Preferences(recent=("/old",), window={"theme": "dark", "page.scan": {"zoom": 1, "tool": "pen"}}).save(
+        path
+    )
+    one, two = Preferences.load(path), Preferences.load(path)
+    one.remember_opened(tmp_path / "a" / "a.stl", "mm")
+    one.window = {"theme": "light", "page.scan": {"zoom": 2, "tool": "pen"}}
+    two.remember_opened(tmp_path / "b" / "b.stl", "um")
+    two.window = {"theme": "dark", "page.scan": {"zoom": 1, "tool": "brush"}, "tour": True}
+    assert one.save(path)
+    assert two.save(path)
+    found = Preferences.load(path)
+    assert [Path(each).name for each in found.recent] == ["b.stl", "a.stl", "old"]
+    assert sorted(found.units.values()) == ["mm", "um"]
+    assert found.window == {"theme": "light", "page.scan": {"zoom": 2, "tool": "brush"}, "tour": True}
+    assert [each.name for each in tmp_path.iterdir()] == ["preferences.json"]
+
+
 def test_that_preferences_read_back(tmp_path: Path) -> None:
     before = Preferences()
     before.remember_opened(tmp_path / "grains" / "a.stl", "mm")
