@@ -4,14 +4,12 @@ import signal
 import sys
 from typing import Any
 
-TERMINATED = 143
-
 
 def main() -> None:
     """Run the command line with the arguments of this process, and end it with its exit code.
 
-    SIGTERM, as a queue sends it when the time is over, ends a command as Ctrl+C does: nothing half-written
-    stays. The window is left to Qt.
+    SIGTERM, as a queue sends it when the time is over, and SIGHUP, as a closed terminal sends it, end a
+    command as Ctrl+C does: nothing half-written stays. The window is left to Qt.
     """
     from regolith_studio.cli.entry import run
 
@@ -22,9 +20,12 @@ def main() -> None:
         raise KeyboardInterrupt
 
     if sys.argv[1:2] not in ([], ["open"]):
-        signal.signal(signal.SIGTERM, stop)
+        for name in ("SIGTERM", "SIGHUP"):
+            number = getattr(signal, name, None)  # Windows has no SIGHUP, and nohup ignores it
+            if number is not None and signal.getsignal(number) is not signal.SIG_IGN:
+                signal.signal(number, stop)
     code = run(sys.argv[1:])
-    sys.exit(TERMINATED if asked else code)
+    sys.exit(128 + asked[0] if asked else code)
 
 
 if __name__ == "__main__":
