@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from benchmarks.independent import measured
 from regolith_studio.coarsening import warm_up
 from regolith_studio.coarsening.coarsen import coarsen
-from regolith_studio.coarsening.exact.request import EXACT
+from regolith_studio.coarsening.exact.constraint_selection import EXACT
 from regolith_studio.coarsening.result import CoarseningResult
 from regolith_studio.coarsening.target import Target
 from regolith_studio.errors import RegolithError

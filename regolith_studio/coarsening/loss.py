@@ -2,25 +2,20 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
-from regolith_studio.coarsening.core.evaluate import (
-    AREA,
-    LONGEST,
-    SHARED,
-    SHORTEST,
-    VOLUME,
-    evaluate,
-    weighted_loss,
-)
 from regolith_studio.coarsening.core.intersection import FINE
-from regolith_studio.coarsening.core.overlap import crossings_of
+from regolith_studio.coarsening.core.overlap import crossings_of, jaccard, shared_by_planes
+from regolith_studio.coarsening.core.polyhedron_measures import MeasuredPolyhedron, measure_polyhedron
 from regolith_studio.coarsening.target import Target
 from regolith_studio.coarsening.weights import JACCARD, LossWeights
 from regolith_studio.descriptors.catalogue import LOSS_KEYS
 from regolith_studio.descriptors.comparison import relative_errors
 from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.geometry.minimum_box.hull_topology import Facets
+from regolith_studio.geometry.minimum_box.search import minimum_box
 
 
 def loss(weights: LossWeights, errors: Mapping[str, float], jaccard_distance: float) -> float:
@@ -40,6 +35,8 @@ def loss(weights: LossWeights, errors: Mapping[str, float], jaccard_distance: fl
 
 
 BOX_KEYS = ("min_diameter", "max_diameter", "aspect_ratio")
+NO_EDGE = 1e-8
+"""Edges of a polyhedron of about unit volume that are shorter bear no box."""
 
 
 @dataclass(frozen=True)
@@ -61,6 +58,26 @@ class Evaluation:
     loss: float
 
 
+class LossMeasures(NamedTuple):
+    """What Eq. 9 needs of a polyhedron, for a particle of unit volume; NaN where it was not asked for.
+
+    Parameters
+    ----------
+    volume, surface_area
+        Of the polyhedron.
+    shortest, longest
+        Edges of its minimum-volume box.
+    shared
+        Volume that it shares with the particle.
+    """
+
+    volume: float
+    surface_area: float
+    shortest: float
+    longest: float
+    shared: float
+
+
 class LossFunction:
     """Eq. 9 as a function of half-spaces.
 
@@ -73,46 +90,58 @@ class LossFunction:
     def __init__(self, target: Target, weights: LossWeights, everything: bool = False) -> None:
         self._target = target
         self._weights = weights
-        with_box = everything or any(weights[key] for key in BOX_KEYS)
+        self._with_box = everything or any(weights[key] for key in BOX_KEYS)
         rays = target.rays
-        self._crossings = np.empty((5, 0))
+        self._crossings: FloatArray | None = None
         if everything or weights[JACCARD]:
             self._crossings = crossings_of(rays.directions, rays.first, rays.distance, rays.sign)
-        self._wanted = np.array([target.descriptors[key] for key in LOSS_KEYS])
-        self._alphas = np.array([weights[key] for key in (*LOSS_KEYS, JACCARD)])
-        self._weight, self._with_box = rays.weight, with_box
 
     def __call__(self, normals: FloatArray, offsets: FloatArray) -> Evaluation | None:
         """Errors and loss, or ``None`` where the half-spaces bound no proper polyhedron."""
-        values = self._measured(normals, offsets)
-        return None if values is None else self._judged(values)
+        polyhedron = measure_polyhedron(np.array(normals), np.array(offsets))
+        if polyhedron.status != FINE:
+            return None
+        shortest = longest = shared = np.nan
+        if self._with_box:
+            extents = box_extents(polyhedron)
+            shortest, longest = float(extents.min()), float(extents.max())
+            if not shortest > 0.0:
+                return None
+        if self._crossings is not None:
+            dual = polyhedron.normals / polyhedron.offsets[:, None]
+            shared = shared_by_planes(dual, self._crossings, self._target.rays.weight)
+        volume, surface = polyhedron.volume, polyhedron.surface_area
+        return self.of(LossMeasures(volume, surface, shortest, longest, shared))
 
     def value(self, normals: FloatArray, offsets: FloatArray) -> float:
-        """The loss alone, infinite where the half-spaces bound no proper polyhedron: quicker."""
-        values = self._measured(normals, offsets)
-        return np.inf if values is None else weighted_loss(values, self._wanted, self._alphas)
+        """The loss alone, infinite where the half-spaces bound no proper polyhedron."""
+        found = self(normals, offsets)
+        return np.inf if found is None else found.loss
 
-    def _measured(self, normals: FloatArray, offsets: FloatArray) -> FloatArray | None:
-        """As :func:`evaluate`; ``None`` where there is no polyhedron with a box of some thickness."""
-        values, planes, distances = np.empty(6), np.array(normals), np.array(offsets)
-        status = evaluate(planes, distances, self._crossings, self._weight, self._with_box, values)
-        return values if status == FINE and not values[SHORTEST] <= 0.0 else None
-
-    def of(self, values: FloatArray) -> float:
-        """The loss of values as from :func:`regolith_studio.coarsening.core.evaluate.evaluate`."""
-        return weighted_loss(values, self._wanted, self._alphas)
-
-    def _judged(self, values: FloatArray) -> Evaluation:
-        volume, area, shared = float(values[VOLUME]), float(values[AREA]), float(values[SHARED])
-        shortest, longest = float(values[SHORTEST]), float(values[LONGEST])
+    def of(self, measures: LossMeasures) -> Evaluation:
+        """Errors and loss of a polyhedron that is measured already."""
+        volume, surface, shortest, longest, shared = measures
         found = {
             "volume": volume,
-            "sphericity": float(np.cbrt(np.pi) * (6 * volume) ** (2 / 3) / area),
+            "sphericity": float(np.cbrt(np.pi) * (6 * volume) ** (2 / 3) / surface),
             "min_diameter": shortest,
             "max_diameter": longest,
             "aspect_ratio": longest / shortest,
             "convex_hull_volume": volume,
         }
         errors = relative_errors(self._target.descriptors, found)
-        jaccard = 1.0 - shared / (1.0 + volume - shared)
-        return Evaluation(errors, jaccard, loss(self._weights, errors, jaccard))
+        jaccard_distance = jaccard(shared, 1.0, volume)
+        return Evaluation(errors, jaccard_distance, loss(self._weights, errors, jaccard_distance))
+
+
+def box_extents(polyhedron: MeasuredPolyhedron) -> FloatArray:
+    """Edges of the minimum-volume box, shape (3,).
+
+    Edges of the polyhedron that are too short to have a direction are passed over, as if their ends were one
+    vertex.
+    """
+    vertices, edges = polyhedron.vertices, polyhedron.edges
+    lengths = np.linalg.norm(vertices[edges[:, 1]] - vertices[edges[:, 0]], axis=1)
+    points = np.ascontiguousarray(vertices.T)
+    axes = minimum_box(Facets(points, polyhedron.normals, edges[lengths >= NO_EDGE]))
+    return np.asarray(np.ptp(axes @ points, axis=1))

@@ -7,9 +7,9 @@ arrays that cannot be written.
 import numpy as np
 
 from regolith_studio.coarsening.core.intersection import FINE
-from regolith_studio.coarsening.core.measures import fill_polyhedron
+from regolith_studio.coarsening.core.polyhedron_measures import MeasuredPolyhedron, measure_polyhedron
 from regolith_studio.errors import GeometryError
-from regolith_studio.geometry.arrays import FloatArray, IntArray
+from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.half_spaces import HalfSpaces
 
@@ -23,18 +23,18 @@ def polyhedron_of(half_spaces: HalfSpaces) -> ConvexPolyhedron:
         If the intersection is unbounded.
     """
     size = float(half_spaces.offsets.max())
-    status, vertices, edges, _ = intersect_half_spaces(half_spaces.normals, half_spaces.offsets / size)
-    if status != FINE:
+    found = intersect_half_spaces(half_spaces.normals, half_spaces.offsets / size)
+    if found.status != FINE:
         return ConvexPolyhedron.from_half_spaces(half_spaces)
     n = len(half_spaces)
     following: list[dict[int, int]] = [{} for _ in range(n)]
-    for start, end, left, right in edges.tolist():
+    for start, end, left, right in found.edges.tolist():
         following[left][start] = end
         following[right][end] = start
     kept = [plane for plane in range(n) if following[plane]]
     facets = tuple(_loop(following[plane]) for plane in kept)
     solid = HalfSpaces(half_spaces.normals[kept], half_spaces.offsets[kept])
-    return ConvexPolyhedron(solid, np.asarray(vertices * size), facets)
+    return ConvexPolyhedron(solid, np.asarray(found.vertices * size), facets)
 
 
 def _loop(following: dict[int, int]) -> tuple[int, ...]:
@@ -54,17 +54,12 @@ def facet_areas(half_spaces: HalfSpaces) -> FloatArray:
     GeometryError
         If the intersection is unbounded.
     """
-    status, _, _, areas = intersect_half_spaces(half_spaces.normals, half_spaces.offsets)
-    if status != FINE:
+    found = intersect_half_spaces(half_spaces.normals, half_spaces.offsets)
+    if found.status != FINE:
         raise GeometryError("The half-spaces bound no volume: their intersection is unbounded.")
-    return areas
+    return found.areas
 
 
-def intersect_half_spaces(
-    normals: FloatArray, offsets: FloatArray
-) -> tuple[int, FloatArray, IntArray, FloatArray]:
-    """Status, vertices (v, 3), edges (e, 4) and facet areas (n,); void unless the status is FINE."""
-    n = len(offsets)
-    vertices, edges, areas = np.empty((2 * n, 3)), np.empty((3 * n, 4), dtype=np.int64), np.zeros(n)
-    status, count = fill_polyhedron(np.array(normals), np.array(offsets), vertices, edges, areas)
-    return status, vertices[:count], edges[: 3 * count // 2], areas
+def intersect_half_spaces(normals: FloatArray, offsets: FloatArray) -> MeasuredPolyhedron:
+    """The polyhedron of half-spaces, also of arrays that cannot be written, shapes (n, 3) and (n,)."""
+    return measure_polyhedron(np.array(normals), np.array(offsets))

@@ -2,10 +2,12 @@
 
 import numpy as np
 
+from regolith_studio.errors import GeometryError
 from regolith_studio.geometry.arrays import FloatArray, IntArray
-from regolith_studio.geometry.kernels import kernel
+from regolith_studio.geometry.kernels import kernel_noalloc
 from regolith_studio.geometry.mesh import Mesh
-from regolith_studio.geometry.minimum_box.hull_topology import after, hull_graph
+from regolith_studio.geometry.minimum_box.extents import extreme_vertices_of_each
+from regolith_studio.geometry.minimum_box.hull_topology import facets_of_hull
 from regolith_studio.geometry.vectors import along, cross, dot, length, mixed, row
 
 PARALLEL = 1e-8
@@ -27,7 +29,7 @@ def feret_min(hull: Mesh) -> float:
     The planes touch a face and a vertex, or two edges that are not parallel (Houle and Toussaint 1988).
     """
     middle, size = _frame(hull)
-    return size * _least_width((hull.vertices - middle) / size, hull.faces)
+    return size * _min_width((hull.vertices - middle) / size, hull.faces)
 
 
 def _frame(hull: Mesh) -> tuple[FloatArray, float]:
@@ -35,7 +37,7 @@ def _frame(hull: Mesh) -> tuple[FloatArray, float]:
     return (low + high) / 2, float((high - low).max())
 
 
-@kernel
+@kernel_noalloc
 def _longest_chord(points: FloatArray) -> float:
     """Largest distance between two points."""
     longest = 0.0
@@ -46,46 +48,41 @@ def _longest_chord(points: FloatArray) -> float:
     return float(np.sqrt(longest))
 
 
-@kernel
-def _least_width(points: FloatArray, faces: IntArray) -> float:
+def _min_width(points: FloatArray, faces: IntArray) -> float:
     """Least distance between parallel tangent planes of a closed convex triangulation."""
-    graph = hull_graph(points, faces)
-    least = np.inf
-    for f in range(len(faces)):
-        normal = row(graph.normals, f)
-        low = np.inf
-        for i in range(len(points)):
-            low = min(low, along(points, i, normal))
-        least = min(least, along(points, faces[f, 0], normal) - low)
-    n = 0
-    edges, sides = np.empty((len(graph.twin) // 2, 2, 3)), np.empty((len(graph.twin) // 2, 2, 3))
-    for h in range(len(graph.twin)):
-        if h < graph.twin[h] and graph.facet[h // 3] != graph.facet[graph.twin[h] // 3]:
-            for k in range(3):
-                edges[n, 0, k] = points[graph.origin[h], k]
-                edges[n, 1, k] = points[graph.origin[after(h)], k] - edges[n, 0, k]
-                sides[n, 0, k] = graph.normals[h // 3, k]
-                sides[n, 1, k] = graph.normals[graph.twin[h] // 3, k]
-            n += 1
-    for i in range(n):
+    facets = facets_of_hull(points, faces)
+    if facets is None:
+        raise GeometryError("The convex hull of the mesh does not close, so it has no Feret diameter.")
+    top, bottom = extreme_vertices_of_each(facets.points, np.ascontiguousarray(facets.normals.T))
+    heights = (facets.normals * (points[top] - points[bottom])).sum(axis=1)
+    start, end = points[facets.edges[:, 0]], points[facets.edges[:, 1]]
+    sides = facets.normals[facets.edges[:, 2:]]
+    return min(float(heights.min()), _width_between_edges(start, end - start, sides))
+
+
+@kernel_noalloc
+def _width_between_edges(start: FloatArray, way: FloatArray, sides: FloatArray) -> float:
+    """Least :func:`_width_between` of all pairs of edges: starts, vectors (e, 3) and normals (e, 2, 3)."""
+    width = np.inf
+    for i in range(len(start)):
         for j in range(i):
-            least = min(least, _width_between(edges[i], sides[i], edges[j], sides[j]))
-    return float(least)
+            width = min(width, _width_between(start, way, sides, i, j))
+    return width
 
 
-@kernel
-def _width_between(edge: FloatArray, sides: FloatArray, other: FloatArray, other_sides: FloatArray) -> float:
+@kernel_noalloc
+def _width_between(start: FloatArray, way: FloatArray, sides: FloatArray, i: int, j: int) -> float:
     """Distance between the parallel planes through two edges, infinite unless both planes are tangent."""
-    way, other_way = row(edge, 1), row(other, 1)
-    if along(other_sides, 0, way) * along(other_sides, 1, way) > ROUNDING * dot(way, way):
+    one, two = row(way, i), row(way, j)
+    if along(sides[j], 0, one) * along(sides[j], 1, one) > ROUNDING * dot(one, one):
         return np.inf
-    if along(sides, 0, other_way) * along(sides, 1, other_way) > ROUNDING * dot(other_way, other_way):
+    if along(sides[i], 0, two) * along(sides[i], 1, two) > ROUNDING * dot(two, two):
         return np.inf
-    normal = cross(way, other_way)
+    normal = cross(one, two)
     size = length(normal)
-    if size <= PARALLEL * length(way) * length(other_way):
+    if size <= PARALLEL * length(one) * length(two):
         return np.inf
-    turn = 1.0 if along(sides, 0, normal) + along(sides, 1, normal) > 0.0 else -1.0
-    if turn * (along(other_sides, 0, normal) + along(other_sides, 1, normal)) > 0.0:
+    turn = 1.0 if along(sides[i], 0, normal) + along(sides[i], 1, normal) > 0.0 else -1.0
+    if turn * (along(sides[j], 0, normal) + along(sides[j], 1, normal)) > 0.0:
         return np.inf
-    return turn * dot(mixed(row(edge, 0), 1.0, row(other, 0), -1.0), normal) / size
+    return turn * dot(mixed(row(start, i), 1.0, row(start, j), -1.0), normal) / size

@@ -28,6 +28,9 @@ UNUSED_DAYS = 60
 """Folders of machine code that no process has used for so long are deleted."""
 
 _OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy", "fastmath": False}
+_NO_COUNTING: dict[str, Any] = {"_nrt": False}
+# An option of numba without documentation. Each use of an array of a named tuple otherwise counts references
+# up and down: atomic operations that cost more than the arithmetic around them.
 _CONFIG: Any = numba.config
 _PACKAGE = Path(__file__).resolve().parents[1]
 _MARKS = (b"@kernel", b"@inline_kernel")
@@ -48,17 +51,12 @@ def kernel_noalloc(function: F) -> F:
 
     Numba refuses to compile it if it allocates; it may call other such kernels only.
     """
-    # An option of numba without documentation. Each use of an array of a named tuple otherwise counts
-    # references up and down: atomic operations that cost more than the arithmetic around them.
-    return _compiled(function, {"_nrt": False})
+    return _compiled(function, _NO_COUNTING)
 
 
 def inline_kernel(function: F) -> F:
-    """Compile `function` into every kernel that calls it, for innermost loops.
-
-    A call between compiled functions costs about 25 ns for each array that it hands over.
-    """
-    return cast(F, numba.njit(inline="always", **_OPTIONS)(function))
+    """Compile a small function of innermost loops: only kernels call it, and LLVM inlines it there."""
+    return cast(F, numba.njit(**_OPTIONS, **_NO_COUNTING)(function))
 
 
 def _compiled(function: F, options: dict[str, Any]) -> F:

@@ -13,11 +13,10 @@ from scipy.spatial import cKDTree
 from regolith_studio.errors import GeometryError
 from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
-from regolith_studio.geometry.kernels import kernel
 from regolith_studio.geometry.mesh import Mesh, bounds_of
+from regolith_studio.geometry.minimum_box.hull_topology import Facets, facets_of_hull
 from regolith_studio.geometry.minimum_box.search import minimum_box
 from regolith_studio.geometry.sphere_points import fibonacci_directions
-from regolith_studio.geometry.vectors import length, mixed, row
 
 JITTER = 1e-10
 WELD = 1e-8
@@ -146,9 +145,8 @@ def _searched(solid: Mesh | ConvexPolyhedron) -> OrientedBox:
         raise GeometryError("The mesh is a single point and has no bounding box.")
     middle = (low + high) / 2
     points = (hull.vertices - middle) / size
-    axes = np.empty((3, 3))
-    if not minimum_box(*_welded(points, hull.faces), axes):
-        axes = _axes_of_perturbed(points)
+    facets = facets_of_hull(*_welded(points, hull.faces)) or _facets_of_perturbed(points)
+    axes = minimum_box(facets)
     low_ends, high_ends = bounds_of(points @ axes.T)
     axes = _right_handed(axes[np.argsort(low_ends - high_ends, kind="stable")])
     lows, highs = bounds_of(points @ axes.T)
@@ -158,7 +156,8 @@ def _searched(solid: Mesh | ConvexPolyhedron) -> OrientedBox:
 
 def _welded(points: FloatArray, faces: IntArray) -> tuple[FloatArray, IntArray]:
     """A hull without edges shorter than `WELD`, which are too short to have a direction."""
-    if _shortest(points, faces) >= WELD:
+    edges = points[faces] - points[np.roll(faces, 1, axis=1)]
+    if (edges**2).sum(axis=2).min() >= WELD**2:
         return points, faces
     near = cKDTree(points).query_pairs(WELD, output_type="ndarray")
     graph = coo_array((np.ones(len(near)), near.T), shape=(len(points), len(points)))
@@ -167,30 +166,18 @@ def _welded(points: FloatArray, faces: IntArray) -> tuple[FloatArray, IntArray]:
         hull = Mesh(points[first], np.empty((0, 3), dtype=np.int64)).hull
     except GeometryError:
         return points, faces
-    return np.array(hull.vertices), hull.faces
+    return hull.vertices, hull.faces
 
 
-@kernel
-def _shortest(points: FloatArray, faces: IntArray) -> float:
-    """Length of the shortest edge."""
-    least = np.inf
-    for f in range(len(faces)):
-        for k in range(3):
-            least = min(
-                least, length(mixed(row(points, faces[f, k]), 1.0, row(points, faces[f, k - 2]), -1.0))
-            )
-    return least
-
-
-def _axes_of_perturbed(points: FloatArray) -> FloatArray:
+def _facets_of_perturbed(points: FloatArray) -> Facets:
     """For a hull whose triangles do not close (many points in one plane): move each point by 1e-10."""
     perturbed = Mesh(
         points + JITTER * fibonacci_directions(len(points)), np.empty((0, 3), dtype=np.int64)
     ).hull
-    axes = np.empty((3, 3))
-    if not minimum_box(np.array(perturbed.vertices), perturbed.faces, axes):
+    facets = facets_of_hull(perturbed.vertices, perturbed.faces)
+    if facets is None:
         raise GeometryError("The convex hull of the mesh does not close, so it has no bounding box.")
-    return axes
+    return facets
 
 
 def _right_handed(axes: FloatArray) -> FloatArray:

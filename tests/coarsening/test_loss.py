@@ -1,12 +1,11 @@
-"""The compiled loss against Eq. 9 written out from the public descriptors."""
+"""The loss of half-spaces against Eq. 9 written out from the public descriptors."""
 
 import numpy as np
 import pytest
 
-from regolith_studio.coarsening.core.evaluate import least_extents
-from regolith_studio.coarsening.core.intersection import edges_of, intersect
+from regolith_studio.coarsening.core.polyhedron_measures import measure_polyhedron
 from regolith_studio.coarsening.decimated_hull import quadric_half_spaces
-from regolith_studio.coarsening.loss import LossFunction
+from regolith_studio.coarsening.loss import LossFunction, box_extents
 from regolith_studio.coarsening.target import Target
 from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.descriptors.catalogue import LOSS_KEYS
@@ -61,7 +60,5 @@ def test_that_the_least_box_is_the_public_one(n_facets: int, seed: int) -> None:
     reach = float((solid.vertices @ normal).max())
     normals = np.vstack([planes.normals, normal])
     offsets = np.append(planes.offsets, reach - 1e-10)
-    _, vertices, triples = intersect(normals, offsets)
-    edges = edges_of(triples, len(offsets))
-    extents = least_extents(normals, np.ascontiguousarray(vertices.T), edges)
+    extents = box_extents(measure_polyhedron(normals, offsets))
     assert np.sort(extents) == pytest.approx(np.sort(minimum_volume_box(solid).extents), rel=1e-7)

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from regolith_studio.geometry.arrays import FloatArray, IntArray
-from regolith_studio.geometry.kernels import inline_kernel, kernel, kernel_noalloc
+from regolith_studio.geometry.kernels import inline_kernel, kernel_noalloc
 from regolith_studio.geometry.vectors import Vector, cross, dot, length, mixed, row
 
 
@@ -63,7 +63,6 @@ class Scratch(NamedTuple):
     flat: FloatArray
 
 
-@kernel
 def scratch_for(solid: Solid) -> Scratch:
     """Memory for a search of boxes around `solid`."""
     return Scratch(
@@ -74,7 +73,6 @@ def scratch_for(solid: Solid) -> Scratch:
     )
 
 
-@kernel
 def empty_touch() -> Touch:
     """A box to be filled."""
     return Touch(np.empty((3, 3)), np.empty(3), np.empty(7, np.int64))

@@ -10,7 +10,7 @@ import numpy as np
 
 from regolith_studio.coarsening.core.box import Scratch, Solid, Touch, box_at, from_to, slope_at, turned_frame
 from regolith_studio.geometry.arrays import FloatArray, IntArray
-from regolith_studio.geometry.kernels import kernel, kernel_noalloc
+from regolith_studio.geometry.kernels import kernel_noalloc
 from regolith_studio.geometry.vectors import Vector, dot, length, mixed, row
 
 BESIDE = 1e-7
@@ -45,13 +45,11 @@ class Spare(NamedTuple):
     here: ArcSample
 
 
-@kernel
 def empty_sample() -> ArcSample:
     """A sample to be filled."""
     return ArcSample(np.zeros(3), np.zeros(7, np.int64))
 
 
-@kernel
 def spare_samples() -> Spare:
     """Three samples to be filled."""
     return Spare(empty_sample(), empty_sample(), empty_sample())

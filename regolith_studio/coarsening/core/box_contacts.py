@@ -20,13 +20,18 @@ from regolith_studio.geometry.vectors import Vector, along, cross, dot, length, 
 
 ROW = 13
 """Numbers in a row of contacts."""
+VERTICES = np.array([1, 2, 3, 4, 5, 6, 8, 10, 12])
+"""Places of the vertices in a row of contacts: six ends of axes, three tied."""
 TOUCHING = 1e-6
 """Vertices nearer to a side than this, at size 1, touch it."""
 OUTSIDE = 1e-9
 """Vertices farther outside than this are outside."""
 APART = 1e-5
 """Ties that leave less of a turn than this, at size 1, are none."""
-MOST_SWAPS = 6
+MAX_SWAPS = 6
+MAX_RELEASES = 6
+NONE, UNSTABLE = -1, -2
+"""In place of a tie that is to be released."""
 SETTLED = 1e-11
 """Last turn of a box that has settled, in radians."""
 
@@ -117,7 +122,7 @@ def settled(points: FloatArray, contact: IntArray, frame: FloatArray, farthest: 
         total += angle
         if not (sound and total < farthest):
             return False
-        turned(frame, mixed(turn, -1.0, turn, 0.0))
+        rotate(frame, mixed(turn, -1.0, turn, 0.0))
         if angle < SETTLED:
             return True
     return False
@@ -199,7 +204,7 @@ def solved(rows: tuple[Vector, Vector, Vector], right: Vector) -> tuple[bool, Ve
 
 
 @kernel_noalloc
-def turned(frame: FloatArray, turn: Vector) -> None:
+def rotate(frame: FloatArray, turn: Vector) -> None:
     """Rotate the axes in `frame` by the angle and about the direction of `turn`."""
     angle = length(turn)
     if angle == 0.0:
@@ -229,7 +234,7 @@ def rested(
     farthest
         As in :func:`settled`.
     """
-    for _ in range(MOST_SWAPS):
+    for _ in range(MAX_SWAPS):
         fill_points(vertices, contact, points)
         if not settled(points, contact, frame, farthest):
             return False
@@ -261,27 +266,163 @@ def farthest_outside(vertices: FloatArray, contact: IntArray, frame: FloatArray)
 
 
 @kernel_noalloc
-def at_minimum(pose: Pose, contact: IntArray) -> bool:
-    """Whether no small turn makes the box smaller, as far as the contacts tell.
+def walk_to_minimum(
+    vertices: FloatArray,
+    contact: IntArray,
+    frame: FloatArray,
+    points: FloatArray,
+    start: FloatArray,
+    farthest: float,
+) -> bool:
+    """Turn a box until it is a local minimum, by an active-set method; False where that leads nowhere.
 
-    Where a pair ties, either vertex may end the axis, and some mixture of the slopes that this makes must
-    vanish. Of a side on a facet any three vertices may be named, so that a mixture with a negative share does
-    not tell anything.
+    The box settles on its ties. As long as a small turn that gives up one tie makes it smaller, it turns so
+    until another vertex touches. Where it cannot settle, it begins once more without ties.
+
+    Parameters
+    ----------
+    points, farthest
+        As in :func:`rested`.
+    start
+        Scratch, shape (3, 3).
+    """
+    for axis in range(3):
+        start[axis, 0], start[axis, 1], start[axis, 2] = row(frame, axis)
+    anew = False
+    for _ in range(MAX_RELEASES):
+        if not rested(vertices, contact, frame, points, farthest):
+            if anew:
+                return False
+            anew = True
+            for axis in range(3):
+                frame[axis, 0], frame[axis, 1], frame[axis, 2] = row(start, axis)
+            if not gain_ties(vertices, contact, frame, points):
+                return False
+            continue
+        pose = pose_of(points, contact, frame)
+        tie, at_end = tie_to_release(pose, contact)
+        if tie == NONE:
+            return True
+        if tie == UNSTABLE or not change_tie(vertices, contact, frame, pose, tie, at_end):
+            return False
+    return False
+
+
+@kernel_noalloc
+def gain_ties(vertices: FloatArray, contact: IntArray, frame: FloatArray, points: FloatArray) -> bool:
+    """Turn a box without ties the way that it becomes smaller until two or three are there; False for less.
+
+    The third tie is left out where the volume is stationary before another vertex touches.
+    """
+    contact[0] = 0
+    for side in range(6):
+        contact[1 + side] = farthest_vertex(vertices, frame, side)
+    for n in range(3):
+        fill_points(vertices, contact, points)
+        pose = pose_of(points, contact, frame)
+        turn = downhill(pose, n, n)
+        angle, side, vertex = next_contact(vertices, contact, frame, turn)
+        if n == 2:
+            change = dot(pose.conditions[2], turn)
+            if 0.0 < -pose.residuals[2] < angle * change:
+                return True
+        if side < 0:
+            return n == 2
+        rotate(frame, mixed(turn, angle, turn, 0.0))
+        contact[0], contact[7 + 2 * n], contact[8 + 2 * n] = n + 1, side, vertex
+    return True
+
+
+@kernel_noalloc
+def farthest_vertex(vertices: FloatArray, frame: FloatArray, side: int) -> int:
+    """The vertex that lies farthest beyond a side of a box."""
+    x, at, most = row(frame, side // 2), 0, -np.inf
+    x = mixed(x, 1.0 if side % 2 == 0 else -1.0, x, 0.0)
+    for v in range(len(vertices)):
+        here = along(vertices, v, x)
+        if here > most:
+            at, most = v, here
+    return at
+
+
+@kernel_noalloc
+def downhill(pose: Pose, n: int, released: int) -> Vector:
+    """Turn along which the volume falls fastest while n ties hold, all but the one that is released."""
+    slope = mixed(mixed(pose.slopes[0], 1.0, pose.slopes[1], 1.0), 1.0, pose.slopes[2], 1.0)
+    turn, first = mixed(slope, -1.0, slope, 0.0), (0.0, 0.0, 0.0)
+    for t in range(n):
+        if t != released:
+            held = pose.conditions[0] if t == 0 else (pose.conditions[1] if t == 1 else pose.conditions[2])
+            held = mixed(held, 1.0, first, -dot(held, first))
+            held = mixed(held, 1.0 / length(held), held, 0.0)
+            turn = mixed(turn, 1.0, held, -dot(held, turn))
+            first = held
+    return turn
+
+
+@kernel_noalloc
+def next_contact(
+    vertices: FloatArray, contact: IntArray, frame: FloatArray, turn: Vector
+) -> tuple[float, int, int]:
+    """Share of a turn after which, to first order, a vertex touches a side; side (-1 for none) and vertex."""
+    soonest, next_side, next_vertex = np.inf, -1, -1
+    for s in range(6):
+        x, end = row(frame, s // 2), contact[1 + s]
+        x = mixed(x, 1.0 if s % 2 == 0 else -1.0, x, 0.0)
+        rate_of = cross(x, turn)
+        for v in range(len(vertices)):
+            apart = mixed(row(vertices, end), 1.0, row(vertices, v), -1.0)
+            rate = dot(rate_of, apart)
+            if rate <= 0.0 or v == end:
+                continue
+            tied = False
+            for t in range(contact[0]):
+                tied = tied or (contact[7 + 2 * t] == s and contact[8 + 2 * t] == v)
+            gap = max(0.0, dot(x, apart))
+            if not tied and gap < soonest * rate:
+                soonest, next_side, next_vertex = gap / rate, s, v
+    return soonest, next_side, next_vertex
+
+
+@kernel_noalloc
+def tie_to_release(pose: Pose, contact: IntArray) -> tuple[int, bool]:
+    """The tie that a turn to a smaller box gives up, and whether the vertex at the end of the axis leaves.
+
+    NONE where no small turn makes the box smaller, as far as the contacts tell; UNSTABLE where the volume is
+    not least along the freedom that two ties leave. Where a pair ties, either vertex may end the axis, and
+    some mixture of the slopes that this makes must vanish. Of a side on a facet any three vertices may be
+    named, so that a mixture with a negative share does not tell anything.
     """
     slope = mixed(mixed(pose.slopes[0], 1.0, pose.slopes[1], 1.0), 1.0, pose.slopes[2], 1.0)
     rows = pose.conditions
     if contact[0] == 2:
         if not dot(rows[2], pose.free) > 0.0:
-            return False
+            return UNSTABLE, False
         rows = (rows[0], rows[1], pose.free)
     one, two, three = cross(rows[1], rows[2]), cross(rows[2], rows[0]), cross(rows[0], rows[1])
     volume = dot(rows[0], one)
+    worst, found, at_end = 1e-6, NONE, False
     for t in range(contact[0]):
         side, alone = contact[7 + 2 * t], True
         for other in range(contact[0]):
             alone = alone and (other == t or contact[7 + 2 * other] != side)
         share = dot(slope, one if t == 0 else (two if t == 1 else three)) / volume
         share *= pose.extents[side // 2] * (-1.0 if side % 2 == 0 else 1.0)
-        if alone and not -1e-6 < share < 1.0 + 1e-6:
-            return False
-    return True
+        if alone and max(-share, share - 1.0) > worst:
+            worst, found, at_end = max(-share, share - 1.0), t, share > 0.5
+    return found, at_end
+
+
+@kernel_noalloc
+def change_tie(
+    vertices: FloatArray, contact: IntArray, frame: FloatArray, pose: Pose, tie: int, at_end: bool
+) -> bool:
+    """Give up a tie for that of the vertex which touches next, to first order in the turn; False for none."""
+    turn, last = downhill(pose, contact[0], tie), contact[0] - 1
+    if at_end:
+        contact[1 + contact[7 + 2 * tie]] = contact[8 + 2 * tie]
+    contact[7 + 2 * tie], contact[8 + 2 * tie] = contact[7 + 2 * last], contact[8 + 2 * last]
+    contact[0] = last
+    _, side, vertex = next_contact(vertices, contact, frame, turn)
+    contact[0], contact[7 + 2 * last], contact[8 + 2 * last] = last + 1, side, vertex
+    return side >= 0

@@ -28,9 +28,16 @@ from regolith_studio.coarsening.core.box_arcs import (
     spare_samples,
     worth_a_look,
 )
-from regolith_studio.coarsening.core.box_contacts import ROW, at_minimum, pose_of, rested, touched
-from regolith_studio.geometry.arrays import FloatArray, IntArray
-from regolith_studio.geometry.kernels import kernel, kernel_noalloc
+from regolith_studio.coarsening.core.box_contacts import (
+    NONE,
+    ROW,
+    pose_of,
+    rested,
+    tie_to_release,
+    touched,
+)
+from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray
+from regolith_studio.geometry.kernels import kernel_noalloc
 from regolith_studio.geometry.vectors import along, mixed, row
 
 SAMPLE_ANGLE = float(np.radians(13.0))
@@ -48,11 +55,13 @@ NEAR = float(np.cos(np.radians(7.0)))
 WINDOW = float(np.radians(7.0))
 SETTLING = 1e-3
 """Most that a box turns to come to rest, in radians."""
-MOST = 64
+MAX_BOXES = 64
 """Largest number of boxes returned."""
+SAME_VOLUME, SAME_FRAME = 1e-6, 1.0 - 1e-9
+"""Boxes that differ by less, as shares and by the cosine of the angle between their axes, are one."""
 
 
-class Boxes(NamedTuple):
+class LocalBoxes(NamedTuple):
     """Locally minimal boxes, the least first.
 
     Parameters
@@ -72,6 +81,11 @@ class Boxes(NamedTuple):
     frames: FloatArray
     extents: FloatArray
     contacts: IntArray
+
+    def selected(self, which: IntArray | BoolArray) -> "LocalBoxes":
+        """Some of the boxes, by index or mask."""
+        volumes, frames, extents, contacts = self
+        return LocalBoxes(volumes[which], frames[which], extents[which], contacts[which])
 
 
 class OnFacets(NamedTuple):
@@ -103,14 +117,21 @@ class BoxWorkspace(NamedTuple):
     spare: Spare
 
 
-@kernel
-def local_boxes(solid: Solid, margin: float, sample_angle: float, near: FloatArray) -> Boxes:
+def local_boxes(
+    vertices: FloatArray,
+    normals: FloatArray,
+    areas: FloatArray,
+    edges: IntArray,
+    margin: float,
+    sample_angle: float,
+    near: FloatArray,
+) -> LocalBoxes:
     """Locally minimal boxes with a volume of at most (1 + margin) times the least.
 
     Parameters
     ----------
-    solid
-        Of a size of about 1.
+    vertices, normals, areas, edges
+        Of a convex solid of a size of about 1, as in :class:`Solid`.
     margin
         Share of the least volume.
     sample_angle
@@ -119,10 +140,8 @@ def local_boxes(solid: Solid, margin: float, sample_angle: float, near: FloatArr
         Directions, shape (k, 3): only boxes with an axis within about 7 degrees of one of them, to which a
         side flush with an edge is normal, are looked for. None (k = 0): everywhere.
     """
-    boxes = Boxes(
-        np.empty(MOST), np.empty((MOST, 3, 3)), np.empty((MOST, 3)), np.empty((MOST, ROW), np.int64)
-    )
-    n = len(solid.normals)
+    solid = Solid(vertices, normals, areas, edges)
+    boxes, n = empty_boxes(MAX_BOXES), len(normals)
     facets = OnFacets(
         np.full(n, np.nan),
         np.empty((n, 3, 3)),
@@ -134,33 +153,67 @@ def local_boxes(solid: Solid, margin: float, sample_angle: float, near: FloatArr
         scratch_for(solid), empty_touch(), empty_touch(), empty_sample(), empty_sample(), spare_samples()
     )
     count, best = search(solid, margin, sample_angle, near, boxes, facets, work)
-    return at_rest(solid, ranked(boxes, count, best * (1.0 + margin)))
+    order = np.argsort(boxes.volumes[:count])
+    within = boxes.volumes[order] <= best * (1.0 + margin)
+    boxes = boxes.selected(order[: max(1, np.count_nonzero(within))])
+    kept = np.empty(len(boxes.volumes), np.bool_)
+    settle_boxes(vertices, boxes, np.empty((9, 3)), np.empty((3, 3)), np.empty((3, 3)), kept)
+    return boxes.selected(kept)
 
 
-@kernel
-def no_boxes() -> Boxes:
-    """Nothing found."""
-    return Boxes(np.empty(0), np.empty((0, 3, 3)), np.empty((0, 3)), np.empty((0, ROW), np.int64))
+def empty_boxes(k: int) -> LocalBoxes:
+    """Room for k boxes."""
+    return LocalBoxes(np.empty(k), np.empty((k, 3, 3)), np.empty((k, 3)), np.zeros((k, ROW), np.int64))
 
 
-@kernel
-def at_rest(solid: Solid, boxes: Boxes) -> Boxes:
-    """Boxes on the vertices that they touch, without those that a small turn makes smaller but the first."""
-    frames, extents, contacts = boxes.frames, boxes.extents, boxes.contacts
-    points, ties, kept = np.empty((9, 3)), np.empty((3, 3)), np.full(len(frames), True)
-    for k in range(len(frames)):
-        frame = frames[k].copy()
-        touched(solid.vertices, frame, contacts[k], ties)
-        if rested(solid.vertices, contacts[k], frame, points, SETTLING):
-            pose = pose_of(points, contacts[k], frame)
-            kept[k] = k == 0 or at_minimum(pose, contacts[k])
-            frames[k] = frame
+def same_boxes(some: LocalBoxes, others: LocalBoxes) -> BoolArray:
+    """Which of `some` are among the `others`: same volume and axes; shape (k,)."""
+    near = np.abs(others.volumes / some.volumes[:, None] - 1.0) < SAME_VOLUME
+    return np.asarray((near & (likeness(some.frames, others.frames) >= SAME_FRAME)).any(axis=1))
+
+
+def likeness(some: FloatArray, others: FloatArray) -> FloatArray:
+    """Cosine of the largest angle between the axes of frames (k, 3, 3) and (m, 3, 3), shape (k, m).
+
+    Axes may stand in any order and direction.
+    """
+    cosines = np.abs(some[:, None] @ others.transpose(0, 2, 1))
+    return np.asarray(cosines.max(axis=3).min(axis=2))
+
+
+@kernel_noalloc
+def settle_boxes(
+    vertices: FloatArray,
+    boxes: LocalBoxes,
+    points: FloatArray,
+    ties: FloatArray,
+    settled: FloatArray,
+    kept: BoolArray,
+) -> None:
+    """Settle boxes on the vertices that they touch; not kept are those, but the first, that are no minimum.
+
+    Parameters
+    ----------
+    points, ties, settled
+        Scratch, shapes (9, 3), (3, 3) and (3, 3).
+    kept
+        Filled, shape (k,).
+    """
+    for k in range(len(boxes.frames)):
+        kept[k] = True
+        contact, frame = boxes.contacts[k], boxes.frames[k]
+        touched(vertices, frame, contact, ties)
+        for axis in range(3):
+            settled[axis, 0], settled[axis, 1], settled[axis, 2] = row(frame, axis)
+        if rested(vertices, contact, settled, points, SETTLING):
+            pose = pose_of(points, contact, settled)
             for axis in range(3):
-                extents[k, axis] = pose.extents[axis]
+                frame[axis, 0], frame[axis, 1], frame[axis, 2] = row(settled, axis)
+            kept[k] = k == 0 or tie_to_release(pose, contact)[0] == NONE
+            boxes.extents[k, 0], boxes.extents[k, 1], boxes.extents[k, 2] = pose.extents
             boxes.volumes[k] = pose.extents[0] * pose.extents[1] * pose.extents[2]
         else:
-            contacts[k, 0] = 0
-    return Boxes(boxes.volumes[kept], frames[kept], extents[kept], contacts[kept])
+            contact[0] = 0
 
 
 @kernel_noalloc
@@ -169,7 +222,7 @@ def search(
     margin: float,
     sample_angle: float,
     near: FloatArray,
-    boxes: Boxes,
+    boxes: LocalBoxes,
     facets: OnFacets,
     work: BoxWorkspace,
 ) -> tuple[int, float]:
@@ -310,16 +363,16 @@ def sampled(  # type: ignore[no-untyped-def]
 
 
 @kernel_noalloc
-def kept(count: int, boxes: Boxes, volume: float, touch: Touch) -> int:
+def kept(count: int, boxes: LocalBoxes, volume: float, touch: Touch) -> int:
     """Add a box unless the same one is there; the new number of boxes."""
     for i in range(count):
         if (
-            abs(boxes.volumes[i] - volume) < 1e-6 * volume
-            and likeness(boxes.frames[i], touch.frame) > 1.0 - 1e-9
+            abs(boxes.volumes[i] - volume) < SAME_VOLUME * volume
+            and likeness_of(boxes.frames[i], touch.frame) > SAME_FRAME
         ):
             return count
     at = count
-    if count == MOST:
+    if count == MAX_BOXES:
         at = int(np.argmax(boxes.volumes))
         if boxes.volumes[at] <= volume:
             return count
@@ -333,7 +386,7 @@ def kept(count: int, boxes: Boxes, volume: float, touch: Touch) -> int:
 
 
 @kernel_noalloc
-def likeness(one: FloatArray, two: FloatArray) -> float:
+def likeness_of(one: FloatArray, two: FloatArray) -> float:
     """Cosine of the largest angle between the axes of two frames (3, 3), in any order and direction."""
     least = 1.0
     for a in range(3):
@@ -343,14 +396,3 @@ def likeness(one: FloatArray, two: FloatArray) -> float:
             most = max(most, abs(dot))
         least = min(least, most)
     return float(least)
-
-
-@kernel
-def ranked(boxes: Boxes, count: int, limit: float) -> Boxes:
-    """The boxes up to the volume `limit`, the least first; at least one if there is any."""
-    order = np.argsort(boxes.volumes[:count])
-    total = min(1, count)
-    while total < count and boxes.volumes[order[total]] <= limit:
-        total += 1
-    order = order[:total]
-    return Boxes(boxes.volumes[order], boxes.frames[order], boxes.extents[order], boxes.contacts[order])

@@ -6,14 +6,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from regolith_studio.geometry.arrays import FloatArray, IntArray
-from regolith_studio.geometry.kernels import kernel, kernel_noalloc
+from regolith_studio.geometry.kernels import kernel_noalloc
 from regolith_studio.geometry.vectors import Vector, cross, dot, row
 
 REACH = 40.0
 """Polyhedra that reach farther than this many times their largest offset count as unbounded."""
-
 FINE, UNBOUNDED, DEGENERATE = 0, 1, 2
-"""Status of an intersection."""
+"""Status of an intersection; the last if more than three planes meet in a point to within rounding in a way
+that breaks the bookkeeping."""
 
 PlaceArray = NDArray[np.uint32]
 """Numbers of places and planes: unsigned, so that compiled code need not ask for negative ones."""
@@ -44,37 +44,7 @@ class IntersectionWorkspace(NamedTuple):
     lists: PlaceArray
 
 
-@kernel
-def intersect(normals: FloatArray, offsets: FloatArray) -> tuple[int, FloatArray, IntArray]:
-    """Vertices of the polyhedron <n_i, x> <= h_i.
-
-    The planes cut a large tetrahedron one after the other. A vertex is the triple (a, b, c) of its planes,
-    counter-clockwise seen from outside; the edge between planes a and b runs, counter-clockwise around a,
-    from the vertex that owns (b, a) to the one that owns (a, b).
-
-    Parameters
-    ----------
-    normals, offsets
-        Unit normals (n, 3) and positive offsets (n,), in general position.
-
-    Returns
-    -------
-    status
-        FINE; UNBOUNDED if a vertex lies beyond REACH; DEGENERATE if more than three planes meet in a point
-        to within rounding in a way that breaks the bookkeeping.
-    vertices
-        Shape (v, 3).
-    triples
-        Planes of each vertex, shape (v, 3).
-    """
-    n = len(offsets)
-    vertices, triples = np.empty((2 * n, 3)), np.empty((2 * n, 3), np.int64)
-    status, count = cut_out(normals, offsets, REACH * offsets.max(), work_for(n), vertices, triples)
-    return status, vertices[:count], triples[:count]
-
-
-@kernel
-def work_for(n: int) -> IntersectionWorkspace:
+def workspace_for(n: int) -> IntersectionWorkspace:
     """Memory for n planes."""
     places = 4 * (n + 4) + 16
     return IntersectionWorkspace(
@@ -86,7 +56,7 @@ def work_for(n: int) -> IntersectionWorkspace:
 
 
 @kernel_noalloc
-def cut_out(
+def fill_vertices(
     normals: FloatArray,
     offsets: FloatArray,
     reach: float,
@@ -94,10 +64,24 @@ def cut_out(
     vertices: FloatArray,
     triples: IntArray,
 ) -> tuple[int, int]:
-    """Fill vertices (2 n, 3) and triples (2 n, 3); the status, and how many there are."""
+    """Vertices of the polyhedron <n_i, x> <= h_i: the status, and how many there are.
+
+    The planes cut a large tetrahedron one after the other. A vertex is the triple (a, b, c) of its planes,
+    counter-clockwise seen from outside; the edge between planes a and b runs, counter-clockwise around a,
+    from the vertex that owns (b, a) to the one that owns (a, b).
+
+    Parameters
+    ----------
+    normals, offsets
+        Unit normals (n, 3) and positive offsets (n,), in general position.
+    reach
+        Distance of the tetrahedron's sides; a polyhedron that touches them counts as unbounded.
+    vertices, triples
+        Filled, shapes (2 n, 3): coordinates, and the planes of each vertex.
+    """
     place, planes, owner, lists = work
     n = len(offsets)
-    used, n_free = begun(work, n, reach), np.uintp(place.shape[1] - 5)
+    used, n_free = fill_tetrahedron(work, n, reach), np.uintp(place.shape[1] - 5)
     for j in range(n):
         n_dead = above_plane(place, used, row(normals, j), offsets[j], lists)
         if n_free < 3 * n_dead:
@@ -123,7 +107,7 @@ def cut_out(
             place[0, v] = place[HEIGHT, v] = np.nan
             lists[FREE, n_free] = v
             n_free += np.uintp(1)
-    return collected(normals, offsets, work, used, vertices, triples)
+    return collect(normals, offsets, work, used, vertices, triples)
 
 
 @kernel_noalloc
@@ -141,7 +125,7 @@ def above_plane(place: FloatArray, used: int, normal: Vector, offset: float, lis
 
 
 @kernel_noalloc
-def begun(work: IntersectionWorkspace, n: int, reach: float) -> int:
+def fill_tetrahedron(work: IntersectionWorkspace, n: int, reach: float) -> int:
     """The first tetrahedron, with planes n .. n + 3 at distance `reach`; its four vertices.
 
     The last place belongs to nobody and counts as dead; the others are free, the first on top.
@@ -167,7 +151,7 @@ def begun(work: IntersectionWorkspace, n: int, reach: float) -> int:
 
 
 @kernel_noalloc
-def collected(
+def collect(
     normals: FloatArray,
     offsets: FloatArray,
     work: IntersectionWorkspace,
@@ -225,22 +209,3 @@ def refine(
     rc = (offsets[k] - c[0] * at[0] - c[1] * at[1] - c[2] * at[2]) / det
     for d in range(3):
         out[to, d] += ra * bc[d] + rb * ca[d] + rc * ab[d]
-
-
-@kernel
-def edges_of(triples: IntArray, n_planes: int) -> IntArray:
-    """Edges as rows (from, to, plane a, plane b), counter-clockwise around a, with a < b; shape (e, 4)."""
-    owner = np.full((n_planes, n_planes), -1, np.int64)
-    for v in range(len(triples)):
-        for k in range(3):
-            owner[triples[v, k], triples[v, (k + 1) % 3]] = v
-    edges = np.empty((3 * len(triples) // 2, 4), np.int64)
-    count = 0
-    for v in range(len(triples)):
-        for k in range(3):
-            a, b = triples[v, k], triples[v, (k + 1) % 3]
-            if a < b:
-                edges[count, 0], edges[count, 1] = owner[b, a], v
-                edges[count, 2], edges[count, 3] = a, b
-                count += 1
-    return edges[:count]

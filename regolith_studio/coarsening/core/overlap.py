@@ -3,16 +3,13 @@
 import numpy as np
 
 from regolith_studio.geometry.arrays import FloatArray, IntArray
-from regolith_studio.geometry.exits import exits
-from regolith_studio.geometry.kernels import kernel
-
-__all__ = ["crossings_of", "exits", "jaccard", "shared_by_planes", "shared_charge", "shared_volume"]
+from regolith_studio.geometry.kernels import kernel, kernel_noalloc
 
 BLOCK = 256
 """Crossings that are worked out together: they stay in the fastest cache."""
 
 
-@kernel
+@kernel_noalloc
 def shared_volume(
     first: IntArray, distance: FloatArray, sign: FloatArray, weight: float, radius: FloatArray
 ) -> float:
@@ -73,8 +70,8 @@ def shared_by_planes(dual: FloatArray, crossings: FloatArray, weight: float) -> 
     return total * weight / 3.0
 
 
-@kernel
-def shared_charge(
+@kernel_noalloc
+def add_shared_charges(
     directions: FloatArray,
     first: IntArray,
     distance: FloatArray,
@@ -84,9 +81,18 @@ def shared_charge(
     radius: FloatArray,
     plane: IntArray,
     pivots: FloatArray,
-) -> FloatArray:
-    """Derivative of the shared volume as charges, shape (n, 4): rays that end inside the particle count."""
-    charge = np.zeros((len(offsets), 4))
+    size: float,
+    charges: FloatArray,
+) -> None:
+    """Add `size` times the derivative of the shared volume: rays that end inside the particle count.
+
+    Parameters
+    ----------
+    radius, plane
+        Where each ray leaves the polyhedron, as from :func:`regolith_studio.geometry.exits.exits`.
+    charges
+        As in :mod:`regolith_studio.coarsening.core.polyhedron_measures`, shape (n, 4).
+    """
     for k in range(len(radius)):
         r = radius[k]
         inside = 0.0
@@ -97,14 +103,12 @@ def shared_charge(
         if inside == 0.0:
             continue
         i = plane[k]
-        share = inside * weight * r * r * r / offsets[i]
-        charge[i, 0] += share
+        share = size * inside * weight * r * r * r / offsets[i]
+        charges[i, 0] += share
         for c in range(3):
-            charge[i, 1 + c] += share * (r * directions[k, c] - pivots[i, c])
-    return charge
+            charges[i, 1 + c] += share * (r * directions[k, c] - pivots[i, c])
 
 
-@kernel
 def jaccard(shared: float, particle: float, polyhedron: float) -> float:
     """1 - intersection over union, from volumes."""
     return 1.0 - shared / (particle + polyhedron - shared)

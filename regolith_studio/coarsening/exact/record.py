@@ -4,69 +4,69 @@ from collections.abc import Iterable, Iterator
 
 import numpy as np
 
-from regolith_studio.coarsening.exact.course import Attempt
+from regolith_studio.coarsening.exact.single_start import Candidate
 from regolith_studio.coarsening.loss import LossFunction
 from regolith_studio.coarsening.progress import MethodStep
 from regolith_studio.geometry.half_spaces import HalfSpaces
 
 AS_GOOD_AS_MET = 1e-5
-"""Polyhedra whose conditions hold to this come before those with less loss."""
+"""Polyhedra whose constraints hold to this come before those with less loss."""
 SAME = 1e-6
 """Losses that differ by less are of one polyhedron, which boxes were searched for once more."""
 
 
 class Record:
-    """The best polyhedron, and the one with the least loss of those that miss a condition.
+    """The best polyhedron, and the one with the smallest loss of those that miss a constraint.
 
     Parameters
     ----------
     judge
         Eq. 9.
     steps
-        Number of steps that are announced.
+        Number of steps in all.
     """
 
     def __init__(self, judge: LossFunction, steps: int) -> None:
-        self.best: Attempt | None = None
+        self.best: Candidate | None = None
         self.history: list[float] = []
-        self._nearest: Attempt | None = None
-        self._least = np.inf
+        self._nearest: Candidate | None = None
+        self._min_loss = np.inf
         self._judge = judge
         self._steps = steps
 
     @property
     def met(self) -> bool:
-        """Whether the best polyhedron meets all conditions."""
+        """Whether the best polyhedron meets all constraints."""
         return self.best is not None and self.best.exact
 
     @property
-    def outcome(self) -> Attempt | None:
-        """The best where it meets all conditions or nearly so, else the one with the least loss."""
+    def result(self) -> Candidate | None:
+        """The best where it meets all constraints or nearly so, else the one with the smallest loss."""
         if self.best is None or self.best.worst < AS_GOOD_AS_MET:
             return self.best
         return self._nearest or self.best
 
-    def _value(self, found: Attempt) -> float:
-        """Eq. 9; of one that nobody will confirm with the least box of all, not one that was followed."""
+    def _value(self, found: Candidate) -> float:
+        """Eq. 9; of one that nobody will confirm with the least box of all, not one that was tracked."""
         if found.exact:
-            return self._judge.of(found.values)
+            return self._judge.of(found.measures).loss
         return self._judge.value(found.normals, found.offsets)
 
-    def told(self, step: int, attempts: Iterable[Attempt]) -> Iterator[MethodStep]:
-        """Keep what is better, and tell of it as `step`."""
-        for found in attempts:
+    def record_candidates(self, step: int, candidates: Iterable[Candidate]) -> Iterator[MethodStep]:
+        """Keep what is better; a step number `step` for each."""
+        for found in candidates:
             value = self._value(found)
             worth = found.better_than(self.best)
             if worth:
                 self.best = found
-            if not found.exact and not self.met and value < self._least:
-                self._nearest, self._least, worth = found, value, True
+            if not found.exact and not self.met and value < self._min_loss:
+                self._nearest, self._min_loss, worth = found, value, True
             if worth:
                 self.history.append(value)
                 yield MethodStep(step, self._steps, value, HalfSpaces(found.normals, found.offsets))
 
-    def ended(self, reported: HalfSpaces) -> Iterator[MethodStep]:
-        """Tell of what is reported, where it is not what was told last."""
+    def record_final(self, reported: HalfSpaces) -> Iterator[MethodStep]:
+        """A step for what is reported, where it is not that of the last step."""
         value = self._judge.value(reported.normals, reported.offsets)
         if not self.history or abs(value - self.history[-1]) > SAME:
             self.history.append(value)

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, fields
 
 import numpy as np
 
-from regolith_studio.coarsening.core.cuts import with_all_facets
+from regolith_studio.coarsening.core.facet_insertion import insert_lost_facets
 from regolith_studio.coarsening.decimated_hull import quadric_half_spaces
 from regolith_studio.coarsening.loss import Evaluation, LossFunction
 from regolith_studio.coarsening.progress import MethodStep, Move
@@ -183,7 +183,9 @@ def _repaired(target: Target, points: FloatArray) -> FloatArray:
     offsets = np.linalg.norm(points, axis=1)
     rays = target.rays
     normals = points / offsets[:, None]
-    cuts = with_all_facets(normals, offsets, rays.directions, rays.first, rays.distance, CUT_DEPTH)
+    cuts, normals, offsets = insert_lost_facets(
+        normals, offsets, rays.directions, rays.first, rays.distance, CUT_DEPTH
+    )
     return np.asarray(normals * offsets[:, None]) if cuts > 0 else points
 
 

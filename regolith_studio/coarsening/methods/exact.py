@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from regolith_studio.coarsening.exact.search import LEVELS, Search
+from regolith_studio.coarsening.exact.multi_start import LEVELS, Search
 from regolith_studio.coarsening.progress import MethodStep
 from regolith_studio.coarsening.result import MethodResult
 from regolith_studio.coarsening.target import Target
@@ -44,7 +44,7 @@ class ExactSettings:
 class ExactMethod:
     """Constrained optimisation of the half-spaces.
 
-    Weights above 0 make conditions: volume (or, if the weights of Eq. 9 prefer it, convex hull volume),
+    Weights above 0 make constraints: volume (or, if the weights of Eq. 9 prefer it, convex hull volume),
     sphericity, shortest and longest edge of the exact minimum-volume box, aspect ratio. On the surface where
     all hold, the Jaccard distance goes down; it is the tie-break even where its own weight is 0, since
     shapes that only meet descriptors drift away from the particle.
@@ -65,8 +65,8 @@ class ExactMethod:
         """A step for each better polyhedron; the first is the start, the last what is reported."""
         search = Search(target, weights, n_facets, LEVELS[settings.level], settings.retries, seed)
         yield from search.from_starts()
-        yield from search.compromises()
-        return (yield from search.ending())
+        yield from search.relaxations()
+        return (yield from search.finish())
 
 
 METHOD = ExactMethod()

@@ -1,11 +1,12 @@
 """Extents of a convex solid: how far its vertices reach along directions."""
 
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
 
 from regolith_studio.geometry.arrays import FloatArray, IntArray
-from regolith_studio.geometry.kernels import inline_kernel, kernel, kernel_noalloc
+from regolith_studio.geometry.kernels import inline_kernel, kernel_noalloc
 from regolith_studio.geometry.vectors import Vector
 
 MIN_CELLS, MAX_CELLS = 12, 64
@@ -50,14 +51,21 @@ def between(points: FloatArray, one: int, two: int) -> Vector:
     return points[0, one] - points[0, two], points[1, one] - points[1, two], points[2, one] - points[2, two]
 
 
-@kernel
 def extreme_vertices_of_each(points: FloatArray, directions: FloatArray) -> IntArray:
     """:func:`extreme_vertices` for all directions, shape (3, m): shape (2, m), top and bottom."""
-    m = directions.shape[1]
-    ends = np.empty((2, m), np.int64)
-    low, high, bottom, top = np.empty(BLOCK), np.empty(BLOCK), np.empty(BLOCK), np.empty(BLOCK)
-    for start in range(0, m, BLOCK):
-        count = min(BLOCK, m - start)
+    ends = np.empty((2, directions.shape[1]), dtype=np.int64)
+    _fill_extreme_vertices(points, directions, np.empty((4, BLOCK)), ends)
+    return ends
+
+
+@kernel_noalloc
+def _fill_extreme_vertices(
+    points: FloatArray, directions: FloatArray, block: FloatArray, ends: IntArray
+) -> None:
+    """Fill `ends` (2, m); `block` (4, BLOCK) is scratch."""
+    low, high, bottom, top = block[0], block[1], block[2], block[3]
+    for start in range(0, directions.shape[1], BLOCK):
+        count = min(BLOCK, directions.shape[1] - start)
         for k in range(count):
             low[k], high[k], bottom[k], top[k] = np.inf, -np.inf, 0.0, 0.0
         for i in range(points.shape[1]):
@@ -71,27 +79,25 @@ def extreme_vertices_of_each(points: FloatArray, directions: FloatArray) -> IntA
                 high[k] = here if here > high[k] else high[k]  # noqa: FURB136
         for k in range(count):
             ends[0, start + k], ends[1, start + k] = int(top[k]), int(bottom[k])
-    return ends
 
 
-@kernel
 def span_table(points: FloatArray) -> SpanTable:
     """Look along the middle of every cell; points of shape (3, n)."""
     cells = min(MAX_CELLS, max(MIN_CELLS, int(np.sqrt(points.shape[1]))))
-    directions = np.empty((3, 3 * cells * cells))
+    top, bottom = extreme_vertices_of_each(points, _cell_directions(cells))
+    return SpanTable(np.ascontiguousarray((points[:, top] - points[:, bottom]).T), cells)
+
+
+@lru_cache(maxsize=8)
+def _cell_directions(cells: int) -> FloatArray:
+    """Directions to the middles of all cells (k, i, j), number (k cells + i) cells + j; (3, 3 cells^2)."""
+    middles = (2.0 * np.arange(cells) + 1.0) / cells - 1.0
+    directions = np.empty((3, 3, cells, cells))
     for k in range(3):
-        for i in range(cells):
-            for j in range(cells):
-                at = (k * cells + i) * cells + j
-                directions[k, at] = 1.0
-                directions[(k + 1) % 3, at] = (2.0 * i + 1.0) / cells - 1.0
-                directions[(k + 2) % 3, at] = (2.0 * j + 1.0) / cells - 1.0
-    ends = extreme_vertices_of_each(points, directions)
-    spans = np.empty((3 * cells * cells, 3))
-    for at in range(len(spans)):
-        for c in range(3):
-            spans[at, c] = points[c, ends[0, at]] - points[c, ends[1, at]]
-    return SpanTable(spans, cells)
+        directions[k, k] = 1.0
+        directions[(k + 1) % 3, k] = middles[:, None]
+        directions[(k + 2) % 3, k] = middles
+    return directions.reshape(3, -1)
 
 
 @inline_kernel

@@ -1,15 +1,14 @@
-"""Half-edges and plane facets of a convex solid, and which of its edges its minimum-volume box can touch."""
+"""Plane facets of a convex solid, and which of its edges its minimum-volume box can touch."""
 
 from typing import NamedTuple
 
 import numpy as np
 
 from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray
-from regolith_studio.geometry.kernels import inline_kernel, kernel, kernel_noalloc
+from regolith_studio.geometry.kernels import inline_kernel, kernel_noalloc
 from regolith_studio.geometry.minimum_box.edge_pair import unit
 from regolith_studio.geometry.minimum_box.extents import (
     SpanTable,
-    between,
     extreme_vertices_of_each,
     span_near,
 )
@@ -26,145 +25,6 @@ COPLANAR = 1e-9
 QUARTER_TURNS = 24
 MAX_TILT = 0.1
 """Square of the sine of the angle beyond which a bound on the third side is not worth its time."""
-
-
-class HullGraph(NamedTuple):
-    """A closed triangulated convex solid as half-edges; half-edge 3 f + k starts at corner k of face f.
-
-    Parameters
-    ----------
-    points
-        Vertices, shape (n, 3).
-    normals
-        Outward unit normals of the faces, shape (m, 3); the same for all faces of a plane facet.
-    facet
-        First face of the facet that each face belongs to, shape (m,).
-    origin
-        Vertex at which each half-edge starts, shape (3 m,).
-    twin
-        The same edge run the other way, shape (3 m,); -1 where there is none.
-    outgoing
-        One half-edge that starts at each vertex, shape (n,).
-    closed
-        Whether half-edges pair up as twins, every vertex has a face and every face a normal; nothing else
-        works if not.
-    """
-
-    points: FloatArray
-    normals: FloatArray
-    facet: IntArray
-    origin: IntArray
-    twin: IntArray
-    outgoing: IntArray
-    closed: bool
-
-
-@kernel
-def hull_graph(points: FloatArray, faces: IntArray) -> HullGraph:
-    """Half-edges of outward triangles, faces of shape (m, 3)."""
-    origin = faces.reshape(-1)
-    first = np.zeros(len(points) + 1, np.int64)
-    for h in range(len(origin)):
-        first[origin[h] + 1] += 1
-    for v in range(len(points)):
-        first[v + 1] += first[v]
-    bucket = np.empty(len(origin), np.int64)
-    filled = first.copy()
-    for h in range(len(origin)):
-        bucket[filled[origin[h]]] = h
-        filled[origin[h]] += 1
-    twin, outgoing = np.full(len(origin), -1), np.full(len(points), -1)
-    closed = True
-    for h in range(len(origin)):
-        v = origin[after(h)]
-        for i in range(first[v], first[v + 1]):
-            if origin[after(bucket[i])] == origin[h]:
-                twin[h] = bucket[i]
-        closed = closed and twin[h] >= 0
-        outgoing[origin[h]] = h
-    for h in range(len(origin)):
-        closed = closed and twin[twin[h]] == h
-    for v in range(len(points)):
-        closed = closed and outgoing[v] >= 0
-    normals, blur = _face_normals(points, faces, twin)
-    for f in range(len(faces)):
-        closed = closed and length(row(normals, f)) > 0.0
-    facet = _facets(normals, blur, twin)
-    return HullGraph(points, normals, facet, origin, twin, outgoing, closed)
-
-
-@kernel
-def _face_normals(points: FloatArray, faces: IntArray, twin: IntArray) -> tuple[FloatArray, FloatArray]:
-    """Unit normals, and how far rounding may tilt them.
-
-    A sliver takes that of the neighbour across its longest edge.
-    """
-    normals, blur = np.zeros((len(faces), 3)), np.full(len(faces), EPSILON / SLIVER)
-    slivers = 0
-    for f in range(len(faces)):
-        a = row(points, faces[f, 0])
-        b, c = mixed(row(points, faces[f, 1]), 1.0, a, -1.0), mixed(row(points, faces[f, 2]), 1.0, a, -1.0)
-        normal = cross(b, c)
-        size = length(normal)
-        height = size / max(length(b), length(c), length(mixed(c, 1.0, b, -1.0)))
-        if height > SLIVER:
-            blur[f] = EPSILON / height
-            for k in range(3):
-                normals[f, k] = normal[k] / size
-        else:
-            slivers += 1
-    for attempt in range(2 * slivers):
-        for f in range(len(faces)):
-            if length(row(normals, f)) == 0.0:
-                _take_normal(points, faces, twin, f, normals, attempt >= slivers)
-    return normals, blur
-
-
-@kernel
-def _take_normal(
-    points: FloatArray, faces: IntArray, twin: IntArray, f: int, normals: FloatArray, known: bool
-) -> None:
-    """Give face `f` the normal across its longest edge; if `known`, its longest to one that has a normal."""
-    longest = 0.0
-    for k in range(3):
-        edge = mixed(row(points, faces[f, (k + 1) % 3]), 1.0, row(points, faces[f, k]), -1.0)
-        neighbour = twin[3 * f + k] // 3
-        if known and length(row(normals, neighbour)) == 0.0:
-            continue
-        if neighbour >= 0 and length(edge) > longest:
-            longest = length(edge)
-            for axis in range(3):
-                normals[f, axis] = normals[neighbour, axis]
-
-
-@kernel
-def _facets(normals: FloatArray, blur: FloatArray, twin: IntArray) -> IntArray:
-    """First face of the facet of each face; all its faces get the normal that rounding tilts least."""
-    facet = np.full(len(normals), -1)
-    stack = np.empty(len(normals), np.int64)
-    for seed in np.argsort(blur):
-        if facet[seed] >= 0:
-            continue
-        facet[seed], stack[0], n = seed, seed, 1
-        while n > 0:
-            n -= 1
-            face = stack[n]
-            for h in range(3 * face, 3 * face + 3):
-                f = twin[h] // 3
-                if f < 0 or facet[f] >= 0:
-                    continue
-                if length(mixed(row(normals, f), 1.0, row(normals, seed), -1.0)) < COPLANAR + blur[f]:
-                    facet[f], stack[n] = seed, f
-                    for k in range(3):
-                        normals[f, k] = normals[seed, k]
-                    n += 1
-    return facet
-
-
-@inline_kernel
-def after(h: int) -> int:
-    """The next half-edge around the face of half-edge `h`."""
-    return h - 2 if h % 3 == 2 else h + 1
 
 
 class Facets(NamedTuple):
@@ -185,28 +45,99 @@ class Facets(NamedTuple):
     edges: IntArray
 
 
-@kernel
-def facets_of(graph: HullGraph) -> Facets:
-    """Facets and the edges between them; triangles in one plane are one facet."""
-    number, n = np.full(len(graph.facet), -1), 0
-    for f in range(len(graph.facet)):
-        if graph.facet[f] == f:
-            number[f] = n
-            n += 1
-    normals, edges, count = np.empty((n, 3)), np.empty((len(graph.twin) // 2, 4), np.int64), 0
-    for f in range(len(graph.facet)):
-        if number[f] >= 0:
-            normals[number[f]] = graph.normals[f]
-    for h in range(len(graph.twin)):
-        one, two = graph.facet[h // 3], graph.facet[graph.twin[h] // 3]
-        if h < graph.twin[h] and one != two:
-            edges[count, 0], edges[count, 1] = graph.origin[h], graph.origin[after(h)]
-            edges[count, 2], edges[count, 3] = number[one], number[two]
-            count += 1
-    return Facets(np.ascontiguousarray(graph.points.T), normals, edges[:count])
+def facets_of_hull(points: FloatArray, faces: IntArray) -> Facets | None:
+    """Plane facets of a closed triangulated convex solid, and the edges between them.
+
+    ``None`` where the triangles do not close: where an edge is not run once each way, a vertex has no
+    triangle, or a triangle has no normal, not even one of a neighbour.
+
+    Parameters
+    ----------
+    points, faces
+        Vertices of a solid of size about 1 near the origin (n, 3), and outward triangles (m, 3).
+    """
+    origin, end = faces.reshape(-1), np.roll(faces, -1, axis=1).reshape(-1)
+    forward, backward = origin * len(points) + end, end * len(points) + origin
+    order = np.argsort(forward)
+    at = np.minimum(np.searchsorted(forward, backward, sorter=order), len(order) - 1)
+    twin = order[at]
+    closed = np.array_equal(forward[twin], backward) and np.array_equal(twin[twin], np.arange(len(twin)))
+    if not closed or not (np.bincount(origin, minlength=len(points)) > 0).all():
+        return None
+    normals, blur = _face_normals(points, faces, twin)
+    if not normals.any(axis=1).all():
+        return None
+    facet = np.full(len(faces), -1)
+    _fill_facets(normals, blur, np.argsort(blur), twin, facet, np.empty(len(faces), dtype=np.int64))
+    first, number = np.unique(facet, return_inverse=True)
+    one, two = number[np.arange(len(twin)) // 3], number[twin // 3]
+    kept = (np.arange(len(twin)) < twin) & (one != two)
+    edges = np.column_stack([origin, end, one, two])[kept]
+    return Facets(np.ascontiguousarray(points.T), normals[first], edges)
 
 
-@kernel
+def _face_normals(points: FloatArray, faces: IntArray, twin: IntArray) -> tuple[FloatArray, FloatArray]:
+    """Unit normals, and how far rounding may tilt them.
+
+    A sliver takes that of the neighbour across its longest edge; if that has none, across its longest edge
+    to one that has.
+    """
+    corners = points[faces]
+    edges = np.roll(corners, -1, axis=1) - corners
+    lengths = np.linalg.norm(edges, axis=2)
+    normals = np.cross(edges[:, 0], -edges[:, 2])
+    sizes = np.linalg.norm(normals, axis=1)
+    heights = sizes / np.maximum(lengths.max(axis=1), 1e-300)
+    sound = heights > SLIVER
+    blur = np.where(sound, EPSILON / np.where(sound, heights, 1.0), EPSILON / SLIVER)
+    normals = np.where(sound[:, None], normals / np.where(sound, sizes, 1.0)[:, None], 0.0)
+    slivers, neighbours = np.flatnonzero(~sound), twin.reshape(-1, 3) // 3
+    for attempt in range(2 * len(slivers)):
+        for f in slivers[~normals[slivers].any(axis=1)]:
+            share = lengths[f]
+            if attempt >= len(slivers):
+                share = share * normals[neighbours[f]].any(axis=1)
+            if share.any():
+                normals[f] = normals[neighbours[f, share.argmax()]]
+        if normals[slivers].any(axis=1).all():
+            break
+    return normals, blur
+
+
+@kernel_noalloc
+def _fill_facets(
+    normals: FloatArray, blur: FloatArray, order: IntArray, twin: IntArray, facet: IntArray, stack: IntArray
+) -> None:
+    """Fill the first face of the facet of each face; all its faces get the normal that rounding tilts least.
+
+    Parameters
+    ----------
+    order
+        Faces by rising blur.
+    facet
+        -1 before, shape (m,).
+    stack
+        Scratch, shape (m,).
+    """
+    for i in range(len(order)):
+        seed = order[i]
+        if facet[seed] >= 0:
+            continue
+        facet[seed], stack[0], n = seed, seed, 1
+        while n > 0:
+            n -= 1
+            face = stack[n]
+            for h in range(3 * face, 3 * face + 3):
+                f = twin[h] // 3
+                if facet[f] >= 0:
+                    continue
+                if length(mixed(row(normals, f), 1.0, row(normals, seed), -1.0)) < COPLANAR + blur[f]:
+                    facet[f], stack[n] = seed, f
+                    for k in range(3):
+                        normals[f, k] = normals[seed, k]
+                    n += 1
+
+
 def arcs_of(facets: Facets) -> FloatArray:
     """For each edge its unit direction, a span across the solid, and a bound on the width along its arc.
 
@@ -214,19 +145,16 @@ def arcs_of(facets: Facets) -> FloatArray:
     its ends are from there; shape (e, 11).
     """
     points, normals, edges = facets
-    arcs, between_facets = np.empty((len(edges), 11)), np.empty((3, len(edges)))
-    for e in range(len(edges)):
-        for c in range(3):
-            between_facets[c, e] = normals[edges[e, 2], c] + normals[edges[e, 3], c]
-    lowest = extreme_vertices_of_each(points, between_facets)[1]
-    for e in range(len(edges)):
-        one, two = row(normals, edges[e, 2]), row(normals, edges[e, 3])
-        direction = unit(between(points, edges[e, 1], edges[e, 0]))
-        span = between(points, edges[e, 0], lowest[e])
-        middle = unit(mixed(one, 1.0, two, 1.0))
-        for c in range(3):
-            arcs[e, c], arcs[e, 3 + c], arcs[e, 7 + c] = direction[c], span[c], middle[c]
-        arcs[e, 6], arcs[e, 10] = min(dot(span, one), dot(span, two)), length(mixed(one, 1.0, middle, -1.0))
+    one, two = normals[edges[:, 2]], normals[edges[:, 3]]
+    lowest = extreme_vertices_of_each(points, np.ascontiguousarray((one + two).T))[1]
+    start, end = points.T[edges[:, 0]], points.T[edges[:, 1]]
+    span, middle = start - points.T[lowest], one + two
+    middle /= np.linalg.norm(middle, axis=1)[:, None]
+    arcs = np.empty((len(edges), 11))
+    arcs[:, :3] = (end - start) / np.linalg.norm(end - start, axis=1)[:, None]
+    arcs[:, 3:6], arcs[:, 7:10] = span, middle
+    arcs[:, 6] = np.minimum((span * one).sum(axis=1), (span * two).sum(axis=1))
+    arcs[:, 10] = np.linalg.norm(one - middle, axis=1)
     return arcs
 
 
@@ -251,20 +179,31 @@ def min_third_extent(arcs: FloatArray, table: SpanTable, i: int, k: int) -> floa
     return float(np.sqrt(squared * (1.0 - tilt)) - np.sqrt(across * tilt))
 
 
-@kernel
 def edges_that_may_bound(facets: Facets, arcs: FloatArray, table: SpanTable, limit: float) -> BoolArray:
-    """Which edges some box below the limit could be flush with, shape (e,).
+    """Which edges some box below the limit could be flush with, shape (e,)."""
+    angles = np.linspace(0.0, np.pi / 2.0, QUARTER_TURNS, endpoint=False)
+    may_bound = np.zeros(len(facets.edges), dtype=np.bool_)
+    _fill_edges_that_may_bound(facets, arcs, table, limit, np.cos(angles), np.sin(angles), may_bound)
+    return may_bound
+
+
+@kernel_noalloc
+def _fill_edges_that_may_bound(
+    facets: Facets,
+    arcs: FloatArray,
+    table: SpanTable,
+    limit: float,
+    cosines: FloatArray,
+    sines: FloatArray,
+    may_bound: BoolArray,
+) -> None:
+    """Fill which edges some box below the limit could be flush with, shape (e,), all False before.
 
     With its first side normal to an axis of the edge's arc, the other two directions of a box are nearly
     those of a quarter turn in steps about the arc's middle. A turn of angle t shortens a distance at most to
     its cos t-fold, less sin t times what the span is long across.
     """
     _, normals, edges = facets
-    worth = np.zeros(len(edges), np.bool_)
-    cosines, sines = np.empty(QUARTER_TURNS), np.empty(QUARTER_TURNS)
-    for step in range(QUARTER_TURNS):
-        angle = np.pi / 2.0 / QUARTER_TURNS * step
-        cosines[step], sines[step] = np.cos(angle), np.sin(angle)
     for e in range(len(edges)):
         one, two = row(normals, edges[e, 2]), row(normals, edges[e, 3])
         axis, first = unit(mixed(one, 1.0, two, 1.0)), row(arcs, e)
@@ -277,9 +216,8 @@ def edges_that_may_bound(facets: Facets, arcs: FloatArray, table: SpanTable, lim
             wide = _after_turn(span_near(table, b), b, cosine, sine)
             high = _after_turn(span_near(table, c), c, cosine, sine)
             if min(wide, high) <= 0.0 or arcs[e, 6] * wide * high < limit:
-                worth[e] = True
+                may_bound[e] = True
                 break
-    return worth
 
 
 @kernel_noalloc
@@ -304,13 +242,10 @@ def facet_excluded(table: SpanTable, axis: Vector, height: float, limit: float) 
     return True
 
 
-@kernel
-def facets_with_all_edges(facets: Facets, worth: BoolArray) -> BoolArray:
-    """Facets of which every edge is worth asking, shape (n,): a box on one is flush with all its edges."""
+def facets_with_all_edges(facets: Facets, kept: BoolArray) -> BoolArray:
+    """Facets of which every edge is kept, shape (n,): a box on one is flush with all its edges."""
     asked = np.full(len(facets.normals), True)
-    for e in range(len(worth)):
-        if not worth[e]:
-            asked[facets.edges[e, 2]] = asked[facets.edges[e, 3]] = False
+    asked[facets.edges[~kept, 2:]] = False
     return asked
 
 

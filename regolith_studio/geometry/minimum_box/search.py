@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray
-from regolith_studio.geometry.kernels import kernel, kernel_noalloc
+from regolith_studio.geometry.kernels import kernel_noalloc
 from regolith_studio.geometry.minimum_box.edge_pair import (
     Curve,
     Quartic,
@@ -42,9 +42,7 @@ from regolith_studio.geometry.minimum_box.hull_topology import (
     arcs_of,
     edges_that_may_bound,
     facet_excluded,
-    facets_of,
     facets_with_all_edges,
-    hull_graph,
     min_third_extent,
 )
 from regolith_studio.geometry.vectors import Vector, along, cross, dot, length, mixed, row
@@ -91,7 +89,6 @@ class BestBox(NamedTuple):
     todo: FloatArray
 
 
-@kernel
 def empty_record(known: float) -> BestBox:
     """No box yet; only boxes smaller than `known` are to be kept."""
     return BestBox(np.array([known, np.inf]), np.zeros((3, 3)), np.empty((DEPTH, 2)))
@@ -133,30 +130,13 @@ class Work(NamedTuple):
     ends: FloatArray
 
 
-@kernel
-def minimum_box(points: FloatArray, faces: IntArray, axes: FloatArray) -> bool:
-    """Fill the axes of the minimum-volume box, one a row, shape (3, 3); False if the faces do not close.
+def minimum_box(facets: Facets) -> FloatArray:
+    """Axes of the minimum-volume box, one a row, shape (3, 3).
 
     No box is smaller by a share of 1e-8. Only of fine and nearly perfect balls, of which more than 8,000
     edges cannot be ruled out one by one, some box may be smaller by 1e-6, or by as much more, up to 1e-3, as
     rules out enough of them: their boxes are all alike, and pairs of edges would be many millions.
-
-    Parameters
-    ----------
-    points
-        Vertices of a convex solid of size about 1 near the origin, shape (n, 3); each on a face.
-    faces
-        Its outward triangles, shape (m, 3).
     """
-    graph = hull_graph(points, faces)
-    if graph.closed:
-        axes[:] = best_box(facets_of(graph)).axes
-    return graph.closed
-
-
-@kernel
-def best_box(facets: Facets) -> BestBox:
-    """The minimum-volume box of all."""
     best, margin = empty_record(np.inf), TIE
     points, normals, edges = facets
     table, arcs, n = span_table(points), arcs_of(facets), len(normals)
@@ -177,7 +157,7 @@ def best_box(facets: Facets) -> BestBox:
         kept = edges_that_may_bound(facets, arcs, table, best.record[0] * (1.0 + margin))
         facets, arcs = Facets(points, normals, facets.edges[kept]), arcs[kept]
     _search_pairs(facets, arcs, table, work, margin, best)
-    return best
+    return best.axes
 
 
 @kernel_noalloc

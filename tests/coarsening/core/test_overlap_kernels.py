@@ -3,23 +3,24 @@
 import numpy as np
 import pytest
 
-from regolith_studio.coarsening.core.cuts import with_all_facets
-from regolith_studio.coarsening.core.intersection import intersect
+from regolith_studio.coarsening.core.facet_insertion import insert_lost_facets
 from regolith_studio.coarsening.core.overlap import (
+    add_shared_charges,
     crossings_of,
-    exits,
     shared_by_planes,
-    shared_charge,
     shared_volume,
 )
-from regolith_studio.coarsening.core.planes import gradient_of, levers_of, moved, tangents_of
+from regolith_studio.coarsening.core.plane_coordinates import fill_gradient, moved_planes, tangents_of
+from regolith_studio.coarsening.core.polyhedron_measures import measure_polyhedron
 from regolith_studio.coarsening.core.rays import bundle_of, cast
 from regolith_studio.coarsening.target import Target
 from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.geometry.exits import exits
 from regolith_studio.geometry.half_spaces import HalfSpaces
 from regolith_studio.geometry.jaccard import jaccard_distance
 from regolith_studio.geometry.ray_casting import radial_hits
 from regolith_studio.geometry.sphere_points import fibonacci_directions, icosphere
+from tests.filling import filled
 
 CUBE = np.vstack([np.eye(3), -np.eye(3)])
 
@@ -88,25 +89,27 @@ def test_that_the_derivative_of_the_shared_volume_is_that_of_finite_differences(
     rays = target.rays
     _, radius, plane = shared(target, normals, offsets)
     pivots = normals * offsets[:, None]
-    frames, levers = tangents_of(normals), levers_of(np.full(20, 0.3), 0.1)
-    charge = shared_charge(
-        rays.directions, rays.first, rays.distance, rays.sign, rays.weight, offsets, radius, plane, pivots
-    )
+    tangents, scales = tangents_of(normals), np.full(20, 0.3)
+    table = rays.directions, rays.first, rays.distance, rays.sign, rays.weight
+    charges, _ = filled(add_shared_charges, (*table, offsets, radius, plane, pivots, 2.0), np.zeros((20, 4)))
+    gradient, _ = filled(fill_gradient, (charges, tangents, scales), np.empty(60))
     step = 1e-8 * rng.normal(size=60)
-    ahead = shared(target, *moved(normals, pivots, offsets, frames, levers, step))[0]
-    behind = shared(target, *moved(normals, pivots, offsets, frames, levers, -step))[0]
-    assert (ahead - behind) / 2 == pytest.approx(gradient_of(charge, frames, levers) @ step, rel=1e-4)
+    ahead, behind = (
+        shared(target, *moved_planes(normals, pivots, offsets, tangents, scales, way * step)[:2])[0]
+        for way in (1.0, -1.0)
+    )
+    assert ahead - behind == pytest.approx(gradient @ step, rel=1e-4)
 
 
 def test_that_a_redundant_plane_comes_back_as_a_facet(target: Target) -> None:
     normals = np.vstack([CUBE, [[0.6, 0.8, 0.0], [0.0, 0.6, 0.8]]])
     offsets = np.append(np.full(6, 0.55), [2.0, 2.0])
     rays = target.rays
-    new_normals, new_offsets = normals.copy(), offsets.copy()
-    cuts = with_all_facets(new_normals, new_offsets, rays.directions, rays.first, rays.distance, 0.3)
+    cuts, new_normals, new_offsets = insert_lost_facets(
+        normals, offsets, rays.directions, rays.first, rays.distance, 0.3
+    )
     assert cuts == 2
-    _, _, triples = intersect(new_normals, new_offsets)
-    assert len(np.unique(triples)) == 8
+    assert len(np.unique(measure_polyhedron(new_normals, new_offsets).triples)) == 8
     assert (new_normals[:6] == normals[:6]).all()
 
 

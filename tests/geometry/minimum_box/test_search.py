@@ -26,11 +26,11 @@ from regolith_studio.geometry.minimum_box.extents import (
     span_table,
 )
 from regolith_studio.geometry.minimum_box.hull_topology import (
+    Facets,
     arcs_of,
     facet_excluded,
-    facets_of,
+    facets_of_hull,
     facets_with_all_edges,
-    hull_graph,
     min_third_extent,
 )
 from regolith_studio.geometry.minimum_box.search import empty_record, min_on_curve
@@ -53,6 +53,12 @@ def random_curve(seed: int) -> tuple[Curve, FloatArray, FloatArray]:
     ends = [unit(np.cross(edge_b, each)) for each in (start, end)]
     frames = [tuple(v.tolist()) for v in (edge_a, edge_b, start, ends[0], end, ends[1])]
     return curve_between(*frames), edge_a, edge_b
+
+
+def closed_facets(hull: Mesh) -> Facets:
+    facets = facets_of_hull(hull.vertices, hull.faces)
+    assert facets is not None
+    return facets
 
 
 def on(points: FloatArray) -> FloatArray:
@@ -144,7 +150,7 @@ def test_that_the_least_box_on_a_curve_is_that_of_a_fine_grid(seed: int) -> None
 def test_that_a_facet_with_an_edge_that_is_ruled_out_is_not_asked() -> None:
     """An edge belongs to two of the twelve facets."""
     hull = random_polyhedron(0, 12).hull
-    facets = facets_of(hull_graph(np.array(hull.vertices), hull.faces))
+    facets = closed_facets(hull)
     worth = np.full(len(facets.edges), True)
     assert facets_with_all_edges(facets, worth).all()
     worth[0] = False
@@ -165,7 +171,7 @@ def test_that_no_box_is_narrower_than_the_bound_on_its_third_side() -> None:
     solid = Mesh(
         ball.vertices * (1.0, 0.8, 0.6) + 0.05 * np.sin(7.0 * ball.vertices[:, ::-1]), ball.faces
     ).hull
-    facets = facets_of(hull_graph(np.array(solid.vertices), solid.faces))
+    facets = closed_facets(solid)
     arcs, table, rng = arcs_of(facets), span_table(facets.points), np.random.default_rng(8)
     useful = 0
     for i, k in rng.integers(len(arcs), size=(4000, 2)):
@@ -198,7 +204,7 @@ def test_that_looking_along_many_directions_finds_the_ends_of_each(m: int) -> No
 
 def test_that_a_facet_on_which_nothing_is_said_to_stand_bears_no_smaller_box() -> None:
     hull = random_polyhedron(1, 20).hull
-    solid = facets_of(hull_graph(np.array(hull.vertices), hull.faces))
+    solid = closed_facets(hull)
     table, turns = span_table(solid.points), np.linspace(0.0, np.pi / 2, 401)
     said = 0
     for axis in solid.normals:

@@ -4,10 +4,20 @@ import numpy as np
 import pytest
 from scipy.spatial import ConvexHull, HalfspaceIntersection
 
-from regolith_studio.coarsening.core.intersection import FINE, UNBOUNDED, edges_of, intersect
-from regolith_studio.coarsening.core.measures import area_charge, facets_of, volume_charge, volume_of
-from regolith_studio.coarsening.core.planes import carried, gradient_of, levers_of, moved, tangents_of
+from regolith_studio.coarsening.core.intersection import FINE, UNBOUNDED, fill_vertices, workspace_for
+from regolith_studio.coarsening.core.plane_coordinates import (
+    fill_gradient,
+    fill_tilt_scales,
+    moved_planes,
+    tangents_of,
+)
+from regolith_studio.coarsening.core.polyhedron_measures import (
+    add_surface_charges,
+    add_volume_charges,
+    measure_polyhedron,
+)
 from regolith_studio.geometry.arrays import FloatArray
+from tests.filling import filled
 
 
 def random_planes(n: int, seed: int) -> tuple[FloatArray, FloatArray]:
@@ -17,10 +27,10 @@ def random_planes(n: int, seed: int) -> tuple[FloatArray, FloatArray]:
 
 
 def volume_and_area(normals: FloatArray, offsets: FloatArray) -> tuple[float, float]:
-    status, vertices, triples = intersect(normals, offsets)
-    assert status == FINE
-    area, _ = facets_of(normals, offsets, vertices, edges_of(triples, len(offsets)))
-    return volume_of(offsets, area), float(area.sum())
+    shape = measure_polyhedron(normals, offsets)
+    assert shape.status == FINE
+    assert shape.areas.sum() == pytest.approx(shape.surface_area, rel=1e-14)
+    return shape.volume, shape.surface_area
 
 
 CUBE = np.vstack([np.eye(3), -np.eye(3)])
@@ -40,8 +50,9 @@ def test_that_volume_and_area_are_those_of_qhull(n: int) -> None:
 
 def test_that_vertices_satisfy_eulers_formula_and_lie_in_their_planes() -> None:
     normals, offsets = random_planes(40, 5)
-    _, vertices, triples = intersect(normals, offsets)
+    _, _, _, vertices, triples, edges, *_ = measure_polyhedron(normals, offsets)
     facets = np.unique(triples)
+    assert len(edges) == 3 * len(facets) - 6
     assert len(vertices) == 2 * len(facets) - 4
     for vertex, planes in zip(vertices, triples, strict=True):
         assert normals[planes] @ vertex == pytest.approx(offsets[planes], abs=1e-13)
@@ -49,15 +60,14 @@ def test_that_vertices_satisfy_eulers_formula_and_lie_in_their_planes() -> None:
 
 
 def test_that_an_open_cone_is_unbounded() -> None:
-    assert intersect(CUBE[:5], np.ones(5))[0] == UNBOUNDED
+    assert measure_polyhedron(CUBE[:5], np.ones(5)).status == UNBOUNDED
 
 
 def test_that_a_plane_outside_of_everything_bounds_no_facet() -> None:
     normals, offsets = np.vstack([CUBE, [[0.6, 0.8, 0.0]]]), np.append(np.ones(6), 2.0)
-    _, vertices, triples = intersect(normals, offsets)
-    area, _ = facets_of(normals, offsets, vertices, edges_of(triples, 7))
-    assert area[6] == 0.0
-    assert area[:6] == pytest.approx(4.0)
+    shape = measure_polyhedron(normals, offsets)
+    assert shape.areas == pytest.approx([4.0] * 6 + [0.0])
+    assert shape.centroids == pytest.approx(np.vstack([CUBE, [[1.2, 1.6, 0.0]]]))
 
 
 @pytest.mark.parametrize("seed", range(6))
@@ -68,9 +78,9 @@ def test_that_planes_that_tie_bound_the_polyhedron_of_qhull_or_nothing(seed: int
         normals[~normals.any(axis=1)] = [0.0, 0.0, 1.0]
         normals /= np.linalg.norm(normals, axis=1, keepdims=True)
         offsets = rng.choice([0.8, 1.0, 1.1], len(normals))
-        status, vertices, triples = intersect(normals, offsets)
-        if status != FINE:
-            assert len(vertices) == len(triples) == 0
+        shape = measure_polyhedron(normals, offsets)
+        if shape.status != FINE:
+            assert len(shape.vertices) == len(shape.triples) == 0
             continue
         hull = ConvexHull(HalfspaceIntersection(np.c_[normals, -offsets], np.zeros(3)).intersections)
         assert volume_and_area(normals, offsets) == pytest.approx((hull.volume, hull.area), rel=1e-9)
@@ -78,33 +88,42 @@ def test_that_planes_that_tie_bound_the_polyhedron_of_qhull_or_nothing(seed: int
 
 def test_that_the_compiled_kernel_is_its_python_reference() -> None:
     normals, offsets = random_planes(15, 2)
-    for mine, reference in zip(intersect(normals, offsets), intersect.py_func(normals, offsets), strict=True):
-        assert np.allclose(mine, reference, atol=1e-13)
+    empty = np.empty((30, 3)), np.empty((30, 3), dtype=np.int64)
+    ours, reference = (
+        filled(kernel, (normals, offsets, 50.0, workspace_for(15)), *empty)
+        for kernel in (fill_vertices, fill_vertices.py_func)  # type: ignore[attr-defined]
+    )
+    assert np.allclose(ours[0][:26], reference[0][:26], atol=1e-13)
+    assert (ours[1][:26] == reference[1][:26]).all()
 
 
 def test_that_the_derivatives_are_those_of_finite_differences() -> None:
     rng = np.random.default_rng(0)
     normals, offsets = random_planes(20, 1)
-    _, vertices, triples = intersect(normals, offsets)
-    edges = edges_of(triples, 20)
-    area, centroid = facets_of(normals, offsets, vertices, edges)
-    pivots = centroid + 0.02 * rng.normal(size=centroid.shape)
-    frames, levers = tangents_of(normals), levers_of(area, 0.1)
-    gradients = [
-        gradient_of(volume_charge(area, centroid, pivots), frames, levers),
-        gradient_of(area_charge(normals, vertices, edges, pivots), frames, levers),
+    shape = measure_polyhedron(normals, offsets)
+    tangents, pivots = tangents_of(normals), shape.centroids
+    scales, _ = filled(fill_tilt_scales, (shape.areas,), np.empty(20))
+    assert scales == pytest.approx(np.maximum(np.sqrt(shape.areas / np.pi), 0.08), rel=1e-14)
+    arguments = normals, shape.vertices, shape.edges, pivots, 1.0
+    charges = [
+        filled(add_volume_charges, (shape.areas, 1.0), np.zeros((20, 4)))[0],
+        filled(add_surface_charges, arguments, np.zeros((20, 4)))[0],
     ]
+    gradients = [filled(fill_gradient, (each, tangents, scales), np.empty(60))[0] for each in charges]
     for _ in range(5):
         step = 1e-6 * rng.normal(size=60)
-        ahead = volume_and_area(*moved(normals, pivots, offsets, frames, levers, step))
-        behind = volume_and_area(*moved(normals, pivots, offsets, frames, levers, -step))
+        ahead, behind = (
+            volume_and_area(*moved_planes(normals, pivots, offsets, tangents, scales, way * step)[:2])
+            for way in (1.0, -1.0)
+        )
         for value, other, gradient in zip(ahead, behind, gradients, strict=True):
             assert (value - other) / 2 == pytest.approx(gradient @ step, rel=1e-5, abs=1e-12)
 
 
-def test_that_carried_tangents_stay_orthonormal() -> None:
-    normals, _ = random_planes(10, 1)
-    turned, _ = random_planes(10, 2)
-    frames = carried(tangents_of(normals), turned)
-    triads = np.concatenate([turned[:, None], frames], axis=1)
+def test_that_tangents_stay_orthonormal_after_a_step() -> None:
+    normals, offsets = random_planes(10, 1)
+    step = np.random.default_rng(2).normal(size=30)
+    pivots, tangents = normals * offsets[:, None], tangents_of(normals)
+    turned, _, carried = moved_planes(normals, pivots, offsets, tangents, np.full(10, 0.5), step)
+    triads = np.concatenate([turned[:, None], carried], axis=1)
     assert np.allclose(triads @ triads.transpose(0, 2, 1), np.eye(3), atol=1e-12)

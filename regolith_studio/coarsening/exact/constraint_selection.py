@@ -1,11 +1,11 @@
-"""From weights to conditions: which descriptors are kept exactly, and why some cannot be."""
+"""From weights to constraints: which descriptors are kept exactly, and why some cannot be."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from regolith_studio.coarsening.exact.problem import Problem
+from regolith_studio.coarsening.exact.constraints import Problem
 from regolith_studio.coarsening.lower_bounds import sphericity_reason, volume_is_preferred
 from regolith_studio.coarsening.target import RayTable, Target
 from regolith_studio.coarsening.weights import LossWeights
@@ -14,8 +14,8 @@ from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.half_spaces import HalfSpaces
 from regolith_studio.messages import N_, Message, join_messages
 
-CONDITION_KEYS = ("volume", "sphericity", "min_diameter", "max_diameter", "aspect_ratio")
-"""Descriptors in the order of :mod:`regolith_studio.coarsening.exact.problem`."""
+CONSTRAINT_KEYS = ("volume", "sphericity", "min_diameter", "max_diameter", "aspect_ratio")
+"""Descriptors in the order of :mod:`regolith_studio.coarsening.exact.constraints`."""
 
 
 EXACT = 1e-6
@@ -23,7 +23,7 @@ EXACT = 1e-6
 
 
 NEARLY = 5e-3
-"""Relative errors up to this are of conditions that were meant to be met."""
+"""Relative errors up to this are of constraints that were meant to be met."""
 
 
 FLAT, COPLANAR = 1e-6, 1e-5
@@ -51,19 +51,19 @@ TOO_ROUGH = N_(
 
 
 @dataclass(frozen=True)
-class Request:
+class ConstraintRequest:
     """What is kept exactly.
 
     Parameters
     ----------
     values
-        Wanted values in the order of :data:`CONDITION_KEYS`, for the particle of unit volume.
+        Wanted values in the order of :data:`CONSTRAINT_KEYS`, for the particle of unit volume.
     asked
-        Which of them are conditions. The aspect ratio follows where both diameters are asked for.
+        Which of them are constraints. The aspect ratio follows where both diameters are asked for.
     keeps_hull
         Whether V is sacrificed to CH.
     ratio_counts
-        Whether the aspect ratio is asked for, as a condition or by both diameters.
+        Whether the aspect ratio is asked for, as a constraint or by both diameters.
     """
 
     values: tuple[float, ...]
@@ -72,8 +72,8 @@ class Request:
     ratio_counts: bool
 
     @classmethod
-    def of(cls, target: Target, weights: LossWeights) -> "Request":
-        """A weight above 0 makes a condition; of V and CH the one that Eq. 9 prefers."""
+    def of(cls, target: Target, weights: LossWeights) -> "ConstraintRequest":
+        """A weight above 0 makes a constraint; of V and CH the one that Eq. 9 prefers."""
         wanted = target.descriptors
         keeps_volume = volume_is_preferred(weights, wanted)
         volume = wanted["volume"] if keeps_volume else wanted["convex_hull_volume"]
@@ -84,49 +84,39 @@ class Request:
             *box,
             weights["aspect_ratio"] > 0 and not all(box),
         )
-        values = (volume, *[wanted[key] for key in CONDITION_KEYS[1:]])
+        values = (volume, *[wanted[key] for key in CONSTRAINT_KEYS[1:]])
         return cls(values, asked, not keeps_volume, weights["aspect_ratio"] > 0)
 
     @property
     def keys(self) -> tuple[str, ...]:
-        """Descriptors that are conditions."""
-        return tuple(key for key, asked in zip(CONDITION_KEYS, self.asked, strict=True) if asked)
+        """Descriptors that are constraints."""
+        return tuple(key for key, asked in zip(CONSTRAINT_KEYS, self.asked, strict=True) if asked)
 
-    def nearly_met_by(self, found: Mapping[str, float]) -> "Request":
-        """The same conditions, but at the value of `found` where that is more than :data:`NEARLY` away."""
+    def nearly_met_by(self, found: Mapping[str, float]) -> "ConstraintRequest":
+        """The same constraints, but at the value of `found` where that is more than :data:`NEARLY` away."""
         values = tuple(
             value if abs(found[key] / value - 1.0) <= NEARLY else found[key]
-            for key, value in zip(CONDITION_KEYS, self.values, strict=True)
+            for key, value in zip(CONSTRAINT_KEYS, self.values, strict=True)
         )
         return replace(self, values=values)
 
     def problem(
         self, rays: RayTable, sample_angle: float, only_volume: bool = False, sphericity: bool = True
     ) -> Problem:
-        """In compiled form; `only_volume` leaves out all other conditions, not `sphericity` that one."""
+        """The problem to solve; `only_volume` leaves out all other constraints, not `sphericity` that one."""
         asked = np.array(self.asked)
         if only_volume:
             asked[1:] = False
         asked[1] &= sphericity
-        return Problem(
-            rays.directions,
-            rays.first,
-            rays.distance,
-            rays.sign,
-            rays.weight,
-            np.log(self.values),
-            asked,
-            sample_angle,
-            0,
-        )
+        return Problem(rays, np.log(self.values), asked, sample_angle, 0)
 
 
 def reason_for(
-    target: Target, request: Request, n_facets: int, n_real: int, found: Mapping[str, float]
+    target: Target, request: ConstraintRequest, n_facets: int, n_real: int, found: Mapping[str, float]
 ) -> str | None:
-    """One sentence about the condition that is missed by most, and one about facets that are missing.
+    """One sentence about the constraint that is missed by most, and one about facets that are missing.
 
-    ``None`` where the descriptors `found` meet all conditions to 1e-6 with `n_real` = `n_facets` facets. The
+    ``None`` where the descriptors `found` meet all constraints to 1e-6 with `n_real` = `n_facets` facets. The
     aspect ratio is named where two diameters are within that and their ratio is not.
     """
     errors = relative_errors(target.descriptors, found)
@@ -198,5 +188,5 @@ def facets_reason(n_real: int, n_facets: int) -> str:
     )
 
 
-def _reported(key: str, request: Request) -> str:
+def _reported(key: str, request: ConstraintRequest) -> str:
     return "convex_hull_volume" if key == "volume" and request.keeps_hull else key

@@ -7,7 +7,7 @@ import pytest
 from scipy.spatial import ConvexHull, HalfspaceIntersection
 
 from regolith_studio.coarsening.coarsen import coarsen
-from regolith_studio.coarsening.exact.growth import (
+from regolith_studio.coarsening.exact.facet_growth import (
     more_surface_than_hull,
     numbers_to_grow_from,
     stages,

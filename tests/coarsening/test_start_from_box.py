@@ -5,10 +5,10 @@ import pytest
 
 from benchmarks.independent import measured
 from regolith_studio.coarsening.coarsen import coarsen
-from regolith_studio.coarsening.core.intersection import FINE, intersect
-from regolith_studio.coarsening.exact.boxed import SIDES, boxed_planes
-from regolith_studio.coarsening.exact.course import start_planes
-from regolith_studio.coarsening.polyhedra import polyhedron_of
+from regolith_studio.coarsening.core.intersection import FINE
+from regolith_studio.coarsening.exact.initial_planes import start_planes
+from regolith_studio.coarsening.exact.start_from_box import SIDES, planes_around_box
+from regolith_studio.coarsening.polyhedra import intersect_half_spaces, polyhedron_of
 from regolith_studio.coarsening.target import Target
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.half_spaces import HalfSpaces
@@ -63,12 +63,13 @@ def test_that_starts_of_needles_end_within_reach() -> None:
     ball = icosphere(4)
     target = Target.of(Mesh(ball.vertices * (15.0, 1.7, 1.0), ball.faces))
     for seed in range(5):
-        assert intersect(*start_planes(target, 12, np.random.default_rng(seed)))[0] == FINE
+        planes = start_planes(target, 12, np.random.default_rng(seed))
+        assert intersect_half_spaces(*planes).status == FINE
 
 
 def test_that_the_first_six_half_spaces_enclose_the_least_box() -> None:
     target = Target.of(rounded_brick(3.0, 2.0, 1.0))
-    planes = boxed_planes(target, 14, np.random.default_rng(1))
+    planes = planes_around_box(target, 14, np.random.default_rng(1))
     assert planes is not None
     box = polyhedron_of(HalfSpaces(planes[0][:SIDES], planes[1][:SIDES]))
     wanted = [target.descriptors[f"{key}_diameter"] for key in ("min", "intermediate", "max")]
@@ -79,8 +80,8 @@ def test_that_the_first_six_half_spaces_enclose_the_least_box() -> None:
 
 def test_that_there_is_no_start_in_the_box_where_nothing_lies_within_it() -> None:
     box = Target.of(Mesh(CUBE * (3.0, 2.0, 1.0), NO_FACES).hull)
-    assert boxed_planes(box, 20, np.random.default_rng(0)) is None
-    assert boxed_planes(Target.of(rounded_brick(3.0, 2.0, 1.0)), SIDES, np.random.default_rng(0)) is None
+    assert planes_around_box(box, 20, np.random.default_rng(0)) is None
+    assert planes_around_box(Target.of(rounded_brick(3.0, 2.0, 1.0)), SIDES, np.random.default_rng(0)) is None
 
 
 def test_that_a_box_with_a_corner_cut_off_gets_a_hundred_facets() -> None:

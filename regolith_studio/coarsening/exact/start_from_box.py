@@ -1,6 +1,6 @@
-"""Polyhedra with six facets on the sides of the particle's own least box: for particles that nearly fill it.
+"""Polyhedra with six facets on the sides of the particle's box: for particles that nearly fill it.
 
-The box of a body that nearly fills it has hardly any room to move: no condition is smooth within a step of
+The box of a body that nearly fills it has hardly any room to move: no constraint is smooth within a step of
 it, and Gauss-Newton fails. With six half-spaces held at its sides the diameters are met by themselves, and
 volume and sphericity are left to the other half-spaces.
 """
@@ -9,14 +9,17 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from regolith_studio.coarsening.core.cuts import SMALLEST_FACET
-from regolith_studio.coarsening.core.planes import tangents_of
-from regolith_studio.coarsening.exact.compromise import compromise
-from regolith_studio.coarsening.exact.course import Attempt, attempt, course, onward
-from regolith_studio.coarsening.exact.growth import ALIKE, with_more_facets
-from regolith_studio.coarsening.exact.problem import SPHERICITY, Problem
-from regolith_studio.coarsening.exact.starts import grouped_planes
-from regolith_studio.coarsening.exact.steps import NOWHERE, measured
+from regolith_studio.coarsening.core.facet_insertion import MIN_FACET
+from regolith_studio.coarsening.exact.constraints import SPHERICITY, Problem, measure
+from regolith_studio.coarsening.exact.facet_growth import ALIKE, with_more_facets
+from regolith_studio.coarsening.exact.initial_planes import MIN_OFFSET, grouped_planes
+from regolith_studio.coarsening.exact.relaxation import relax
+from regolith_studio.coarsening.exact.single_start import (
+    Candidate,
+    candidate_of,
+    descend_further,
+    single_start,
+)
 from regolith_studio.coarsening.polyhedra import facet_areas
 from regolith_studio.coarsening.target import Target
 from regolith_studio.geometry.arrays import FloatArray
@@ -31,20 +34,20 @@ INWARD = 1e-3
 """The other half-spaces begin so much farther in than the hull, as a share: so that none is redundant."""
 
 
-def boxed(
+def solve_from_box(
     target: Target,
     problems: tuple[Problem, Problem, Problem],
     n_facets: int,
     start: int,
     rng: np.random.Generator,
     steps: tuple[int, int],
-) -> Iterator[Attempt]:
+) -> Iterator[Candidate]:
     """Polyhedra with six facets on the sides of the box; once the request is met, all facets may move.
 
     Parameters
     ----------
     problems
-        With the volume as only condition, with all, and with all but the sphericity.
+        With the volume as only constraint, with all, and with all but the sphericity.
     start
         Number of the start; there are as many as :data:`FEW_FACETS`, and nothing comes after them.
     rng
@@ -55,11 +58,11 @@ def boxed(
     if start >= len(FEW_FACETS):
         return
     few = FEW_FACETS[start] if 0 < ALIKE * FEW_FACETS[start] < n_facets else n_facets
-    planes = boxed_planes(target, few, rng)
+    planes = planes_around_box(target, few, rng)
     if planes is None:
         return
     free, full, rest = (problem._replace(held=SIDES) for problem in problems)
-    best: Attempt | None = None
+    best: Candidate | None = None
     for found in _in_box(target, free, full, rest, planes, steps):
         best = found if found.better_than(best) else best
         if few == n_facets:
@@ -75,7 +78,7 @@ def boxed(
             if best.n_facets == n_facets:
                 break
     if len(best.offsets) == n_facets:
-        yield from onward(problems[1], best, steps[1])
+        yield from descend_further(problems[1], best, steps[1])
 
 
 def _in_box(
@@ -85,30 +88,30 @@ def _in_box(
     rest: Problem,
     planes: tuple[FloatArray, FloatArray],
     steps: tuple[int, int],
-) -> Iterator[Attempt]:
-    """All conditions at once, else the sphericity from below."""
+) -> Iterator[Candidate]:
+    """All constraints at once, else the sphericity from below."""
     met = False
-    for found in course(target, free, full, planes, *steps):
+    for found in single_start(target, free, full, planes, *steps):
         met |= found.exact
         if found.exact:
             yield found
     if not met and full.asked[SPHERICITY]:
-        yield from compromise(target, full, rest, planes, steps[1], only_rounder=True)
+        yield from relax(target, full, rest, planes, steps[1], only_rounder=True)
 
 
-def _grown(target: Target, full: Problem, begun: Attempt, n_facets: int, steps: int) -> Iterator[Attempt]:
+def _grown(target: Target, full: Problem, begun: Candidate, n_facets: int, steps: int) -> Iterator[Candidate]:
     """The real facets and further ones, up to `n_facets`; nothing where a held facet is lost."""
-    real = facet_areas(HalfSpaces(begun.normals, begun.offsets)) >= SMALLEST_FACET
+    real = facet_areas(HalfSpaces(begun.normals, begun.offsets)) >= MIN_FACET
     if real[: full.held].all():
         normals, offsets = begun.normals[real], begun.offsets[real]
-        point = measured(full, normals, offsets, tangents_of(normals), NOWHERE)
-        yield from with_more_facets(target, full, attempt(full, point), n_facets, steps)
+        begun = candidate_of(full, measure(full, normals, offsets))
+        yield from with_more_facets(target, full, begun, n_facets, steps)
 
 
-def boxed_planes(
+def planes_around_box(
     target: Target, n_facets: int, rng: np.random.Generator
 ) -> tuple[FloatArray, FloatArray] | None:
-    """The sides of the particle's least box first, then groups of the hull's triangles that lie elsewhere.
+    """The sides of the particle's box first, then groups of the hull's triangles that lie elsewhere.
 
     ``None`` where nothing lies elsewhere, or `n_facets` leaves no half-space for it.
     """
@@ -129,5 +132,5 @@ def boxed_planes(
     others, offsets = grouped_planes(
         normals[elsewhere], areas[elsewhere], centres[elsewhere], rng.random(n_facets - SIDES), 10
     )
-    offsets = np.maximum(offsets, 0.05) * (1.0 - INWARD * rng.random(len(offsets)))
+    offsets = np.maximum(offsets, MIN_OFFSET) * (1.0 - INWARD * rng.random(len(offsets)))
     return np.vstack([sides, others]), np.concatenate([reach, offsets])

@@ -7,8 +7,8 @@ import pytest
 
 from regolith_studio.coarsening.coarsen import coarsen
 from regolith_studio.coarsening.core.box_search import FINE_ANGLE
-from regolith_studio.coarsening.exact.in_turn import met_in_turn
-from regolith_studio.coarsening.exact.request import Request, reason_for
+from regolith_studio.coarsening.exact.constraint_selection import ConstraintRequest, reason_for
+from regolith_studio.coarsening.exact.relaxation import relax_in_order
 from regolith_studio.coarsening.loss import loss
 from regolith_studio.coarsening.lower_bounds import max_sphericity
 from regolith_studio.coarsening.target import Target
@@ -98,15 +98,15 @@ def test_that_an_urchin_keeps_volume_and_length_and_more_faces_are_not_advised(
 
 def test_that_conditions_are_met_in_turn_and_their_polyhedron_is_as_it_says() -> None:
     target = Target.of(urchin())
-    request = Request.of(target, LossWeights.from_preset("all"))
+    request = ConstraintRequest.of(target, LossWeights.from_preset("all"))
     rest = request.problem(target.rays, FINE_ANGLE, sphericity=False)
     rng = np.random.default_rng(0)
     normals = rng.normal(size=(20, 3))
     normals /= np.linalg.norm(normals, axis=1)[:, None]
-    reached = met_in_turn(rest, (normals, np.ones(20)))
+    reached = relax_in_order(rest, (normals, np.ones(20)))
     assert reached is not None
     problem, point = reached
-    found = describe(ConvexPolyhedron.from_half_spaces(HalfSpaces(point.shape.normals, point.shape.offsets)))
+    found = describe(ConvexPolyhedron.from_half_spaces(HalfSpaces(point.normals, point.offsets)))
     keys = ("volume", "sphericity", "min_diameter", "max_diameter", "aspect_ratio")
     for at, key in enumerate(keys):
         if problem.asked[at]:
@@ -120,7 +120,7 @@ def test_that_missing_facets_are_named_beside_the_descriptor_that_is_missed() ->
     ball, flat = Target.of(egg(1.0, 0.99, 0.98)), Target.of(egg(1.0, 0.6, 0.3))
     for target, words in ((ball, "the most is"), (flat, "volume is off by 1 %")):
         found = {key: value * (1.01 if "volume" in key else 1.0) for key, value in target.descriptors.items()}
-        request = Request.of(target, LossWeights.from_preset("all"))
+        request = ConstraintRequest.of(target, LossWeights.from_preset("all"))
         few, all_of_them = (reason_for(target, request, 20, n_real, found) for n_real in (18, 20))
         assert all_of_them is not None
         assert words in all_of_them

@@ -5,13 +5,25 @@ import pytest
 from scipy.spatial import ConvexHull
 
 from regolith_studio.coarsening.core.box import Solid, box_at, empty_touch, scratch_for
-from regolith_studio.coarsening.core.box_change import FORCES, extent_forces
-from regolith_studio.coarsening.core.box_contacts import at_minimum, fill_points, pose_of, turned
-from regolith_studio.coarsening.core.box_follow import followed, together, watch
-from regolith_studio.coarsening.core.box_search import DENSE_ANGLE, SAMPLE_ANGLE, likeness, local_boxes
-from regolith_studio.coarsening.core.intersection import edges_of, intersect
-from regolith_studio.coarsening.core.measures import facets_of, vertex_charge
-from regolith_studio.coarsening.core.planes import gradient_of, levers_of, moved, tangents_of
+from regolith_studio.coarsening.core.box_contacts import (
+    NONE,
+    fill_points,
+    pose_of,
+    rotate,
+    tie_to_release,
+    walk_to_minimum,
+)
+from regolith_studio.coarsening.core.box_gradient import fill_extent_gradients, gradient_workspace
+from regolith_studio.coarsening.core.box_search import (
+    DENSE_ANGLE,
+    SAMPLE_ANGLE,
+    LocalBoxes,
+    likeness,
+    local_boxes,
+)
+from regolith_studio.coarsening.core.plane_coordinates import moved_planes, tangents_of
+from regolith_studio.coarsening.core.polyhedron_measures import measure_polyhedron
+from regolith_studio.coarsening.core.tracked_boxes import merge_boxes, select_boxes, track_boxes
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.half_spaces import HalfSpaces
@@ -27,17 +39,21 @@ def random_planes(n: int, seed: int) -> tuple[FloatArray, FloatArray]:
 
 
 def solid_of(normals: FloatArray, offsets: FloatArray) -> tuple[Solid, FloatArray]:
-    _, vertices, triples = intersect(normals, offsets)
-    edges = edges_of(triples, len(offsets))
-    area, _ = facets_of(normals, offsets, vertices, edges)
-    return Solid(vertices, normals, area, edges), triples
+    shape = measure_polyhedron(normals, offsets)
+    return Solid(shape.vertices, normals, shape.areas, shape.edges), shape.triples
+
+
+def found_on(
+    solid: Solid, margin: float, angle: float = SAMPLE_ANGLE, near: FloatArray = EVERYWHERE
+) -> LocalBoxes:
+    return local_boxes(*solid, margin, angle, near)
 
 
 @pytest.mark.parametrize("n", [10, 20, 50])
 def test_that_the_least_box_is_the_exact_one(n: int) -> None:
     for seed in range(3):
         normals, offsets = random_planes(n, seed)
-        boxes = local_boxes(solid_of(normals, offsets)[0], 0.02, DENSE_ANGLE, EVERYWHERE)
+        boxes = found_on(solid_of(normals, offsets)[0], 0.02, DENSE_ANGLE)
         exact = minimum_volume_box(ConvexPolyhedron.from_half_spaces(HalfSpaces(normals, offsets)))
         assert boxes.volumes[0] == pytest.approx(exact.volume, rel=1e-6)
         assert np.sort(boxes.extents[0])[::-1] == pytest.approx(exact.extents, rel=1e-6)
@@ -46,7 +62,7 @@ def test_that_the_least_box_is_the_exact_one(n: int) -> None:
 def test_that_every_box_holds_all_vertices() -> None:
     normals, offsets = random_planes(20, 7)
     solid, _ = solid_of(normals, offsets)
-    boxes = local_boxes(solid, 0.05, SAMPLE_ANGLE, EVERYWHERE)
+    boxes = found_on(solid, 0.05)
     for frame, extents in zip(boxes.frames, boxes.extents, strict=True):
         along = solid.vertices @ frame.T
         assert np.ptp(along, axis=0) == pytest.approx(extents, rel=1e-6)
@@ -55,8 +71,8 @@ def test_that_every_box_holds_all_vertices() -> None:
 def test_that_looking_near_a_box_finds_it() -> None:
     normals, offsets = random_planes(20, 4)
     solid, _ = solid_of(normals, offsets)
-    everywhere = local_boxes(solid, 0.05, SAMPLE_ANGLE, EVERYWHERE)
-    near = local_boxes(solid, 0.05, SAMPLE_ANGLE, everywhere.frames[0])
+    everywhere = found_on(solid, 0.05)
+    near = found_on(solid, 0.05, SAMPLE_ANGLE, everywhere.frames[0])
     assert near.volumes[0] == pytest.approx(everywhere.volumes[0], rel=1e-9)
 
 
@@ -64,10 +80,10 @@ def test_that_looking_near_a_box_finds_it() -> None:
 def test_that_no_small_turn_makes_a_reported_box_smaller(seed: int) -> None:
     solid, _ = solid_of(*random_planes((12, 20)[seed % 2], seed))
     rng = np.random.default_rng(seed)
-    for frame, volume in zip(*local_boxes(solid, 0.05, SAMPLE_ANGLE, EVERYWHERE)[1::-1], strict=True):
+    for frame, volume in zip(*found_on(solid, 0.05)[1::-1], strict=True):
         for turn in rng.normal(size=(200, 3)):
             other = frame.copy()
-            turned(other, tuple((1e-5 * turn / np.linalg.norm(turn)).tolist()))
+            rotate(other, tuple((1e-5 * turn / np.linalg.norm(turn)).tolist()))
             assert np.prod(np.ptp(solid.vertices @ other.T, axis=0)) > volume * (1.0 - 1e-11)
 
 
@@ -75,42 +91,44 @@ def test_that_a_brick_has_one_least_box() -> None:
     # Any other box is flush with two of the brick's edges at most, and falls to either side.
     normals = np.vstack([np.eye(3), -np.eye(3)])
     solid, _ = solid_of(normals, np.array([1.0, 0.9, 0.7, 1.1, 0.8, 0.6]))
-    boxes = local_boxes(solid, 0.5, SAMPLE_ANGLE, EVERYWHERE)
+    boxes = found_on(solid, 0.5)
     assert boxes.volumes == pytest.approx([2.1 * 1.7 * 1.3], rel=1e-12)
 
 
 @pytest.mark.parametrize("seed", range(12))
-def test_that_followed_boxes_are_those_that_a_search_finds(seed: int) -> None:
+def test_that_tracked_boxes_are_those_that_a_search_finds(seed: int) -> None:
     normals, offsets = random_planes((12, 20, 50)[seed % 3], seed)
     solid, triples = solid_of(normals, offsets)
-    boxes = local_boxes(solid, 0.02, DENSE_ANGLE, EVERYWHERE)
+    boxes = found_on(solid, 0.02, DENSE_ANGLE)
     rng = np.random.default_rng(seed)
     turns = normals + 1e-3 * rng.normal(size=normals.shape)
     turns /= np.linalg.norm(turns, axis=1, keepdims=True)
     then, corners = solid_of(turns, offsets * (1.0 + 1e-3 * rng.normal(size=len(offsets))))
-    kept, lost = followed(then, corners, watch(boxes, np.arange(len(boxes.volumes)), triples))
-    assert lost.sum() + len(kept.volumes) == len(boxes.volumes)
-    found = local_boxes(then, 0.05, DENSE_ANGLE, EVERYWHERE)
+    tracked = select_boxes(boxes, np.arange(len(boxes.volumes)), triples)
+    kept, lost = track_boxes(then.vertices, corners, len(offsets), tracked)
+    assert (0 if lost is None else lost.sum()) + len(kept.volumes) == len(boxes.volumes)
+    assert len(kept.volumes) > 0
+    found = found_on(then, 0.05, DENSE_ANGLE)
     for frame, volume in zip(kept.frames, kept.volumes, strict=True):
-        alike = [likeness(frame, other) > 1.0 - 1e-9 for other in found.frames]
+        alike = likeness(frame[None], found.frames)[0] > 1.0 - 1e-9
         assert found.volumes[np.argmax(alike)] == pytest.approx(volume, rel=1e-9)
         assert np.prod(np.ptp(then.vertices @ frame.T, axis=0)) == pytest.approx(volume, rel=1e-9)
-    both = together(kept, found)
+    both = merge_boxes(kept, found)
     assert len(both.volumes) == len(found.volumes)
     assert (np.diff(both.volumes) >= 0.0).all()
 
 
 def test_that_compiled_contacts_are_their_python_reference() -> None:
     solid, _ = solid_of(*random_planes(20, 2))
-    boxes = local_boxes(solid, 0.02, SAMPLE_ANGLE, EVERYWHERE)
+    boxes = found_on(solid, 0.02)
     points = np.empty((9, 3))
     fill_points.py_func(solid.vertices, boxes.contacts[0], points)
     one = pose_of(points, boxes.contacts[0], boxes.frames[0])
     two = pose_of.py_func(points, boxes.contacts[0], boxes.frames[0])
     for ours, reference in zip(one, two, strict=True):
         assert np.asarray(ours) == pytest.approx(np.asarray(reference), rel=1e-12, abs=1e-12)
-    assert at_minimum(one, boxes.contacts[0])
-    assert at_minimum.py_func(two, boxes.contacts[0])
+    assert tie_to_release(one, boxes.contacts[0])[0] == NONE
+    assert tie_to_release.py_func(two, boxes.contacts[0])[0] == NONE
 
 
 @pytest.mark.parametrize("seed", range(10))
@@ -144,26 +162,35 @@ def test_that_the_compiled_box_is_its_python_reference() -> None:
 def test_that_the_edges_follow_the_planes_as_finite_differences_say(seed: int) -> None:
     normals, offsets = random_planes((12, 20)[seed % 2], seed)
     n = len(offsets)
-    solid, triples = solid_of(normals, offsets)
-    boxes = local_boxes(solid, 0.02, SAMPLE_ANGLE, EVERYWHERE)
-    frames, levers = tangents_of(normals), levers_of(solid.areas, 0.1)
-    _, pivots = facets_of(normals, offsets, solid.vertices, solid.edges)
-    contact, forces, points = boxes.contacts[0], np.empty(FORCES), np.empty((9, 3))
-    fill_points(solid.vertices, contact, points)
-    extents = extent_forces(points, contact, boxes.frames[0], forces)
-    assert extents == pytest.approx(boxes.extents[0], rel=1e-12)
+    solid, _ = solid_of(normals, offsets)
+    boxes = found_on(solid, 0.02)
+    shape = measure_polyhedron(normals, offsets)
+    tangents, scales, pivots = tangents_of(normals), np.full(n, 0.3), shape.centroids
+    logs, gradients = np.empty(3), np.empty((3, 3 * n))
+    box = boxes.frames[0], boxes.contacts[0]
+    fill_extent_gradients(shape, *box, tangents, scales, gradient_workspace(n), logs, gradients)
+    assert np.exp(logs) == pytest.approx(boxes.extents[0], rel=1e-12)
     step = 1e-6 * np.random.default_rng(seed).normal(size=3 * n)
 
     def edges_after(change: FloatArray) -> FloatArray:
-        then, _ = solid_of(*moved(normals, pivots, offsets, frames, levers, change))
-        found = local_boxes(then, 0.02, SAMPLE_ANGLE, EVERYWHERE)
-        alike = int(np.argmax([likeness(frame, boxes.frames[0]) for frame in found.frames]))
+        then, _ = solid_of(*moved_planes(normals, pivots, offsets, tangents, scales, change)[:2])
+        found = found_on(then, 0.02)
+        alike = int(likeness(boxes.frames[:1], found.frames).argmax())
         return np.log(np.sort(found.extents[alike]))
 
     change = (edges_after(step) - edges_after(-step)) / 2
-    for k, rank in zip(np.argsort(extents), range(3), strict=True):
-        charge = np.zeros((n, 4))
-        for i in range(6 + contact[0]):
-            v = contact[1 + i] if i < 6 else contact[8 + 2 * (i - 6)]
-            vertex_charge(normals, triples[v], solid.vertices[v], forces[k, i].copy(), pivots, charge)
-        assert gradient_of(charge, frames, levers) @ step == pytest.approx(change[rank], rel=1e-4, abs=1e-10)
+    assert gradients[np.argsort(logs)] @ step == pytest.approx(change, rel=1e-4, abs=1e-10)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_that_a_box_that_was_turned_away_walks_back_to_a_minimum(seed: int) -> None:
+    solid, _ = solid_of(*random_planes((12, 20, 50)[seed % 3], seed))
+    vertices, known = solid.vertices, found_on(solid, 0.2, DENSE_ANGLE)
+    rng, arrived = np.random.default_rng(seed), 0
+    for turn in 0.02 * rng.normal(size=(30, 3)):
+        frame, contact, points = known.frames[0].copy(), np.zeros(13, dtype=np.int64), np.empty((9, 3))
+        rotate(frame, tuple(turn.tolist()))
+        if walk_to_minimum(vertices, contact, frame, points, np.empty((3, 3)), 0.3):
+            volume = np.prod(np.ptp(vertices @ frame.T, axis=0))
+            arrived += np.abs(known.volumes / volume - 1.0).min() < 1e-9
+    assert arrived >= 20

@@ -1,4 +1,4 @@
-"""The course of the whole method: starts until one meets all conditions, and compromises if none does."""
+"""The whole exact method: starts until one meets all constraints, and relaxations if none does."""
 
 from collections.abc import Generator, Iterator
 from dataclasses import dataclass, replace
@@ -7,21 +7,30 @@ from functools import cached_property
 import numpy as np
 
 from regolith_studio.coarsening.core.box_search import DENSE_ANGLE, FINE_ANGLE, SAMPLE_ANGLE
-from regolith_studio.coarsening.exact.boxed import FEW_FACETS, boxed
-from regolith_studio.coarsening.exact.compromise import compromise, with_facets_back
-from regolith_studio.coarsening.exact.course import Attempt, course, densely_checked, start_planes
-from regolith_studio.coarsening.exact.evening import COST, evened, has_small_facets
-from regolith_studio.coarsening.exact.growth import grown, numbers_to_grow_from, with_waiting
-from regolith_studio.coarsening.exact.problem import SPHERICITY, VOLUME, Problem, needs_box
-from regolith_studio.coarsening.exact.record import AS_GOOD_AS_MET, Record
-from regolith_studio.coarsening.exact.request import (
-    CONDITION_KEYS,
+from regolith_studio.coarsening.exact.constraint_selection import (
+    CONSTRAINT_KEYS,
     EXACT,
-    Request,
+    ConstraintRequest,
     own_planes,
     own_reason,
     reason_for,
 )
+from regolith_studio.coarsening.exact.constraints import SPHERICITY, VOLUME, Problem
+from regolith_studio.coarsening.exact.facet_growth import (
+    grow_facets,
+    numbers_to_grow_from,
+    with_waiting,
+)
+from regolith_studio.coarsening.exact.initial_planes import start_planes
+from regolith_studio.coarsening.exact.record import AS_GOOD_AS_MET, Record
+from regolith_studio.coarsening.exact.relaxation import relax, with_facets_back
+from regolith_studio.coarsening.exact.single_start import (
+    Candidate,
+    search_and_project,
+    single_start,
+)
+from regolith_studio.coarsening.exact.sliver_removal import COST, has_small_facets, remove_slivers
+from regolith_studio.coarsening.exact.start_from_box import FEW_FACETS, solve_from_box
 from regolith_studio.coarsening.loss import LossFunction
 from regolith_studio.coarsening.lower_bounds import sphericity_reason
 from regolith_studio.coarsening.progress import MethodStep
@@ -45,14 +54,14 @@ class Level:
     few_starts: int
     free_steps: int
     bound_steps: int
-    even_steps: int
+    sliver_steps: int
 
 
 LEVELS = {"fast": Level(1, 2, 12, 16, 14), "best": Level(3, 3, 20, 40, 60)}
 CHECK_ANGLES = (FINE_ANGLE, DENSE_ANGLE)
 """Of the searches for boxes that confirm a result."""
-COMPROMISES = (12, 20)
-"""Facets to start from, besides all, where conditions cannot be met together."""
+RELAXATION_FACETS = (12, 20)
+"""Facets to start from, besides all, where constraints cannot be met together."""
 ROUND_STARTS = 2
 """Starts from which polyhedra as round as can be are sought where the particle is rounder than the first."""
 SIZED = np.arange(5) == VOLUME
@@ -60,7 +69,7 @@ SIZED = np.arange(5) == VOLUME
 OUT_OF_REACH = 4e-3
 """Where they miss the sphericity by more (in logarithms, added up), no further start is tried."""
 STARTS_FOR_FACETS = 3
-"""Further starts where all conditions are met, but a half-space bounds no facet."""
+"""Further starts where all constraints are met, but a half-space bounds no facet."""
 
 
 class Search:
@@ -69,7 +78,7 @@ class Search:
     Parameters
     ----------
     retries
-        Further starts where those of the level do not meet all conditions.
+        Further starts where those of the level do not meet all constraints.
     seed
         Of all starts.
     """
@@ -83,7 +92,7 @@ class Search:
         retries: int,
         seed: np.random.SeedSequence,
     ) -> None:
-        request = Request.of(target, weights)
+        request = ConstraintRequest.of(target, weights)
         self._target, self._request, self._n_facets, self._level = target, request, n_facets, level
         self._rng = np.random.default_rng(seed)
         self._free = request.problem(target.rays, SAMPLE_ANGLE, only_volume=True)
@@ -113,31 +122,31 @@ class Search:
             if tried == 1:
                 value = self._judge.value(*self._planes)
                 yield MethodStep(0, self._total, value, HalfSpaces(*self._planes))
-            yield from self._record.told(tried, self._solved())
+            yield from self._record.record_candidates(tried, self._solved())
             if self._in_box or not self._whole:
-                yield from self._record.told(tried, self._boxed())
+                yield from self._record.record_candidates(tried, self._from_box())
                 self._in_box = self._record.met
             if self._round_asked and not self._record.met and tried <= ROUND_STARTS:
                 yield from self._as_round_as_can_be()
             if self._record.best is None:
-                yield from self._record.told(tried, self._all_at_once())
+                yield from self._record.record_candidates(tried, self._all_at_once())
             if self._good_enough() or self._out_of_reach():
                 break
 
-    def compromises(self) -> Iterator[MethodStep]:
-        """A step for each polyhedron with less loss, where no start could meet all conditions together."""
+    def relaxations(self) -> Iterator[MethodStep]:
+        """A step for each polyhedron with less loss, where no start could meet all constraints together."""
         best = self._found()
         if not self._round_asked or self._record.met or self._misses or self._itself is not None:
             return
         few_planes = [
             with_waiting(*start_planes(self._target, few, self._rng), self._n_facets)
-            for few in COMPROMISES
+            for few in RELAXATION_FACETS
             if few < self._n_facets
         ]
         for planes in (self._planes, (best.normals, best.offsets), *few_planes):
-            yield from self._record.told(self._total, self._compromise(planes))
+            yield from self._record.record_candidates(self._total, self._relax(planes))
 
-    def ending(self) -> Generator[MethodStep, None, MethodResult]:
+    def finish(self) -> Generator[MethodStep, None, MethodResult]:
         """A step for what is reported, where it is not what was told last, and the result.
 
         That is the best polyhedron without half-spaces that bound nothing, and a reason where it is not as
@@ -146,35 +155,35 @@ class Search:
         Raises
         ------
         GeometryError
-            If no start bounds a polyhedron; so does :meth:`compromises`.
+            If no start bounds a polyhedron; so does :meth:`relaxations`.
         """
         counts = {"starts": float(self._tried), "exact": float(self._record.met)}
         if not self._record.met and self._itself is not None:
             solid, found = self._itself, describe(self._itself)
             reason: str | None = own_reason(solid.n_facets, self._n_facets)
         else:
-            outcome = self._evened() or self._record.outcome or self._found()
+            outcome = self._without_slivers() or self._record.result or self._found()
             outcome = with_facets_back(
                 self._target, self._checks, self._judge, self._kept(outcome), self._n_facets
             )
             solid, found = outcome.solid, outcome.descriptors
             reason = reason_for(self._target, self._request, self._n_facets, solid.n_facets, found)
-        yield from self._record.ended(solid.half_spaces)
+        yield from self._record.record_final(solid.half_spaces)
         history = tuple(self._record.history)
         return MethodResult(solid.half_spaces, history, reason, counts, polyhedron=solid, achieved=found)
 
-    def _evened(self) -> Attempt | None:
-        """The best with larger small facets, where it meets all conditions and they can be had."""
+    def _without_slivers(self) -> Candidate | None:
+        """The best with larger small facets, where it meets all constraints and they can be had."""
         best = self._record.best
         if best is None or not best.exact or not has_small_facets(best.normals, best.offsets):
             return None
-        even = evened(self._full, best, self._level.even_steps)
+        even = remove_slivers(self._full, best, self._level.sliver_steps)
         even = confirmed(self._request, self._checks, even)
         dear = even.jaccard_distance > best.jaccard_distance + COST
         return even if even.exact and even.n_facets >= best.n_facets and not dear else None
 
-    def _kept(self, outcome: Attempt) -> Attempt:
-        """One that misses a condition, the others confirmed by public descriptors, where that can be."""
+    def _kept(self, outcome: Candidate) -> Candidate:
+        """One that misses a constraint, the others confirmed by public descriptors, where that can be."""
         if outcome.exact:
             return outcome
         request = self._request.nearly_met_by(outcome.descriptors)
@@ -184,7 +193,7 @@ class Search:
 
     @cached_property
     def _itself(self) -> ConvexPolyhedron | None:
-        """The particle, where it is a convex polyhedron with fewer facets, and so meets all conditions."""
+        """The particle, where it is a convex polyhedron with fewer facets, and so meets all constraints."""
         planes = own_planes(self._target, self._n_facets)
         if planes is None:
             return None
@@ -192,35 +201,37 @@ class Search:
         errors = relative_errors(self._target.descriptors, describe(solid, LOSS_KEYS))
         return solid if max(errors.values()) <= EXACT else None
 
-    def _solved(self) -> Iterator[Attempt]:
+    def _solved(self) -> Iterator[Candidate]:
         """From few facets or from all at once, in turns; nothing where the sphericity is above its bound."""
         few = self._numbers[(self._tried - 1) % len(self._numbers)]
         if few < self._n_facets:
             sizes = self._n_facets, few, self._level.few_starts
-            yield from grown(self._target, self._free, self._full, *sizes, self._rng, *self._steps)
+            yield from grow_facets(self._target, self._free, self._full, *sizes, self._rng, *self._steps)
         elif not self._hopeless:
             yield from self._all_at_once()
 
-    def _all_at_once(self) -> Iterator[Attempt]:
-        return course(self._target, self._free, self._full, self._planes, *self._steps)
+    def _all_at_once(self) -> Iterator[Candidate]:
+        return single_start(self._target, self._free, self._full, self._planes, *self._steps)
 
-    def _boxed(self) -> Iterator[Attempt]:
-        """With six half-spaces on the sides of the particle's box, where a condition is about the box."""
-        if needs_box(self._full):
+    def _from_box(self) -> Iterator[Candidate]:
+        """With six half-spaces on the sides of the particle's box, where a constraint is about the box."""
+        if self._full.needs_box:
             problems = self._free, self._full, self._rest
-            yield from boxed(self._target, problems, self._n_facets, self._tried - 1, self._rng, self._steps)
+            yield from solve_from_box(
+                self._target, problems, self._n_facets, self._tried - 1, self._rng, self._steps
+            )
 
     def _as_round_as_can_be(self) -> Iterator[MethodStep]:
         """The way to the sphericity from below; it is noted by how much it is missed."""
-        rounder = list(self._compromise(self._planes, only_rounder=True))
-        yield from self._record.told(self._tried, rounder)
+        rounder = list(self._relax(self._planes, only_rounder=True))
+        yield from self._record.record_candidates(self._tried, rounder)
         self._misses += [rounder[-1].worst] if rounder else []
 
-    def _compromise(
+    def _relax(
         self, planes: tuple[FloatArray, FloatArray], only_rounder: bool = False
-    ) -> Iterator[Attempt]:
+    ) -> Iterator[Candidate]:
         steps = self._level.bound_steps
-        return compromise(self._target, self._full, self._rest, planes, steps, only_rounder)
+        return relax(self._target, self._full, self._rest, planes, steps, only_rounder)
 
     def _good_enough(self) -> bool:
         """Whether public descriptors say that all is met, with all facets or after enough starts for them."""
@@ -240,7 +251,7 @@ class Search:
 
     @property
     def _whole(self) -> bool:
-        """Whether a polyhedron with all facets meets all conditions."""
+        """Whether a polyhedron with all facets meets all constraints."""
         best = self._record.best
         return best is not None and best.exact and best.n_facets == self._n_facets
 
@@ -248,20 +259,20 @@ class Search:
     def _steps(self) -> tuple[int, int]:
         return self._level.free_steps, self._level.bound_steps
 
-    def _found(self) -> Attempt:
+    def _found(self) -> Candidate:
         if self._record.best is None:
             raise GeometryError("No start of the exact method bounds a polyhedron.")
         return self._record.best
 
 
-def confirmed(request: Request, problems: tuple[Problem, ...], found: Attempt) -> Attempt:
-    """The attempt, polished with ever finer searches for boxes until the public descriptors agree.
+def confirmed(request: ConstraintRequest, problems: tuple[Problem, ...], found: Candidate) -> Candidate:
+    """The candidate, projected with ever finer searches for boxes until the public descriptors agree.
 
     Its residual is the largest error of the public descriptors where they never do.
     """
-    wanted = dict(zip(CONDITION_KEYS, request.values, strict=True))
+    wanted = dict(zip(CONSTRAINT_KEYS, request.values, strict=True))
     for problem in problems:
-        found = densely_checked(problem, found)
+        found = search_and_project(problem, found)
         if not found.exact:
             return found
         errors = (abs(found.descriptors[key] / wanted[key] - 1.0) for key in request.keys)

@@ -6,11 +6,10 @@ from scipy.spatial import ConvexHull, HalfspaceIntersection
 
 from benchmarks.independent import measured
 from regolith_studio.coarsening.coarsen import coarsen, coarsening_steps
-from regolith_studio.coarsening.core.intersection import edges_of, intersect
-from regolith_studio.coarsening.core.measures import facets_of
-from regolith_studio.coarsening.core.planes import gradient_of, levers_of, moved, tangents_of
-from regolith_studio.coarsening.exact import search
-from regolith_studio.coarsening.exact.evening import add_facet_charge, has_small_facets
+from regolith_studio.coarsening.core.plane_coordinates import fill_gradient, moved_planes, tangents_of
+from regolith_studio.coarsening.core.polyhedron_measures import measure_polyhedron
+from regolith_studio.coarsening.exact import multi_start
+from regolith_studio.coarsening.exact.sliver_removal import add_area_charges, has_small_facets
 from regolith_studio.coarsening.progress import CoarseningProgress
 from regolith_studio.coarsening.result import CoarseningResult
 from regolith_studio.coarsening.target import Target
@@ -44,20 +43,19 @@ def test_that_facet_areas_change_as_differences_by_scipy(seed: int) -> None:
     normals /= np.linalg.norm(normals, axis=1)[:, None]
     offsets = rng.uniform(0.9, 1.1, 14)
     gains, step = rng.normal(size=14), 1e-6 * rng.normal(size=42)
-    _, vertices, triples = intersect(normals, offsets)
-    edges = edges_of(triples, 14)
-    area, centroid = facets_of(normals, offsets, vertices, edges)
-    frames, levers = tangents_of(normals), levers_of(area, 0.08)
-    np.testing.assert_allclose(area, areas_by_scipy(normals, offsets), atol=1e-9)
-    arguments = normals, vertices, edges, centroid, gains
+    shape = measure_polyhedron(normals, offsets)
+    tangents, scales, pivots = tangents_of(normals), np.full(14, 0.4), shape.centroids
+    np.testing.assert_allclose(shape.areas, areas_by_scipy(normals, offsets), atol=1e-9)
+    arguments = normals, shape.vertices, shape.edges, pivots, gains
     charge, plain = (
-        filled(f, arguments, np.zeros((14, 4)))[0] for f in (add_facet_charge, add_facet_charge.py_func)
+        filled(f, arguments, np.zeros((14, 4)))[0] for f in (add_area_charges, add_area_charges.py_func)
     )
-    change = gains @ (
-        areas_by_scipy(*moved(normals, centroid, offsets, frames, levers, step))
-        - areas_by_scipy(*moved(normals, centroid, offsets, frames, levers, -step))
+    ahead, behind = (
+        areas_by_scipy(*moved_planes(normals, pivots, offsets, tangents, scales, way * step)[:2])
+        for way in (1.0, -1.0)
     )
-    assert 2.0 * gradient_of(charge, frames, levers) @ step == pytest.approx(change, rel=1e-4)
+    gradient, _ = filled(fill_gradient, (charge, tangents, scales), np.empty(42))
+    assert 2.0 * gradient @ step == pytest.approx(gains @ (ahead - behind), rel=1e-4)
     np.testing.assert_allclose(charge, plain, rtol=1e-12, atol=1e-12)
 
 
@@ -68,7 +66,9 @@ def test_that_small_facets_grow_and_nothing_is_lost(n_facets: int, monkeypatch: 
         target = Target.of(pebble(seed))
         found = {}
         for evens in (True, False):
-            monkeypatch.setattr(search, "has_small_facets", has_small_facets if evens else lambda *_: False)
+            monkeypatch.setattr(
+                multi_start, "has_small_facets", has_small_facets if evens else lambda *_: False
+            )
             found[evens] = coarsen(target, n_facets)
             planes = target.in_unit_frame(found[evens].half_spaces)
             areas = areas_by_scipy(planes.normals, planes.offsets)
@@ -83,12 +83,12 @@ def test_that_small_facets_grow_and_nothing_is_lost(n_facets: int, monkeypatch: 
     assert sum(small[True]) < 0.7 * sum(small[False]) or sum(small[False]) == 0.0
 
 
-def test_that_the_polyhedron_with_larger_facets_is_told_as_the_last_step(
+def test_that_the_polyhedron_with_larger_facets_is_the_last_step(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     target = Target.of(pebble(2))
     told, result = steps_of(target, 35)
-    monkeypatch.setattr(search, "has_small_facets", lambda *_: False)
+    monkeypatch.setattr(multi_start, "has_small_facets", lambda *_: False)
     plain, small = steps_of(target, 35)
     assert len(told) == len(plain) + 1
     assert result.loss_history[:-1] == small.loss_history

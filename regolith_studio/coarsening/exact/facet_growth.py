@@ -1,19 +1,23 @@
-"""Many facets from few: a polyhedron that meets all conditions gets further facets as small cuts.
+"""Many facets from few: a polyhedron that meets all constraints gets further facets as small cuts.
 
 A particle has more surface than its convex hull as a rule. A convex polyhedron that is to have as much must
 be edgy, which few facets are by themselves; started with many, facets are lost on the way to it and with
-them the freedom to meet the conditions. So few facets are solved first. A cut across a corner changes the
-volume with the cube of its depth, so that what cuts take away is polished back by little.
+them the freedom to meet the constraints. So few facets are solved first. A cut across a corner changes the
+volume with the cube of its depth, so that what cuts take away is corrected back by little.
 """
 
 from collections.abc import Iterator
 
 import numpy as np
 
-from regolith_studio.coarsening.core.planes import tangents_of
-from regolith_studio.coarsening.exact.course import Attempt, attempt, course, mended, start_planes
-from regolith_studio.coarsening.exact.problem import Problem
-from regolith_studio.coarsening.exact.steps import NOWHERE, measured
+from regolith_studio.coarsening.exact.constraints import Problem, measure
+from regolith_studio.coarsening.exact.initial_planes import start_planes
+from regolith_studio.coarsening.exact.single_start import (
+    Candidate,
+    candidate_of,
+    restore_lost_facets,
+    single_start,
+)
 from regolith_studio.coarsening.lower_bounds import max_sphericity
 from regolith_studio.coarsening.target import Target
 from regolith_studio.geometry.arrays import FloatArray
@@ -56,7 +60,7 @@ def more_surface_than_hull(target: Target) -> float:
     return float(np.log(of_hull / target.descriptors["sphericity"]))
 
 
-def grown(
+def grow_facets(
     target: Target,
     free: Problem,
     full: Problem,
@@ -66,16 +70,17 @@ def grown(
     rng: np.random.Generator,
     free_steps: int,
     bound_steps: int,
-) -> Iterator[Attempt]:
+) -> Iterator[Candidate]:
     """`n_facets` half-spaces, cut out of the best of `starts` polyhedra with `few_facets`.
 
-    Where none of them meets all conditions, the nearest comes, with half-spaces that bound nothing. Other
-    parameters as of :func:`regolith_studio.coarsening.exact.course.course`; `rng` chooses the starts.
+    Where none of them meets all constraints, the nearest comes, with half-spaces that bound nothing. `rng`
+    chooses the starts; other parameters as of
+    :func:`regolith_studio.coarsening.exact.single_start.single_start`.
     """
-    few: Attempt | None = None
+    few: Candidate | None = None
     for _ in range(starts):
         start = start_planes(target, few_facets, rng)
-        for found in course(target, free, full, start, free_steps, bound_steps):
+        for found in single_start(target, free, full, start, free_steps, bound_steps):
             if found.better_than(few):
                 few = found
     if few is None:
@@ -87,18 +92,18 @@ def grown(
 
 
 def with_more_facets(
-    target: Target, problem: Problem, few: Attempt, n_facets: int, steps: int
-) -> Iterator[Attempt]:
-    """Polyhedra with ever more cuts, each number of them polished and followed by a descent of `steps` steps.
+    target: Target, problem: Problem, few: Candidate, n_facets: int, steps: int
+) -> Iterator[Candidate]:
+    """Polyhedra with ever more cuts, each number of them projected and followed by a descent of `steps`.
 
     Only those of `n_facets` half-spaces come. Where cuts cannot be kept, the last exact polyhedron comes with
     its half-spaces that bound nothing.
     """
     for size in stages(len(few.offsets), n_facets):
         normals, offsets = with_waiting(few.normals, few.offsets, size)
-        point = measured(problem, normals, offsets, tangents_of(normals), NOWHERE)
-        more: Attempt | None = None
-        for found in mended(target, problem, point, steps):
+        point = measure(problem, normals, offsets)
+        more: Candidate | None = None
+        for found in restore_lost_facets(target, problem, point, steps):
             if size == n_facets:
                 yield found
             if found.better_than(more):
@@ -111,10 +116,10 @@ def with_more_facets(
     yield waiting(problem, few, n_facets)
 
 
-def waiting(problem: Problem, few: Attempt, n_facets: int) -> Attempt:
+def waiting(problem: Problem, few: Candidate, n_facets: int) -> Candidate:
     """The same polyhedron with half-spaces that bound nothing, `n_facets` in all."""
     normals, offsets = with_waiting(few.normals, few.offsets, n_facets)
-    return attempt(problem, measured(problem, normals, offsets, tangents_of(normals), NOWHERE))
+    return candidate_of(problem, measure(problem, normals, offsets))
 
 
 def stages(few_facets: int, n_facets: int) -> Iterator[int]:

@@ -1,0 +1,116 @@
+"""Putting half-spaces that bound no facet back to work as small cuts across corners."""
+
+import numpy as np
+
+from regolith_studio.coarsening.core.intersection import FINE
+from regolith_studio.coarsening.core.polyhedron_measures import measure_polyhedron
+from regolith_studio.geometry.arrays import FloatArray, IntArray
+from regolith_studio.geometry.kernels import kernel_noalloc
+from regolith_studio.geometry.vectors import Vector, along, length, mixed, row
+
+MIN_CUT = 3e-3
+"""Least depth of a cut that is worth it, at unit volume."""
+MIN_FACET = 1e-6
+"""Facets of less area, at unit volume, count as lost."""
+
+
+def insert_lost_facets(
+    normals: FloatArray,
+    offsets: FloatArray,
+    directions: FloatArray,
+    first: IntArray,
+    distance: FloatArray,
+    depth: float,
+) -> tuple[int, FloatArray, FloatArray]:
+    """Replace each half-space without a facet by a cut across the corner that hangs out farthest.
+
+    A cut takes at most the share `depth` of the way to the nearest neighbouring corner, so no other facet
+    is lost.
+
+    Parameters
+    ----------
+    directions, first, distance
+        Rays, and the particle's crossings as from :func:`regolith_studio.coarsening.core.rays.cast`.
+
+    Returns
+    -------
+    n_cuts
+        Half-spaces replaced; -1 if the half-spaces bound nothing.
+    normals, offsets
+        With the cuts, copies.
+    """
+    normals, offsets, n_cuts = np.array(normals), np.array(offsets), 0
+    for _ in range(len(offsets)):
+        polyhedron = measure_polyhedron(normals, offsets)
+        if polyhedron.status != FINE:
+            return -1, normals, offsets
+        lost = np.flatnonzero(polyhedron.areas < MIN_FACET)
+        if len(lost) == 0:
+            break
+        vertices, triples = polyhedron.vertices, polyhedron.triples
+        at, room = _best_corner(normals, vertices, triples, directions, first, distance, depth)
+        cut = normals[triples[at]].sum(axis=0)
+        cut /= np.linalg.norm(cut)
+        normals[lost[0]], offsets[lost[0]] = cut, cut @ vertices[at] - depth * room
+        n_cuts += 1
+    return n_cuts, normals, offsets
+
+
+@kernel_noalloc
+def _best_corner(
+    normals: FloatArray,
+    vertices: FloatArray,
+    triples: IntArray,
+    directions: FloatArray,
+    first: IntArray,
+    distance: FloatArray,
+    depth: float,
+) -> tuple[int, float]:
+    """The corner that hangs out farthest of those with room for a cut, else the one with the most room.
+
+    Its index, and the way along the cut's normal to the nearest neighbouring corner.
+    """
+    at, max_overhang, room, roomiest, max_room = -1, -np.inf, 0.0, 0, -np.inf
+    for v in range(len(vertices)):
+        normal = _corner_normal(normals, triples, v)
+        here = np.inf
+        for u in range(len(vertices)):
+            if _share_edge(triples, u, v):
+                here = min(here, along(vertices, v, normal) - along(vertices, u, normal))
+        if here > max_room:
+            roomiest, max_room = v, here
+        if depth * here > MIN_CUT:
+            overhang = _overhang(row(vertices, v), directions, first, distance)
+            if overhang > max_overhang:
+                at, max_overhang, room = v, overhang, here
+    return (at, room) if at >= 0 else (roomiest, max_room)
+
+
+@kernel_noalloc
+def _overhang(position: Vector, directions: FloatArray, first: IntArray, distance: FloatArray) -> float:
+    """How far a point lies beyond the particle's surface, along the ray nearest to it."""
+    nearest, at = -np.inf, 0
+    for k in range(len(directions)):
+        here = along(directions, k, position)
+        if here > nearest:
+            nearest, at = here, k
+    surface = distance[first[at + 1] - 1] if first[at + 1] > first[at] else 0.0
+    return float(length(position) - surface)
+
+
+@kernel_noalloc
+def _corner_normal(normals: FloatArray, triples: IntArray, v: int) -> Vector:
+    """Mean direction of the three planes of a corner."""
+    normal = mixed(row(normals, triples[v, 0]), 1.0, row(normals, triples[v, 1]), 1.0)
+    normal = mixed(normal, 1.0, row(normals, triples[v, 2]), 1.0)
+    return mixed(normal, 1.0 / length(normal), normal, 0.0)
+
+
+@kernel_noalloc
+def _share_edge(triples: IntArray, one: int, two: int) -> bool:
+    """Whether two vertices, given by their planes, share an edge."""
+    shared = 0
+    for i in range(3):
+        for j in range(3):
+            shared += triples[one, i] == triples[two, j]
+    return shared == 2

@@ -1,0 +1,196 @@
+"""Vertices, edges, facets, volume and area of the polyhedron of half-spaces, and their derivatives.
+
+A *charge* of a plane is the derivative of a number with its motion: the rate per unit of speed, and its first
+moment about the plane's pivot. Where the plane moves outward at the speed w(x) = w0 + <g, x - pivot>, the
+number changes at the rate charge[0] w0 + <charge[1:4], g>.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from regolith_studio.coarsening.core.intersection import (
+    FINE,
+    NUMBER,
+    REACH,
+    IntersectionWorkspace,
+    fill_vertices,
+    workspace_for,
+)
+from regolith_studio.geometry.arrays import FloatArray, IntArray
+from regolith_studio.geometry.kernels import kernel_noalloc
+from regolith_studio.geometry.vectors import Vector, cross, dot, length, mixed, row
+
+NO_AREA = 1e-14
+"""Facets of less area have no centroid of their own."""
+
+
+class MeasuredPolyhedron(NamedTuple):
+    """The polyhedron <n_i, x> <= h_i of n half-spaces; only status and half-spaces hold unless it is FINE.
+
+    Parameters
+    ----------
+    status
+        FINE, UNBOUNDED or DEGENERATE, as in :mod:`regolith_studio.coarsening.core.intersection`.
+    normals, offsets
+        Unit normals (n, 3) and positive offsets (n,).
+    vertices, triples
+        Shape (v, 3), and the three planes that meet in each, counter-clockwise seen from outside, (v, 3).
+    edges
+        Rows (from, to, plane a, plane b), counter-clockwise around a, with a < b; shape (e, 4).
+    areas, centroids
+        Of each facet, (n,) and (n, 3); a plane without a facet has area 0 and its foot point.
+    volume, surface_area
+        Of the whole.
+    """
+
+    status: int
+    normals: FloatArray
+    offsets: FloatArray
+    vertices: FloatArray
+    triples: IntArray
+    edges: IntArray
+    areas: FloatArray
+    centroids: FloatArray
+    volume: float
+    surface_area: float
+
+
+def measure_polyhedron(normals: FloatArray, offsets: FloatArray) -> MeasuredPolyhedron:
+    """Intersect half-spaces in general position and measure the result."""
+    n = len(offsets)
+    vertices, triples = np.empty((2 * n, 3)), np.empty((2 * n, 3), dtype=np.int64)
+    edges, areas, centroids = np.empty((3 * n, 4), dtype=np.int64), np.zeros(n), np.zeros((n, 3))
+    work = workspace_for(n)
+    status, count, volume, surface = _measure(
+        normals, offsets, work, vertices, triples, edges, areas, centroids
+    )
+    vertices, triples, edges = vertices[:count], triples[:count], edges[: 3 * count // 2]
+    return MeasuredPolyhedron(
+        status, normals, offsets, vertices, triples, edges, areas, centroids, volume, surface
+    )
+
+
+@kernel_noalloc
+def _measure(
+    normals: FloatArray,
+    offsets: FloatArray,
+    work: IntersectionWorkspace,
+    vertices: FloatArray,
+    triples: IntArray,
+    edges: IntArray,
+    areas: FloatArray,
+    centroids: FloatArray,
+) -> tuple[int, int, float, float]:
+    """Status, number of vertices, volume and surface area; fills the arrays, the last two of zeros before."""
+    n, largest = len(offsets), 0.0
+    for i in range(n):
+        largest = max(largest, offsets[i])
+    status, count = fill_vertices(normals, offsets, REACH * largest, work, vertices, triples)
+    if status != FINE:
+        return status, 0, 0.0, 0.0
+    e = 0
+    for v in range(count):
+        for k in range(3):
+            a, b = triples[v, k], triples[v, (k + 1) % 3]
+            if a < b:
+                edges[e, 0], edges[e, 1] = work.lists[NUMBER, work.owner[b, a]], v
+                edges[e, 2], edges[e, 3] = a, b
+                for way in range(2):
+                    _add_triangle(normals, offsets, vertices, edges, e, way, areas, centroids)
+                e += 1
+    volume, surface = 0.0, 0.0
+    for i in range(n):
+        for c in range(3):
+            inner = centroids[i, c] / areas[i] if areas[i] > NO_AREA else 0.0
+            centroids[i, c] = normals[i, c] * offsets[i] + inner
+        volume += offsets[i] * areas[i] / 3.0
+        surface += areas[i]
+    return status, count, volume, surface
+
+
+@kernel_noalloc
+def _add_triangle(
+    normals: FloatArray,
+    offsets: FloatArray,
+    vertices: FloatArray,
+    edges: IntArray,
+    e: int,
+    way: int,
+    areas: FloatArray,
+    centroids: FloatArray,
+) -> None:
+    """Add the triangle of an edge and the plane's foot point to the facet on one side of it."""
+    i = edges[e, 2 + way]
+    normal = row(normals, i)
+    foot = mixed(normal, offsets[i], normal, 0.0)
+    one = mixed(row(vertices, edges[e, way]), 1.0, foot, -1.0)
+    two = mixed(row(vertices, edges[e, 1 - way]), 1.0, foot, -1.0)
+    area = 0.5 * dot(normal, cross(one, two))
+    areas[i] += area
+    for c in range(3):
+        centroids[i, c] += area * (one[c] + two[c]) / 3.0
+
+
+@kernel_noalloc
+def add_volume_charges(areas: FloatArray, size: float, charges: FloatArray) -> None:
+    """Add `size` times the derivative of the volume, with the facets' centroids as pivots; charges (n, 4)."""
+    for i in range(len(areas)):
+        charges[i, 0] += size * areas[i]
+
+
+@kernel_noalloc
+def add_surface_charges(
+    normals: FloatArray,
+    vertices: FloatArray,
+    edges: IntArray,
+    pivots: FloatArray,
+    size: float,
+    charges: FloatArray,
+) -> None:
+    """Add `size` times the derivative of the surface area, shape (n, 4).
+
+    Where plane a moves outward at speed w_a(x), the area grows at the rate
+    sum over edges of l tan(theta / 2) (w_a + w_b)(midpoint), theta the angle between the normals.
+    """
+    for e in range(len(edges)):
+        p, q = row(vertices, edges[e, 0]), row(vertices, edges[e, 1])
+        n, m = row(normals, edges[e, 2]), row(normals, edges[e, 3])
+        edge = length(mixed(p, 1.0, q, -1.0))
+        weight = size * edge * length(cross(n, m)) / max(1.0 + dot(n, m), 1e-12)
+        for side in range(2):
+            add_force(charges, edges[e, 2 + side], weight, mixed(p, 0.5, q, 0.5), pivots)
+
+
+@kernel_noalloc
+def add_vertex_charges(
+    normals: FloatArray,
+    triples: IntArray,
+    vertices: FloatArray,
+    v: int,
+    force: Vector,
+    pivots: FloatArray,
+    charges: FloatArray,
+) -> None:
+    """Add the derivative of <force, x> at vertex v, shape (n, 4).
+
+    The vertex moves by dx with <n_i, dx> = w_i(x) for its three planes.
+    """
+    i, j, k = triples[v, 0], triples[v, 1], triples[v, 2]
+    a, b, c = row(normals, i), row(normals, j), row(normals, k)
+    bc, ca, ab = cross(b, c), cross(c, a), cross(a, b)
+    det = dot(a, bc)
+    if abs(det) < 1e-12:
+        return
+    at = row(vertices, v)
+    add_force(charges, i, dot(force, bc) / det, at, pivots)
+    add_force(charges, j, dot(force, ca) / det, at, pivots)
+    add_force(charges, k, dot(force, ab) / det, at, pivots)
+
+
+@kernel_noalloc
+def add_force(charges: FloatArray, i: int, weight: float, at: Vector, pivots: FloatArray) -> None:
+    """Add a rate `weight` per unit of speed of plane i at a point."""
+    charges[i, 0] += weight
+    for c in range(3):
+        charges[i, 1 + c] += weight * (at[c] - pivots[i, c])
