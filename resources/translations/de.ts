@@ -2752,12 +2752,8 @@
         <translation>Noch kein Schüttkegel.</translation>
     </message>
     <message>
-        <source>No polyhedron with {faces} facets was found that meets all descriptors: {name} is off by {error} %; a convex shape with the other descriptors has less surface, so a weight of 0 would free it.</source>
-        <translation>Es fand sich kein Polyeder mit {faces} Facetten, das alle Deskriptoren trifft: {name} weicht um {error} % ab; ein konvexer Körper mit den übrigen Deskriptoren hat weniger Oberfläche, also gäbe ein Gewicht von 0 Raum.</translation>
-    </message>
-    <message>
-        <source>No polyhedron with {faces} facets was found that meets all descriptors: {name} is off by {error} %; more facets or a weight of 0 would free it.</source>
-        <translation>Es fand sich kein Polyeder mit {faces} Facetten, das alle Deskriptoren trifft: {name} weicht um {error} % ab; mehr Facetten oder ein Gewicht von 0 gäben Raum.</translation>
+        <source>No polyhedron with {faces} facets was found that meets all descriptors; this one misses {missed}. A weight of 0 frees a descriptor.</source>
+        <translation>Es fand sich kein Polyeder mit {faces} Facetten, das alle Deskriptoren trifft; dieses verfehlt {missed}. Ein Gewicht von 0 gibt einen Deskriptor frei.</translation>
     </message>
     <message>
         <source>No volume is open.</source>
@@ -4648,6 +4644,10 @@
         <translation>Das kann Zufall sein.</translation>
     </message>
     <message>
+        <source>This one also misses {missed}.</source>
+        <translation>Dieses verfehlt außerdem {missed}.</translation>
+    </message>
+    <message>
         <source>This run was not finished: {state}.</source>
         <translation>Dieser Lauf wurde nicht beendet: {state}.</translation>
     </message>
@@ -6474,6 +6474,10 @@
     <message>
         <source>{name} and {count} more</source>
         <translation>{name} und {count} weitere</translation>
+    </message>
+    <message>
+        <source>{name} by {error} %</source>
+        <translation>{name} um {error} %</translation>
     </message>
     <message>
         <source>{name} has changes that are not saved.</source>

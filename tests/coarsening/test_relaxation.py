@@ -82,7 +82,7 @@ def test_that_what_cannot_be_met_ends_at_the_least_loss_that_was_shown() -> None
 
 
 @pytest.mark.parametrize(("n_facets", "seed"), [(12, 0), (12, 1), (20, 1), (30, 0), (30, 2), (50, 2)])
-def test_that_an_urchin_keeps_volume_and_length_and_more_faces_are_not_advised(
+def test_that_an_urchin_keeps_volume_and_length_and_all_that_is_missed_is_named(
     n_facets: int, seed: int
 ) -> None:
     mesh = urchin()
@@ -92,8 +92,10 @@ def test_that_an_urchin_keeps_volume_and_length_and_more_faces_are_not_advised(
     assert found.errors["min_diameter"] < 0.4
     assert found.n_facets == n_facets
     assert found.reason is not None
-    assert "less surface" in found.reason
-    assert "more faces" not in found.reason
+    missed = [key for key in ("sphericity", "min_diameter") if found.errors[key] > 1e-6]
+    for key in missed:
+        assert f"{key.replace('_', ' ')} by {100 * found.errors[key]:.2g} %" in found.reason
+    assert "less surface" not in found.reason
 
 
 def test_that_conditions_are_met_in_turn_and_their_polyhedron_is_as_it_says() -> None:
@@ -118,7 +120,7 @@ def test_that_conditions_are_met_in_turn_and_their_polyhedron_is_as_it_says() ->
 
 def test_that_missing_facets_are_named_beside_the_descriptor_that_is_missed() -> None:
     ball, flat = Target.of(egg(1.0, 0.99, 0.98)), Target.of(egg(1.0, 0.6, 0.3))
-    for target, words in ((ball, "the most is"), (flat, "volume is off by 1 %")):
+    for target, words in ((ball, "the most is"), (flat, "volume by 1 %")):
         found = {key: value * (1.01 if "volume" in key else 1.0) for key, value in target.descriptors.items()}
         request = ConstraintRequest.of(target, LossWeights.from_preset("all"))
         few, all_of_them = (reason_for(target, request, 20, n_real, found) for n_real in (18, 20))

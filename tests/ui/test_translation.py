@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from regolith_studio.coarsening.exact.constraint_selection import MISSED, NAMES
+from regolith_studio.coarsening.exact.constraint_selection import MISSED, MISSED_BY, NAMES
 from regolith_studio.coarsening.lower_bounds import max_sphericity, sphericity_reason
 from regolith_studio.imaging.extraction import Extraction
 from regolith_studio.imaging.segmentation.segment import Segmentation
@@ -75,9 +75,10 @@ def test_that_messages_of_the_layers_below_are_translated(speaking):
         f"Die Sphärizität 0.970 braucht mindestens {re.findall(r'[0-9]+', reason)[2]} Facetten;"
         f" mit 10 sind höchstens {max_sphericity(10):.3f} möglich."
     )
-    missed = Message(MISSED, faces=8, name=Message(NAMES["sphericity"]), error="3")
+    by = Message(MISSED_BY, name=Message(NAMES["sphericity"]), error="3")
+    missed = Message(MISSED, faces=8, missed=by)
     assert "8 Facetten" in translate(missed)
-    assert "Sphärizität weicht um 3 % ab" in translate(missed)
+    assert "Sphärizität um 3 %" in translate(missed)
     fewer = Message("The result has {real} facets instead of {faces}.", real=8, faces=10)
     both = translate(join_messages([reason, fewer]))
     assert both == f"{translate(reason)} Das Ergebnis hat 8 statt 10 Facetten."

@@ -40,14 +40,11 @@ NAMES = {
 }
 """Of descriptors inside a sentence."""
 MISSED = N_(
-    "No polyhedron with {faces} facets was found that meets all descriptors: {name} is off by {error} %;"
-    " more facets or a weight of 0 would free it."
+    "No polyhedron with {faces} facets was found that meets all descriptors; this one misses {missed}."
+    " A weight of 0 frees a descriptor."
 )
-TOO_ROUGH = N_(
-    "No polyhedron with {faces} facets was found that meets all descriptors: {name} is off by {error} %;"
-    " a convex shape with the other descriptors has less surface, so a weight of 0 would free it."
-)
-"""More facets do not help where a particle has more surface than they can."""
+ALSO_MISSED = N_("This one also misses {missed}.")
+MISSED_BY = N_("{name} by {error} %")
 
 
 @dataclass(frozen=True)
@@ -114,35 +111,40 @@ class ConstraintRequest:
 def reason_for(
     target: Target, request: ConstraintRequest, n_facets: int, n_real: int, found: Mapping[str, float]
 ) -> str | None:
-    """One sentence about the constraint that is missed by most, and one about facets that are missing.
+    """Sentences about the constraints that are missed, the largest error first, and facets that are missing.
 
-    ``None`` where the descriptors `found` meet all constraints to 1e-6 with `n_real` = `n_facets` facets. The
-    aspect ratio is named where two diameters are within that and their ratio is not.
+    ``None`` where the descriptors `found` meet all constraints to 1e-6 with `n_real` = `n_facets` facets.
     """
     errors = relative_errors(target.descriptors, found)
     missed = {key: errors[_reported(key, request)] for key in request.keys}
-    if request.ratio_counts and max(missed.values()) <= EXACT:
+    if request.ratio_counts:
         missed["aspect_ratio"] = errors["aspect_ratio"]
-    worst = max(missed, key=lambda key: missed[key], default=None)
-    if worst is None or missed[worst] <= EXACT:
+    missed = {key: error for key, error in missed.items() if error > EXACT}
+    if not missed:
         return None if n_real == n_facets else facets_reason(n_real, n_facets)
-    wanted = target.descriptors["sphericity"]
     reason: str | None = None
-    if "sphericity" in missed:
-        reason = sphericity_reason(wanted, n_facets)
+    if "sphericity" in request.keys:
+        reason = sphericity_reason(target.descriptors["sphericity"], n_facets)
     if reason is None:
-        rough = worst == "sphericity" and found[worst] > wanted
-        name = _reported(worst, request)
-        reason = Message(
-            TOO_ROUGH if rough else MISSED,
-            faces=n_facets,
-            name=Message(NAMES.get(name, name.replace("_", " "))),
-            error=f"{100 * missed[worst]:.2g}",
-        )
+        reason = Message(MISSED, faces=n_facets, missed=_listed(missed, request))
+    elif others := {key: error for key, error in missed.items() if key != "sphericity"}:
+        reason = join_messages([reason, Message(ALSO_MISSED, missed=_listed(others, request))])
     if n_real == n_facets:
         return reason
     template = N_("The result has {real} facets instead of {faces}.")
     return join_messages([reason, Message(template, real=n_real, faces=n_facets)])
+
+
+def _listed(missed: Mapping[str, float], request: ConstraintRequest) -> Message:
+    """Names and errors of descriptors, the largest first."""
+    names = {key: _reported(key, request) for key in sorted(missed, key=lambda key: -missed[key])}
+    return join_messages(
+        (
+            Message(MISSED_BY, name=Message(NAMES[name]), error=f"{100 * missed[key]:.2g}")
+            for key, name in names.items()
+        ),
+        ", ",
+    )
 
 
 def own_planes(target: Target, below: int) -> HalfSpaces | None:
