@@ -1,7 +1,5 @@
 """Compiles every kernel ahead of its first use; the machine code is cached on the disk."""
 
-from collections.abc import Callable
-
 from regolith_studio.coarsening.coarsen import coarsen
 from regolith_studio.coarsening.methods import METHODS
 from regolith_studio.geometry.mesh import Mesh
@@ -23,15 +21,19 @@ def compile_kernels(workers: int | Executor = 0) -> Steps:
     workers
         Processes at a time; 0 for one a core.
     """
-    tasks: dict[str, Callable[[str], None]] = dict.fromkeys(reversed(list(METHODS)), _coarsen)
-    tasks["fit"] = _measure_and_fit
+    tasks = (*reversed(list(METHODS)), "fit")
     yield Started(N_("Compiling"), len(tasks))
-    jobs = [Job(call, (task, name)) for name, task in tasks.items()]
+    jobs = [Job(call, (run_task, name)) for name in tasks]
     with open_executor(workers) as executor:
         results = yield from executor.run_all(jobs, list(tasks))
     for result in results:
         value_of(result)
-    return tuple(tasks)
+    return tasks
+
+
+def run_task(name: str) -> None:
+    """Run what compiles the kernels of one entry point: ``fit``, or the key of a coarsening method."""
+    (_measure_and_fit if name == "fit" else _coarsen)(name)
 
 
 def _small_mesh() -> Mesh:
