@@ -2,7 +2,7 @@
 """Set up Regolith Studio in this checkout, once, and start it.
 
 python3 bootstrap.py                 opens the window
-python3 bootstrap.py test [ARGS]     runs the tests; ARGS go to pytest
+python3 bootstrap.py test [ARGS]     runs the tests on all cores; ARGS go to pytest
 python3 bootstrap.py demo -o DIR     runs the whole chain on the shipped sample, without a screen
 python3 bootstrap.py COMMAND ...     runs any other command of the program (describe, coarsen, check, ...)
 python3 bootstrap.py setup           sets up everything that work on the program needs, starts nothing
@@ -37,6 +37,8 @@ STAMP = VENV / "regolith-studio.stamp"
 UNFINISHED = VENV / "regolith-studio.unfinished"
 NO_SYSTEM = "--no-system"
 DISPLAY_WAIT = 30.0
+# One process for each core, at most four; the tests of one file stay in one process.
+PARALLEL = ("-n", "logical", "--maxprocesses", "4", "--dist", "loadfile")
 SCREEN = "1920x1200x24"
 
 # Debian's name, and the shared objects that it must bring (any one of the alternatives joined by |).
@@ -344,7 +346,7 @@ def run_program(command: "list[str]", environment: "dict[str, str]", folder: str
 def start(words: "list[str]") -> int:
     """Start the tests or the program with these words, on a screen in memory if there is no other."""
     testing = words[:1] == ["test"]
-    module = ["pytest", *words[1:]] if testing else ["regolith_studio", *words]
+    module = ["pytest", *parallel(words[1:]), *words[1:]] if testing else ["regolith_studio", *words]
     command = [str(venv_python()), "-m", *module]
     folder = str(ROOT) if testing else str(Path.cwd())
     environment = dict(os.environ)
@@ -357,6 +359,11 @@ def start(words: "list[str]") -> int:
         return run_program(command, environment, folder)
     os.chdir(folder)
     return os.execve(command[0], command, environment)  # never returns
+
+
+def parallel(words: "list[str]") -> "tuple[str, ...]":
+    """Options of pytest that share the tests out to processes; none where single files are named."""
+    return () if any(".py" in word for word in words) else PARALLEL
 
 
 def draws_in_memory(words: "list[str]") -> bool:

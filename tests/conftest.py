@@ -16,6 +16,33 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # started in the backgrou
     signal.signal(signal.SIGINT, signal.default_int_handler)  # what the tests start would ignore Ctrl+C
 
 
+class Unfinished:
+    """Lists at the end of an interrupted run what did not run; ``.ci/run`` interrupts the long studies."""
+
+    def __init__(self) -> None:
+        self.left: dict[str, None] = {}
+
+    def pytest_collection_finish(self, session: pytest.Session) -> None:
+        self.left = dict.fromkeys(item.nodeid for item in session.items)
+
+    @pytest.hookimpl(optionalhook=True)
+    def pytest_xdist_node_collection_finished(self, ids: list[str]) -> None:
+        self.left = dict.fromkeys(ids)
+
+    def pytest_runtest_logfinish(self, nodeid: str) -> None:
+        self.left.pop(nodeid, None)
+
+    def pytest_terminal_summary(self, terminalreporter: pytest.TerminalReporter, exitstatus: int) -> None:
+        if exitstatus == pytest.ExitCode.INTERRUPTED and self.left:
+            terminalreporter.section(f"interrupted: {len(self.left)} tests not run")
+            for nodeid in self.left:
+                terminalreporter.line(nodeid)
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    config.pluginmanager.register(Unfinished())
+
+
 @pytest.fixture(scope="session")
 def real_data() -> Callable[[str], Path]:
     """Path of a file or folder below the real data, or a skipped test."""

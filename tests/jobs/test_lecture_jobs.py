@@ -86,7 +86,7 @@ def test_that_a_lesson_has_an_end_and_needs_a_weight(egg):
 
 
 def test_that_the_fit_grows_from_a_sphere_to_the_particle(egg):
-    partial, steps = told(trace_degrees(egg, fit_harmonics(egg, 8)))
+    partial, steps = told(trace_degrees(egg, fit_harmonics(egg, 8), level=3))
     assert [len(each) for each in partial] == list(range(1, 10))
     radii = np.linalg.norm(steps[0].mesh.vertices - steps[0].mesh.centroid, axis=1)
     assert np.ptp(radii) < 1e-3 * radii.mean()

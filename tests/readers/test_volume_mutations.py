@@ -7,7 +7,6 @@ answer; TIFF and HDF5, whose libraries are compiled, through the sandbox, as use
 import gzip
 import io
 import os
-import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -115,7 +114,6 @@ def answer_of(path: Path) -> str:
 
 def sandboxed_answer_of(path: Path, sandbox: Sandbox) -> str:
     """The same through the child."""
-    start = time.monotonic()
     try:
         header = describe_volume(path, sandbox=sandbox)
         open_slabs(path, voxel_size=1.0, kind="grey", sandbox=sandbox).read(0, min(header.shape[2], 2))
@@ -124,7 +122,6 @@ def sandboxed_answer_of(path: Path, sandbox: Sandbox) -> str:
     else:
         sentence = f"{path.name}."
     assert sentence.startswith(path.name), sentence
-    assert time.monotonic() - start < 60.0
     return sentence.removeprefix(f"{path.name}.")
 
 

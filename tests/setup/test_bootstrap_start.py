@@ -6,7 +6,6 @@ import signal
 import socket
 import subprocess
 import sys
-import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from types import ModuleType
@@ -86,7 +85,12 @@ class Replaced(Exception):
 @pytest.mark.parametrize(
     ("words", "module", "folder"),
     [
-        (["test", "-k", "mesh"], ["-m", "pytest", "-k", "mesh"], "checkout"),
+        (
+            ["test", "-k", "mesh"],
+            ["-m", "pytest", "-n", "logical", "--maxprocesses", "4", "--dist", "loadfile", "-k", "mesh"],
+            "checkout",
+        ),
+        (["test", "tests/io/test_stl.py"], ["-m", "pytest", "tests/io/test_stl.py"], "checkout"),
         (["describe", "a.stl", "--json"], ["-m", "regolith_studio", "describe", "a.stl", "--json"], "user"),
         ([], ["-m", "regolith_studio"], "user"),
     ],
@@ -122,11 +126,10 @@ def test_that_words_go_through_to_the_program_and_blas_gets_one_thread(
 
 
 @posix
-def test_that_the_second_call_starts_at_once_and_hands_on_words_and_exit_code(
+def test_that_the_second_call_sets_nothing_up_and_hands_on_words_and_exit_code(
     checkout: Path, finish_venv: Callable[..., None]
 ) -> None:
     finish_venv('echo "$@"; exit 7')
-    began = time.perf_counter()
     done = subprocess.run(
         [sys.executable, "bootstrap.py", "--no-system", "describe", "two words.stl"],
         cwd=checkout,
@@ -136,7 +139,7 @@ def test_that_the_second_call_starts_at_once_and_hands_on_words_and_exit_code(
     )
     assert done.returncode == 7
     assert done.stdout == "-m regolith_studio describe two words.stl\n"
-    assert time.perf_counter() - began < 3.0
+    assert done.stderr == ""
 
 
 def start_child(bootstrap: ModuleType, code: str) -> "subprocess.Popen[str]":

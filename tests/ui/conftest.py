@@ -1,10 +1,12 @@
 """One application for all tests of the window, and a guard that lets nothing survive a test.
 
 With a display the application runs on it, so that live views work too; without one it draws off-screen.
+Where several processes share the tests, each has a display of its own: windows would take each other's focus.
 """
 
 import gc
 import os
+import shutil
 import sys
 import threading
 import time
@@ -20,7 +22,9 @@ from PySide6.QtCore import QCoreApplication, QEvent, QObject, Qt, QTimer, QTrans
 from PySide6.QtWidgets import QApplication, QWidget
 from vtkmodules.vtkRenderingCore import vtkRenderer, vtkRenderWindow
 
+from bootstrap import virtual_display
 from regolith_studio.session.preferences import Preferences
+from regolith_studio.ui import app as ui_app
 from regolith_studio.ui import main_window
 from regolith_studio.ui.bindings import Bindings
 from regolith_studio.ui.startup import make_application
@@ -29,13 +33,25 @@ from regolith_studio.ui.widgets.formula import THREAD_NAME, all_outlines_made
 
 
 @pytest.fixture(scope="session")
-def app(tmp_path_factory):
+def display():
+    """The display of this process of the tests."""
+    alone = "PYTEST_XDIST_WORKER" not in os.environ
+    if alone or not os.environ.get("DISPLAY") or not shutil.which("Xvfb"):
+        yield
+        return
+    with virtual_display() as name, patch.dict(os.environ, DISPLAY=name):
+        yield
+
+
+@pytest.fixture(scope="session")
+def app(display, tmp_path_factory):  # noqa: ARG001
     """The one application object; never the user's preferences."""
     os.environ["REGOLITH_STUDIO_CONFIG"] = str(tmp_path_factory.mktemp("config"))
     QCoreApplication.setAttribute(Qt.ApplicationAttribute.AA_DontUseNativeDialogs)
     made = QApplication.instance() or make_application(["tests"])
     made.setQuitOnLastWindowClosed(False)
-    return made
+    with patch.object(ui_app, "_warm_up_later"):  # kernels are there, or compiled when they are called
+        yield made
 
 
 @pytest.fixture(autouse=True)

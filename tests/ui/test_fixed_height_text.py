@@ -87,7 +87,7 @@ def watched(window, settled):
 
 def test_that_no_control_of_explore_moves_with_particle_degree_method_and_outcome(window, watched):
     page, session = watched.go("explore"), window.session
-    for entry in session.particles:
+    for entry in session.particles[:4]:
         watched.does(entry.id, session.select, entry.id)
     for changes in ({"l_max": 2}, {"l_max": 15}, {"target": "particle"}, {"method": "exact"}):
         watched.does(str(changes), lambda changes=changes: session.choose(**changes))
@@ -117,6 +117,7 @@ def test_that_no_control_of_dataset_moves_while_one_is_made(window, watched, tmp
     watched.does("other choices", lambda: window.session.choose(n_facets=35, stop_at="error", seed=123456))
 
 
+@pytest.mark.slow
 def test_that_no_control_of_scan_moves_from_volume_to_particles(watched):
     page = watched.go("scan")
     watched.does("sample scan", page.open_sample)
@@ -155,6 +156,7 @@ def test_that_no_control_of_the_angle_of_repose_moves_with_consequences_and_prob
     watched.does("more", page.setup.particles.setValue, 30_000)
 
 
+@pytest.mark.slow
 def test_that_no_control_of_the_lecture_moves_with_its_sentences(window, watched, wait, settled):
     page = watched.go("lecture")
     window.session.keep([window.session.particles[0].id])

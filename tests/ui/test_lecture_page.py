@@ -1,6 +1,7 @@
 """The page "Lecture": played, stepped, drawn anew; every formula can be set."""
 
 import threading
+from functools import partial
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ from PySide6.QtWidgets import QWidget
 
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
+from regolith_studio.jobs.lecture_jobs import trace_degrees
 from regolith_studio.jobs.runners.inline import InlineRunner
 from regolith_studio.scene.lecture_scenes import FACET_OLD, FRAME_NEW
 from regolith_studio.session.session import Session
@@ -28,7 +30,9 @@ CIGAR = icosphere(2).moved(rotation=np.diag([10.0, 12.0, 60.0]))
 
 
 @pytest.fixture
-def page(shown, preferences):
+def page(shown, preferences, monkeypatch):
+    coarse = partial(trace_degrees, level=3)
+    monkeypatch.setattr("regolith_studio.ui.pages.lecture.page.trace_degrees", coarse)
     session = Session(InlineRunner())
     session.choose(n_facets=12, method="annealing", settings=(("iterations", 25),), l_max=4)
     session.adopt([Particle(name="egg", mesh=EGG), Particle(name="cigar", mesh=CIGAR)])

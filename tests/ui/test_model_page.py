@@ -282,6 +282,7 @@ def test_that_what_is_fitted_drawn_and_judged_goes_through_the_translation(opene
         assert [cell for cell in cells if any(map(str.isalpha, cell)) and "⟦" not in cell] == []
 
 
+@pytest.mark.slow
 def test_that_the_outcome_of_a_judgement_is_told_in_german(opened, speaking):
     speaking("de")
     page = opened()

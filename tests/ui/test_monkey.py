@@ -259,6 +259,7 @@ def play(window, monkeypatch, app, count, seed, pages=PAGES, tell=lambda *_: Non
         window.session.cancel(task.id)
 
 
+@pytest.mark.slow
 def test_that_a_short_visit_of_the_monkey_leaves_the_window_well(window, monkeypatch, app, wait):
     play(window, monkeypatch, app, 250, seed=1)
     window.go("explore")

@@ -235,6 +235,7 @@ def test_that_a_hundred_virtual_particles_are_compared_with_the_sample(newcomer)
     assert "Kolmogorov-Smirnov" in page.distributions.words.text()
 
 
+@pytest.mark.slow
 def test_that_ten_shapes_are_exported_for_rocky(newcomer, tmp_path):
     newcomer.click(QWidget, "page_dataset")
     newcomer.click(QPushButton, "dataset_find")

@@ -168,6 +168,7 @@ def open_by_keys(window, path, wait):
         timer.stop()
 
 
+@pytest.mark.slow
 def test_that_a_file_becomes_a_dataset_by_mouse_and_keys_alone(window, wait, drawn, tmp_path):
     drawn(window)
     sample = pictures(window)

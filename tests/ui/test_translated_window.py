@@ -109,6 +109,7 @@ def scanned(opened, wait):
     return run
 
 
+@pytest.mark.slow
 def test_that_no_words_on_the_way_from_a_scan_to_particles_go_past_the_translation(
     scanned, speaking, wait, tmp_path
 ):

@@ -1,7 +1,6 @@
 """The whole window, drawn into pictures: what a user does and what then is seen."""
 
 import json
-import time
 
 import numpy as np
 import pytest
@@ -311,12 +310,12 @@ def test_that_every_command_has_its_place_and_a_tip(window):
         seen.add(keys)
 
 
-def test_that_closing_while_busy_leaves_quickly(window, wait):
+def test_that_closing_while_busy_stops_what_runs(window, wait):
     window.session.choose(method="annealing", settings=(("iterations", 100_000),))
     wait(lambda: any(task.lane == "coarsening" for task in window.session.tasks))
-    begin = time.monotonic()
     window.close()
-    assert time.monotonic() - begin < 5.0
+    assert window.session.tasks == ()
+    assert window.session.results.coarsened is None, "it was not waited for"
 
 
 def test_that_no_display_is_said_in_one_sentence():
