@@ -195,11 +195,12 @@ def whole_numbers(text: str, low: int, high: int) -> tuple[int, ...]:
     for part in text.split(","):
         first, dash, last = part.strip().partition("-")
         try:
-            found.update(range(int(first), int(last if dash else first) + 1))
+            least, most = int(first), int(last if dash else first)
         except ValueError:
             raise typer.BadParameter(f"Write whole numbers as 1,2,5 or 1-20, got {text!r}.") from None
-    if not found or min(found) < low or max(found) > high:
-        raise typer.BadParameter(f"The numbers must lie between {low} and {high}, got {text!r}.")
+        if not low <= least <= most <= high:
+            raise typer.BadParameter(f"The numbers must lie between {low} and {high}, got {text!r}.")
+        found.update(range(least, most + 1))
     return tuple(sorted(found))
 
 

@@ -120,3 +120,12 @@ def test_that_odd_names_cost_nothing(command, grains: Path, tmp_path: Path) -> N
     assert described.code == 0
     assert "\x1b" not in described.out + described.err
     assert command("generate", tmp_path / "fit", "-o", tmp_path / "v", "-n", 1, "--level", 1).code in (0, 1)
+
+
+def test_that_a_range_of_degrees_is_checked_before_it_is_expanded(
+    command, grains: Path, tmp_path: Path
+) -> None:
+    for degrees in ("1-1000000000", "5-1", "-1", "0-31"):
+        said = command("study", "lmax", grains, "-o", tmp_path / "s", "--degrees", degrees)
+        assert said.code == 2, said.err
+    assert not (tmp_path / "s").exists()
