@@ -103,7 +103,7 @@ def test_that_a_fitted_sample_comes_back_from_its_document_and_arrays(rough, ell
 def test_that_documents_and_arrays_of_two_samples_do_not_mix():
     document = {"particles": [{}, {}]}
     arrays = {"coefficients": np.ones((1, 4)), "star_points": np.zeros((1, 3))}
-    with pytest.raises(InputError, match=r"do not belong together"):
+    with pytest.raises(InputError, match=r"names 2 particles but holds coefficients of 1"):
         fits_from(document, arrays)
 
 
