@@ -288,7 +288,7 @@ def _repose() -> Iterator[Contest]:
     points, diameter = cone(10_000)
     yield Contest(
         "angle of repose",
-        "10,000 grains, both models, bootstrap interval",
+        "10,000 grains, both models, interval",
         lambda: measure_repose(points, diameter),
         lambda: plain.repose_angle(points, diameter, 18),
         "numpy's bins, scipy.stats.linregress: one model, no interval",

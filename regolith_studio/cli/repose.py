@@ -94,8 +94,8 @@ def measure(
     from regolith_studio.cli.terminal import print_errors, print_json
     from regolith_studio.dem.angle_of_repose import measure_repose, measurement_document
 
-    del jobs  # taken by every command
-    settings = evaluation_settings([f"seed={seed}", *(set_ or ())])
+    del jobs, seed  # taken by every command
+    settings = evaluation_settings(set_)
     points, diameters = positions_in(file, unit, diameter)
     metres = 1.0 if file.suffix.lower() == ".npz" else metres_in(unit)
     measurement = measure_repose(points, diameters, settings, None if base is None else base * metres)
@@ -155,7 +155,7 @@ def run(
     *,
     dataset: Annotated[Path, typer.Argument(metavar="DATASET", help="A dataset folder.")],
     output: Folder,
-    particles: Particles = 300,
+    particles: Particles = 1000,
     how: CaseOptions,
     coarse_graining: Annotated[
         float,
@@ -182,7 +182,10 @@ def run(
     from dataclasses import replace
 
     from regolith_studio.cli.terminal import print_errors, print_json, run_with_progress
-    from regolith_studio.jobs.repose_jobs import simulate_repose
+    from regolith_studio.dataset.folder_io import dataset_hash, read_dataset
+    from regolith_studio.dem.case import prepare
+    from regolith_studio.dem.scaling_report import scaling_report
+    from regolith_studio.jobs.repose_jobs import simulate_prepared
 
     del jobs  # a run is one process
     order = how.order(
@@ -192,7 +195,9 @@ def run(
         cohesion=cohesion,
         seed=seed,
     )
-    done = run_with_progress(simulate_repose(dataset, output, replace(order, overwrite=overwrite)))
+    prepared = prepare(read_dataset(dataset), order.case, dataset_hash(dataset))
+    print_errors(scaling_report(prepared).sentences)
+    done = run_with_progress(simulate_prepared(prepared, output, replace(order, overwrite=overwrite)))
     print_errors(run_remarks(done.document))
     if json:
         print_json(done.document)
@@ -281,7 +286,6 @@ def in_words(document: dict[str, Any]) -> str:
 def run_remarks(document: dict[str, Any]) -> list[str]:
     """Sentences about a run that its user should read."""
     return [
-        *document["particles"]["sentences"],
         *document["run"]["notes"],
         *document["checks"]["problems"],
     ]
@@ -296,6 +300,5 @@ def run_in_words(document: dict[str, Any]) -> str:
         f"particles            {checks['particles_out']} of {checks['particles_in']}",
         f"overlap at rest      {100 * checks['max_overlap']:.2f} % of the mean diameter at most",
         f"energy gained        {checks['energy_gain']:.1e} m g d a particle",
-        f"time                 {document['run']['seconds']:.0f} s",
     ]
     return "\n".join(lines)

@@ -1,14 +1,15 @@
 """The angle of repose of particles at rest: :func:`measure_repose` (section 3.3)."""
 
-from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy.stats import t as student_t
 
-from regolith_studio.dem.evaluation.errors import HEAP_SHARE, NotAPileError
-from regolith_studio.dem.evaluation.profile import base_level, project, surface_profile
+from regolith_studio.dem.evaluation.errors import HEAP_SHARE, MAX_CURVATURE, NotAPileError
+from regolith_studio.dem.evaluation.profile import Profile, base_level, project, surface_profile
 from regolith_studio.dem.evaluation.section import Section, evaluate_section
 from regolith_studio.dem.evaluation.settings import EvaluationSettings
 from regolith_studio.errors import InputError
@@ -16,6 +17,15 @@ from regolith_studio.geometry.arrays import FloatArray
 
 RELIABLE_N = 1000
 """Number of particles above which the bias of the evaluation is below half a degree."""
+COARSE_PILE = (
+    f"With fewer than {RELIABLE_N:,} particles the cut at the toe changes the angle by some degrees; "
+    "the interval contains that."
+)
+"""Said of smaller piles, before a run and with the angle."""
+
+
+PAPER_AZIMUTHS = (0.0, 90.0)
+"""Degrees of x-z and y-z."""
 
 
 @dataclass(frozen=True)
@@ -39,7 +49,10 @@ class ReposeMeasurement:
     asymmetric, symmetric
         Over all sections.
     interval
-        Bootstrap interval of the asymmetric mean over all sections.
+        Of the asymmetric mean over all sections: Student's, from the scatter of the flanks, widened in
+        quadrature by `cut_shift`.
+    cut_shift
+        Largest change of the angle when the lower cut is a third lower or higher.
     n_particles, mean_diameter, height, width, base
         Of the pile; `height` and `width` averaged over the sections, `base` is the level of the plate.
     settings
@@ -54,6 +67,7 @@ class ReposeMeasurement:
     asymmetric: Spread
     symmetric: Spread
     interval: tuple[float, float]
+    cut_shift: float
     n_particles: int
     mean_diameter: float
     height: float
@@ -97,28 +111,53 @@ def measure_repose(
     """
     settings = settings or EvaluationSettings()
     where, sizes = _checked(points, diameters)
-    if len(where) < settings.min_particles:
-        raise NotAPileError(
-            f"{len(where)} particles are too few for a pile; at least {settings.min_particles} are needed.",
-            "too few particles",
-        )
+    check_number(len(where), settings)
     mean_diameter = float(sizes.mean())
     level = base_level(where, sizes) if base is None else base
-    warnings: list[str] = []
-    sections: list[Section] = []
-    azimuths = azimuths_of(settings)
-    for number, azimuth in enumerate(azimuths):
-        try:
-            sections.append(_section(where, sizes, level, azimuth, mean_diameter, settings))
-        except NotAPileError as refusal:
-            if number < 2:
-                raise
-            warnings.append(f"Left out: {refusal}")
-    if len(where) < RELIABLE_N:
-        warnings.append(
-            f"{len(where)} particles make a coarse pile; from {RELIABLE_N} on the angle is reliable."
+    surfaces, left_out = _surfaces(where, sizes, level, mean_diameter, settings)
+    sections, refused = _sections(surfaces, mean_diameter, settings)
+    if len(sections) < settings.azimuths / 2:
+        raise NotAPileError(
+            f"Only {len(sections)} of {settings.azimuths} sections through the heap have two straight flanks."
         )
-    return _summary(sections, len(azimuths), len(where), mean_diameter, level, settings, warnings)
+    _check_straightness(sections)
+    warnings = [*left_out, *refused]
+    if len(where) < RELIABLE_N:
+        warnings.append(COARSE_PILE)
+    flanks = _flanks(sections)
+    shift = _cut_shift(sections, surfaces, mean_diameter, settings)
+    half_width = float(np.hypot(standard_interval(flanks, settings.confidence), shift))
+    return ReposeMeasurement(
+        sections=tuple(sections),
+        paper_asymmetric=_spread(_flanks(sections[:2])),
+        paper_symmetric=_spread([each.symmetric.angle for each in sections[:2]]),
+        asymmetric=_spread(flanks),
+        symmetric=_spread([each.symmetric.angle for each in sections]),
+        interval=(float(np.mean(flanks)) - half_width, float(np.mean(flanks)) + half_width),
+        cut_shift=shift,
+        n_particles=len(where),
+        mean_diameter=mean_diameter,
+        height=float(np.mean([each.profile.top for each in sections])),
+        width=float(np.mean([each.profile.width for each in sections])),
+        base=level,
+        settings=settings,
+        warnings=tuple(warnings),
+    )
+
+
+def check_number(n: int, settings: EvaluationSettings) -> None:
+    """Check before or after a run that there are enough particles.
+
+    Raises
+    ------
+    NotAPileError
+        If there are not.
+    """
+    if n < settings.min_particles:
+        raise NotAPileError(
+            f"{n} particles are too few for a pile; at least {settings.min_particles} are needed.",
+            "too few particles",
+        )
 
 
 def azimuths_of(settings: EvaluationSettings) -> list[float]:
@@ -137,14 +176,30 @@ def _checked(points: ArrayLike, diameters: ArrayLike) -> tuple[FloatArray, Float
     return where, np.broadcast_to(sizes, (len(where),)).astype(np.float64)
 
 
-def _section(
+def _surfaces(
+    points: FloatArray, diameters: FloatArray, base: float, mean_diameter: float, settings: EvaluationSettings
+) -> tuple[dict[float, Profile], list[str]]:
+    """The surface at each azimuth, x-z and y-z first, and why others are left out."""
+    surfaces: dict[float, Profile] = {}
+    left_out: list[str] = []
+    for azimuth in azimuths_of(settings):
+        try:
+            surfaces[azimuth] = _surface(points, diameters, base, azimuth, mean_diameter, settings)
+        except NotAPileError as refusal:
+            if azimuth in PAPER_AZIMUTHS:
+                raise
+            left_out.append(f"Left out: {refusal}")
+    return surfaces, left_out
+
+
+def _surface(
     points: FloatArray,
     diameters: FloatArray,
     base: float,
     azimuth: float,
     mean_diameter: float,
     settings: EvaluationSettings,
-) -> Section:
+) -> Profile:
     discs = project(points, diameters, base, np.radians(azimuth), settings.slab * mean_diameter)
     if not len(discs.u):
         raise NotAPileError(f"The slice at {azimuth:g} degrees holds no particle.", "scattered")
@@ -155,46 +210,58 @@ def _section(
             f"The particles lie scattered: only {100 * inside.mean():.0f} % of them are in the heap.",
             "scattered",
         )
-    return evaluate_section(profile, azimuth, mean_diameter, settings)
+    return profile
 
 
-def _summary(
-    sections: Sequence[Section],
-    n_asked: int,
-    n_particles: int,
-    mean_diameter: float,
-    base: float,
-    settings: EvaluationSettings,
-    warnings: Sequence[str],
-) -> ReposeMeasurement:
-    by_azimuth = sorted(sections, key=lambda section: section.azimuth)
-    around = np.array(
-        [each.asymmetric.right.angle for each in by_azimuth]
-        + [each.asymmetric.left.angle for each in by_azimuth]
-    )
-    if len(sections) < n_asked / 2:
+def _sections(
+    surfaces: Mapping[float, Profile], mean_diameter: float, settings: EvaluationSettings
+) -> tuple[list[Section], list[str]]:
+    """The fits at each azimuth, and why others are left out."""
+    sections: list[Section] = []
+    left_out: list[str] = []
+    for azimuth, profile in surfaces.items():
+        try:
+            sections.append(evaluate_section(profile, azimuth, mean_diameter, settings))
+        except NotAPileError as refusal:
+            if azimuth in PAPER_AZIMUTHS:
+                raise
+            left_out.append(f"Left out: {refusal}")
+    return sections, left_out
+
+
+def _check_straightness(sections: Sequence[Section]) -> None:
+    """Refuse domes and heaps with hollow flanks, where their curvature is certain."""
+    curvatures = [each for section in sections for each in section.curvature]
+    mean = float(np.mean(curvatures))
+    if abs(mean) > max(MAX_CURVATURE, standard_interval(curvatures, 0.99)):
+        shape = "a dome: its flanks are steeper" if mean > 0.0 else "hollow: its flanks are flatter"
         raise NotAPileError(
-            f"Only {len(sections)} of {n_asked} sections through the heap have two straight flanks."
+            f"The heap is {shape} at the foot than at the top by {100 * abs(mean):.0f} % of their slope, "
+            "so that it has no single angle."
         )
-    return ReposeMeasurement(
-        sections=tuple(sections),
-        paper_asymmetric=_spread(_flanks(sections[:2])),
-        paper_symmetric=_spread([each.symmetric.angle for each in sections[:2]]),
-        asymmetric=_spread(_flanks(sections)),
-        symmetric=_spread([each.symmetric.angle for each in sections]),
-        interval=bootstrap_interval(around, settings.confidence, settings.seed),
-        n_particles=n_particles,
-        mean_diameter=mean_diameter,
-        height=float(np.mean([each.profile.top for each in sections])),
-        width=float(np.mean([each.profile.width for each in sections])),
-        base=base,
-        settings=settings,
-        warnings=tuple(warnings),
-    )
+
+
+def _cut_shift(
+    sections: Sequence[Section],
+    surfaces: Mapping[float, Profile],
+    mean_diameter: float,
+    settings: EvaluationSettings,
+) -> float:
+    """Largest change of the angle in degrees when the lower cut is a third lower or higher."""
+    angle = np.mean(_flanks(sections))
+    shifts = [0.0]
+    for factor in (2 / 3, 4 / 3):
+        toe, bottom = min(settings.toe * factor, 10.0), min(settings.cut_bottom * factor, 0.45)
+        try:
+            others, _ = _sections(surfaces, mean_diameter, replace(settings, toe=toe, cut_bottom=bottom))
+        except NotAPileError:
+            continue
+        shifts.append(abs(float(np.mean(_flanks(others)) - angle)))
+    return max(shifts)
 
 
 def _flanks(sections: Sequence[Section]) -> list[float]:
-    return [flank.angle for each in sections for flank in (each.asymmetric.left, each.asymmetric.right)]
+    return [angle for each in sections for angle in each.flanks]
 
 
 def _spread(angles: Sequence[float]) -> Spread:
@@ -207,6 +274,7 @@ def measurement_document(measurement: ReposeMeasurement) -> dict[str, Any]:
         "status": "pile",
         "angle_deg": measurement.angle,
         "interval_deg": list(measurement.interval),
+        "cut_shift_deg": measurement.cut_shift,
         "asymmetric": _spread_document(measurement.asymmetric),
         "symmetric": _spread_document(measurement.symmetric),
         "paper_sections": {
@@ -248,32 +316,23 @@ def _section_document(section: Section) -> dict[str, Any]:
     }
 
 
-RESAMPLES = 2000
 NEIGHBOURHOOD = 45.0
-"""Size of a block in degrees: sections closer than this contain largely the same particles."""
+"""Degrees within which flanks count as one: sections closer than this contain largely the same particles."""
 
 
-def bootstrap_interval(flanks: FloatArray, confidence: float, seed: int) -> tuple[float, float]:
-    """Interval of the mean angle by a circular block bootstrap.
+def standard_interval(flanks: Sequence[float], confidence: float) -> float:
+    """Half width of Student's interval of the mean over flanks all around.
+
+    Of flanks at equal steps around the circle, those within :data:`NEIGHBOURHOOD` are correlated and count as
+    one value.
 
     Parameters
     ----------
     flanks
-        Angle of the flank in each of equally spaced directions around the full circle, shape (k,);
-        neighbours are correlated, hence the blocks.
+        One value a flank.
     confidence
         Such as 0.95.
-
-    Returns
-    -------
-    tuple
-        Lower and upper end.
     """
-    n = len(flanks)
-    block = max(1, min(n, round(NEIGHBOURHOOD / 360.0 * n)))
-    generator = np.random.default_rng(np.random.SeedSequence(seed))
-    starts = generator.integers(n, size=(RESAMPLES, -(-n // block)))
-    picks = ((starts[:, :, None] + np.arange(block)) % n).reshape(RESAMPLES, -1)[:, :n]
-    tail = (1.0 - confidence) / 2
-    low, high = np.quantile(flanks[picks].mean(axis=1), [tail, 1.0 - tail])
-    return float(low), float(high)
+    independent = min(len(flanks), 360.0 / NEIGHBOURHOOD)
+    quantile = float(student_t.ppf((1.0 + confidence) / 2, independent - 1))
+    return quantile * float(np.std(flanks) / np.sqrt(independent - 1))

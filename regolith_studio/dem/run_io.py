@@ -26,7 +26,8 @@ from regolith_studio.io.json_text import canonical_json, parse_strict_json
 FORMAT = "regolith-studio-repose"
 SCHEMA_VERSION = 1
 DOCUMENT, FINAL, SHAPES, SNAPSHOTS = "repose.json", "final.npz", "shapes.npz", "snapshots"
-OWN = {DOCUMENT, FINAL, SHAPES, SNAPSHOTS, "sections.png", "sections.svg"}
+TIMES = "times.json"
+OWN = {DOCUMENT, FINAL, SHAPES, SNAPSHOTS, TIMES, "sections.png", "sections.svg"}
 
 
 @dataclass(frozen=True)
@@ -95,8 +96,10 @@ def save_shapes(folder: Path, prepared: PreparedCase) -> Path:
     return _write(folder / SHAPES, buffer.getvalue())
 
 
-def save_result(folder: Path, document: dict[str, Any], final: ParticleState | None) -> None:
+def save_result(folder: Path, document: dict[str, Any], final: ParticleState | None, seconds: float) -> None:
     """Write the result; the document is written last, when all other files exist.
+
+    The duration stands in ``times.json`` alone, so that equal runs have equal documents.
 
     Raises
     ------
@@ -106,6 +109,7 @@ def save_result(folder: Path, document: dict[str, Any], final: ParticleState | N
     try:
         if final is not None:
             _write(folder / FINAL, particle_state_bytes(final))
+        _write(folder / TIMES, canonical_json({"seconds": round(seconds, 3)}).encode("utf-8"))
         _write(folder / DOCUMENT, canonical_json(document).encode("utf-8"))
     except OSError as error:
         raise FileError(f"The result could not be written to {folder} ({error.strerror}).") from error
@@ -177,7 +181,6 @@ def run_document(
     settings: Any,
     *,
     state: str,
-    seconds: float,
     ending: SimulationResult | None = None,
     measured: ReposeMeasurement | NotAPileError | None = None,
     problem: str | None = None,
@@ -189,8 +192,6 @@ def run_document(
     ----------
     state
         ``finished``, ``stopped`` by the user, or ``failed``.
-    seconds
-        Duration of the run.
     measured
         The measurement, or why there is no angle.
     problem
@@ -224,7 +225,6 @@ def run_document(
             **_plain(asdict(scaling_report(prepared))),
         },
         "run": {
-            "seconds": round(seconds, 3),
             "steps": ending.steps if ending else None,
             "simulated_time": ending.simulated_time if ending else None,
             "n_snapshots": n_snapshots,

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from regolith_studio.dataset.parameters import PAPER_COARSE_GRAINING, PAPER_FILL_HEIGHT
+from regolith_studio.dem.angle_of_repose import COARSE_PILE, RELIABLE_N
 from regolith_studio.dem.case import PreparedCase
 
 
@@ -91,10 +92,8 @@ def _sentences(prepared: PreparedCase, bonds: tuple[float, float, float]) -> lis
     across = test.diameter / mean
     if across < 20:
         said.append(f"The cylinder is only {across:.1f} particles wide; walls and single grains matter.")
-    if len(prepared) < 500:
-        said.append(
-            "With fewer than 500 particles the angle is for teaching: expect 3 degrees from run to run."
-        )
+    if len(prepared) < RELIABLE_N:
+        said.append(COARSE_PILE)
     low, high = PAPER_FILL_HEIGHT
     if not 0.9 * low <= prepared.fill_height <= 1.1 * high:
         said.append(

@@ -9,7 +9,7 @@ from typing import Any
 from regolith_studio.coarsening.weights import presets
 from regolith_studio.dataset.folder_io import dataset_hash, read_dataset
 from regolith_studio.dataset.parameters import ContactParameters, LiftingCylinderTest
-from regolith_studio.dem.angle_of_repose import ReposeMeasurement, measure_repose
+from regolith_studio.dem.angle_of_repose import ReposeMeasurement, check_number, measure_repose
 from regolith_studio.dem.case import PreparedCase, ReposeCase, prepare
 from regolith_studio.dem.engine import Engine, SimulationResult
 from regolith_studio.dem.engine_process import EngineError, run_engine
@@ -55,6 +55,11 @@ class ReposeRequest:
         How the pile is measured.
     overwrite
         Whether an earlier run in the folder may be replaced.
+
+    Raises
+    ------
+    InputError
+        If the particles are too few for an angle.
     """
 
     case: ReposeCase = field(default_factory=ReposeCase)
@@ -62,6 +67,9 @@ class ReposeRequest:
     settings: Any = None
     evaluation: EvaluationSettings = field(default_factory=EvaluationSettings)
     overwrite: bool = False
+
+    def __post_init__(self) -> None:
+        check_number(self.case.n_particles, self.evaluation)
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,13 +100,13 @@ def simulate_repose(dataset_folder: Path, folder: Path, request: ReposeRequest) 
     Partial results are :class:`~regolith_studio.dem.engine.Snapshot`. What was saved stays when the run
     is stopped or fails, and ``repose.json`` says so; but it replaces no finished run.
     """
-    yield Started(N_("Angle of repose"), PROGRESS_STEPS)
     prepared = prepare(read_dataset(dataset_folder), request.case, dataset_hash(dataset_folder))
     return (yield from simulate_prepared(prepared, folder, request))
 
 
 def simulate_prepared(prepared: PreparedCase, folder: Path, request: ReposeRequest) -> Steps:
     """The same for particles that are drawn already."""
+    yield Started(N_("Angle of repose"), PROGRESS_STEPS)
     engine = engine_named(request.engine)
     settings = engine.Settings() if request.settings is None else request.settings
     if problem := engine.find().problem:
@@ -154,13 +162,13 @@ class _RunWriter:
             self.engine,
             self.settings,
             state=state,
-            seconds=time.monotonic() - self.begun,
             ending=ending,
             measured=measured,
             problem=problem,
             n_snapshots=len(snapshot_files(self.folder)),
         )
-        save_result(self.folder, document, ending.particles if ending else None)
+        particles = ending.particles if ending else None
+        save_result(self.folder, document, particles, time.monotonic() - self.begun)
         return document
 
 

@@ -19,7 +19,6 @@ COLUMNS = (
     Column("symmetric_paper", "deg"),
     Column("n_particles"),
     Column("max_overlap", "%"),
-    Column("seconds", "s"),
     Column("folder"),
 )
 
@@ -92,7 +91,6 @@ def _row(run: ReposeStudyRun) -> tuple[Cell, ...]:
         paper.get("symmetric", {}).get("mean_deg"),
         run.document["case"]["n_particles"],
         None if overlap is None else 100 * overlap,
-        run.document["run"]["seconds"],
         run.folder,
     )
 

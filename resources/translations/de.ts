@@ -664,10 +664,6 @@
         <translation>Körper</translation>
     </message>
     <message>
-        <source>Bootstrap seed</source>
-        <translation>Startwert des Bootstraps</translation>
-    </message>
-    <message>
         <source>Bottom (from -z)</source>
         <translation>Unten (von -z)</translation>
     </message>

@@ -5,12 +5,14 @@ import pickle
 
 import numpy as np
 import pytest
+from scipy import stats
 
+from benchmarks.heaps import HeapKind, heap, surface_of_revolution
 from regolith_studio.dem.angle_of_repose import (
     azimuths_of,
-    bootstrap_interval,
     measure_repose,
     measurement_document,
+    standard_interval,
 )
 from regolith_studio.dem.evaluation.errors import NotAPileError
 from regolith_studio.dem.evaluation.profile import Discs, base_level, connected_tops, project
@@ -184,12 +186,38 @@ def test_that_the_break_point_is_the_best_of_all() -> None:
     assert fit.left.slope == pytest.approx(np.polyfit(u[:best], z[:best], 1)[0])
 
 
-def test_that_the_bootstrap_of_equal_flanks_has_no_width_and_of_noise_the_known_one() -> None:
-    assert bootstrap_interval(np.full(24, 31.0), 0.95, 0) == (31.0, 31.0)
-    noise = np.random.default_rng(0).normal(30.0, 2.0, 360)
-    low, high = bootstrap_interval(noise, 0.95, 0)
-    assert low < noise.mean() < high
-    assert bootstrap_interval(noise, 0.95, 7) == bootstrap_interval(noise, 0.95, 7)
+def test_that_the_interval_of_equal_flanks_has_no_width_and_of_noise_that_of_eight_values() -> None:
+    assert standard_interval([31.0] * 24, 0.95) == 0.0
+    noise = np.random.default_rng(0).normal(30.0, 2.0, 8)
+    low, high = stats.ttest_1samp(noise, 0.0).confidence_interval(0.95)
+    assert standard_interval(list(noise), 0.95) == pytest.approx((high - low) / 2)
+    assert standard_interval(list(np.repeat(noise, 3)), 0.95) == pytest.approx((high - low) / 2)
+
+
+@pytest.mark.parametrize(("n", "bias"), [(300, 1.5), (1000, 0.4)])
+def test_that_the_interval_holds_the_angle_of_rough_heaps_with_loose_grains(n: int, bias: float) -> None:
+    """Flanks that end where the surface crosses the cuts are 2.4 and 1.0 degrees too flat here."""
+    kind = HeapKind(roughness=0.3, loose=0.05)
+    found = [measure_repose(*heap(angle, n, seed, kind)) for angle in (25, 35) for seed in range(6)]
+    errors = np.array([each.angle for each in found]) - np.repeat([25, 35], 6)
+    halves = np.array([np.ptp(each.interval) / 2 for each in found])
+    assert abs(errors.mean()) < bias
+    assert (np.abs(errors) <= halves).sum() >= 10
+
+
+def test_that_a_tip_rounded_within_a_fifth_of_the_base_does_not_count() -> None:
+    found = [measure_repose(*heap(30, 3000, seed, HeapKind(tip=0.2))).angle for seed in range(4)]
+    assert np.mean(found) == pytest.approx(30.0, abs=0.25)
+
+
+@pytest.mark.parametrize(
+    ("curve", "height", "word"),
+    [("dome", 0.45, "dome"), ("dome", 0.7, "dome"), ("exponential", 1.0, "hollow")],
+)
+def test_that_domes_and_exponential_heaps_are_refused(curve: str, height: float, word: str) -> None:
+    with pytest.raises(NotAPileError, match=word) as refusal:
+        measure_repose(*surface_of_revolution(1500, 3, 10 * height, 10.0, curve))
+    assert refusal.value.status == "no flanks"
 
 
 def test_that_the_document_names_both_planes_and_every_choice() -> None:

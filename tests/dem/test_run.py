@@ -16,13 +16,15 @@ from regolith_studio.cli.entry import run
 from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.dataset.folder_io import dataset_hash, read_dataset
 from regolith_studio.dataset.parameters import ContactParameters, LiftingCylinderTest
+from regolith_studio.dem.angle_of_repose import ReposeMeasurement
 from regolith_studio.dem.case import ReposeCase, prepare
-from regolith_studio.dem.engine import SimulationResult
+from regolith_studio.dem.engine import RunChecks, SimulationResult
 from regolith_studio.dem.engine_process import EngineError
 from regolith_studio.dem.engines import ENGINES
 from regolith_studio.dem.engines.mujoco.settings import MujocoSettings
+from regolith_studio.dem.evaluation.settings import EvaluationSettings
 from regolith_studio.dem.run_io import find_runs, read_run, read_shapes, snapshot_files
-from regolith_studio.dem.snapshot import Snapshot, read_particle_state
+from regolith_studio.dem.snapshot import ParticleState, Snapshot, particle_state_bytes, read_particle_state
 from regolith_studio.errors import FileError, InputError
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
@@ -33,6 +35,7 @@ from regolith_studio.jobs.repose_jobs import (
     ReposeRequest,
     ReposeStudyRequest,
     ReposeVariant,
+    measure_result,
     run_repose_study,
     simulate_prepared,
     simulate_repose,
@@ -41,12 +44,24 @@ from regolith_studio.jobs.repose_jobs import (
     with_value,
 )
 from regolith_studio.studies.figures.repose import write_repose_study
+from tests.dem.packings import cone
 
 TEST = LiftingCylinderTest(mass=0.003, lift_speed=0.15)
 CASE = ReposeCase(TEST, n_particles=40, seed=1)
 QUICK = MujocoSettings(time_step=0.04, iterations=15, rest_energy=2e-3, rest_time=1.0, snapshots=20)
-ORDER = ReposeRequest(CASE, settings=QUICK)
-COMMAND = ["-n", "40", "--seed", "1", "--test", "mass=0.003", "--test", "lift_speed=0.15"]
+ORDER = ReposeRequest(CASE, settings=QUICK, evaluation=EvaluationSettings(min_particles=40))
+COMMAND = [
+    "-n",
+    "40",
+    "--measure",
+    "min_particles=40",
+    "--seed",
+    "1",
+    "--test",
+    "mass=0.003",
+    "--test",
+    "lift_speed=0.15",
+]
 COMMAND += [
     word for each in ("time_step=0.04", "iterations=15", "rest_energy=0.002") for word in ("--set", each)
 ]
@@ -71,24 +86,32 @@ def test_that_a_run_leaves_everything_that_it_followed_from(finished: Path, boxe
     assert document["checks"]["particles_out"] == 40
     assert document["checks"]["max_overlap"] < 0.05
     assert document["checks"]["energy_gain"] < 0.05
-    assert document["measurement"]["status"] == "too few particles"
+    assert document["measurement"]["status"] == "layer"
     assert "restitution" in document["not_given_in_the_paper"]
 
 
 def test_that_a_run_and_a_measurement_of_its_file_are_one_answer(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Bricks lie flat, so that the plate cannot be told from the lowest particles."""
+    points = 2e-3 * (cone(30, 400, 2) - [0.0, 0.0, 0.25])
+    unturned, cubes = np.tile([1.0, 0, 0, 0], (400, 1)), np.zeros(400, dtype=int)
+    pile = ParticleState(points, np.full(400, 2e-3), unturned, cubes)
+    checks = RunChecks(400, 400, 0.0, 0.0, 0.0, 0.0, True, 0.02, 0.55)
+    own = measure_result(SimulationResult(pile, checks, 1, 1.0), EvaluationSettings())
+    assert isinstance(own, ReposeMeasurement)
+    (tmp_path / "final.npz").write_bytes(particle_state_bytes(pile))
+    assert run(["repose", "measure", str(tmp_path / "final.npz"), "--json"]) == 0
+    measured = json.loads(capsys.readouterr().out)
+    assert (measured["angle_deg"], *measured["interval_deg"]) == (own.angle, *own.interval)
+
+
+def test_that_too_few_particles_are_refused_before_the_run(
     boxes_folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Bricks lie flat, so the plate cannot be told from the lowest particles."""
-    mild = ["min_particles=20", "min_points=3", "bin_width=0.2", "toe=0.3", "min_height=1", "azimuths=2"]
-    where = ["repose", "run", str(boxes_folder), "-o", str(tmp_path / "run"), *COMMAND]
-    assert run([*where, *[word for each in mild for word in ("--measure", each)]]) == 0
-    capsys.readouterr()
-    final = ["repose", "measure", str(tmp_path / "run" / "final.npz"), "--json"]
-    assert run([*final, *[word for each in mild for word in ("--set", each)]]) == 0
-    measured = json.loads(capsys.readouterr().out)
-    own = read_run(tmp_path / "run").document["measurement"]
-    assert own["angle_deg"] is not None
-    assert {key: measured[key] for key in own} == own
+    assert run(["repose", "run", str(boxes_folder), "-o", str(tmp_path / "run"), "-n", "120"]) == 1
+    assert "120 particles are too few" in capsys.readouterr().err
+    assert not (tmp_path / "run").exists()
 
 
 def test_that_the_snapshots_tell_the_whole_test(finished: Path) -> None:
@@ -127,7 +150,7 @@ def test_that_a_study_goes_on_where_it_was(finished: Path, boxes_folder: Path, t
     told = list(steps)
     assert not [step for step in told if isinstance(step, Progress) and "simulated" in step.message]
     study = told[-1].value
-    assert [each.document["measurement"]["status"] for each in study.runs] == ["too few particles"]
+    assert [each.document["measurement"]["status"] for each in study.runs] == ["layer"]
     files = {path.name for path in write_repose_study(study, tmp_path / "figures")}
     assert files == {f"repose_study.{kind}" for kind in ("csv", "json", "png", "svg")}
     other = replace(ORDER, case=replace(CASE, contact=ContactParameters(static_friction=0.1)))
@@ -162,7 +185,8 @@ def test_that_shapes_are_varied_from_particles(tmp_path: Path) -> None:
     ball = icosphere(2)
     particles = (Particle("ball", Mesh(40.0 * ball.vertices, ball.faces)),)
     coarsening = CoarseningRequest(LossWeights.of(), method="quadric", target="particle")
-    order = replace(ORDER, case=replace(CASE, n_particles=20))
+    few = EvaluationSettings(min_particles=20)
+    order = replace(ORDER, case=replace(CASE, n_particles=20), evaluation=few)
     steps = run_repose_study(
         ReposeStudyRequest("n_facets", (8, 14), order, particles=particles, coarsening=coarsening), tmp_path
     )
@@ -272,7 +296,7 @@ def test_that_bad_wishes_are_one_sentence(
     assert run([*where, "--contact", "static_friction=-1"]) == 2
     assert run([*where, "--engine", "abacus"]) == 2
     assert run([*where, "--set", "speed=3"]) == 2
-    assert run([*where, "-n", "12"]) == 1
+    assert run([*where, "-n", "12", "--measure", "min_particles=10"]) == 1
     assert run(["repose", "run", str(tmp_path), "-o", str(tmp_path / "run")]) == 1
     said = capsys.readouterr().err
     assert "Traceback" not in said

@@ -62,6 +62,7 @@ def small(page, dataset):
     page.setup.particles.setValue(40)
     page.setup.test.setValue(LiftingCylinderTest(mass=0.003, lift_speed=0.15))
     page.setup.numerics.setValue(QUICK)
+    page.setup.set_evaluation(min_particles=40)
 
 
 def pile_of(angle, n=700):

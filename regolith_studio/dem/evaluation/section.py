@@ -12,9 +12,13 @@ from regolith_studio.dem.evaluation.slope_fit import (
     SymmetricFit,
     fit_asymmetric,
     fit_symmetric,
+    flank_curvature,
     silhouette_deficit,
 )
-from regolith_studio.geometry.arrays import BoolArray
+from regolith_studio.geometry.arrays import BoolArray, FloatArray
+
+SELECTIONS = 5
+"""Times that the points between the cuts are chosen anew by the fitted lines."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,6 +39,9 @@ class Section:
         The fitted models.
     uncorrected
         Asymmetric angle in degrees before the correction for particle size.
+    curvature
+        Of the left and the right flank: how much steeper it is at its foot than at its top, in units of its
+        slope; 0 for a straight one.
     """
 
     azimuth: float
@@ -45,6 +52,12 @@ class Section:
     asymmetric: AsymmetricFit
     symmetric: SymmetricFit
     uncorrected: float
+    curvature: tuple[float, float]
+
+    @property
+    def flanks(self) -> tuple[float, float]:
+        """Angles of the left and the right flank in degrees."""
+        return self.asymmetric.left.angle, self.asymmetric.right.angle
 
 
 def evaluate_section(
@@ -66,31 +79,72 @@ def evaluate_section(
     low = max(settings.cut_bottom * profile.top, settings.toe * mean_diameter)
     high = (1.0 - settings.cut_top) * profile.top
     used = flank_points(profile, low, high)
-    u, z = profile.u[used], profile.height[used]
-    asymmetric = fit_asymmetric(u, z, settings.min_points)
-    uncorrected = None if asymmetric is None else asymmetric.angle
-    if asymmetric is not None and settings.grain_correction and settings.slab == 0.0:
-        lacking = silhouette_deficit(u, asymmetric, mean_diameter)
-        z = z + lacking - lacking.mean()  # the lines still run through what is seen
-        asymmetric = fit_asymmetric(u, z, settings.min_points)
-    symmetric = fit_symmetric(u, z, settings.min_points)
-    if asymmetric is None or symmetric is None or uncorrected is None:
+    fit = _fit_flanks(profile, used, mean_diameter, settings)
+    for _ in range(SELECTIONS):
+        if fit is None:
+            break
+        chosen = points_between(profile, fit.asymmetric, low, high)
+        if np.array_equal(chosen, used):
+            break
+        used, fit = chosen, _fit_flanks(profile, chosen, mean_diameter, settings)
+    symmetric = None if fit is None else fit_symmetric(profile.u[used], fit.surface, settings.min_points)
+    if fit is None or symmetric is None:
         raise NotAPileError(
-            f"The section at {azimuth:g} degrees has no two flanks: {len(u)} surface points lie between the "
-            f"cuts, and each flank needs {settings.min_points} that rise to an apex."
+            f"The section at {azimuth:g} degrees has no two flanks: {used.sum()} surface points lie between "
+            f"the cuts, and each flank needs {settings.min_points} that rise to an apex."
         )
-    if asymmetric.angle > MAX_ANGLE:
-        raise NotAPileError(_column(asymmetric.angle), "column stands")
-    if asymmetric.r_squared < MIN_R_SQUARED:
+    if fit.asymmetric.angle > MAX_ANGLE:
+        raise NotAPileError(_column(fit.asymmetric.angle), "column stands")
+    if fit.asymmetric.r_squared < MIN_R_SQUARED:
         raise NotAPileError(
             f"The section at {azimuth:g} degrees is no pile: two straight flanks explain only "
-            f"{100 * max(asymmetric.r_squared, 0.0):.0f} % of its surface."
+            f"{100 * max(fit.asymmetric.r_squared, 0.0):.0f} % of its surface."
         )
-    return Section(azimuth, profile, used, low, high, asymmetric, symmetric, uncorrected)
+    curvature = flank_curvature(profile.u[used], fit.surface, fit.asymmetric)
+    return Section(azimuth, profile, used, low, high, fit.asymmetric, symmetric, fit.uncorrected, curvature)
+
+
+@dataclass(frozen=True, eq=False)
+class _FlankFit:
+    """Flanks, heights of the used points that they were fitted to, shape (k,), and the angle without them."""
+
+    asymmetric: AsymmetricFit
+    surface: FloatArray
+    uncorrected: float
+
+
+def _fit_flanks(
+    profile: Profile, used: BoolArray, mean_diameter: float, settings: EvaluationSettings
+) -> _FlankFit | None:
+    """Two lines through the used points, corrected for the size of grains; ``None`` if there are none."""
+    u, z = profile.u[used], profile.height[used]
+    seen = fit_asymmetric(u, z, settings.min_points)
+    if seen is None or not settings.grain_correction or settings.slab > 0.0:
+        return None if seen is None else _FlankFit(seen, z, seen.angle)
+    lacking = silhouette_deficit(u, seen, mean_diameter)
+    z = z + lacking - lacking.mean()  # the lines still run through what is seen
+    asymmetric = fit_asymmetric(u, z, settings.min_points)
+    return None if asymmetric is None else _FlankFit(asymmetric, z, seen.angle)
+
+
+def points_between(profile: Profile, fit: AsymmetricFit, low: float, high: float) -> BoolArray:
+    """The surface points of the heap at which the fitted lines lie between the cuts, shape (m,).
+
+    The surface itself crosses the cuts where it is by chance too low at the tip and too high at the toe;
+    flanks that end there are too flat.
+    """
+    lines = np.where(
+        profile.u < fit.apex[0],
+        fit.left.intercept + fit.left.slope * profile.u,
+        fit.right.intercept + fit.right.slope * profile.u,
+    )
+    places = np.arange(len(profile.u))
+    inside = (places >= profile.first) & (places <= profile.last)
+    return np.asarray(inside & (low <= lines) & (lines < high))
 
 
 def flank_points(profile: Profile, low: float, high: float) -> BoolArray:
-    """Which surface points the regression uses, shape (m,).
+    """Surface points for the first fit, shape (m,).
 
     On each side of the peak they run from the last point at or above `high` to the first below `low`.
     Points are selected by position, not by their own height, so that the noise of single particles does not

@@ -38,9 +38,7 @@ class EvaluationSettings:
     min_height
         Minimum height of a pile; lower heaps are layers.
     confidence
-        Of the bootstrap interval.
-    seed
-        Of the bootstrap.
+        Of the interval.
 
     Raises
     ------
@@ -87,7 +85,6 @@ class EvaluationSettings:
     confidence: float = field(
         default=0.95, metadata={"label": N_("Confidence"), "minimum": 0.5, "maximum": 0.999}
     )
-    seed: int = field(default=0, metadata={"label": N_("Bootstrap seed"), "minimum": 0, "maximum": 2**31 - 1})
 
     def __post_init__(self) -> None:
         check_limits(self, "evaluation setting")

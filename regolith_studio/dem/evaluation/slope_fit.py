@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.geometry.arrays import BoolArray, FloatArray
 
 
 @dataclass(frozen=True)
@@ -174,6 +174,17 @@ def _roof(place: float, u: FloatArray, z: FloatArray) -> tuple[float, float, flo
 def _explained(loss: float, z: FloatArray) -> float:
     total = float(((z - z.mean()) ** 2).sum())
     return 1.0 - loss / total if total > 0.0 else 0.0
+
+
+def flank_curvature(u: FloatArray, z: FloatArray, fit: AsymmetricFit) -> tuple[float, float]:
+    """How much steeper each flank is at its foot than at its top, in units of its slope, by a parabola."""
+
+    def relative(side: BoolArray, line: Line) -> float:
+        x = u[side] - u[side].mean()
+        return float(-2 * np.polyfit(x, z[side], 2)[0] * np.ptp(x) / abs(line.slope))
+
+    left = u < fit.break_point
+    return relative(left, fit.left), relative(~left, fit.right)
 
 
 SOLID_FRACTION = 0.58

@@ -19,21 +19,22 @@ STL_HEADER = "Regolith Studio, convex polyhedron, micrometres"
 
 
 def write_coarsening(folder: Path, order: CoarseningRequest, done: Sequence[CoarsenedParticle]) -> None:
-    """Write ``<name>.stl`` for each particle that succeeded, in its own frame, and ``coarsening.json``."""
+    """Write ``<name>.stl`` for each particle that succeeded, in its own frame, and ``coarsening.json``.
+
+    How long each took stands in ``times.json`` alone, so that equal runs have equal results.
+    """
     for each in done:
         if each.coarsened:
             write_bytes(folder / f"{each.name}.stl", stl_bytes(each.coarsened.mesh.triangles, STL_HEADER))
+    times = {each.name: round(each.seconds, 3) for each in done}
+    write_bytes(folder / "times.json", json_bytes({"seconds": times}))
     write_bytes(folder / "coarsening.json", json_bytes(coarsening_document(order, done)))
 
 
 def coarsening_document(order: CoarseningRequest, done: Sequence[CoarsenedParticle]) -> dict[str, Any]:
     """What ``coarsening.json`` holds."""
     return document_head(order) | {
-        "particles": [
-            coarsening_entry(each, each.coarsened) | {"seconds": round(each.seconds, 3)}
-            for each in done
-            if each.coarsened
-        ],
+        "particles": [coarsening_entry(each, each.coarsened) for each in done if each.coarsened],
         "failed": [{"name": each.name, "reason": each.problem} for each in done if not each.coarsened],
     }
 

@@ -1,0 +1,59 @@
+"""Bias of the angle of repose, and how often its 95 % interval holds the truth, on heaps of known angle.
+
+    python -m benchmarks.repose_intervals [HEAPS] [FIRST_SEED]
+
+One line for each kind of heap and number of grains: HEAPS of each of four angles (20 to 40 degrees).
+"""
+
+import sys
+from multiprocessing import Pool
+
+import numpy as np
+
+from benchmarks.heaps import KINDS, Array, heap
+from regolith_studio.dem.angle_of_repose import measure_repose
+from regolith_studio.dem.evaluation.errors import NotAPileError
+
+ANGLES = (20, 27, 34, 40)
+GRAINS = (300, 1000, 5000)
+
+Case = tuple[str, int, int, int]
+
+
+def measured(case: Case) -> Array:
+    """Error of the angle and ends of the interval less the truth; nan where no angle is found."""
+    kind, n, angle, seed = case
+    try:
+        found = measure_repose(*heap(angle, n, seed, KINDS[kind]))
+    except NotAPileError:
+        return np.full(3, np.nan)
+    return np.array([found.angle, *found.interval]) - angle
+
+
+def main(heaps: int, seed: int) -> None:
+    """Print a table."""
+    print("| heaps | grains | bias | spread | half width | covered, % | refused |")
+    print("| --- " * 7 + "|")
+    with Pool() as pool:
+        for n in GRAINS:
+            every = []
+            for kind in KINDS:
+                cases = [(kind, n, angle, seed + k) for angle in ANGLES for k in range(heaps)]
+                every.append(np.array(pool.map(measured, cases)))
+                print(line(kind, n, every[-1]), flush=True)
+            print(line("all", n, np.concatenate(every)), flush=True)
+
+
+def line(name: str, n: int, found: Array) -> str:
+    """A row of the table."""
+    good = found[np.isfinite(found[:, 0])]
+    covered = 100 * ((good[:, 1] <= 0) & (good[:, 2] >= 0)).mean()
+    half = np.mean(good[:, 2] - good[:, 1]) / 2
+    return (
+        f"| {name} | {n:,} | {good[:, 0].mean():+.2f} | {good[:, 0].std():.2f} | {half:.2f} "
+        f"| {covered:.0f} | {len(found) - len(good)} |"
+    )
+
+
+if __name__ == "__main__":
+    main(*(int(word) for word in (*sys.argv[1:], *("8", "9000")[len(sys.argv) - 1 :])))
