@@ -295,7 +295,7 @@ def set_up(extra: str, compiling: bool) -> None:
         raise SetupStopped("pip could not install the packages; run this again when it can reach them.")
     STAMP.write_text(fingerprint() + " " + extra + "\n", encoding="utf-8")
     if compiling:
-        say("compiling the numerics, once (two to three minutes)")
+        say("compiling the numerics, once (one to two minutes)")
         subprocess.call([str(venv_python()), "-m", "regolith_studio", "warm-up"], stdout=subprocess.DEVNULL)
     say("set up in %.0f s" % (time.monotonic() - started))
 
