@@ -68,7 +68,7 @@ def test_that_workers_and_repetition_do_not_change_a_byte(command, fit: Path, tm
         said = command("generate", fit, "-n", 23, "-o", tmp_path / place, "--level", 2, "--jobs", jobs)
         assert said.code == 0, said.err
     names = sorted(path.name for path in (tmp_path / "one").iterdir())
-    assert len(names) == 25
+    assert len([name for name in names if name.endswith(".stl")]) == 23
     for name in names:
         assert (tmp_path / "two" / name).read_bytes() == (tmp_path / "one" / name).read_bytes(), name
     command("generate", fit, "-n", 2, "-o", tmp_path / "few", "--level", 2)
