@@ -117,21 +117,13 @@ class BoxWorkspace(NamedTuple):
     spare: Spare
 
 
-def local_boxes(
-    vertices: FloatArray,
-    normals: FloatArray,
-    areas: FloatArray,
-    edges: IntArray,
-    margin: float,
-    sample_angle: float,
-    near: FloatArray,
-) -> LocalBoxes:
+def local_boxes(solid: Solid, margin: float, sample_angle: float, near: FloatArray) -> LocalBoxes:
     """Locally minimal boxes with a volume of at most (1 + margin) times the least.
 
     Parameters
     ----------
-    vertices, normals, areas, edges
-        Of a convex solid of a size of about 1, as in :class:`Solid`.
+    solid
+        Of a size of about 1.
     margin
         Share of the least volume.
     sample_angle
@@ -140,8 +132,7 @@ def local_boxes(
         Directions, shape (k, 3): only boxes with an axis within about 7 degrees of one of them, to which a
         side flush with an edge is normal, are looked for. None (k = 0): everywhere.
     """
-    solid = Solid(vertices, normals, areas, edges)
-    boxes, n = empty_boxes(MAX_BOXES), len(normals)
+    boxes, n = empty_boxes(MAX_BOXES), len(solid.normals)
     facets = OnFacets(
         np.full(n, np.nan),
         np.empty((n, 3, 3)),
@@ -157,7 +148,7 @@ def local_boxes(
     within = boxes.volumes[order] <= best * (1.0 + margin)
     boxes = boxes.selected(order[: max(1, np.count_nonzero(within))])
     kept = np.empty(len(boxes.volumes), np.bool_)
-    settle_boxes(vertices, boxes, np.empty((9, 3)), np.empty((3, 3)), np.empty((3, 3)), kept)
+    settle_boxes(solid.vertices, boxes, np.empty((9, 3)), np.empty((3, 3)), np.empty((3, 3)), kept)
     return boxes.selected(kept)
 
 

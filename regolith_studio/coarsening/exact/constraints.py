@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from regolith_studio.coarsening.core.box import Solid
 from regolith_studio.coarsening.core.box_gradient import (
     GradientWorkspace,
     fill_extent_gradients,
@@ -173,7 +174,8 @@ def _all_boxes(problem: Problem, polyhedron: MeasuredPolyhedron) -> LocalBoxes:
 
 def _boxes_along(problem: Problem, polyhedron: MeasuredPolyhedron, axes: FloatArray) -> LocalBoxes:
     _, normals, _, vertices, _, edges, areas, *_ = polyhedron
-    return local_boxes(vertices, normals, areas, edges, MARGIN, problem.sample_angle, axes)
+    solid = Solid(vertices, normals, areas, edges)
+    return local_boxes(solid, MARGIN, problem.sample_angle, axes)
 
 
 def _boxes_near(problem: Problem, polyhedron: MeasuredPolyhedron, near: TrackedBoxes) -> LocalBoxes:

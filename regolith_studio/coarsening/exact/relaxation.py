@@ -39,8 +39,8 @@ from regolith_studio.coarsening.exact.single_start import (
     CHUNK,
     Candidate,
     candidate_of,
+    descend_from,
     descend_in_chunks,
-    restore_lost_facets,
 )
 from regolith_studio.coarsening.loss import LossFunction
 from regolith_studio.coarsening.target import Target
@@ -131,13 +131,7 @@ def from_beyond(
 ) -> Iterator[Candidate]:
     """From a polyhedron that went past the wanted sphericity back to it."""
     point = _measured_and_projected(full, beyond.normals, beyond.offsets)
-    yield candidate_of(full, point)
-    if point.worst > TOLERANCE:
-        return
-    for later in descend_in_chunks(full, point, bound_steps, max_step(point) / 2):
-        point = later
-        yield candidate_of(full, point)
-    yield from restore_lost_facets(target, full, point, 0)
+    yield from descend_from(target, full, point, bound_steps, 0)
 
 
 def with_sphericity_held(full: Problem, reached: ConstrainedPoint, bound_steps: int) -> Iterator[Candidate]:

@@ -130,13 +130,26 @@ def single_start(
     free_end = state.point
     point = constrained(full, free_end.normals, free_end.offsets, free_end.tangents, None)
     point = project_and_verify(full, point, state.metric, LONG_PROJECTION)
-    yield candidate_of(full, point)
+    yield from descend_from(target, full, point, bound_steps, bound_steps // 2)
+
+
+def descend_from(
+    target: Target, problem: Problem, point: ConstrainedPoint, steps: int, restoring_steps: int
+) -> Iterator[Candidate]:
+    """The point; if it meets all constraints, what a descent finds from there, with lost facets put back.
+
+    Parameters
+    ----------
+    steps, restoring_steps
+        Of the descent, and of the one after facets were put back.
+    """
+    yield candidate_of(problem, point)
     if point.worst > TOLERANCE:
         return
-    for later in descend_in_chunks(full, point, bound_steps, max_step(point) / 2):
+    for later in descend_in_chunks(problem, point, steps, max_step(point) / 2):
         point = later
-        yield candidate_of(full, point)
-    yield from restore_lost_facets(target, full, point, bound_steps // 2)
+        yield candidate_of(problem, point)
+    yield from restore_lost_facets(target, problem, point, restoring_steps)
 
 
 def descend_in_chunks(

@@ -46,7 +46,7 @@ def solid_of(normals: FloatArray, offsets: FloatArray) -> tuple[Solid, FloatArra
 def found_on(
     solid: Solid, margin: float, angle: float = SAMPLE_ANGLE, near: FloatArray = EVERYWHERE
 ) -> LocalBoxes:
-    return local_boxes(*solid, margin, angle, near)
+    return local_boxes(solid, margin, angle, near)
 
 
 @pytest.mark.parametrize("n", [10, 20, 50])
