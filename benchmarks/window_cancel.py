@@ -116,7 +116,7 @@ def _batch(window: Any, folder: Path, workers: int) -> None:
     from regolith_studio.jobs.events import Job
     from regolith_studio.jobs.executor import ExecutorSettings
     from regolith_studio.session.batch_job import run_recipe_job
-    from regolith_studio.session.session_recipe import SessionRecipe
+    from regolith_studio.session.project import SessionRecipe
 
     recipe = SessionRecipe.of(window.session.particles, window.session.choices).recipe
     job = Job(run_recipe_job, (recipe, folder.parent, folder, ExecutorSettings(workers=workers), False))

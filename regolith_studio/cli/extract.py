@@ -38,7 +38,7 @@ def extract(
     from regolith_studio.io.atomic import staged_folder
     from regolith_studio.jobs.extraction_settings import read_grain_settings
     from regolith_studio.jobs.volume_jobs import extract_measured
-    from regolith_studio.session.outputs.extraction import ExtractionFolder
+    from regolith_studio.session.outputs.particles import ExtractionFolder
 
     del seed  # taken by every command; nothing here is random
     with usage_errors():

@@ -114,7 +114,7 @@ def generate(
     from regolith_studio.io.atomic import staged_folder
     from regolith_studio.jobs.model_jobs import GenerationRequest, draw, fit_model, groups_of
     from regolith_studio.session.choices import Choices
-    from regolith_studio.session.outputs.virtual_particles import Generated, write_document
+    from regolith_studio.session.outputs.particles import Generated, write_document
 
     with usage_errors():
         Choices(level=level)
@@ -179,14 +179,14 @@ def _named(fitted: Any, names: str) -> Any:
 def _write(stage: Path, made: Any, format_: str, level: int, jobs: int) -> dict[str, Any]:
     from regolith_studio.cli.terminal import run_with_progress
     from regolith_studio.jobs.model_jobs import write_meshes
-    from regolith_studio.session.outputs import virtual_particles
+    from regolith_studio.session.outputs import particles as outputs
 
     if format_ == "npz":
-        virtual_particles.write_coefficients(stage, made)
-        return {"files": [virtual_particles.ARRAYS, virtual_particles.TABLE]}
+        outputs.write_coefficients(stage, made)
+        return {"files": [outputs.ARRAYS, outputs.TABLE]}
     facts = run_with_progress(write_meshes(made.draws, made.groups, level, stage, jobs))
-    virtual_particles.write_table_of_meshes(stage, made, facts)
-    return {"level": level, "files": ["*.stl", virtual_particles.TABLE]}
+    outputs.write_table_of_meshes(stage, made, facts)
+    return {"level": level, "files": ["*.stl", outputs.TABLE]}
 
 
 def _save(path: Path, made: Any) -> None:

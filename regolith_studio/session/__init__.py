@@ -23,11 +23,11 @@ The cycle
 Bad values raise :class:`~regolith_studio.errors.InputError` with one sentence; everything that goes
 wrong in the background arrives at ``events.failed`` as a ``Failure(title, sentence, details)``.
 
-The events are those of :class:`~regolith_studio.session.events.SessionEvents`, emitted in the thread that
+The events are those of :class:`~regolith_studio.session.results.SessionEvents`, emitted in the thread that
 owns the session; ``choices`` carries the names of the fields that have changed.
 
 Which work a change of choices makes necessary is decided by the pure function
-:func:`~regolith_studio.session.dependencies.plan`; requests are numbered and answers to old ones dropped.
+:func:`~regolith_studio.session.choices.plan`; requests are numbered and answers to old ones dropped.
 
 The runner of a window::
 

@@ -8,8 +8,7 @@ from regolith_studio.jobs.coarsening_jobs import coarsen_one
 from regolith_studio.jobs.events import Failed, Job
 from regolith_studio.jobs.particle_jobs import FitRequest, describe_meshes, draw_surface, fit_one
 from regolith_studio.messages import N_
-from regolith_studio.session.choices import Choices
-from regolith_studio.session.dependencies import LIVE, Kind, needs, plan
+from regolith_studio.session.choices import LIVE, Choices, Kind, needs, plan
 from regolith_studio.session.results import ParticleEntry, Results
 from regolith_studio.session.tasks import Reactions, TaskBoard
 

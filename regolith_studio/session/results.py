@@ -1,8 +1,10 @@
-"""What is true of the selected particle at the moment, and of the studies that have been run."""
+"""The results of the selected particle and of the studies, and the events that report a change of them."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
+
+from psygnal import Signal
 
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.mesh import Mesh
@@ -89,3 +91,38 @@ class Results:
     def polyhedron_mesh(self) -> Mesh | None:
         """Its triangles where the particle lies."""
         return self.best.mesh if self.best else None
+
+
+@dataclass(frozen=True)
+class Failure:
+    """Work that could not be done: what it was, one sentence, and the details of a report."""
+
+    title: str
+    sentence: str
+    details: str = ""
+
+
+class SessionEvents:
+    """What can be listened to; events without an argument mean "read the session anew".
+
+    Connected functions are called with as many of the arguments as they take. Bound methods are held weakly,
+    other functions until they are disconnected.
+    """
+
+    particles = Signal()
+    choices = Signal(frozenset)
+    """Names of the fields of the choices that have another value now."""
+    fit = Signal()
+    surface = Signal()
+    descriptors = Signal()
+    coarsening = Signal()
+    lmax_study = Signal()
+    coarsening_study = Signal()
+    tasks = Signal()
+    dataset_folder = Signal()
+    opened_request = Signal()
+    failed = Signal(Failure)
+    problems = Signal(tuple)
+    """Files that were refused at opening, or particles that an export left out, as ``Problem``."""
+    exported = Signal(object)
+    """Path of the folder that was written."""

@@ -49,7 +49,7 @@ from regolith_studio.session.batch.writers import (
     time_writer,
 )
 from regolith_studio.session.choices import Choices
-from regolith_studio.session.outputs.extraction import RECIPE as EXTRACTION
+from regolith_studio.session.outputs.particles import RECIPE as EXTRACTION
 from regolith_studio.session.outputs.studies import STUDIES
 from regolith_studio.session.outputs.summary import Summary, write_summary
 from regolith_studio.session.recipe import Recipe, Representatives

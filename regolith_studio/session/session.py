@@ -18,22 +18,21 @@ from regolith_studio.jobs.particle_jobs import (
 from regolith_studio.jobs.runners.protocol import Runner
 from regolith_studio.messages import N_
 from regolith_studio.readers.particles import FileProblem, LoadedParticles, unique_names
-from regolith_studio.session.choices import Choices
-from regolith_studio.session.dependencies import STUDIES, Kind, depends
-from regolith_studio.session.events import Failure, SessionEvents
+from regolith_studio.session.choices import STUDIES, Choices, Kind, depends
 from regolith_studio.session.history import History
 from regolith_studio.session.provenance import (
     FileSource,
     ParticleRef,
     ParticleSource,
+    RestoredParticles,
     SampleSource,
     place_by_source,
     places_of,
+    restore_particles,
 )
 from regolith_studio.session.recipe import SAMPLE, DatasetRequest, Recipe
 from regolith_studio.session.recompute import LiveResults
-from regolith_studio.session.restore import RestoredParticles, restore_particles
-from regolith_studio.session.results import ParticleEntry, Results
+from regolith_studio.session.results import Failure, ParticleEntry, Results, SessionEvents
 from regolith_studio.session.study_requests import study_job
 from regolith_studio.session.tasks import Reactions, Task, TaskBoard
 

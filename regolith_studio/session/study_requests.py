@@ -15,8 +15,7 @@ from regolith_studio.jobs.executor import Executor, open_executor
 from regolith_studio.jobs.study_checkpoint import StudyCheckpoint, hash_of_particles
 from regolith_studio.jobs.study_jobs import study_coarsening, study_lmax
 from regolith_studio.messages import N_
-from regolith_studio.session.choices import L_MAX_LIMIT, Choices
-from regolith_studio.session.dependencies import Kind
+from regolith_studio.session.choices import L_MAX_LIMIT, Choices, Kind
 from regolith_studio.studies.loss_variants import LossVariant, loss_variants, losses, paper_variants
 from regolith_studio.studies.polyhedron_gallery import GalleryPolyhedron, GalleryStudy
 from regolith_studio.studies.sweeps import SWEEPS, parse_values

@@ -11,10 +11,9 @@ from regolith_studio.jobs.events import Failed, Job
 from regolith_studio.messages import N_
 from regolith_studio.session.batch_job import ExecutorReady, run_recipe_job
 from regolith_studio.session.preferences import Preferences
-from regolith_studio.session.project import without_file
+from regolith_studio.session.project import SessionRecipe, without_file
 from regolith_studio.session.recipe import Recipe, read_recipe
 from regolith_studio.session.session import Session
-from regolith_studio.session.session_recipe import SessionRecipe
 from regolith_studio.ui.dialogs.batch import BatchDialog, BatchOrder
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.toast import Toast

@@ -12,16 +12,14 @@ from PySide6.QtWidgets import QDialog, QFileDialog, QWidget
 from regolith_studio.errors import RegolithError
 from regolith_studio.io.atomic import write_bytes
 from regolith_studio.messages import N_
-from regolith_studio.session.choices import Choices
+from regolith_studio.session.choices import Choices, Kind
 from regolith_studio.session.code_export import as_command, as_python
-from regolith_studio.session.dependencies import Kind
 from regolith_studio.session.file_kinds import FileKind, kind_of_all
 from regolith_studio.session.preferences import Preferences
-from regolith_studio.session.project import input_shown, inputs_of
+from regolith_studio.session.project import SessionRecipe, input_shown, inputs_of
+from regolith_studio.session.provenance import MOST
 from regolith_studio.session.recipe import DatasetRequest, read_recipe
-from regolith_studio.session.restore import MOST
 from regolith_studio.session.session import Session
-from regolith_studio.session.session_recipe import SessionRecipe
 from regolith_studio.ui.dialogs.export import ExportDialog, ExportOrder
 from regolith_studio.ui.dialogs.unit import UnitDialog
 from regolith_studio.ui.translation import tr

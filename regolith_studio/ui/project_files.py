@@ -10,9 +10,8 @@ from PySide6.QtWidgets import QFileDialog, QMessageBox, QWidget
 from regolith_studio.errors import RegolithError
 from regolith_studio.messages import N_
 from regolith_studio.session.preferences import preferences_path
-from regolith_studio.session.project import SUFFIX, Project, read_project
+from regolith_studio.session.project import SUFFIX, Project, SessionRecipe, read_project
 from regolith_studio.session.session import Session
-from regolith_studio.session.session_recipe import SessionRecipe
 from regolith_studio.ui.commands import without
 from regolith_studio.ui.page_stack import PageStack
 from regolith_studio.ui.translation import tr

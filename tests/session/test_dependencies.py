@@ -6,8 +6,7 @@ from typing import Any
 import pytest
 
 from regolith_studio.coarsening.weights import LossWeights
-from regolith_studio.session.choices import Choices
-from regolith_studio.session.dependencies import LIVE, Kind, depends, needs, plan
+from regolith_studio.session.choices import LIVE, Choices, Kind, depends, needs, plan
 
 HERE = Choices(selected="a")
 FIT, SURFACE, DESCRIPTORS, COARSENING = LIVE

@@ -19,8 +19,7 @@ from regolith_studio.jobs.dataset_jobs import DatasetOptions
 from regolith_studio.jobs.runners.inline import InlineRunner
 from regolith_studio.jobs.runners.thread import ThreadRunner
 from regolith_studio.session import recompute
-from regolith_studio.session.choices import Choices
-from regolith_studio.session.dependencies import Kind
+from regolith_studio.session.choices import Choices, Kind
 from regolith_studio.session.session import Session
 
 SMALL = Choices(method="quadric", level=2, l_max=4)

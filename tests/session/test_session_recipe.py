@@ -27,12 +27,11 @@ from regolith_studio.jobs.volume_jobs import (
 from regolith_studio.readers.shape_files import ShapeSource
 from regolith_studio.session.batch.preprocessing import entry_of
 from regolith_studio.session.choices import Choices
-from regolith_studio.session.project import Project, read_project
+from regolith_studio.session.project import Project, SessionRecipe, read_project
 from regolith_studio.session.provenance import VirtualSource, VolumeSource
 from regolith_studio.session.recipe import Outputs, read_recipe
 from regolith_studio.session.run_recipe import run_recipe
 from regolith_studio.session.session import Session
-from regolith_studio.session.session_recipe import SessionRecipe
 from regolith_studio.shape_models.materials import materials
 from regolith_studio.shape_models.spectrum_sliders import relative_amplitudes, with_amplitudes
 

@@ -15,8 +15,7 @@ from PySide6.QtWidgets import (
 )
 
 from regolith_studio.jobs.runners.inline import InlineRunner
-from regolith_studio.session.choices import Choices
-from regolith_studio.session.dependencies import Kind
+from regolith_studio.session.choices import Choices, Kind
 from regolith_studio.session.session import Session
 from regolith_studio.ui.layout import scrolled_column
 from regolith_studio.ui.main_window import MainWindow

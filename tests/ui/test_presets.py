@@ -8,8 +8,8 @@ from PySide6.QtWidgets import QInputDialog, QLineEdit
 from regolith_studio.coarsening.weights import LossWeights, presets
 from regolith_studio.dataset.parameters import ContactParameters
 from regolith_studio.errors import InputError
+from regolith_studio.session.preferences import OwnPresets
 from regolith_studio.session.recipe import Recipe
-from regolith_studio.session.user_presets import OwnPresets
 from regolith_studio.ui.panels.loss import LossPanel
 from regolith_studio.ui.widgets.combo_box import text_room
 from regolith_studio.ui.widgets.presets import PresetBar, PresetEntry, PresetForm

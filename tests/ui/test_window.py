@@ -13,7 +13,7 @@ from PySide6.QtWidgets import QApplication, QLineEdit, QSlider, QWidget
 from regolith_studio.errors import InputError, MissingRequirement
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.resources import resource
-from regolith_studio.session.events import SessionEvents
+from regolith_studio.session.results import SessionEvents
 from regolith_studio.ui.app import make_excepthook, open_window
 from regolith_studio.ui.dialogs.export import ExportDialog
 from regolith_studio.ui.dialogs.unit import UnitDialog

@@ -32,7 +32,7 @@ from regolith_studio.readers.file_bytes import sha256_of
 from regolith_studio.readers.particles import FileProblem, find_files
 from regolith_studio.readers.shape_files import is_shape_source, read_shape_source
 from regolith_studio.readers.volumes.header import RawLayout
-from regolith_studio.session.outputs.extraction import RECIPE, recipe_document
+from regolith_studio.session.outputs.particles import RECIPE, recipe_document
 from regolith_studio.session.recipe import Population, RawVolume, Recipe, VolumeEntry
 from regolith_studio.shape_models.io import write_model
 from regolith_studio.shape_models.materials import materials

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from PySide6.QtWidgets import QMessageBox, QWidget
 
-from regolith_studio.session.dependencies import LIVE
+from regolith_studio.session.choices import LIVE
 from regolith_studio.session.tasks import Task
 from regolith_studio.ui.translation import tr
 

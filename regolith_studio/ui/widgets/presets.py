@@ -10,7 +10,7 @@ from PySide6.QtWidgets import QFormLayout, QInputDialog, QMenu, QPushButton, QTo
 
 from regolith_studio.errors import InputError
 from regolith_studio.messages import N_
-from regolith_studio.session.user_presets import OwnPresets
+from regolith_studio.session.preferences import OwnPresets
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.combo_box import ComboBoxRow, ElidedComboBox
 from regolith_studio.ui.widgets.forms import ParameterForm

@@ -6,8 +6,7 @@ from functools import partial
 from regolith_studio.errors import RegolithError
 from regolith_studio.jobs.events import Job
 from regolith_studio.jobs.study_jobs import study_coarsening
-from regolith_studio.session.choices import Choices
-from regolith_studio.session.dependencies import Kind, depends
+from regolith_studio.session.choices import Choices, Kind, depends
 from regolith_studio.session.study_requests import varied_rows
 from regolith_studio.studies.coarsening import CoarseningStudy
 from regolith_studio.studies.sweeps import SWEEPS

@@ -11,8 +11,8 @@ from PySide6.QtWidgets import QTabWidget, QVBoxLayout, QWidget
 from regolith_studio.errors import RegolithError
 from regolith_studio.jobs.events import Job, Progress, Started, Steps
 from regolith_studio.messages import N_
-from regolith_studio.session.dependencies import STUDIES as KINDS
-from regolith_studio.session.dependencies import Kind
+from regolith_studio.session.choices import STUDIES as KINDS
+from regolith_studio.session.choices import Kind
 from regolith_studio.session.outputs.studies import STUDIES
 from regolith_studio.session.study_requests import chosen_rows, coarsen_gallery, solid_study
 from regolith_studio.studies.sweeps import SWEEPS
