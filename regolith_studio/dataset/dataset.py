@@ -134,7 +134,7 @@ class Representation:
     errors
         Wasserstein distance per descriptor, in its standard deviations.
     sampling_noise
-        The same between random halves of the population.
+        The same between the population and its material.
     """
 
     n_particles: int

@@ -40,8 +40,8 @@ class QualityCurve:
     points
         By ascending number.
     noise
-        The same distance between random halves of the population: below it, more representatives
-        reproduce the sample and no longer the material.
+        Expected distance between the population and its material: below it, more representatives reproduce
+        the sample and no longer the material.
     n_particles
         Of the population.
     """
@@ -137,8 +137,8 @@ def quality_table(curve: QualityCurve) -> Table:
         (Column("representatives"), Column("mean"), *(Column(key) for key in keys)),
         (*rows, noise),
         (
-            "In standard deviations of each descriptor. Last row: the same between random halves of the "
-            "population.",
+            "In standard deviations of each descriptor. Last row: the sampling noise, the same between these "
+            "particles and all of their material, estimated from random halves.",
             f"The mean error falls to that noise at {enough}; weighted by {curve.weighting}.",
         ),
     )

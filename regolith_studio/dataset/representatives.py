@@ -151,9 +151,11 @@ def sampling_noise(
     repeats: int = 20,
     seed: int = 0,
 ) -> dict[str, float]:
-    """Mean of :func:`representation_error` between two random halves of the population.
+    """Expected distance between the population and the material that it was taken from, by descriptor.
 
-    An error below it describes the sample and no longer the material.
+    Weighted and in standard deviations as in :func:`representation_error`; an error below it describes the
+    sample and no longer the material. Distances of samples of n and m particles are proportional to
+    sqrt(1/n + 1/m): of n against the whole material they are half of those between halves of the n.
     """
     generator = np.random.default_rng(np.random.SeedSequence(seed))
     values, counted = _compared(population, weighting)
@@ -162,8 +164,8 @@ def sampling_noise(
         order = generator.permutation(len(counted))
         one, other = order[: len(order) // 2], order[len(order) // 2 :]
         for key, each in values.items():
-            total[key] += _distance(each[one], each[other], counted[one], counted[other], each) / repeats
-    return total
+            total[key] += _distance(each[one], each[other], counted[one], counted[other], each)
+    return {key: distance / (2 * repeats) for key, distance in total.items()}
 
 
 def _compared(

@@ -119,7 +119,7 @@ class RepresentationRecord(SchemaModel):
         description="Wasserstein distance per descriptor, in its standard deviations."
     )
     sampling_noise: dict[str, float] = Field(
-        description="The same between random halves of the population: the resolution of the sample."
+        description="The same between the population and its material: the resolution of the sample."
     )
 
 
