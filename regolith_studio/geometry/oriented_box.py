@@ -1,6 +1,7 @@
 """Oriented bounding boxes of minimum volume, exact in the sense of O'Rourke; and trimesh's heuristic box."""
 
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any
 from weakref import WeakKeyDictionary
@@ -15,12 +16,16 @@ from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.mesh import Mesh, bounds_of
 from regolith_studio.geometry.minimum_box.hull_topology import Facets, facets_of_hull
-from regolith_studio.geometry.minimum_box.search import minimum_box
+from regolith_studio.geometry.minimum_box.search import TooManyCurvesError, minimum_box
 from regolith_studio.geometry.sphere_points import fibonacci_directions
 
 JITTER = 1e-10
 WELD = 1e-8
 """Vertices of a hull of size 1 that are closer are one for the search."""
+MAX_VERTICES, MAX_TURN = 10_000, 120.0
+"""Hulls with more vertices, or more curves of boxes, are thinned for the search."""
+FIRST_CELL = 0.02
+"""Cells of a hull of size 1 that is thinned; they grow until the search is short enough."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,6 +100,10 @@ def minimum_volume_box(solid: Mesh | ConvexPolyhedron) -> OrientedBox:
     adjacent sides are flush with edges of the hull), and independent of unit and orientation. Of boxes that
     tie in volume, the one with the smallest sum of edges is taken. The box of a mesh is kept with it.
 
+    Hulls whose search would be long are thinned for it: those of more than `MAX_VERTICES` vertices, and fine
+    balls, cones and cylinders, whose edges cannot be ruled out. The box holds the whole hull; its volume is
+    above the minimum by at most the share by which it is above that of the thinned hull's.
+
     Raises
     ------
     GeometryError
@@ -145,13 +154,31 @@ def _searched(solid: Mesh | ConvexPolyhedron) -> OrientedBox:
         raise GeometryError("The mesh is a single point and has no bounding box.")
     middle = (low + high) / 2
     points = (hull.vertices - middle) / size
-    facets = facets_of_hull(*_welded(points, hull.faces)) or _facets_of_perturbed(points)
-    axes = minimum_box(facets)
+    axes = _axes_of_box(*_welded(points, hull.faces))
     low_ends, high_ends = bounds_of(points @ axes.T)
     axes = _right_handed(axes[np.argsort(low_ends - high_ends, kind="stable")])
     lows, highs = bounds_of(points @ axes.T)
     extents = np.maximum.accumulate((highs - lows)[::-1])[::-1]
     return OrientedBox(middle + size * ((lows + highs) / 2) @ axes, axes, extents * size)
+
+
+def _axes_of_box(points: FloatArray, faces: IntArray) -> FloatArray:
+    """Axes of the minimum-volume box; where the search would be long, of a hull of fewer vertices."""
+    thinned, cell = points, FIRST_CELL
+    while True:
+        if len(thinned) <= MAX_VERTICES:
+            with suppress(TooManyCurvesError):
+                return minimum_box(facets_of_hull(thinned, faces) or _facets_of_perturbed(thinned), MAX_TURN)
+        hull = Mesh(_farthest_in_cells(points, cell), np.empty((0, 3), dtype=np.int64)).hull
+        thinned, faces = hull.vertices, hull.faces
+        cell *= 1.25
+
+
+def _farthest_in_cells(points: FloatArray, cell: float) -> FloatArray:
+    """Of the points in each cell of a cubic grid, the one farthest from the middle."""
+    order = np.argsort(-(points**2).sum(axis=1), kind="stable")
+    _, first = np.unique(np.floor(points[order] / cell), axis=0, return_index=True)
+    return points[order[np.sort(first)]]
 
 
 def _welded(points: FloatArray, faces: IntArray) -> tuple[FloatArray, IntArray]:

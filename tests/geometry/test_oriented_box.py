@@ -55,6 +55,14 @@ def test_that_the_box_of_a_ball_is_the_cube_around_it() -> None:
     assert minimum_volume_box(icosphere(3)).extents == pytest.approx(np.full(3, 2.0), rel=0.01)
 
 
+def test_that_the_search_for_the_box_of_a_cylinder_of_many_sides_ends(sides: int = 1000) -> None:
+    angles = np.linspace(0.0, 2.0 * np.pi, sides, endpoint=False)
+    ring = np.column_stack([np.cos(angles), np.sin(angles)])
+    ends = [np.column_stack([ring, np.full(sides, z)]) for z in (0.0, 0.5)]
+    cylinder = cloud(np.concatenate(ends)).moved(rotation=rotation(1))
+    assert minimum_volume_box(cylinder).extents == pytest.approx([2.0, 2.0, 0.5], rel=1e-3)
+
+
 @pytest.mark.parametrize("seed", range(6))
 @pytest.mark.parametrize("stretch", [0.0, 0.6])
 def test_that_no_simplex_search_finds_a_smaller_box(seed: int, stretch: float) -> None:

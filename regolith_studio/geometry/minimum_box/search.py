@@ -130,12 +130,30 @@ class Work(NamedTuple):
     ends: FloatArray
 
 
-def minimum_box(facets: Facets) -> FloatArray:
+class TooManyCurvesError(Exception):
+    """The boxes flush with two edges are too many to be searched."""
+
+
+def minimum_box(facets: Facets, max_turn: float = np.inf) -> FloatArray:
     """Axes of the minimum-volume box, one a row, shape (3, 3).
 
     No box is smaller by a share of 1e-8. Only of fine and nearly perfect balls, of which more than 8,000
     edges cannot be ruled out one by one, some box may be smaller by 1e-6, or by as much more, up to 1e-3, as
     rules out enough of them: their boxes are all alike, and pairs of edges would be many millions.
+
+    Parameters
+    ----------
+    facets
+        The solid.
+    max_turn
+        Half the sum, in radians, of the angles between neighbouring facets at edges that cannot be ruled out
+        one by one. The search takes about 0.1 ms times its square: 20 for a rough particle, 1,800 for a cone of
+        3,000 points.
+
+    Raises
+    ------
+    TooManyCurvesError
+        If a solid of more than 100 facets has more.
     """
     best, margin = empty_record(np.inf), TIE
     points, normals, edges = facets
@@ -150,6 +168,8 @@ def minimum_box(facets: Facets) -> FloatArray:
             slack *= 10.0
             margin = -slack
             kept = edges_that_may_bound(facets, arcs, table, best.record[0] * (1.0 + margin))
+        if arcs[kept, 10].sum() > max_turn:
+            raise TooManyCurvesError
         wanted = facets_with_all_edges(facets, kept)
         facets, arcs = Facets(points, normals, edges[kept]), arcs[kept]
     _search_facets(facets, arcs, table, work, wanted, 1, margin, best)
