@@ -55,7 +55,8 @@ def test_that_the_box_of_a_ball_is_the_cube_around_it() -> None:
     assert minimum_volume_box(icosphere(3)).extents == pytest.approx(np.full(3, 2.0), rel=0.01)
 
 
-def test_that_the_search_for_the_box_of_a_cylinder_of_many_sides_ends(sides: int = 1000) -> None:
+def test_that_the_search_for_the_box_of_a_cylinder_of_many_sides_ends() -> None:
+    sides = 1000
     angles = np.linspace(0.0, 2.0 * np.pi, sides, endpoint=False)
     ring = np.column_stack([np.cos(angles), np.sin(angles)])
     ends = [np.column_stack([ring, np.full(sides, z)]) for z in (0.0, 0.5)]

@@ -147,8 +147,8 @@ def minimum_box(facets: Facets, max_turn: float = np.inf) -> FloatArray:
         The solid.
     max_turn
         Half the sum, in radians, of the angles between neighbouring facets at edges that cannot be ruled out
-        one by one. The search takes about 0.1 ms times its square: 20 for a rough particle, 1,800 for a cone of
-        3,000 points.
+        one by one. The search takes about 0.1 ms times its square: 20 for a rough particle, 1,800 for a cone
+        of 3,000 points.
 
     Raises
     ------
