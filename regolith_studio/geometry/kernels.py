@@ -7,11 +7,18 @@ Python, which the tests compare it with.
 Machine code contains a copy of the kernels that a function calls, also of those in other files, while numba
 compares the date of the function's own file only. Code is therefore cached in a folder named after a hash of
 the sources of all kernels that the function may call: no edit and no update leaves old code behind.
+
+Code that cannot be read is compiled again. Where the cache cannot be written, code is kept in a temporary
+folder of the user's, or not at all. Each says so in one line.
 """
 
 import hashlib
+import logging
+import multiprocessing
 import os
 import shutil
+import stat
+import tempfile
 import time
 from collections.abc import Callable
 from contextlib import suppress
@@ -20,6 +27,7 @@ from pathlib import Path
 from typing import Any, TypeVar, cast
 
 import numba
+from numba.core.caching import FunctionCache
 from platformdirs import user_cache_path
 
 F = TypeVar("F", bound=Callable[..., object])
@@ -32,6 +40,7 @@ _NO_COUNTING: dict[str, Any] = {"_nrt": False}
 # An option of numba without documentation. Each use of an array of a named tuple otherwise counts references
 # up and down: atomic operations that cost more than the arithmetic around them.
 _CONFIG: Any = numba.config
+_FUNCTION_CACHE: Any = FunctionCache  # numba has no types
 _PACKAGE = Path(__file__).resolve().parents[1]
 _MARKS = (b"@kernel", b"@inline_kernel")
 
@@ -59,15 +68,43 @@ def inline_kernel(function: F) -> F:
     return cast(F, numba.njit(**_OPTIONS, **_NO_COUNTING)(function))
 
 
+class _KernelCache(_FUNCTION_CACHE):  # type: ignore[misc]
+    """Numba's cache of one function, whose faults cost time and nothing else."""
+
+    def load_overload(self, sig: Any, target_context: Any) -> Any:
+        try:
+            return super().load_overload(sig, target_context)
+        except Exception:  # noqa: BLE001  a damaged file may raise any
+            _report(f"Compiled code in {self.cache_path} is damaged; it is made again.")
+            with suppress(OSError):
+                self.flush()
+            return None
+
+    def save_overload(self, sig: Any, data: Any) -> None:
+        try:
+            super().save_overload(sig, data)
+        except Exception as error:  # noqa: BLE001  numba reads its index first
+            _report(f"Compiled code cannot be kept in {self.cache_path} ({error}); it is compiled each time.")
+
+
+@cache
+def _report(sentence: str) -> None:
+    """Write a line to stderr, once."""
+    logging.getLogger(__name__).warning(sentence)
+
+
 def _compiled(function: F, options: dict[str, Any]) -> F:
     folder = _cache_folder(_package_of(Path(function.__code__.co_filename)))
+    compiled = numba.njit(**_OPTIONS, **options)(function)
+    if folder is None:
+        return cast(F, compiled)
     before = _CONFIG.CACHE_DIR
     try:
-        _CONFIG.CACHE_DIR = str(folder or "")
-        decorate = numba.njit(cache=folder is not None, **_OPTIONS, **options)
-        return cast(F, decorate(function))
+        _CONFIG.CACHE_DIR = str(folder)
+        compiled._cache = _KernelCache(function)  # private to numba, whose own cache raises what it meets
     finally:
         _CONFIG.CACHE_DIR = before
+    return cast(F, compiled)
 
 
 def _package_of(path: Path) -> Path | None:
@@ -91,15 +128,59 @@ def _cache_folder(package: Path | None) -> Path | None:
     digest = hashlib.sha256(numba.__version__.encode())
     for part in parts:
         digest.update(kernel_sources(part).encode())
-    base = _CONFIG.CACHE_DIR or user_cache_path("regolith-studio", appauthor=False) / "kernels"
-    folder = Path(base) / f"{parts[-1].name}-{digest.hexdigest()[:16]}"
+    base = _cache_base()
+    if base is None:
+        return None
+    folder = base / f"{parts[-1].name}-{digest.hexdigest()[:16]}"
     try:
         _delete_unused(folder)
         folder.mkdir(parents=True, exist_ok=True)
         os.utime(folder)  # used now
     except OSError:
         return None
-    return folder if os.access(folder, os.W_OK) else None
+    return folder
+
+
+@cache
+def _cache_base() -> Path | None:
+    """Folder that can be written for the machine code of all kernels; ``None`` if there is none.
+
+    Other processes that this one starts use the same.
+    """
+    wanted = Path(_CONFIG.CACHE_DIR or user_cache_path("regolith-studio", appauthor=False) / "kernels")
+    if _is_writable(wanted):
+        return wanted
+    mine = Path(
+        tempfile.gettempdir(), f"regolith-studio-{os.getuid() if hasattr(os, 'getuid') else 'kernels'}"
+    )
+    if _is_private(mine) and _is_writable(mine):
+        _report(f"The folder {wanted} cannot be written; compiled code is kept in {mine}.")
+        os.environ["NUMBA_CACHE_DIR"] = str(mine)
+        return mine
+    if multiprocessing.parent_process() is None:
+        _report(f"The folder {wanted} cannot be written; code is compiled each time.")
+    return None
+
+
+def _is_writable(folder: Path) -> bool:
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder) as file:
+            file.write(b"1")
+    except OSError:
+        return False
+    return True
+
+
+def _is_private(folder: Path) -> bool:
+    """Whether a folder is the user's and nobody else's; machine code of others is not run."""
+    try:
+        folder.mkdir(mode=0o700, exist_ok=True)
+        found = folder.lstat()
+    except OSError:
+        return False
+    mine = not hasattr(os, "getuid") or (found.st_uid == os.getuid() and not found.st_mode & 0o077)
+    return stat.S_ISDIR(found.st_mode) and mine
 
 
 def _delete_unused(new: Path) -> None:

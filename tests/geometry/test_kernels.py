@@ -1,12 +1,14 @@
 """How kernels are called, and what is kept of compiled ones on disk."""
 
 import ast
+import errno
 import importlib
 import os
 import re
 import signal
 import subprocess
 import sys
+import tempfile
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -14,6 +16,7 @@ from pathlib import Path
 import numba
 import numpy as np
 import pytest
+from numba.core.caching import IndexDataCacheFile
 
 from regolith_studio.geometry import kernels
 from regolith_studio.geometry.arrays import FloatArray
@@ -39,9 +42,17 @@ def doubled():
 def cache_below(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     """The folder that NUMBA_CACHE_DIR names."""
     monkeypatch.setattr(numba.config, "CACHE_DIR", str(tmp_path / "cache"))
-    kernels._cache_folder.cache_clear()
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "cache"))
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    forget()
     yield tmp_path / "cache"
-    kernels._cache_folder.cache_clear()
+    forget()
+
+
+def forget() -> None:
+    """Forget what one process looks up once."""
+    for each in (kernels.kernel_sources, kernels._cache_folder, kernels._cache_base, kernels._report):
+        each.cache_clear()
 
 
 def doubled(name: str) -> int:
@@ -49,14 +60,13 @@ def doubled(name: str) -> int:
     for module in [key for key in sys.modules if key.startswith(name)]:
         del sys.modules[module]
     importlib.invalidate_caches()
-    kernels.kernel_sources.cache_clear()
-    kernels._cache_folder.cache_clear()
+    forget()
     return int(importlib.import_module(f"{name}.caller").doubled())
 
 
-def test_that_compiled_code_does_not_survive_an_edit_of_a_kernel_that_it_calls(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+@pytest.fixture
+def package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A package named ``part`` with two kernels; the outer one answers 42."""
     package = tmp_path / "studio" / "part"
     package.mkdir(parents=True)
     (package / "__init__.py").touch()
@@ -64,9 +74,41 @@ def test_that_compiled_code_does_not_survive_an_edit_of_a_kernel_that_it_calls(
     (package / "callee.py").write_text(CALLEE.format(21))
     monkeypatch.syspath_prepend(str(tmp_path / "studio"))
     monkeypatch.setattr(kernels, "_PACKAGE", tmp_path / "studio")
+    return package
+
+
+def test_that_compiled_code_does_not_survive_an_edit_of_a_kernel_that_it_calls(package: Path) -> None:
     assert doubled("part") == 42
     (package / "callee.py").write_text(CALLEE.format(1000))
     assert doubled("part") == 2000
+
+
+@pytest.mark.parametrize("kept", [0.0, 0.5, 0.99])
+@pytest.mark.parametrize("kind", ["nbi", "nbc"])
+@pytest.mark.usefixtures("package")
+def test_that_damaged_compiled_code_is_made_again_with_one_line(
+    kind: str, kept: float, cache_below: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    assert doubled("part") == 42
+    for path in cache_below.rglob(f"caller*.{kind}"):
+        content = path.read_bytes()
+        path.write_bytes(content[: int(kept * len(content))])
+    assert doubled("part") == 42
+    assert [each.getMessage().split(" in ")[0] for each in caplog.records] == ["Compiled code"]
+    assert doubled("part") == 42
+    assert len(caplog.records) == 1
+
+
+@pytest.mark.usefixtures("package")
+def test_that_a_full_disk_costs_the_cache_and_not_the_result(
+    monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    def write(*_: object) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(IndexDataCacheFile, "_save_data", write)
+    assert doubled("part") == 42
+    assert "No space left" in caplog.text
 
 
 def test_that_only_files_with_kernels_count(tmp_path: Path) -> None:
@@ -105,8 +147,26 @@ def test_that_folders_of_other_versions_go_when_nobody_has_used_them_for_long(ca
     assert strange.exists()
 
 
-def test_that_kernels_compile_where_nothing_can_be_written(cache_below: Path) -> None:
+def test_that_code_is_kept_in_a_temporary_folder_where_the_cache_cannot_be_written(
+    cache_below: Path, caplog: pytest.LogCaptureFixture
+) -> None:
     cache_below.touch()
+    kept = kernels._cache_folder(None)
+    assert kept is not None
+    assert kept.is_relative_to(tempfile.gettempdir())
+    assert os.environ["NUMBA_CACHE_DIR"] == str(kept.parent)
+    assert [each.getMessage().split(";")[0] for each in caplog.records] == [
+        f"The folder {cache_below} cannot be written"
+    ]
+
+
+@pytest.mark.skipif(not hasattr(os, "getuid"), reason="temporary folders are the user's own on Windows")
+def test_that_code_is_compiled_each_time_where_the_temporary_folder_may_be_another_users(
+    cache_below: Path, tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    cache_below.touch()
+    (tmp_path / f"regolith-studio-{os.getuid()}").mkdir()
+    (tmp_path / f"regolith-studio-{os.getuid()}").chmod(0o777)
     assert kernels._cache_folder(None) is None
 
     @kernels.kernel
@@ -114,6 +174,7 @@ def test_that_kernels_compile_where_nothing_can_be_written(cache_below: Path) ->
         return 2
 
     assert two() == 2
+    assert len(caplog.records) == 1
 
 
 ROOT = Path(kernels.__file__).resolve().parents[2]
