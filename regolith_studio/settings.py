@@ -84,7 +84,7 @@ def _check_number(each: Field[Any], value: Any) -> None:
     low, high = each.metadata.get("minimum", -math.inf), each.metadata.get("maximum", math.inf)
     is_whole = isinstance(each.default, int)
     is_number = isinstance(value, int if is_whole else int | float) and not isinstance(value, bool)
-    if is_number and not (value < low or value > high):
+    if is_number and math.isfinite(value) and low <= value <= high:
         return
     what = "a whole number" if is_whole else "a number"
     if math.isfinite(low) and math.isfinite(high):

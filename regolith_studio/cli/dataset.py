@@ -47,6 +47,7 @@ def build(
         typer.Option(
             "--representatives",
             min=0,
+            max=100_000,
             help="Number of representative particles; 0 keeps all particles.",
             metavar="N",
         ),
@@ -60,6 +61,7 @@ def build(
         typer.Option(
             "--size-importance",
             min=0.0,
+            max=1e6,
             help="Weight of the size, relative to a shape feature, in the choice of representatives.",
             metavar="X",
         ),
@@ -181,7 +183,10 @@ def list_(
 def sample(
     folder: DatasetFolder,
     count: Annotated[
-        int, typer.Option("--number", "-n", min=0, help="Number of particles to draw.", metavar="N")
+        int,
+        typer.Option(
+            "--number", "-n", min=0, max=10_000_000, help="Number of particles to draw.", metavar="N"
+        ),
     ],
     output: Annotated[
         Path | None,
@@ -249,13 +254,21 @@ def export(
     coarse_graining: Annotated[
         float,
         typer.Option(
-            "--coarse-graining", help="Coarse-graining factor on all diameters; 10 in the paper.", metavar="F"
+            "--coarse-graining",
+            min=1e-6,
+            max=1e6,
+            help="Coarse-graining factor on all diameters; 10 in the paper.",
+            metavar="F",
         ),
     ] = 10.0,
     particles: Annotated[
         int,
         typer.Option(
-            "--particles", help="Number of particles in formats that list single ones.", metavar="N"
+            "--particles",
+            min=1,
+            max=1_000_000,
+            help="Number of particles in formats that list single ones.",
+            metavar="N",
         ),
     ] = 200,
     set_: Annotated[

@@ -30,7 +30,10 @@ Sources = Annotated[
         help="A fit or model (.json), a material card (file, or name of a shipped one), or mesh files.",
     ),
 ]
-Number = Annotated[int, typer.Option("--number", "-n", help="Number of particles to draw.", metavar="N")]
+Number = Annotated[
+    int,
+    typer.Option("--number", "-n", min=1, max=10_000_000, help="Number of particles to draw.", metavar="N"),
+]
 Model = Annotated[
     str,
     typer.Option(
@@ -44,6 +47,8 @@ Degree = Annotated[
     int | None,
     typer.Option(
         "--l-max",
+        min=1,
+        max=30,
         help="Maximum degree of the particles' surfaces.",
         metavar="L",
         show_default="10, or the source's",

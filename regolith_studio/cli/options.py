@@ -22,11 +22,14 @@ Meshes = Annotated[
     list[Path], typer.Argument(metavar="MESH...", help="Mesh files, or folders that hold some.")
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print JSON instead of a table.")]
-Seed = Annotated[int, typer.Option("--seed", help="Seed of the random numbers.", metavar="N")]
+MAX_SEED = 2**63 - 1
+Seed = Annotated[
+    int, typer.Option("--seed", min=0, max=MAX_SEED, help="Seed of the random numbers.", metavar="N")
+]
 Jobs = Annotated[
     int,
     typer.Option(
-        "--jobs", "-j", min=0, help="Number of parallel processes; 0 for one per core.", metavar="N"
+        "--jobs", "-j", min=0, max=1024, help="Number of parallel processes; 0 for one per core.", metavar="N"
     ),
 ]
 Unit = Annotated[
@@ -102,20 +105,33 @@ Folder = Annotated[
     ),
 ]
 LMax = Annotated[
-    int, typer.Option("--l-max", help="Maximum degree of the spherical harmonics, 0 to 30.", metavar="L")
+    int,
+    typer.Option(
+        "--l-max", min=0, max=30, help="Maximum degree of the spherical harmonics, 0 to 30.", metavar="L"
+    ),
 ]
 Degrees = Annotated[
     str, typer.Option("--degrees", help="Values of l_max, such as 1,2,5 or 1-20.", metavar="LIST")
 ]
 Level = Annotated[
     int,
-    typer.Option("--level", help="Subdivisions of the icosahedron that surfaces are drawn on.", metavar="N"),
+    typer.Option(
+        "--level",
+        min=0,
+        max=7,
+        help="Subdivisions of the icosahedron that surfaces are drawn on.",
+        metavar="N",
+    ),
 ]
-Facets = Annotated[int, typer.Option("--facets", help="Number of facets of each polyhedron.", metavar="N")]
+Facets = Annotated[
+    int, typer.Option("--facets", min=5, max=200, help="Number of facets of each polyhedron.", metavar="N")
+]
 Triangles = Annotated[
     int | None,
     typer.Option(
         "--triangles",
+        min=8,
+        max=1_000_000,
         help="Maximum number of triangles of each polyhedron, instead of --facets.",
         metavar="N",
     ),
@@ -124,6 +140,8 @@ MaxError = Annotated[
     float | None,
     typer.Option(
         "--max-error",
+        min=1e-6,
+        max=1e6,
         help="Maximum error of the weighted descriptors, met by the fewest facets, instead of --facets.",
         metavar="PERCENT",
     ),

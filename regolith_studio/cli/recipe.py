@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from regolith_studio.cli.options import Folder, Jobs, Json, usage_errors
+from regolith_studio.cli.options import MAX_SEED, Folder, Jobs, Json, usage_errors
 
 if TYPE_CHECKING:
     from regolith_studio.jobs.executor import Executor, ExecutorSettings
@@ -27,6 +27,7 @@ def run(
         typer.Option(
             "--chunk",
             min=1,
+            max=1_000_000,
             help="Particles per chunk; by default 1, and 25 to 200 in batches of 200 or more.",
             metavar="N",
             show_default=False,
@@ -59,7 +60,11 @@ def run(
     seed: Annotated[
         int | None,
         typer.Option(
-            "--seed", help="Seed of the random numbers, instead of that of the recipe.", metavar="N"
+            "--seed",
+            min=0,
+            max=MAX_SEED,
+            help="Seed of the random numbers, instead of that of the recipe.",
+            metavar="N",
         ),
     ] = None,
 ) -> None:

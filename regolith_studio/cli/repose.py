@@ -40,6 +40,8 @@ Base = Annotated[
     float | None,
     typer.Option(
         "--base",
+        min=-1e12,
+        max=1e12,
         help="Height of the plate in the file's unit; otherwise 0, or where the lowest particles reach to "
         "if that is more than a mean diameter away.",
         metavar="Z",
@@ -54,7 +56,13 @@ PositionUnit = Annotated[
 ]
 Diameter = Annotated[
     float,
-    typer.Option("--diameter", help="Diameter of all particles, for files without diameters.", metavar="D"),
+    typer.Option(
+        "--diameter",
+        min=0.0,
+        max=1e12,
+        help="Diameter of all particles, for files without diameters.",
+        metavar="D",
+    ),
 ]
 
 
@@ -124,12 +132,12 @@ def positions_in(file: Path, unit: str, diameter: float) -> tuple[Any, Any]:
         If the file holds no positions, or no diameters and none is given.
     """
     from regolith_studio.cli.terminal import print_errors
-    from regolith_studio.dem.snapshot import read_particle_state
+    from regolith_studio.dem.run_io import read_final_state
     from regolith_studio.errors import FileError
     from regolith_studio.readers.positions import read_positions
 
     if file.suffix.lower() == ".npz":
-        pile = read_particle_state(file)
+        pile = read_final_state(file)
         return pile.points, pile.diameters
     metres = metres_in(unit)
     found = read_positions(file, unit)
@@ -161,6 +169,8 @@ def run(
         float,
         typer.Option(
             "--coarse-graining",
+            min=0.0,
+            max=1e5,
             help="Coarse-graining factor on sizes; chosen from the mass if omitted.",
             metavar="F",
         ),
@@ -220,7 +230,7 @@ def study(
         ),
     ] = "",
     repeats: Annotated[
-        int, typer.Option("--repeats", min=1, help="Number of seeds per value.", metavar="N")
+        int, typer.Option("--repeats", min=1, max=1000, help="Number of seeds per value.", metavar="N")
     ] = 1,
     particles: Particles = 1000,
     how: CaseOptions,

@@ -14,7 +14,10 @@ if TYPE_CHECKING:
     from regolith_studio.jobs.repose_jobs import ReposeRequest
 
 Particles = Annotated[
-    int, typer.Option("--particles", "-n", help="Number of simulated particles.", metavar="N")
+    int,
+    typer.Option(
+        "--particles", "-n", min=10, max=5_000_000, help="Number of simulated particles.", metavar="N"
+    ),
 ]
 EngineKey = Annotated[
     str, typer.Option("--engine", help="DEM engine; listed by `repose engines`.", metavar="KEY")

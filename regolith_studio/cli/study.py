@@ -44,7 +44,11 @@ if TYPE_CHECKING:
 Below = Annotated[
     float,
     typer.Option(
-        "--below", help="Report the smallest l_max with every error below this limit.", metavar="PERCENT"
+        "--below",
+        min=0.0,
+        max=1e6,
+        help="Report the smallest l_max with every error below this limit.",
+        metavar="PERCENT",
     ),
 ]
 
@@ -79,15 +83,22 @@ Draws = Annotated[
     int,
     typer.Option(
         "--draws",
+        min=0,
+        max=1_000_000,
         help="Number of particles per draw.",
         metavar="N",
         show_default="half the sample, at most 1000",
     ),
 ]
 Splits = Annotated[
-    int, typer.Option("--splits", help="Number of random halves that models are fitted to.", metavar="N")
+    int,
+    typer.Option(
+        "--splits", min=1, max=1000, help="Number of random halves that models are fitted to.", metavar="N"
+    ),
 ]
-Repeats = Annotated[int, typer.Option("--repeats", help="Number of draws from each fit.", metavar="N")]
+Repeats = Annotated[
+    int, typer.Option("--repeats", min=1, max=1000, help="Number of draws from each fit.", metavar="N")
+]
 DescriptorKeys = Annotated[
     str,
     typer.Option(

@@ -56,7 +56,13 @@ class VolumeOptions:
     ] = "little"
     offset: Annotated[
         int,
-        typer.Option("--offset", help="Number of bytes before the first voxel of a raw file.", metavar="N"),
+        typer.Option(
+            "--offset",
+            min=0,
+            max=2**63 - 1,
+            help="Number of bytes before the first voxel of a raw file.",
+            metavar="N",
+        ),
     ] = 0
 
     def of(self, volume: Path) -> "VolumeInput":
@@ -103,18 +109,28 @@ class GrainOptions:
         int,
         typer.Option(
             "--opening",
+            min=0,
+            max=10,
             help="Radius in voxels of the opening, which removes specks and bridges.",
             metavar="N",
         ),
     ] = 0
     closing: Annotated[
         int,
-        typer.Option("--closing", help="Radius in voxels of the closing, which fills cracks.", metavar="N"),
+        typer.Option(
+            "--closing",
+            min=0,
+            max=10,
+            help="Radius in voxels of the closing, which fills cracks.",
+            metavar="N",
+        ),
     ] = 0
     h_maxima: Annotated[
         float,
         typer.Option(
             "--h-maxima",
+            min=0.0,
+            max=1e6,
             help="Height in voxels of the maxima of the distance map that count as separate grains; "
             "larger values give fewer grains.",
             metavar="H",
@@ -122,7 +138,10 @@ class GrainOptions:
     ] = 0.8
     split: Annotated[bool, typer.Option("--split/--no-split", help="Separate touching grains.")] = True
     min_voxels: Annotated[
-        int, typer.Option("--min-voxels", help="Minimum number of voxels of a grain.", metavar="N")
+        int,
+        typer.Option(
+            "--min-voxels", min=0, max=2**63 - 1, help="Minimum number of voxels of a grain.", metavar="N"
+        ),
     ] = 268
     border: Annotated[
         str,
@@ -204,14 +223,18 @@ def threshold_from(text: str, dark: bool) -> "ThresholdSettings":
 
 def _edges(text: str) -> tuple[float, ...] | None:
     """One edge or three, written as ``2.3`` or ``2.3,2.3,5``."""
+    from regolith_studio.readers.units import MAX_VOXEL, MIN_VOXEL
+
     if not text:
         return None
     try:
         edges = tuple(float(part) for part in text.split(","))
     except ValueError:
         edges = ()
-    if len(edges) not in (1, 3) or not all(0.0 < edge < float("inf") for edge in edges):
-        raise typer.BadParameter(f"A voxel size is a positive number or three as X,Y,Z, got {text!r}.")
+    if len(edges) not in (1, 3) or not all(MIN_VOXEL <= edge <= MAX_VOXEL for edge in edges):
+        raise typer.BadParameter(
+            f"A voxel size is a number from {MIN_VOXEL:g} to {MAX_VOXEL:g} or three as X,Y,Z, got {text!r}."
+        )
     return edges * 3 if len(edges) == 1 else edges
 
 

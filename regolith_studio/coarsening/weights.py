@@ -1,7 +1,6 @@
 """Weights of the loss (Eq. 9), and the shipped sets of them."""
 
 import json
-import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache
@@ -15,6 +14,7 @@ JACCARD = "jaccard_distance"
 """Key of the term that the paper calls IoU (Eq. 7)."""
 WEIGHT_KEYS: tuple[str, ...] = (JACCARD, *LOSS_KEYS)
 """Terms of the loss in the order of the paper's Figure 8."""
+MAX_WEIGHT = 1_000_000
 
 
 @dataclass(frozen=True)
@@ -29,7 +29,7 @@ class LossWeights(Mapping[str, float]):
     Raises
     ------
     InputError
-        If a weight is negative or not finite.
+        If a weight is negative or above a million.
     """
 
     values_by_key: tuple[float, ...]
@@ -39,8 +39,8 @@ class LossWeights(Mapping[str, float]):
         if len(values) != len(WEIGHT_KEYS):
             raise ValueError(f"there are {len(WEIGHT_KEYS)} weights, got {len(values)}")
         for key, value in zip(WEIGHT_KEYS, values, strict=True):
-            if not (math.isfinite(value) and value >= 0.0):
-                raise InputError(f"The weight of {key} must be 0 or a positive number, got {value}.")
+            if not 0.0 <= value <= MAX_WEIGHT:
+                raise InputError(f"The weight of {key} must lie between 0 and {MAX_WEIGHT:,}, got {value}.")
         object.__setattr__(self, "values_by_key", values)
 
     @classmethod

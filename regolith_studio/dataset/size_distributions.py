@@ -18,7 +18,7 @@ from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray
 
 Weighting = Literal["number", "volume"]
-Diameter = Annotated[float, Field(gt=0.0, description="Equivalent diameter in micrometres.")]
+Diameter = Annotated[float, Field(gt=0.0, le=1e12, description="Equivalent diameter in micrometres.")]
 Share = Annotated[float, Field(ge=0.0, le=1.0)]
 
 PAPER_CLASSES_UM = (25.0, 37.0, 56.0, 84.0, 125.0)

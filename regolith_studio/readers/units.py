@@ -7,6 +7,8 @@ from regolith_studio.errors import InputError
 UNITS: dict[str, float] = {"um": 1.0, "mm": 1e3, "m": 1e6, "nm": 1e-3, "cm": 1e4, "voxel": math.nan}
 """Micrometres in a unit; not a number for ``voxel``, whose size must be given: ``voxel:2.5``."""
 
+MIN_VOXEL, MAX_VOXEL = 1e-12, 1e12
+"""Range of the edge of a voxel, in any unit."""
 _NAMES = {
     "um": ("um", "µm", "μm", "\\u00b5m", "\\u03bcm", "micron", "microns",
            "micrometer", "micrometre", "micrometers", "micrometres"),
@@ -41,8 +43,9 @@ def unit_factor(unit: str) -> float:
         factor = UNITS.get(unit, math.nan)
         if math.isnan(factor):
             raise InputError(f"There is no unit “{unit}”; the units are {', '.join(UNITS)}.")
-    if not (math.isfinite(factor) and factor > 0.0):
+    if not MIN_VOXEL <= factor <= MAX_VOXEL:
         raise InputError(
-            "The unit voxel needs the size of a voxel in micrometres: write for example voxel:2.5."
+            "The unit voxel needs the size of a voxel in micrometres: write for example voxel:2.5, "
+            f"from {MIN_VOXEL:g} to {MAX_VOXEL:g}."
         )
     return factor

@@ -19,6 +19,7 @@ from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats
 Bounds = tuple[float, float] | None
 _TABLE = 4001
 MAX_MODES = 6
+MAX_RADIUS = 1e12
 FEWEST_A_MODE = 10
 """Particles for each part of a mixture of log-normal laws."""
 NARROWEST = 0.05
@@ -41,12 +42,12 @@ def checked_bounds(bounds: Bounds) -> Bounds:
     Raises
     ------
     InputError
-        If an end is not positive and finite, or they are not in order.
+        If an end is not positive or above 1e12, or they are not in order.
     """
     if bounds is None:
         return None
     low, high = float(bounds[0]), float(bounds[1])
-    if not 0 < low < high < np.inf:
+    if not 0 < low < high <= MAX_RADIUS:
         raise InputError(
             f"A range of sizes needs two positive radii, the smaller first, got {low:g} to {high:g}."
         )
