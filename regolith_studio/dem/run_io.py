@@ -1,5 +1,6 @@
 """The folder of a run: snapshots, ``repose.json`` with the result, and ``final.npz`` with the final state."""
 
+import hashlib
 import io
 import os
 from collections.abc import Iterator
@@ -17,7 +18,7 @@ from regolith_studio.dem.case import PreparedCase, ReposeCase
 from regolith_studio.dem.engine import Engine, RunChecks, SimulationResult
 from regolith_studio.dem.evaluation.errors import NotAPileError
 from regolith_studio.dem.scaling_report import scaling_report
-from regolith_studio.dem.snapshot import ParticleState, particle_state_bytes
+from regolith_studio.dem.snapshot import ParticleState, particle_state_bytes, read_particle_state
 from regolith_studio.errors import FileError, os_error_reason
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.io.atomic import exchange, hidden_folder
@@ -108,11 +109,29 @@ def save_result(folder: Path, document: dict[str, Any], final: ParticleState | N
     """
     try:
         if final is not None:
-            _write(folder / FINAL, particle_state_bytes(final))
+            content = particle_state_bytes(final)
+            _write(folder / FINAL, content)
+            document = document | {"final_sha256": hashlib.sha256(content).hexdigest()}
         _write(folder / TIMES, canonical_json({"seconds": round(seconds, 3)}).encode("utf-8"))
         _write(folder / DOCUMENT, canonical_json(document).encode("utf-8"))
     except OSError as error:
         raise FileError(f"The result could not be written to {folder} ({error.strerror}).") from error
+
+
+def read_final_state(path: Path) -> ParticleState:
+    """Particles of a snapshot, or of a run's final state, which must be that of the document beside it.
+
+    Raises
+    ------
+    FileError
+        If the file is broken, or the final state of another run.
+    """
+    state = read_particle_state(path)
+    if path.name == FINAL and (path.parent / DOCUMENT).is_file():
+        wanted = read_run(path.parent).document.get("final_sha256")
+        if wanted not in (None, hashlib.sha256(path.read_bytes()).hexdigest()):
+            raise FileError(f"{path} is not the final state of the run that {DOCUMENT} beside it describes.")
+    return state
 
 
 def snapshot_files(folder: Path) -> list[Path]:

@@ -91,6 +91,27 @@ def staged_folder(folder: Path, kind: str) -> Iterator[Path]:
         raise FileError(f"The folder {folder} cannot be written ({os_error_reason(error)}).") from error
 
 
+def listed_hashes(folder: Path) -> dict[str, str]:
+    """SHA-256 of the files in a folder by their names, from the lists that :func:`staged_folder` wrote."""
+    lines = [line for path in folder.glob("*.sha256") for line in os.fsdecode(path.read_bytes()).splitlines()]
+    return {line[66:]: line[:64] for line in lines}
+
+
+def check_listed(name: str, sha256: str, listed: Mapping[str, str]) -> None:
+    """Check a file against the list of its folder.
+
+    Raises
+    ------
+    FileError
+        If the list has another SHA-256 for it.
+    """
+    if listed.get(name, sha256) != sha256:
+        raise FileError(
+            f"{name} is not the file that the list of its folder (.sha256) names: it was changed, or belongs "
+            "to another run; remove the list if that is intended."
+        )
+
+
 def replace_folder(target: Path, files: Mapping[str, Content] | Iterable[tuple[str, Content]]) -> None:
     """Make `target` hold exactly `files` (relative POSIX paths), in one step, flushed to the disk.
 

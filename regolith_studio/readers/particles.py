@@ -4,8 +4,8 @@ import csv
 import logging
 import math
 import os
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cache
 from pathlib import Path
 
@@ -15,8 +15,10 @@ from regolith_studio.geometry.merge_vertices import merged_vertices
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.mesh_health import inspect
 from regolith_studio.geometry.particle import Particle, Source
+from regolith_studio.io.atomic import check_listed, listed_hashes
 from regolith_studio.readers.coefficient_tables import TABLE_SUFFIXES, TEXT_SUFFIXES, read_table_particle
 from regolith_studio.readers.error_messages import display_name, message_about, plural, printable
+from regolith_studio.readers.file_bytes import sha256_of
 from regolith_studio.readers.formats import mesh_suffixes
 from regolith_studio.readers.sandbox.parent import Sandbox, shared_sandbox
 from regolith_studio.readers.units import unit_factor
@@ -33,11 +35,15 @@ MAX_NAME_BYTES = 150
 
 @dataclass(frozen=True)
 class MeshFile:
-    """A file to be read, the group that its place in a folder puts it in, and its particle's weight."""
+    """A file to be read, the group that its place in a folder puts it in, and its particle's weight.
+
+    `listed` holds the SHA-256 of files by their names, as the list of its folder has them.
+    """
 
     path: Path
     group: str = ""
     weight: float = 1.0
+    listed: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -192,6 +198,13 @@ def read_file(
     file: MeshFile, unit: str = "um", repair: bool = True, sandbox: Sandbox | None = None
 ) -> Particle:
     """As `read_mesh`, for one of `mesh_files`: the particle gets its group and its weight."""
+    particle = _read_file(file, unit, repair, sandbox)
+    if particle.source is not None:
+        check_listed(file.path.name, particle.source.sha256, file.listed)
+    return particle
+
+
+def _read_file(file: MeshFile, unit: str, repair: bool, sandbox: Sandbox | None) -> Particle:
     suffix = file.path.suffix.lower()
     if suffix in TABLE_SUFFIXES:
         return replace(read_table_particle(file.path, unit, file.group, sandbox), weight=file.weight)
@@ -254,7 +267,7 @@ def mesh_files(paths: Sequence[str | Path]) -> list[MeshFile]:
     Raises
     ------
     FileError
-        If a folder holds no mesh file.
+        If a folder holds no mesh file, or its table of weights is not that of its list.
     """
     given = [Path(path) for path in paths]
     several = sum(path.is_dir() for path in given) > 1
@@ -268,8 +281,17 @@ def mesh_files(paths: Sequence[str | Path]) -> list[MeshFile]:
                 f"{', '.join(TABLE_SUFFIXES)}."
             )
         files += found
-    weights = {folder: read_weights(folder) for folder in {file.path.parent for file in files}}
-    return [replace(file, weight=weights[file.path.parent].get(file.path.stem, 1.0)) for file in files]
+    folders = {file.path.parent for file in files}
+    lists = {folder: listed_hashes(folder) for folder in folders}
+    weights = {folder: read_weights(folder, lists[folder]) for folder in folders}
+    return [
+        replace(
+            file,
+            weight=weights[file.path.parent].get(file.path.stem, 1.0),
+            listed=lists[file.path.parent],
+        )
+        for file in files
+    ]
 
 
 def _in_folder(folder: Path, several: bool) -> Iterator[MeshFile]:
@@ -296,17 +318,23 @@ WEIGHTS_FILE = "particles.csv"
 MAX_TABLE_BYTES = 256 * 1024**2
 
 
-def read_weights(folder: Path) -> dict[str, float]:
+def read_weights(folder: Path, listed: Mapping[str, str] | None = None) -> dict[str, float]:
     """Weight of each particle by its name; empty where the folder has no such table.
 
     A table that somebody else wrote, with no columns ``name`` and ``weight``, or without a positive
     number in the second, gives no weights: they are an addition to the meshes, not a part of them.
+
+    Raises
+    ------
+    FileError
+        If the SHA-256 of the table is `listed` and another.
     """
     path = folder / WEIGHTS_FILE
     found: dict[str, float] = {}
     try:
         if not path.is_file() or path.stat().st_size > MAX_TABLE_BYTES:
             return found
+        check_listed(path.name, sha256_of(path), listed or {})
         with path.open(encoding="utf-8-sig", newline="") as file:
             rows = csv.DictReader(file)
             if not {"name", "weight"} <= set(rows.fieldnames or ()):

@@ -16,6 +16,7 @@ from regolith_studio.harmonics.coefficients import CONVENTION, ShCoefficients
 from regolith_studio.harmonics.fit import HarmonicFit
 from regolith_studio.harmonics.sphere_grid import sphere_grid
 from regolith_studio.harmonics.surface import radii
+from regolith_studio.io.atomic import check_listed, listed_hashes
 from regolith_studio.io.json_arrays import arrays_from
 from regolith_studio.readers.error_messages import message_about, printable
 from regolith_studio.readers.file_bytes import read_bytes
@@ -79,6 +80,7 @@ def read_shape_source(text: str) -> ShapeSource:
         return ShapeSource(materials()[text], text)
     content = read_bytes(path, MAX_TEXT_BYTES)
     found = hashlib.sha256(content).hexdigest()
+    check_listed(path.name, found, listed_hashes(path.parent))
     document = _document(path, content)
     kind = document.get("format")
     try:

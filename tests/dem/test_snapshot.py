@@ -1,10 +1,12 @@
 """Files of particles at one moment."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from regolith_studio.dem.run_io import FORMAT, read_final_state, save_result
 from regolith_studio.dem.snapshot import ParticleState, particle_state_bytes, read_particle_state
 from regolith_studio.errors import FileError
 
@@ -48,3 +50,12 @@ def test_that_another_file_is_refused_in_one_sentence(tmp_path: Path) -> None:
     np.savez(path, points_m=np.array([object()]))
     with pytest.raises(FileError, match="no particles"):
         read_particle_state(path)
+
+
+def test_that_the_final_state_of_another_run_is_refused(tmp_path: Path) -> None:
+    save_result(tmp_path, {"format": FORMAT}, _pile(), 1.0)
+    assert len(read_final_state(tmp_path / "final.npz")) == 5
+    other = replace(_pile(), time=2.5)
+    (tmp_path / "final.npz").write_bytes(particle_state_bytes(other))
+    with pytest.raises(FileError, match="not the final state of the run"):
+        read_final_state(tmp_path / "final.npz")

@@ -5,6 +5,7 @@ import hashlib
 import pytest
 
 from regolith_studio.errors import FileError, GeometryError, InputError
+from regolith_studio.io.atomic import staged_folder
 from regolith_studio.readers.file_bytes import sha256_of
 from regolith_studio.readers.formats import MESH_FORMATS, mesh_suffixes
 from regolith_studio.readers.particles import read_mesh, read_particles, sample_particles
@@ -174,3 +175,29 @@ def test_that_the_shipped_particles_are_sound_and_named():
         assert particle.mesh.volume > 0.0
         assert particle.source.path == f"sample:{particle.name}"
         assert particle.source.unit == "um"
+
+
+@pytest.fixture
+def result(cube, tmp_path):
+    """A folder of two cubes and their weights, as a command leaves it."""
+    with staged_folder(tmp_path / "result", "extract") as stage:
+        (stage / "a.stl").write_bytes(cube.binary_stl())
+        (stage / "b.stl").write_bytes(cube.binary_stl())
+        (stage / "particles.csv").write_text("name,weight\na,1.5\n")
+    return tmp_path / "result"
+
+
+def test_that_a_file_that_is_not_the_one_of_its_list_is_refused_by_name(result):
+    assert [particle.weight for particle in read_particles([result])] == [1.5, 1.0]
+    (result / "b.stl").write_bytes(b"another run".ljust(80) + (result / "b.stl").read_bytes()[80:])
+    problems = []
+    assert len(read_particles([result], on_problem=lambda *problem: problems.append(problem))) == 1
+    assert [path.name for path, _ in problems] == ["b.stl"]
+
+
+def test_that_weights_of_another_run_are_refused(result):
+    (result / "particles.csv").write_text("name,weight\na,2.5\n")
+    with pytest.raises(FileError, match=r"particles\.csv is not the file that the list"):
+        read_particles([result])
+    (result / "extract.sha256").unlink()
+    assert [particle.weight for particle in read_particles([result])] == [2.5, 1.0]

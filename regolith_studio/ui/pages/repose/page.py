@@ -13,9 +13,16 @@ from regolith_studio.dem.angle_of_repose import ReposeMeasurement
 from regolith_studio.dem.case import PreparedCase
 from regolith_studio.dem.engines import engine_named
 from regolith_studio.dem.evaluation.errors import NotAPileError
-from regolith_studio.dem.run_io import FINAL, RunSummary, find_runs, read_shapes, snapshot_files
+from regolith_studio.dem.run_io import (
+    FINAL,
+    RunSummary,
+    find_runs,
+    read_final_state,
+    read_shapes,
+    snapshot_files,
+)
 from regolith_studio.dem.scaling_report import scaling_report
-from regolith_studio.dem.snapshot import ParticleState, Snapshot, read_particle_state
+from regolith_studio.dem.snapshot import ParticleState, Snapshot
 from regolith_studio.errors import RegolithError
 from regolith_studio.jobs.dataset_jobs import DatasetOptions, build_dataset_folder
 from regolith_studio.jobs.events import Failed, Job
@@ -297,7 +304,7 @@ class ReposePage(PageWidget):
             self.player.show_run(
                 [*files, final] if final.exists() else files, run.folder.name, checks_text(run)
             )
-            pile = read_particle_state(final) if final.exists() else None
+            pile = read_final_state(final) if final.exists() else None
         except (RegolithError, TypeError) as error:
             self._context.toast.problem(str(error))
             return
