@@ -10,7 +10,7 @@ python3 bootstrap.py setup           sets up everything that work on the program
 --no-system   leaves the packages of the operating system alone
 
 The first call installs missing system libraries (on Debian and Ubuntu), makes the folder .venv with the
-versions of constraints.txt, and compiles the numerics. pip's own configuration is respected.
+versions of constraints.txt. pip's own configuration is respected.
 """
 
 import contextlib
@@ -268,8 +268,8 @@ def make_venv() -> None:
         raise SetupStopped("Python could not make a virtual environment; on Debian it needs python3-venv.")
 
 
-def set_up(extra: str, compiling: bool) -> None:
-    """Bring .venv to the state that pyproject.toml and constraints.txt describe, and compile if wanted.
+def set_up(extra: str) -> None:
+    """Bring .venv to the state that pyproject.toml and constraints.txt describe.
 
     Raises
     ------
@@ -294,9 +294,6 @@ def set_up(extra: str, compiling: bool) -> None:
     if failed:
         raise SetupStopped("pip could not install the packages; run this again when it can reach them.")
     STAMP.write_text(fingerprint() + " " + extra + "\n", encoding="utf-8")
-    if compiling:
-        say("compiling the numerics, once (one to two minutes)")
-        subprocess.call([str(venv_python()), "-m", "regolith_studio", "warm-up"], stdout=subprocess.DEVNULL)
     say("set up in %.0f s" % (time.monotonic() - started))
 
 
@@ -380,7 +377,7 @@ def run(words: "list[str]", leave_system: bool) -> int:
             "`python3 bootstrap.py demo -o out` shows the whole chain without a screen."
         )
     provide_system_packages(draws_in_memory(words) or words == ["setup"], leave_system)
-    set_up("test" if words[:1] in (["test"], ["setup"]) else "", compiling=words[:1] != ["test"])
+    set_up("test" if words[:1] in (["test"], ["setup"]) else "")
     return 0 if words == ["setup"] else start(words)
 
 

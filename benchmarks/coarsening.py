@@ -21,7 +21,6 @@ from numpy.typing import NDArray
 
 from benchmarks.independent import measured
 from benchmarks.plain_loss import HAS_BOOLEANS, KEYS, PlainLoss, plain_annealing
-from regolith_studio.coarsening import warm_up
 from regolith_studio.coarsening.coarsen import coarsen
 from regolith_studio.coarsening.decimated_hull import quadric_half_spaces
 from regolith_studio.coarsening.loss import LossFunction
@@ -29,6 +28,7 @@ from regolith_studio.coarsening.target import Target
 from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.geometry.half_spaces import HalfSpaces
 from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.jobs.compile_kernels import TASKS, run_task
 
 Array = NDArray[np.float64]
 T = TypeVar("T")
@@ -51,13 +51,14 @@ def main() -> None:
     parser.add_argument("--only", choices=("methods", "evaluation"))
     options = parser.parse_args()
     warnings.simplefilter("ignore")  # the plain programs are full of them
-    warm_up()
+    for task in TASKS:
+        run_task(task)
     targets = [*targets_in(options.folder, options.particles)]
     if options.only != "evaluation":
-        report_methods([compared(target, i, options.faces) for i, target in enumerate(targets)])
+        report_methods([compared(target, i, options.facets) for i, target in enumerate(targets)])
     if options.only != "methods":
-        rounds = np.array([evaluation_rounds(target, options.faces) for target in targets])
-        report_evaluations(rounds.reshape(-1, rounds.shape[-1]), options.faces)
+        rounds = np.array([evaluation_rounds(target, options.facets) for target in targets])
+        report_evaluations(rounds.reshape(-1, rounds.shape[-1]), options.facets)
 
 
 def targets_in(folder: Path, count: int) -> Iterator[Target]:

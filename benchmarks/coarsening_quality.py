@@ -19,13 +19,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.independent import measured
-from regolith_studio.coarsening import warm_up
 from regolith_studio.coarsening.coarsen import coarsen
 from regolith_studio.coarsening.exact.constraint_selection import EXACT
 from regolith_studio.coarsening.result import CoarseningResult
 from regolith_studio.coarsening.target import Target
 from regolith_studio.errors import RegolithError
 from regolith_studio.geometry.particle import Particle
+from regolith_studio.jobs.compile_kernels import TASKS, run_task
 from regolith_studio.readers.particles import read_mesh, sample_particles
 
 KEPT = ("volume", "sphericity", "min_diameter", "max_diameter", "aspect_ratio")
@@ -75,13 +75,14 @@ def main() -> None:
     parser.add_argument("--independent", action="store_true")
     parser.add_argument("--json", type=Path, metavar="FILE")
     options = parser.parse_args()
-    warm_up()
+    for task in TASKS:
+        run_task(task)
     found: list[Quality] = []
     print(HEADER)
     for name, particles in sets(options.folders, options.unit):
         targets, milliseconds = prepared(particles[: options.particles])
         for level in options.levels:
-            for n_facets in options.faces:
+            for n_facets in options.facets:
                 errors = independent_errors if options.independent else public_errors
                 found.append(quality(name, targets, milliseconds, level, n_facets, errors))
                 print(line(found[-1]), flush=True)

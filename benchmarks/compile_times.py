@@ -1,6 +1,6 @@
 """Processor time that numba takes to compile each kernel: ``python -m benchmarks.compile_times``.
 
-Every entry point of :mod:`regolith_studio.jobs.compile_kernels` runs in a process of its own with an empty
+Every task of :mod:`regolith_studio.jobs.compile_kernels` runs in a process of its own with an empty
 cache, as after an installation, so that what two of them share counts in both. A kernel's own time leaves out
 the kernels that are compiled on its behalf.
 """
@@ -15,7 +15,7 @@ from typing import Any
 
 from numba.core import event
 
-TASKS = ("fit", "quadric", "annealing", "exact")
+from regolith_studio.jobs.compile_kernels import TASKS, run_task
 
 
 class CompileTimes(event.Listener):
@@ -43,8 +43,6 @@ class CompileTimes(event.Listener):
 
 def measure(task: str) -> dict[str, list[float]]:
     """Own times of the kernels that one task compiles, in this process, by name."""
-    from regolith_studio.jobs.compile_kernels import run_task
-
     listener = CompileTimes()
     with event.install_listener("numba:compile", listener):
         run_task(task)

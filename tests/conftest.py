@@ -2,8 +2,9 @@
 
 import os
 import signal
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
+from unittest.mock import patch
 
 import pytest
 
@@ -41,6 +42,15 @@ class Unfinished:
 
 def pytest_configure(config: pytest.Config) -> None:
     config.pluginmanager.register(Unfinished())
+
+
+@pytest.fixture(scope="session", autouse=True)
+def kernels_are_compiled() -> Iterator[None]:
+    """No job waits for kernels: its events are the same, whatever the cache on this machine holds."""
+    from regolith_studio.jobs import compile_kernels
+
+    with patch.object(compile_kernels, "_mark", return_value=None):
+        yield
 
 
 @pytest.fixture(scope="session")

@@ -2,16 +2,19 @@
 
 import typer
 
-from regolith_studio.cli.options import Jobs, Json
+from regolith_studio.cli.options import Json
 
 
-def warm_up(json: Json = False, jobs: Jobs = 0) -> None:
-    """Compile all kernels in advance, so that the first use is as fast as later ones."""
+def warm_up(json: Json = False) -> None:
+    """Compile fitting, measuring and coarsening ahead, so that the first use is as fast as the second."""
     from regolith_studio.cli.terminal import print_json, run_with_progress
-    from regolith_studio.jobs.compile_kernels import compile_kernels
+    from regolith_studio.errors import RegolithError
+    from regolith_studio.jobs.compile_kernels import TASKS, compile_first, is_compiled
 
-    done = run_with_progress(compile_kernels(jobs))
+    run_with_progress(compile_first(*TASKS))
+    if failed := [task for task in TASKS if not is_compiled(task)]:
+        raise RegolithError(f"Not compiled: {', '.join(failed)}. It is compiled when it is first used.")
     if json:
-        print_json({"compiled": list(done)})
+        print_json({"compiled": list(TASKS)})
     else:
-        typer.echo(f"Compiled: {', '.join(done)}.")
+        typer.echo(f"Compiled: {', '.join(TASKS)}.")

@@ -93,6 +93,11 @@ def _report(sentence: str) -> None:
     logging.getLogger(__name__).warning(sentence)
 
 
+def machine_code_folder(part: str) -> Path | None:
+    """Folder for the machine code of a part of the program (``coarsening``); ``None`` where there is none."""
+    return _cache_folder(_PACKAGE / part)
+
+
 def _compiled(function: F, options: dict[str, Any]) -> F:
     folder = _cache_folder(_package_of(Path(function.__code__.co_filename)))
     compiled = numba.njit(**_OPTIONS, **options)(function)

@@ -88,7 +88,7 @@ def _acquire(place: Path, output: Path) -> _Held:
     place.parent.mkdir(parents=True, exist_ok=True)
     file = hidden_beside(place, LOCK)
     try:
-        held = _Held(_locked(file), file, made)
+        held = _Held(lock_file(file), file, made)
     except BlockingIOError:
         raise FileError(f"Another process is writing to {output}; wait for its end.") from None
     for path in leftovers(place):
@@ -96,15 +96,23 @@ def _acquire(place: Path, output: Path) -> _Held:
     return held
 
 
-def _locked(file: Path) -> int:
-    """Handle of the locked file; its owner removes it, so that the one that was opened may be gone."""
+def lock_file(file: Path) -> int:
+    """Handle of a file that only this process has locked, until it closes the handle or ends.
+
+    Raises
+    ------
+    BlockingIOError
+        If it is locked already.
+    OSError
+        If it cannot be made.
+    """
     while True:
         handle = os.open(file, os.O_RDWR | os.O_CREAT, 0o666)
         try:
             _lock(handle)
             if os.name == "nt" or os.path.samestat(os.stat(file), os.fstat(handle)):  # noqa: PTH116
                 return handle
-        except FileNotFoundError:
+        except FileNotFoundError:  # removed by its last owner after it was opened here
             pass
         except BaseException:
             os.close(handle)

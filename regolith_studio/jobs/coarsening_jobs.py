@@ -2,7 +2,7 @@
 
 import time
 from collections.abc import Generator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any
 
@@ -19,6 +19,7 @@ from regolith_studio.harmonics.coefficients import ShCoefficients
 from regolith_studio.harmonics.fit import HarmonicFit
 from regolith_studio.harmonics.fit_options import DEFAULT_FIT_OPTIONS, FitOptions
 from regolith_studio.harmonics.surface import reconstruct
+from regolith_studio.jobs.compile_kernels import compile_first_for, is_compiled
 from regolith_studio.jobs.events import (
     Failed,
     Finished,
@@ -106,7 +107,15 @@ class CoarsenedParticle:
 
 
 def coarsen_one(mesh: Mesh, request: CoarseningRequest, particle_index: int = 0) -> Steps:
-    """Coarsen `mesh` as requested; yields ``CoarseningProgress``, returns a ``CoarseningResult``."""
+    """Coarsen `mesh` as requested; yields ``CoarseningProgress``, returns a ``CoarseningResult``.
+
+    While the method's kernels are compiled, the polyhedron by quadrics is what there is to see.
+    """
+    if not is_compiled(request.method):
+        yield from compile_first_for("quadric")
+        quadric = replace(request, method="quadric", settings=(), largest_error=None)
+        yield from _run_coarsening(mesh, quadric, particle_index)
+        yield from compile_first_for(request.method)
     yield Started(N_("Coarsening"))
     return (yield from _run_coarsening(mesh, request, particle_index))
 
@@ -121,6 +130,7 @@ def coarsen_particle(
     fit
         Of the particle by the request's options, to at least its degree, if there is one already.
     """
+    yield from compile_first_for(request.method)
     yield Started(f"Coarsening {particle.name}")
     begun = time.perf_counter()
     mesh, notes, coefficients = particle.mesh, particle.notes, None
@@ -145,6 +155,7 @@ def coarsen_sample(
     depend on `workers` (0: one process a core), and with their `indices` in a larger sample (by default
     0, 1, 2 ...) not on which of its particles are coarsened.
     """
+    yield from compile_first_for(request.method)
     yield Started(N_("Coarsening"), len(particles))
     places = range(len(particles)) if indices is None else indices
     pairs = list(zip(particles, places, strict=True))

@@ -1,50 +1,144 @@
-"""Compiles every kernel ahead of its first use; the machine code is cached on the disk."""
+"""Compile kernels before their first use, in a process of its own; the machine code is kept on the disk.
 
-from regolith_studio.coarsening.coarsen import coarsen
-from regolith_studio.coarsening.methods import METHODS
-from regolith_studio.geometry.mesh import Mesh
-from regolith_studio.geometry.particle import Particle
-from regolith_studio.geometry.sphere_points import icosphere
-from regolith_studio.harmonics.fit import fit_harmonics
-from regolith_studio.harmonics.surface import reconstruct
-from regolith_studio.jobs.events import Job, Started, Steps
-from regolith_studio.jobs.executor import Executor, call, open_executor, value_of
-from regolith_studio.jobs.particle_jobs import measure_particle
+A job begins with ``yield from compile_first("fit")``. Whoever comes first starts the process, others wait for
+it, so that no two processes compile the same; while the interpreter of the window stays free.
+"""
+
+import os
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+
+from regolith_studio.geometry.kernels import machine_code_folder
+from regolith_studio.io.output_lock import lock_file
+from regolith_studio.jobs.events import Progress, Started, Steps
+from regolith_studio.jobs.progress_rate import ProgressRate, format_duration
 from regolith_studio.messages import N_
 
+TASKS = {"fit": 30, "describe": 33, "quadric": 14, "annealing": 12, "exact": 71}
+"""What can be compiled, in the order in which the window needs it, and the files of machine code that each
+adds to those of the tasks before it. Annealing has no kernel that the exact method does not need too."""
 
-def compile_kernels(workers: int | Executor = 0) -> Steps:
-    """Run all methods on a small mesh, each in a process of its own; returns their names.
+_PARTS = {"fit": "harmonics", "describe": "geometry"}
+"""Part of the program in whose folder of machine code a task is marked as done; else ``coarsening``."""
 
-    Parameters
-    ----------
-    workers
-        Processes at a time; 0 for one a core.
+_POLL_SECONDS = 0.1
+
+
+def is_compiled(task: str) -> bool:
+    """Whether nothing of a task is left to be compiled; what is not of :data:`TASKS` has nothing."""
+    mark = _mark(task)
+    return task not in TASKS or mark is None or mark.exists()
+
+
+def compile_first_for(method: str) -> Steps:
+    """:func:`compile_first` for fitting, measuring and a coarsening method."""
+    names = list(TASKS)
+    last = method if method in TASKS else "describe"
+    yield from compile_first(*names[: names.index(last) + 1])
+
+
+def compile_first(*tasks: str) -> Steps:
+    """Wait until the kernels of these :data:`TASKS` are compiled; no step where they are already.
+
+    Where that fails, or nothing can be kept on the disk, they are compiled when they are first called.
     """
-    tasks = (*reversed(list(METHODS)), "fit")
-    yield Started(N_("Compiling"), len(tasks))
-    jobs = [Job(call, (run_task, name)) for name in tasks]
-    with open_executor(workers) as executor:
-        results = yield from executor.run_all(jobs, list(tasks))
-    for result in results:
-        value_of(result)
-    return tasks
+    missing = [task for task in tasks if not is_compiled(task)]
+    if not missing:
+        return
+    compiled = _count_files()
+    total = compiled + sum(TASKS[task] for task in missing)
+    rate = ProgressRate(total, compiled)
+    yield Started(N_("Compiling, once after an installation"), total)
+    process: subprocess.Popen[bytes] | None = None
+    lock = -1
+    try:
+        while not all(map(is_compiled, missing)):
+            if process is None:
+                lock = _lock()
+                process = _compile_in_process(missing) if lock >= 0 else None
+            elif process.poll() is not None:
+                break
+            rate.advance(min(_count_files(), total) - rate.done)
+            left = rate.seconds_left
+            yield Progress(rate.done, total, "" if left is None else f"{format_duration(left)} left")
+            time.sleep(_POLL_SECONDS)
+    finally:
+        if process is not None:
+            process.kill()
+            process.wait()
+        if lock >= 0:
+            os.close(lock)
 
 
 def run_task(name: str) -> None:
-    """Run what compiles the kernels of one entry point: ``fit``, or the key of a coarsening method."""
-    (_measure_and_fit if name == "fit" else _coarsen)(name)
+    """Call every kernel of one of :data:`TASKS` in this process."""
+    from regolith_studio.coarsening.coarsen import coarsen
+    from regolith_studio.descriptors.describe import describe
+    from regolith_studio.geometry.mesh import Mesh
+    from regolith_studio.geometry.mesh_health import inspect
+    from regolith_studio.geometry.sphere_points import icosphere
+    from regolith_studio.harmonics.fit import fit_harmonics
+    from regolith_studio.harmonics.surface import reconstruct
+    from regolith_studio.harmonics.visibility import star_point_visibility
 
-
-def _small_mesh() -> Mesh:
     sphere = icosphere(2)
-    return Mesh(sphere.vertices * [3.0, 2.0, 1.5], sphere.faces)
+    mesh = Mesh(sphere.vertices * [3.0, 2.0, 1.5], sphere.faces)
+    if name == "fit":
+        reconstruct(fit_harmonics(mesh, 4, sampling_degree=8), 2, level=1)
+    elif name == "describe":
+        inspect(mesh)
+        describe(mesh)
+        star_point_visibility(mesh)
+    else:
+        coarsen(mesh, 12, name)
 
 
-def _measure_and_fit(_name: str) -> None:
-    measure_particle(Particle("body", _small_mesh()))
-    reconstruct(fit_harmonics(_small_mesh(), 4, sampling_degree=8), 2, level=1)
+def _mark(task: str) -> Path | None:
+    folder = machine_code_folder(_PARTS.get(task, "coarsening"))
+    return folder and folder / f"{task}.compiled"
 
 
-def _coarsen(method: str) -> None:
-    coarsen(_small_mesh(), 12, method)
+def _count_files() -> int:
+    folders = {machine_code_folder(part) for part in ("harmonics", "geometry", "coarsening")}
+    return sum(1 for folder in folders if folder for _ in folder.rglob("*.nbc"))
+
+
+def _lock() -> int:
+    """Handle of the lock of whoever compiles; -1 where that is somebody else."""
+    folder = machine_code_folder("geometry")
+    assert folder is not None, "a task is missing only where there is a folder for it"
+    try:
+        return lock_file(folder.parent / "compiling.lock")
+    except BlockingIOError:
+        return -1
+
+
+def _compile_in_process(tasks: list[str]) -> "subprocess.Popen[bytes]":
+    """A process that compiles these tasks and marks them; it ends when this one does."""
+    return subprocess.Popen(
+        [sys.executable, "-m", __name__, *tasks],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        start_new_session=True,  # Ctrl+C is for this process, which then ends that one
+    )
+
+
+def _compile_and_mark(tasks: list[str]) -> None:
+    threading.Thread(target=_exit_with_parent, daemon=True).start()
+    for task in tasks:
+        run_task(task)
+        if mark := _mark(task):
+            mark.touch()
+
+
+def _exit_with_parent() -> None:
+    sys.stdin.read()  # ends when the other end of the pipe is closed
+    os._exit(1)
+
+
+if __name__ == "__main__":
+    _compile_and_mark(sys.argv[1:])

@@ -28,6 +28,7 @@ from regolith_studio.harmonics.fit import HarmonicFit
 from regolith_studio.harmonics.surface import gallery
 from regolith_studio.harmonics.synthesis import radii_on_icosphere
 from regolith_studio.jobs.coarsening_jobs import CoarseningRequest
+from regolith_studio.jobs.compile_kernels import compile_first_for
 from regolith_studio.jobs.events import Partial, Progress, Started, Steps
 from regolith_studio.messages import N_
 from regolith_studio.shape_models.materials import materials
@@ -116,6 +117,7 @@ def trace_annealing(mesh: Mesh, request: CoarseningRequest, particle_index: int 
         raise InputError(f"A lesson has at most {MAX_ITERATIONS:,} iterations; choose fewer in the settings.")
     if request.weights.all_zero:
         raise InputError("All weights of the loss are 0, so there is nothing to optimise; raise one of them.")
+    yield from compile_first_for("exact")
     yield Started(N_("Annealing step by step"), settings.iterations)
     target = Target.of(mesh)
     seed = np.random.SeedSequence(request.seed, spawn_key=(particle_index,))

@@ -17,6 +17,7 @@ from regolith_studio.harmonics.fit import HarmonicFit
 from regolith_studio.harmonics.fit_options import DEFAULT_FIT_OPTIONS, FitOptions
 from regolith_studio.harmonics.surface import reconstruct
 from regolith_studio.harmonics.visibility import StarPointVisibility, hidden_faces, star_point_visibility
+from regolith_studio.jobs.compile_kernels import compile_first
 from regolith_studio.jobs.events import Failed, Job, Partial, Progress, Started, Steps
 from regolith_studio.jobs.executor import Executor, open_executor, value_of
 from regolith_studio.messages import N_
@@ -111,6 +112,7 @@ def find_faults(particle: Particle, visibility: StarPointVisibility | None = Non
 
 def measure_one(particle: Particle, box_metric: str = "exact") -> Steps:
     """As :func:`measure_particle`, for a runner."""
+    yield from compile_first("describe")
     yield Started(N_("Measuring"))
     return measure_particle(particle, box_metric)
 
@@ -121,6 +123,7 @@ def measure_particles(particles: Sequence[Particle], box_metric: str = "exact") 
     A partial result comes when an eighth more is known, so that the copied tuples grow as the number of
     particles and not as its square.
     """
+    yield from compile_first("describe")
     yield Started(N_("Measuring particles"), len(particles))
     measured: list[MeasuredParticle] = []
     due = 1
@@ -137,6 +140,7 @@ def measure_sample(
     particles: Sequence[Particle], box_metric: str = "exact", workers: int | Executor = 1
 ) -> Steps:
     """As :func:`measure_particles`, by several processes; returns a tuple of :class:`MeasuredParticle`."""
+    yield from compile_first("describe")
     yield Started(N_("Measuring"), len(particles))
     jobs = [Job(measure_one, (particle, box_metric)) for particle in particles]
     with open_executor(workers) as executor:
@@ -170,6 +174,7 @@ class FitRequest:
 
 def fit_one(mesh: Mesh, request: FitRequest = FitRequest()) -> Steps:
     """Fit `mesh`; returns a ``HarmonicFit``."""
+    yield from compile_first("fit")
     yield Started(N_("Fitting spherical harmonics"))
     return request.fit_options.fit(mesh, request.l_max)
 
@@ -182,6 +187,7 @@ def draw_surface(fit: HarmonicFit, l_max: int, level: int) -> Steps:
 
 def describe_meshes(meshes: Mapping[str, Mesh], box_metric: str = "exact") -> Steps:
     """Descriptors of named meshes; partial results and the result are ``dict[name, Descriptors]``."""
+    yield from compile_first("describe")
     yield Started(N_("Measuring"), len(meshes))
     described: dict[str, Descriptors] = {}
     for name, mesh in meshes.items():
@@ -195,6 +201,7 @@ def fit_sample(
     particles: Sequence[Particle], request: FitRequest = FitRequest(), workers: int | Executor = 1
 ) -> Steps:
     """Fit every particle; returns a tuple of ``HarmonicFit``, or the sentence where that is impossible."""
+    yield from compile_first("fit")
     yield Started(N_("Fitting spherical harmonics"), len(particles))
     jobs = [Job(fit_one, (particle.mesh, request)) for particle in particles]
     with open_executor(workers) as executor:

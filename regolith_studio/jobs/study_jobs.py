@@ -6,6 +6,7 @@ from typing import Any
 
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.jobs.coarsening_jobs import CoarseningRequest
+from regolith_studio.jobs.compile_kernels import compile_first, compile_first_for
 from regolith_studio.jobs.events import Job, Partial, Progress, Started, Step, Steps
 from regolith_studio.jobs.executor import Executor, call, open_executor, value_of
 from regolith_studio.jobs.study_checkpoint import Mapper, StudyCheckpoint, hash_of_particles, hash_of_rows
@@ -35,6 +36,7 @@ def study_lmax(
     options
         Further ones of :func:`~regolith_studio.studies.lmax.lmax_study`: degrees, level, keys ...
     """
+    yield from compile_first("fit", "describe")
     yield Started(N_("RMSRE against l_max"), len(particles))
     if answers is not None:
         answers.open("lmax", (seed, sorted(options.items())), hash_of_particles(particles))
@@ -103,6 +105,7 @@ def study_coarsening(
     options
         Further ones of :func:`~regolith_studio.studies.coarsening.coarsening_study`: rows, box_metric.
     """
+    yield from compile_first_for(request.method)
     yield Started(title, len(particles))
     if answers is not None:
         answers.open("coarsening", (request, sorted(options.items())), hash_of_particles(particles))

@@ -22,6 +22,7 @@ from regolith_studio.geometry.particle import Particle
 from regolith_studio.io.atomic import staged_folder, write_bytes
 from regolith_studio.io.checkpoint import CheckpointRecord, read_note
 from regolith_studio.jobs.batch import LOST, Batch, run_batch
+from regolith_studio.jobs.compile_kernels import compile_first_for
 from regolith_studio.jobs.dataset_jobs import dataset_provenance
 from regolith_studio.jobs.events import Job, Progress, Started, Step, Steps
 from regolith_studio.jobs.executor import Executor, open_executor
@@ -207,6 +208,7 @@ def _worked(done: RecipeRun, batch: Batch, executor: Executor) -> Part:
         fit_options=done.choices.fit_options,
     )
     members = done.items.members
+    yield from compile_first_for(done.choices.method if coarse else "")
     yield Started(N_("Working on particles"), len(members))
     yield from run_batch(
         batch,

@@ -111,7 +111,7 @@ class TaskBoard:
             return
         match event:
             case Started(title, total):
-                self._update(number, title=title, total=total)
+                self._update(number, title=title, done=0, total=total, message="")
             case Progress(done, total, message):
                 self._update(number, done=done, total=total, message=message)
             case Partial(value):

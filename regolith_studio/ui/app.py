@@ -12,7 +12,7 @@ from PySide6.QtCore import QTimer
 from PySide6.QtWidgets import QApplication
 
 from regolith_studio.errors import RegolithError
-from regolith_studio.jobs.compile_kernels import compile_kernels
+from regolith_studio.jobs.compile_kernels import TASKS, compile_first
 from regolith_studio.jobs.events import Job
 from regolith_studio.jobs.runners.thread import ThreadRunner
 from regolith_studio.session.preferences import Preferences
@@ -43,6 +43,7 @@ def open_window(
     """A window with its own session; the particles arrive a moment later."""
     poster = MainThreadInvoker()
     runner = ThreadRunner(poster.post)
+    _compile_in_background(runner)
     session = Session(runner)
     found = [Path(path) for path in paths]
     if not found:
@@ -51,20 +52,13 @@ def open_window(
     poster.setParent(window)
     if found:
         QTimer.singleShot(0, window, lambda: window.commands.open_paths(found, unit))
-    _warm_up_later(session, runner)
     _release_particles_when_idle(window)
     return window
 
 
-def _warm_up_later(session: Session, runner: ThreadRunner) -> None:
-    """Compile, or load, the kernels of the other methods once the first polyhedron is there."""
-
-    def begin() -> None:
-        if session.results.coarsened is not None:
-            session.events.coarsening.disconnect(begin)
-            runner.submit(Job(compile_kernels, (1,)), lambda _event: None, "warm-up")
-
-    session.events.coarsening.connect(begin)
+def _compile_in_background(runner: ThreadRunner) -> None:
+    """Compile what is not compiled yet in the order in which it is needed; who needs it says so meanwhile."""
+    runner.submit(Job(compile_first, tuple(TASKS)), lambda _event: None, "compile")
 
 
 def _release_particles_when_idle(window: MainWindow) -> None:

@@ -14,7 +14,6 @@ from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.harmonics.fit import fit_harmonics
 from regolith_studio.io.stl import stl_bytes
 from regolith_studio.jobs.coarsening_jobs import CoarseningRequest, coarsen_one, coarsen_sample
-from regolith_studio.jobs.compile_kernels import compile_kernels
 from regolith_studio.jobs.dataset_jobs import DatasetOptions, build_dataset_folder
 from regolith_studio.jobs.events import Partial, Progress, Started, Step, Steps
 from regolith_studio.jobs.particle_jobs import FIT_DEGREE, load_particles, measure_particle, measure_particles
@@ -112,12 +111,6 @@ def test_that_a_sample_without_a_single_polyhedron_is_no_dataset(tmp_path: Path)
     with pytest.raises(DatasetError, match="No particle could be coarsened"):
         played(build_dataset_folder([Particle("flat", FLAT)], ORDER, tmp_path / "d", DatasetOptions()))
     assert not (tmp_path / "d").exists()
-
-
-def test_that_compiling_kernels_covers_every_method() -> None:
-    heard, names = played(compile_kernels(workers=1))
-    assert {"fit", "exact", "annealing", "quadric"} <= set(names)
-    assert heard[0] == Started("Compiling", len(names))
 
 
 def test_that_an_order_asks_for_the_method_of_the_coarsening_itself() -> None:

@@ -95,7 +95,7 @@ def test_that_packages_are_installed_with_the_pins_and_the_program_editable(
     bootstrap: ModuleType, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     pip = installing(bootstrap, monkeypatch, 0)
-    bootstrap.set_up("test", compiling=False)
+    bootstrap.set_up("test")
     assert pip.commands[0][-4:] == ["-c", "constraints.txt", "-e", ".[test]"]
     assert bootstrap.STAMP.read_text() == f"{bootstrap.fingerprint()} test\n"
     assert not bootstrap.UNFINISHED.exists()
@@ -107,7 +107,7 @@ def test_that_bytecode_is_compiled_ahead_only_where_it_is_never_written_later(
 ) -> None:
     pip = installing(bootstrap, monkeypatch, 0)
     monkeypatch.setattr(bootstrap.sys, "dont_write_bytecode", never_written)
-    bootstrap.set_up("", compiling=False)
+    bootstrap.set_up("")
     assert ("--no-compile" in pip.commands[0]) is not never_written
 
 
@@ -117,7 +117,7 @@ def test_that_an_interrupted_installation_leaves_a_mark_and_is_made_anew(
     usable = bootstrap.usable_venv
     installing(bootstrap, monkeypatch, KeyboardInterrupt())
     with pytest.raises(KeyboardInterrupt):
-        bootstrap.set_up("", compiling=False)
+        bootstrap.set_up("")
     assert bootstrap.UNFINISHED.exists()
     assert not usable()
 
@@ -127,29 +127,9 @@ def test_that_a_failing_pip_is_reported_and_tried_again_without_starting_over(
 ) -> None:
     installing(bootstrap, monkeypatch, 1)
     with pytest.raises(bootstrap.SetupStopped, match="pip could not install"):
-        bootstrap.set_up("", compiling=False)
+        bootstrap.set_up("")
     assert not bootstrap.UNFINISHED.exists()
     assert not bootstrap.STAMP.exists()
-
-
-def test_that_the_numerics_are_compiled_after_the_installation_counts_as_finished(
-    bootstrap: ModuleType, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    pip = installing(bootstrap, monkeypatch, 0)
-    bootstrap.set_up("", compiling=True)
-    assert [command[2] for command in pip.commands] == ["pip", "regolith_studio"]
-    assert pip.commands[1][-1] == "warm-up"
-
-    def interrupt(command: list[str], **_options: Any) -> int:
-        if "warm-up" in command:
-            raise KeyboardInterrupt
-        return 0
-
-    bootstrap.STAMP.unlink()
-    monkeypatch.setattr(bootstrap.subprocess, "call", interrupt)
-    with pytest.raises(KeyboardInterrupt):
-        bootstrap.set_up("", compiling=True)
-    assert bootstrap.STAMP.exists()
 
 
 @pytest.mark.slow

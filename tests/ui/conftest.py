@@ -50,7 +50,7 @@ def app(display, tmp_path_factory):  # noqa: ARG001
     QCoreApplication.setAttribute(Qt.ApplicationAttribute.AA_DontUseNativeDialogs)
     made = QApplication.instance() or make_application(["tests"])
     made.setQuitOnLastWindowClosed(False)
-    with patch.object(ui_app, "_warm_up_later"):  # kernels are there, or compiled when they are called
+    with patch.object(ui_app, "_compile_in_background"):
         yield made
 
 

@@ -265,7 +265,7 @@ def test_that_closing_asks_while_a_study_runs(window):
 
 
 def test_that_short_work_is_not_asked_about():
-    lanes = ("fit", "surface", "descriptors", "coarsening", "load", "inspect", "warm-up", "lecture:annealing")
+    lanes = ("fit", "surface", "descriptors", "coarsening", "load", "inspect", "lecture:annealing")
     lanes += ("sample:faults", "scan:preview", "repose:preview", "dataset:library", "model:compare")
     lanes += ("model:live", "lecture:field")
     assert worth_asking([Task(n, lane, "x") for n, lane in enumerate(lanes)], []) == []
