@@ -17,11 +17,11 @@ from regolith_studio.jobs.events import Progress, Started, Steps
 from regolith_studio.jobs.progress_rate import ProgressRate, format_duration
 from regolith_studio.messages import N_
 
-TASKS = {"fit": 30, "describe": 33, "quadric": 14, "annealing": 12, "exact": 71}
+TASKS = {"read": 9, "fit": 27, "describe": 31, "quadric": 14, "annealing": 12, "exact": 71}
 """What can be compiled, in the order in which the window needs it, and the files of machine code that each
 adds to those of the tasks before it. Annealing has no kernel that the exact method does not need too."""
 
-_PARTS = {"fit": "harmonics", "describe": "geometry"}
+_PARTS = {"read": "geometry", "fit": "harmonics", "describe": "geometry"}
 """Part of the program in whose folder of machine code a task is marked as done; else ``coarsening``."""
 
 _POLL_SECONDS = 0.1
@@ -34,7 +34,7 @@ def is_compiled(task: str) -> bool:
 
 
 def compile_first_for(method: str) -> Steps:
-    """:func:`compile_first` for fitting, measuring and a coarsening method."""
+    """:func:`compile_first` for reading, fitting, measuring and a coarsening method."""
     names = list(TASKS)
     last = method if method in TASKS else "describe"
     yield from compile_first(*names[: names.index(last) + 1])
@@ -83,10 +83,13 @@ def run_task(name: str) -> None:
     from regolith_studio.harmonics.fit import fit_harmonics
     from regolith_studio.harmonics.surface import reconstruct
     from regolith_studio.harmonics.visibility import star_point_visibility
+    from regolith_studio.readers.particles import sample_particles
 
     sphere = icosphere(2)
     mesh = Mesh(sphere.vertices * [3.0, 2.0, 1.5], sphere.faces)
-    if name == "fit":
+    if name == "read":
+        list(sample_particles())
+    elif name == "fit":
         reconstruct(fit_harmonics(mesh, 4, sampling_degree=8), 2, level=1)
     elif name == "describe":
         inspect(mesh)

@@ -45,6 +45,7 @@ def load_particles(paths: Sequence[Path], unit: str = "um", repair: bool = True)
     problems: list[FileProblem] = []
     results: list[Particle | FileProblem] = []
     files = find_files(paths, problems)
+    yield from compile_first("read")
     yield Started(N_("Reading particles"), len(files))
     for done, (file, result) in enumerate(read_each(files, unit, repair), start=1):
         results.append(result)
@@ -54,6 +55,7 @@ def load_particles(paths: Sequence[Path], unit: str = "um", repair: bool = True)
 
 def load_sample() -> Steps:
     """Read the particles that ship with the program; returns :class:`LoadedParticles`."""
+    yield from compile_first("read")
     yield Started(N_("Reading the sample"))
     return LoadedParticles(tuple(sample_particles()))
 

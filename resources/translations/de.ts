@@ -952,8 +952,8 @@
         <translation>Verteilungen werden verglichen</translation>
     </message>
     <message>
-        <source>Compiling</source>
-        <translation>Übersetzen des Programms</translation>
+        <source>Compiling, once after an installation</source>
+        <translation>Wird übersetzt, einmal nach einer Installation</translation>
     </message>
     <message>
         <source>Compute</source>
