@@ -5,6 +5,7 @@ import os
 import platform
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
 from importlib.metadata import PackageNotFoundError, requires, version
 from typing import Any
 
@@ -19,9 +20,10 @@ def check(json: Json = False) -> None:
     from regolith_studio.cli.terminal import print_json
 
     report = examine_machine()
+    code = 1 if unusable(report) else 0
     if json:
         print_json(report)
-        return
+        raise typer.Exit(code)
     for title, content in report.items():
         typer.echo(title)
         lines = content.items() if isinstance(content, dict) else [("", each) for each in content]
@@ -29,6 +31,31 @@ def check(json: Json = False) -> None:
             typer.echo(f"  {key:<24}{value}" if key else f"  {value}")
         if not content:
             typer.echo("  nothing")
+    raise typer.Exit(code)
+
+
+DEBIAN = (
+    "libgl1 libegl1 libglx-mesa0 libglib2.0-0 libdbus-1-3 libfontconfig1 libx11-xcb1 libxkbcommon-x11-0 "
+    "libxcb-cursor0 libxcb-icccm4 libxcb-keysyms1 libxcb-shape0 libxcb-randr0 libxcb-sync1 libxcb-xfixes0 "
+    "libxcb-xkb1 libxcursor1"
+)
+FEDORA = (
+    "libglvnd-glx libglvnd-egl mesa-dri-drivers glib2 dbus-libs fontconfig libX11-xcb libxkbcommon-x11 "
+    "xcb-util-cursor xcb-util-wm xcb-util-keysyms libxcb libXcursor"
+)
+LIBRARIES = ("PySide6.QtWidgets", "PySide6.QtOpenGLWidgets", "vtkmodules.all", "mujoco", "pyshtools", "h5py")
+"""Parts of other packages that are linked with libraries of the system."""
+
+
+def library_sentence(error: ImportError) -> str | None:
+    """What to install where a library of the system is missing; ``None`` for other errors."""
+    name, marker, _ = str(error).partition(": cannot open shared object file")
+    if not marker:
+        return None
+    return (
+        f"The library {name} of the system is missing. Debian and Ubuntu have what the window needs with "
+        f"apt-get install {DEBIAN}; Fedora with dnf install {FEDORA}."
+    )
 
 
 _PATIENCE = 60
@@ -60,11 +87,20 @@ print(json.dumps({
     "scale": screen.devicePixelRatio(),
 }))
 """
+_KINDS_QUESTION = """
+import json
+from regolith_studio.cli.check import _engines, _plugin_problems
+print(json.dumps({"engines": _engines(), "problems": _plugin_problems()}))
+"""
 
 
 def examine_machine() -> dict[str, Any]:
     """Versions, machine, OpenGL, display, DEM engines, and sentences about what is missing."""
-    missing: list[str] = []
+    libraries = _libraries()
+    missing = [f"{name} cannot be loaded: {found}" for name, found in libraries.items() if found != "loads"]
+    if any("cannot open shared object" in each for each in missing):
+        missing.append(f"Debian and Ubuntu: apt-get install {DEBIAN}")
+        missing.append(f"Fedora: dnf install {FEDORA}")
     opengl = _ask_child(_OPENGL_QUESTION)
     if "problem" in opengl:
         missing.append(f"Three-dimensional pictures cannot be drawn: {opengl['problem']}")
@@ -73,17 +109,34 @@ def examine_machine() -> dict[str, Any]:
         missing.append(f"The window cannot open: {display['problem']}")
     packages = _packages()
     missing += [f"The package {name} is not installed." for name, found in packages.items() if not found]
-    engines = _engines()
-    missing += _plugin_problems()
+    kinds = _ask_child(_KINDS_QUESTION)
+    missing += kinds.get("problems", ())
+    if "problem" in kinds:
+        missing.append(f"DEM engines and other kinds cannot be listed: {kinds['problem']}")
     return {
         "program": {"regolith-studio": __version__, "python": platform.python_version()},
         "packages": {name: found or "missing" for name, found in packages.items()},
         "machine": {"system": platform.platform(), "cores": os.cpu_count(), "executable": sys.executable},
+        "libraries": libraries,
         "opengl": opengl,
         "display": display,
-        "engines": engines,
+        "engines": kinds.get("engines", {}),
         "missing": missing,
     }
+
+
+def unusable(report: dict[str, Any]) -> bool:
+    """Whether something that the window needs is missing, but for a display: another session may have one."""
+    loads = all(found == "loads" for found in report["libraries"].values())
+    return not loads or "problem" in report["opengl"] or "missing" in report["packages"].values()
+
+
+def _libraries() -> dict[str, str]:
+    """``loads``, or why not, of :data:`LIBRARIES`, each in a process of its own, which may crash."""
+    questions = [f"import {name}; print('{{}}')" for name in LIBRARIES]
+    with ThreadPoolExecutor(len(questions)) as threads:
+        answers = list(threads.map(_ask_child, questions))
+    return {name: answer.get("problem", "loads") for name, answer in zip(LIBRARIES, answers, strict=True)}
 
 
 def _engines() -> dict[str, str]:

@@ -37,6 +37,10 @@ def run(arguments: Sequence[str]) -> int:
         return _say(format_os_error(error), BAD_INPUT)
     except MemoryError:
         return _say("The work needs more memory than this machine has.", BAD_INPUT)
+    except ImportError as error:
+        from regolith_studio.cli.check import library_sentence
+
+        return _say(library_sentence(error) or f"{error}; install the program anew.", BAD_INPUT)
     except Exception as error:  # noqa: BLE001  the last one who can turn it into a sentence
         first_line = (str(error).splitlines() or [""])[0]
         return _say(f"The program made a mistake ({type(error).__name__}: {first_line}).", BAD_INPUT)

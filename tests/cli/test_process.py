@@ -6,9 +6,13 @@ import signal
 import subprocess
 import sys
 import time
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+
+from regolith_studio.cli import check
+from tests.cli.conftest import Said
 
 ROOT = Path(__file__).resolve().parents[2]
 PROGRAM = [sys.executable, "-m", "regolith_studio"]
@@ -90,11 +94,38 @@ def test_that_check_answers_without_a_display_and_survives_a_broken_opengl() -> 
     assert said.returncode == 0
     report = json.loads(said.stdout)
     assert report["program"]["regolith-studio"] == "0.1.0"
-    assert set(report) == {"program", "packages", "machine", "opengl", "display", "engines", "missing"}
+    assert set(report) == {
+        *("program", "packages", "machine", "libraries", "opengl", "display", "engines", "missing")
+    }
     assert set(report["engines"]) >= {"mujoco", "lammps"}
     if sys.platform.startswith("linux"):
         assert "no display" in report["display"]["problem"]
         assert "OpenGL renderer string" in report["opengl"]
+
+
+def test_that_a_library_that_is_missing_is_named_with_its_packages(
+    monkeypatch: pytest.MonkeyPatch, command: Callable[..., Said]
+) -> None:
+    def load(*_: object) -> None:
+        raise ImportError("libglib-2.0.so.0: cannot open shared object file: No such file or directory")
+
+    monkeypatch.setattr(check, "examine_machine", load)
+    said = command("check")
+    assert said.code == 1
+    assert said.err.startswith("The library libglib-2.0.so.0 of the system is missing.")
+    assert "apt-get install libgl1" in said.err
+    assert "dnf install libglvnd-glx" in said.err
+
+
+def test_that_check_survives_a_library_that_crashes_and_ends_with_1(
+    monkeypatch: pytest.MonkeyPatch, command: Callable[..., Said]
+) -> None:
+    monkeypatch.setattr(check, "LIBRARIES", ("json", "os; os.abort()"))
+    monkeypatch.setattr(check, "_OPENGL_QUESTION", "print('{}')")
+    monkeypatch.setattr(check, "_KINDS_QUESTION", "print('{}')")
+    said = command("check", "--json")
+    assert said.code == 1
+    assert list(said.json["libraries"].values()) == ["loads", "the attempt ended with signal 6."]
 
 
 @pytest.mark.skipif(os.name == "nt", reason="signals are a matter of POSIX")
