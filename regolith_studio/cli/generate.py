@@ -11,7 +11,6 @@ from regolith_studio.cli.options import (
     Folder,
     Jobs,
     Json,
-    Level,
     Seed,
     claim_json,
     output_path,
@@ -51,7 +50,7 @@ Degree = Annotated[
         max=30,
         help="Maximum degree of the particles' surfaces.",
         metavar="L",
-        show_default="10, or the source's",
+        show_default="all that the sample has; 10 for other models than sample_matched",
     ),
 ]
 SizeRange = Annotated[
@@ -61,6 +60,15 @@ SizeRange = Annotated[
         help="Range of equivalent radii in micrometres.",
         metavar="MIN MAX",
         show_default="all",
+    ),
+]
+MeshLevel = Annotated[
+    int | None,
+    typer.Option(
+        "--level",
+        help="Subdivisions of the icosahedron that surfaces are drawn on.",
+        metavar="N",
+        show_default="4 up to l_max = 10, else 5",
     ),
 ]
 Format = Annotated[
@@ -106,7 +114,7 @@ def generate(
     l_max: Degree = None,
     size_range: SizeRange = None,
     format_: Format = "stl",
-    level: Level = 4,
+    level: MeshLevel = None,
     names: Names = "",
     save_model: ModelFile = None,
     reading: ReadingOptions,
@@ -116,13 +124,14 @@ def generate(
 ) -> None:
     """Draw virtual particles with the shapes and sizes of a sample (section 2.3)."""
     from regolith_studio.cli.terminal import print_errors, print_json, run_with_progress
+    from regolith_studio.harmonics.surface import DEFAULT_LEVEL, level_for
     from regolith_studio.io.atomic import staged_folder
     from regolith_studio.jobs.model_jobs import GenerationRequest, draw, fit_model, groups_of
     from regolith_studio.session.choices import Choices
     from regolith_studio.session.outputs.particles import Generated, write_document
 
     with usage_errors():
-        Choices(level=level)
+        Choices(level=level or DEFAULT_LEVEL)
         order = GenerationRequest(model, tuple(values(set_, "setting").items()), l_max, n, seed, size_range)
         if format_ not in ("stl", "npz"):
             raise typer.BadParameter(f"The format must be stl or npz, got {format_!r}.")
@@ -132,15 +141,19 @@ def generate(
     draws = run_with_progress(draw(fitted, order))
     made = Generated(source, order, fitted, draws, groups_of(draws, fitted))
     with staged_folder(output, "generate") as stage:
-        extra = _write(stage, made, format_, level, jobs)
+        extra = _write(stage, made, format_, level_for(draws.l_max) if level is None else level, jobs)
         document = write_document(stage, made, extra)
     if save_model is not None:
         _save(save_model, made)
     if json:
         print_json(document | {"folder": str(output)})
     else:
-        thrown = f", {draws.rejected} draws thrown away" if draws.rejected else ""
-        typer.echo(f"{len(draws)} particles by {fitted.key} in {output}{thrown}")
+        typer.echo(f"{len(draws)} particles by {fitted.key}, l_max = {fitted.l_max}, in {output}")
+        if bias := document.get("rejection_bias"):
+            typer.echo(
+                f"{draws.rejected} draws thrown away, which biases those kept: mean radius "
+                f"{100 * bias['mean_radius']:+.1f} %, A_2 {100 * bias['second_degree']:+.1f} %."
+            )
 
 
 def shape_source(

@@ -17,8 +17,6 @@ from regolith_studio.cli.options import (
     Folder,
     Jobs,
     Json,
-    Level,
-    LMax,
     Meshes,
     Resume,
     Seed,
@@ -79,6 +77,15 @@ Models = Annotated[
         "--models", help="Keys of the models, separated by commas.", metavar="LIST", show_default="all"
     ),
 ]
+DrawDegree = Annotated[
+    int | None,
+    typer.Option(
+        "--l-max",
+        help="Degree of drawn particles; they are compared with the particles with all their degrees.",
+        metavar="L",
+        show_default="all of the sample for sample_matched, 10 for the others",
+    ),
+]
 Draws = Annotated[
     int,
     typer.Option(
@@ -121,7 +128,6 @@ def lmax(
     meshes: Meshes,
     output: Folder,
     degrees: Degrees = "1-20",
-    level: Level = 4,
     below: Below = 5.0,
     radii: FitOptions,
     reading: ReadingOptions,
@@ -138,9 +144,9 @@ def lmax(
 
     wanted = whole_numbers(degrees, 0, L_MAX_LIMIT)
     with usage_errors():
-        Choices(level=level, seed=seed)
+        Choices(seed=seed)
     loaded = reading.read(meshes)
-    study = partial(study_lmax, loaded.particles, jobs, seed, degrees=wanted, level=level)
+    study = partial(study_lmax, loaded.particles, jobs, seed, degrees=wanted)
     steps = partial(study, fit_options=radii)
     found = conclude("lmax_study", steps, output, json, resume)
     if not json:
@@ -211,7 +217,7 @@ def population(
     sources: SampleSources,
     output: Folder,
     models: Models = "",
-    l_max: LMax = 10,
+    l_max: DrawDegree = None,
     draws: Draws = 0,
     splits: Splits = 5,
     repeats: Repeats = 5,

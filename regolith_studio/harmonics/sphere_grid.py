@@ -1,15 +1,78 @@
-"""Many expansions at once: values on a Gauss-Legendre grid, and back, as products of matrices."""
+"""Many expansions at once: values on rings of latitude, and back, as products of matrices.
+
+Legendre sums across the rings and sums of waves along them are separate products: at l_max = 30 a
+twentieth of the work of one product with all harmonics at all nodes.
+"""
 
 from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
 
-from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.geometry.arrays import FloatArray, IntArray
 from regolith_studio.harmonics.legendre import harmonics
 
 GRIDS_KEPT = 8
-"""As many as the models use for one l_max; one of l_max = 30 takes up to 60 MB."""
+"""As many as the models use for one l_max."""
+
+
+@dataclass(frozen=True, eq=False)
+class RingBasis:
+    """Harmonics on rings of latitude with evenly spaced longitudes.
+
+    Parameters
+    ----------
+    legendre
+        For each order m the Legendre functions of degrees m to l_max on the rings, shape
+        (l_max + 1 - m, rings).
+    waves
+        Cosines of orders 0 to l_max, and sines of orders 1 to l_max, along a ring, shape
+        (2 l_max + 1, longitudes).
+    """
+
+    legendre: tuple[FloatArray, ...]
+    waves: FloatArray
+
+    def values(self, coefficients: FloatArray) -> FloatArray:
+        """Values (n, rings * longitudes), ring by ring, of expansions (n, (l_max + 1)^2)."""
+        l_max, rings = len(self.legendre) - 1, self.legendre[0].shape[1]
+        amplitudes = np.empty((len(coefficients), rings, 2 * l_max + 1))
+        for m, functions in enumerate(self.legendre):
+            zonal = _zonal(m, l_max)
+            amplitudes[:, :, m] = coefficients[:, zonal + m] @ functions
+            if m:
+                amplitudes[:, :, l_max + m] = coefficients[:, zonal - m] @ functions
+        return (amplitudes.reshape(-1, 2 * l_max + 1) @ self.waves).reshape(len(coefficients), -1)
+
+    def sums(self, values: FloatArray) -> FloatArray:
+        """Sums (n, (l_max + 1)^2) over all nodes of values (n, rings * longitudes) times each harmonic."""
+        l_max, rings = len(self.legendre) - 1, self.legendre[0].shape[1]
+        amplitudes = (values.reshape(len(values) * rings, -1) @ self.waves.T).reshape(len(values), rings, -1)
+        found = np.empty((len(values), (l_max + 1) ** 2))
+        for m, functions in enumerate(self.legendre):
+            zonal = _zonal(m, l_max)
+            found[:, zonal + m] = amplitudes[:, :, m] @ functions.T
+            if m:
+                found[:, zonal - m] = amplitudes[:, :, l_max + m] @ functions.T
+        return found
+
+
+def ring_basis(cosines: FloatArray, n_longitudes: int, l_max: int) -> RingBasis:
+    """Harmonics up to `l_max` on rings with these cosines of the colatitude, shape (rings,).
+
+    The first longitude is 0.
+    """
+    meridian = np.column_stack([np.sqrt(1 - cosines**2), np.zeros(len(cosines)), cosines])
+    functions = harmonics(meridian, l_max)
+    angles = np.outer(np.arange(l_max + 1), 2 * np.pi * np.arange(n_longitudes) / n_longitudes)
+    waves = np.concatenate([np.cos(angles), np.sin(angles[1:])])
+    return RingBasis(tuple(functions[_zonal(m, l_max) + m] for m in range(l_max + 1)), waves)
+
+
+def _zonal(m: int, l_max: int) -> IntArray:
+    """Indices of the harmonics of order 0 with degrees m to `l_max`."""
+    degree = np.arange(m, l_max + 1)
+    return degree * degree + degree
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,17 +86,21 @@ class SphereGrid:
     weights
         Solid angles, shape (k,), with sum 4 pi; products of functions are integrated exactly as long as
         their degrees add up to at most twice the degree of the grid.
-    basis
-        Y_lm at the nodes, shape ((l_max + 1)^2, k), so that ``coefficients @ basis`` are values.
+    rings
+        Harmonics at the nodes.
     """
 
     directions: FloatArray
     weights: FloatArray
-    basis: FloatArray
+    rings: RingBasis
+
+    def values(self, coefficients: FloatArray) -> FloatArray:
+        """Values (n, k) at the nodes of expansions (n, (l_max + 1)^2)."""
+        return self.rings.values(coefficients)
 
     def expanded(self, values: FloatArray) -> FloatArray:
         """Coefficients (n, (l_max + 1)^2) of functions given at the nodes (n, k)."""
-        return np.asarray((values * self.weights) @ self.basis.T)
+        return self.rings.sums(values * self.weights)
 
 
 @lru_cache(maxsize=GRIDS_KEPT)
@@ -45,12 +112,10 @@ def sphere_grid(degree: int, l_max: int) -> SphereGrid:
     z = np.repeat(cosines, n_longitudes)
     ring = np.sqrt(1 - z**2)
     directions = np.column_stack([ring * np.cos(longitudes), ring * np.sin(longitudes), z])
-    grid = SphereGrid(
-        directions, np.repeat(weights * 2 * np.pi / n_longitudes, n_longitudes), harmonics(directions, l_max)
-    )
-    for array in (grid.directions, grid.weights, grid.basis):
+    solid_angles = np.repeat(weights * 2 * np.pi / n_longitudes, n_longitudes)
+    for array in (directions, solid_angles):
         array.flags.writeable = False
-    return grid
+    return SphereGrid(directions, solid_angles, ring_basis(cosines, n_longitudes, l_max))
 
 
 def enclosed_volumes(radii: FloatArray, grid: SphereGrid) -> FloatArray:

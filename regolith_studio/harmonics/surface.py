@@ -27,8 +27,16 @@ from regolith_studio.harmonics.transform import evaluate_on_grid, ray_grid
 DEFAULT_LEVEL = 4
 """Icosphere level of reconstructed meshes: 2,562 vertices, 5,120 faces."""
 
+LEVEL_BY_DEGREE = ((4, 3), (10, 4), (30, 5))
+"""Highest degree and the icosphere level that is enough up to there: five vertices a wave or more."""
+
 Expansion = HarmonicFit | ShCoefficients
 """A fit, or bare coefficients about the origin."""
+
+
+def level_for(l_max: int) -> int:
+    """Icosphere level of meshes of this degree: the default one or, above l = 10, the next finer."""
+    return next((level for last, level in LEVEL_BY_DEGREE[1:] if l_max <= last), LEVEL_BY_DEGREE[-1][1])
 
 
 def reconstruct(expansion: Expansion, l_max: int | None = None, level: int = DEFAULT_LEVEL) -> Mesh:

@@ -12,7 +12,7 @@ from regolith_studio.errors import GeometryError, InputError, RegolithError
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.harmonics.fit import HarmonicFit
-from regolith_studio.harmonics.surface import DEFAULT_LEVEL, reconstruct
+from regolith_studio.harmonics.surface import level_for, reconstruct
 from regolith_studio.io.stl import stl_bytes
 from regolith_studio.jobs.events import Job, Progress, Started, Steps
 from regolith_studio.jobs.executor import Executor, open_executor, value_of
@@ -57,7 +57,8 @@ class GenerationRequest:
     settings
         Of the model that differ from its own, as pairs.
     l_max
-        Degree of the particles; ``None`` for that of the source, and at most 10, as in section 3.1.
+        Degree of the particles; ``None`` for that of the model's settings, where the source has it: all
+        degrees for ``sample_matched``, 10 for the others, as in section 3.1.
     n
         How many.
     seed
@@ -92,8 +93,8 @@ class GenerationRequest:
 
 def fit_request_for(request: GenerationRequest | None = None) -> FitRequest:
     """How meshes are expanded for a request: to twice its degree, which ``sample_matched`` needs."""
-    degree = PAPER_DEGREE if request is None or request.l_max is None else request.l_max
-    return FitRequest(min(FIT_DEGREE, 2 * degree))
+    wanted = None if request is None else request.l_max
+    return FitRequest(FIT_DEGREE if wanted is None else min(FIT_DEGREE, 2 * wanted))
 
 
 def sample_of_meshes(
@@ -136,8 +137,9 @@ def fit_model(source: ShapeSource, request: GenerationRequest) -> Steps:
     if not isinstance(content, Sample):
         return _given_model(content, request)
     key = request.model or DEFAULT_MODEL
-    degree = min(PAPER_DEGREE, content.l_max) if request.l_max is None else request.l_max
-    settings = replace(model_settings(key, dict(request.settings)), l_max=degree)
+    settings = model_settings(key, dict(request.settings))
+    degree = min(settings.l_max, content.l_max) if request.l_max is None else request.l_max
+    settings = replace(settings, l_max=degree)
     return MODELS[key].fit(content, settings)
 
 
@@ -187,7 +189,7 @@ def groups_of(draws: Realizations, model: FittedModel) -> tuple[str, ...]:
 
 
 def particles_of(
-    draws: Realizations, groups: Sequence[str] = (), level: int = DEFAULT_LEVEL, first: int = 0
+    draws: Realizations, groups: Sequence[str] = (), level: int | None = None, first: int = 0
 ) -> tuple[Particle, ...]:
     """The drawn particles as closed meshes on ``icosphere(level)``.
 
@@ -195,10 +197,13 @@ def particles_of(
     ----------
     groups
         One for each particle; none by default.
+    level
+        By default that of their degree.
     first
         Number of the first one, for its name.
     """
     names = particle_names(len(draws), first)
+    level = level_for(draws.l_max) if level is None else level
     return tuple(
         Particle(name, virtual_mesh(draws, i, level), groups[i] if groups else "", notes=(_origin(draws),))
         for i, name in enumerate(names)
@@ -209,12 +214,13 @@ def _origin(draws: Realizations) -> str:
     return f"Drawn by {draws.model} with seed {draws.seed}."
 
 
-def make_particles(draws: Realizations, model: FittedModel, title: str, level: int = DEFAULT_LEVEL) -> Steps:
+def make_particles(draws: Realizations, model: FittedModel, title: str, level: int | None = None) -> Steps:
     """The drawn particles as a recipe with a population of the name `title` has them, with progress.
 
     Returns a tuple of :class:`Particle`.
     """
     yield Started(N_("Making meshes"), len(draws))
+    level = level_for(draws.l_max) if level is None else level
     names, groups = drawn_names(title, len(draws)), groups_of(draws, model)
     notes, made = (_origin(draws),), []
     for index, (name, group) in enumerate(zip(names, groups, strict=True)):

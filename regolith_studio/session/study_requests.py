@@ -89,7 +89,6 @@ def study_job(
                     (tuple(particles),),
                     {
                         "seed": choices.seed,
-                        "level": choices.level,
                         "fit_options": choices.fit_options,
                         **options,
                     },

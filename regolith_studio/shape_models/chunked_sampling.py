@@ -7,18 +7,25 @@ therefore those of a shorter one, and chunks may be drawn in any process and ord
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
 from regolith_studio.errors import InputError
-from regolith_studio.geometry.arrays import BoolArray, FloatArray
+from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray
+from regolith_studio.shape_models.log_radius import sized
 from regolith_studio.shape_models.protocol import SizeRange
-from regolith_studio.shape_models.realizations import Realizations
+from regolith_studio.shape_models.realizations import Realizations, Scale, acceptable, positive_rows
+from regolith_studio.shape_models.shape_features import powers
+from regolith_studio.shape_models.size_law import SizeLaw, checked_bounds
 
 CHUNK = 500
 MAX_ROUNDS = 200
 """Maximum rounds of redrawing in one chunk; then the range of sizes counts as unreachable."""
+N_COMPARED = 5000
+"""Draws by which the bias of those with a positive radius is found."""
 
 
 def chunks(n: int, seed: int) -> Iterator[tuple[np.random.Generator, int]]:
@@ -59,6 +66,108 @@ class ChunkedSampler(ABC):
         """
         found = list(self.draw_chunks(n, seed, size_range))
         return joined(found) if found else replace(next(self.draw_chunks(1, seed)).chosen([]), rejected=0)
+
+
+class SizedSampler(ChunkedSampler):
+    """Base of models with a law of sizes and shapes that can be scaled to any size: none is rejected."""
+
+    unit: str
+    key: ClassVar[str]
+    scale: ClassVar[Scale] = "log_radius"
+
+    if TYPE_CHECKING:  # at run time a dataclass would take the property for the default of its field
+
+        @property
+        def sizes(self) -> SizeLaw:
+            """Law of equivalent radii."""
+
+    def draw_chunks(self, n: int, seed: int, size_range: SizeRange | None = None) -> Iterator[Realizations]:
+        """`n` particles; their equivalent radii follow the law of sizes, cut to the range if given.
+
+        Raises
+        ------
+        InputError
+            If `n` is negative or the range is none.
+        """
+        bounds = checked_bounds(size_range)
+        for rng, wanted in chunks(n, seed):
+            radii, components = self.sizes.draw(CHUNK, rng, bounds)
+            shapes, origins = self.shapes(radii, components, rng)
+            rows = sized(shapes, radii, self.scale)[:wanted]
+            parents, of_size = (
+                origins[name][:wanted] if name in origins else None for name in ("parents", "components")
+            )
+            yield Realizations(
+                rows, self.scale, self.key, seed, self.unit, parents=parents, components=of_size
+            )
+
+    @abstractmethod
+    def shapes(
+        self, radii: FloatArray, components: IntArray, rng: np.random.Generator, /
+    ) -> tuple[FloatArray, dict[str, IntArray]]:
+        """Shapes of any size, shape (n, (l_max + 1)^2), and what :class:`Realizations` says of their origin.
+
+        Parameters
+        ----------
+        radii, components
+            Equivalent radius of each particle, and the component of the law of sizes, shape (n,).
+        """
+
+
+@dataclass(frozen=True)
+class RejectionBias:
+    """How kept draws differ from the field, which rejects draws whose radius is not positive.
+
+    Parameters
+    ----------
+    rejected
+        Share of all draws.
+    mean_radius, second_degree
+        Mean radius and A_2 of the kept draws over those of all, less one.
+    """
+
+    rejected: float
+    mean_radius: float
+    second_degree: float
+
+
+class RejectionSampler(ChunkedSampler):
+    """Base of fields of the radius itself: draws whose radius is not positive everywhere are rejected."""
+
+    unit: str
+    key: ClassVar[str]
+
+    @abstractmethod
+    def propose(self, rng: np.random.Generator, n: int) -> FloatArray:
+        """Coefficients of `n` draws, and the component of each in a last column."""
+
+    def draw_chunks(self, n: int, seed: int, size_range: SizeRange | None = None) -> Iterator[Realizations]:
+        """`n` particles with a positive radius, and in the range of equivalent radii if given.
+
+        Raises
+        ------
+        InputError
+            If `n` is negative, the range is none, or hardly any draw is acceptable.
+        """
+        bounds = checked_bounds(size_range)
+        for rng, wanted in chunks(n, seed):
+            rows, rejected = accepted(
+                partial(self.propose, rng), lambda rows: acceptable(bounds, rows[:, :-1]), wanted
+            )
+            components = rows[:, -1].astype(np.int64)
+            yield Realizations(
+                rows[:, :-1], "radius", self.key, seed, self.unit, rejected, components=components
+            )
+
+    def rejection_bias(self) -> RejectionBias:
+        """Bias of the draws that are kept, from 5,000 draws."""
+        rows = self.propose(np.random.default_rng(np.random.SeedSequence(0)), N_COMPARED)[:, :-1]
+        kept = rows[positive_rows(rows)]
+        mean_radius = float(kept[:, 0].mean() / rows[:, 0].mean()) - 1
+        ratio = powers(kept).mean(axis=0) / np.maximum(powers(rows).mean(axis=0), 1e-300)
+        return RejectionBias(
+            1 - len(kept) / len(rows), mean_radius, float(ratio[2]) - 1 if len(ratio) > 2 else 0.0
+        )
 
 
 def joined(parts: Sequence[Realizations]) -> Realizations:

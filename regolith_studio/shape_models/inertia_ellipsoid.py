@@ -12,7 +12,7 @@ from regolith_studio.harmonics.coefficients import ShCoefficients
 from regolith_studio.harmonics.rotation import rotated
 from regolith_studio.harmonics.sphere_grid import SphereGrid, enclosed_volumes, sphere_grid
 
-_BATCH = 500
+_BATCH = 100
 _MIN_MOMENT = 1e-30
 
 
@@ -47,7 +47,8 @@ class PrincipalAxes:
 def principal_axes(coefficients: FloatArray) -> PrincipalAxes:
     """Principal axes of radius functions (n, (l_max + 1)^2).
 
-    By quadrature of r^5 u u / 5 and r^6 (u e)^3 / 6.
+    By quadrature of r^5 u u / 5 and r^6 (u e)^3 / 6, on a grid of twice the degree: their higher degrees are
+    weak.
     """
     parts = [_of_batch(coefficients[i : i + _BATCH]) for i in range(0, len(coefficients), _BATCH)]
     return PrincipalAxes(
@@ -57,8 +58,8 @@ def principal_axes(coefficients: FloatArray) -> PrincipalAxes:
 
 def _of_batch(coefficients: FloatArray) -> PrincipalAxes:
     l_max = round(coefficients.shape[1] ** 0.5) - 1
-    grid = sphere_grid(5 * l_max // 2 + 2, l_max)
-    radii = coefficients @ grid.basis
+    grid = sphere_grid(2 * l_max + 2, l_max)
+    radii = grid.values(coefficients)
     volumes = enclosed_volumes(radii, grid)
     u = grid.directions
     products = (u[:, :, None] * u[:, None, :]).reshape(-1, 9)

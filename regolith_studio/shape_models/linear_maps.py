@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from regolith_studio.geometry.arrays import FloatArray, IntArray
 from regolith_studio.geometry.kernels import kernel
-from regolith_studio.harmonics.legendre import harmonics
+from regolith_studio.harmonics.sphere_grid import ring_basis
 
 Tables = NDArray[np.float32]
 
@@ -23,15 +23,10 @@ def radius_tables(coefficients: FloatArray) -> Tables:
     l_max = round(coefficients.shape[1] ** 0.5) - 1
     rows = max(16, int(np.ceil(ROWS_PER_DEGREE * l_max)))
     colatitude = (np.arange(rows) + 0.5) * np.pi / rows
-    longitude = np.arange(2 * rows) * np.pi / rows
-    ring, angle = np.repeat(np.sin(colatitude), 2 * rows), np.tile(longitude, rows)
-    directions = np.column_stack(
-        [ring * np.cos(angle), ring * np.sin(angle), np.repeat(np.cos(colatitude), 2 * rows)]
-    )
-    basis = harmonics(directions, l_max).astype(np.float32)
+    basis = ring_basis(np.cos(colatitude), 2 * rows, l_max)
     tables = np.empty((len(coefficients), rows + 2 * MARGIN, 2 * rows + 2 * MARGIN), dtype=np.float32)
     for first in range(0, len(coefficients), _BATCH):
-        values = coefficients[first : first + _BATCH].astype(np.float32) @ basis
+        values = basis.values(coefficients[first : first + _BATCH]).astype(np.float32)
         tables[first : first + _BATCH] = _wrapped(values.reshape(-1, rows, 2 * rows))
     return tables
 

@@ -7,16 +7,17 @@ directions within a degree are even in an isotropic field. ::
     ln p(i | k) = ln N(x_i; mu_k, s_k^2) - 1/2 sum over l of ((2 l + 1) ln A_lk + P_il / A_lk) + constant
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Self
+from typing import Any, Self
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.cluster.vq import kmeans2
 from scipy.special import logsumexp
 
 from regolith_studio.errors import InputError
-from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats
 from regolith_studio.messages import N_
 
 MAX_STEPS = 300
@@ -111,7 +112,35 @@ class NamedComponents:
     """Base of fitted mixtures: components with spectra and names."""
 
     spectra: FloatArray
+    unit: str
+    bic: tuple[float, ...]
     names: tuple[str, ...]
+    labels: IntArray | None
+
+    def check_components(self, k: int) -> None:
+        """Lock the spectra of `k` components and complete their names.
+
+        Raises
+        ------
+        InputError
+            If a variance is negative, or there are not as many names as components.
+        """
+        spectra = locked_floats(self.spectra, (k, None), "spectra")
+        if not (spectra >= 0).all():
+            raise InputError("A spectrum needs one variance A_l for each degree, none of them negative.")
+        object.__setattr__(self, "spectra", spectra)
+        object.__setattr__(self, "bic", tuple(float(value) for value in self.bic))
+        object.__setattr__(self, "names", component_names(self.names, k))
+
+    def stored_components(self) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
+        """Plain values for JSON; the labels of the measured particles."""
+        values = {
+            "spectra": self.spectra.tolist(),
+            "unit": self.unit,
+            "bic": list(self.bic),
+            "names": list(self.names),
+        }
+        return values, {} if self.labels is None else {"labels": self.labels}
 
     @property
     def l_max(self) -> int:
@@ -132,6 +161,14 @@ class NamedComponents:
             If there are not as many names as parts.
         """
         return replace(self, names=tuple(names))  # type: ignore[type-var]
+
+
+def restored_components(
+    values: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]
+) -> tuple[FloatArray, str, tuple[float, ...], tuple[str, ...], IntArray | None]:
+    """Spectra, unit, criterion, names and labels from :meth:`NamedComponents.stored_components`."""
+    names, bic = tuple(values["names"]), tuple(values["bic"])
+    return values["spectra"], str(values["unit"]), bic, names, arrays.get("labels")
 
 
 def component_names(names: Sequence[str], k: int) -> tuple[str, ...]:

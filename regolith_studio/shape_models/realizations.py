@@ -17,7 +17,12 @@ from regolith_studio.harmonics.coefficients import ShCoefficients
 from regolith_studio.harmonics.legendre import harmonics
 from regolith_studio.harmonics.sphere_grid import enclosed_volumes, sphere_grid
 from regolith_studio.harmonics.surface import DEFAULT_LEVEL, reconstruct
-from regolith_studio.harmonics.synthesis import icosphere_edges, radii_between, radii_on_icosphere
+from regolith_studio.harmonics.synthesis import (
+    icosphere_edges,
+    radii_along,
+    radii_between,
+    radii_on_icosphere,
+)
 
 Scale = Literal["radius", "log_radius"]
 EXPONENTIAL_DEGREE = 3
@@ -25,6 +30,8 @@ EXPONENTIAL_DEGREE = 3
 SAFE_SHARE = 0.15
 """Lowest radius on the coarse grid, as a share of the mean, above which the fine grid is not tested."""
 CLOSE_LEVEL = 5
+_PATCH = np.stack(np.meshgrid(*[np.linspace(-1, 1, 9)] * 3), axis=-1).reshape(-1, 3)
+"""A cube of points: added to a unit vector they spread about its direction."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,7 +97,7 @@ class Realizations:
         grid = sphere_grid(int(factor * self.l_max) + 1, self.l_max)
         found = np.empty(len(self))
         for first in range(0, len(self), 1000):
-            values = self.coefficients[first : first + 1000] @ grid.basis
+            values = grid.values(self.coefficients[first : first + 1000])
             radii = values if self.scale == "radius" else np.exp(values)
             found[first : first + 1000] = np.cbrt(3 * enclosed_volumes(radii, grid) / (4 * np.pi))
         return found
@@ -113,7 +120,7 @@ class Realizations:
             return values.truncated(degree) if degree <= self.l_max else values.padded(degree)
         fine = EXPONENTIAL_DEGREE * max(degree, self.l_max) + 1
         inner, outer = sphere_grid(fine, self.l_max), sphere_grid(fine, degree)
-        return ShCoefficients(outer.expanded(np.exp(values.values[None] @ inner.basis))[0])
+        return ShCoefficients(outer.expanded(np.exp(inner.values(values.values[None])))[0])
 
 
 def virtual_mesh(draws: Realizations, index: int, level: int = DEFAULT_LEVEL) -> Mesh:
@@ -137,7 +144,7 @@ def virtual_mesh(draws: Realizations, index: int, level: int = DEFAULT_LEVEL) ->
         sphere.vertices * (radius + icosphere_edges(level).shortfalls(radius, between))[:, None], sphere.faces
     )
     grid = sphere_grid(EXPONENTIAL_DEGREE * draws.l_max + 1, draws.l_max)
-    volume = enclosed_volumes(np.exp(drawn.values[None] @ grid.basis), grid)[0]
+    volume = enclosed_volumes(np.exp(grid.values(drawn.values[None])), grid)[0]
     return Mesh(flat.vertices * np.cbrt(volume / flat.volume), sphere.faces)
 
 
@@ -145,17 +152,27 @@ def positive_rows(coefficients: FloatArray) -> BoolArray:
     """Whether each radius function, rows of shape (n, (l_max + 1)^2), is positive, shape (n,).
 
     First tested on a Gauss-Legendre grid of twice the degree; those that come near zero are tested again on
-    ``icosphere(5)`` (10,242 directions).
+    ``icosphere(5)`` (10,242 directions), and about the lowest of these on directions a quarter of a degree
+    apart, which is as fine as any mesh that is written.
     """
     l_max = isqrt(coefficients.shape[1]) - 1
     grid = sphere_grid(2 * l_max + 1, l_max)
-    lowest = (coefficients @ grid.basis).min(axis=1)
+    lowest = grid.values(coefficients).min(axis=1)
     positive: BoolArray = (lowest > 0) & (coefficients[:, 0] > 0)
-    mean = coefficients[:, 0] / np.sqrt(4 * np.pi)
-    close = np.flatnonzero(positive & (lowest < SAFE_SHARE * mean))
+    close = np.flatnonzero(positive & (lowest < SAFE_SHARE * coefficients[:, 0] / np.sqrt(4 * np.pi)))
     if len(close):
-        positive[close] = (coefficients[close] @ _fine_basis(l_max)).min(axis=1) > 0
+        values = coefficients[close] @ _fine_basis(l_max)
+        for row, places in zip(close, values, strict=True):
+            positive[row] = places.min() > 0 and _lowest_about(coefficients[row], int(places.argmin())) > 0
     return positive
+
+
+def _lowest_about(coefficients: FloatArray, vertex: int) -> float:
+    """Lowest radius within two degrees of a vertex of the fine icosphere."""
+    axis = icosphere(CLOSE_LEVEL).vertices[vertex]
+    around = axis + np.deg2rad(2.0) * _PATCH
+    directions = around / np.linalg.norm(around, axis=1, keepdims=True)
+    return float(radii_along(ShCoefficients(coefficients), directions).min())
 
 
 def acceptable(bounds: tuple[float, float] | None, coefficients: FloatArray) -> BoolArray:
@@ -164,7 +181,7 @@ def acceptable(bounds: tuple[float, float] | None, coefficients: FloatArray) -> 
     if bounds is not None:
         l_max = isqrt(coefficients.shape[1]) - 1
         grid = sphere_grid(3 * l_max // 2 + 1, l_max)
-        sizes = np.cbrt(3 * np.abs(enclosed_volumes(coefficients @ grid.basis, grid)) / (4 * np.pi))
+        sizes = np.cbrt(3 * np.abs(enclosed_volumes(grid.values(coefficients), grid)) / (4 * np.pi))
         good &= (sizes >= bounds[0]) & (sizes <= bounds[1])
     return good
 

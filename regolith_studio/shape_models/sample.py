@@ -94,14 +94,14 @@ class Sample:
     def equivalent_radii(self) -> FloatArray:
         """Radius of the sphere with each particle's volume, shape (n,); exact by quadrature."""
         grid = sphere_grid(3 * self.l_max // 2 + 1, self.l_max)
-        volumes = enclosed_volumes(self.coefficients @ grid.basis, grid)
+        volumes = enclosed_volumes(grid.values(self.coefficients), grid)
         return np.asarray(np.cbrt(3 * volumes / (4 * np.pi)))
 
     @cached_property
     def lowest_radii(self) -> FloatArray:
         """Smallest radius of each particle on a grid of twice the degree, shape (n,)."""
         grid = sphere_grid(2 * self.l_max + 1, self.l_max)
-        return np.asarray((self.coefficients @ grid.basis).min(axis=1))
+        return np.asarray((grid.values(self.coefficients)).min(axis=1))
 
     def particle(self, index: int) -> ShCoefficients:
         """The coefficients of one particle."""

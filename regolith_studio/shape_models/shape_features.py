@@ -64,7 +64,7 @@ def log_shape_features(rows: FloatArray, equivalent_radii: FloatArray) -> FloatA
     The exponential is not cut at the degree, which would change the surface.
     """
     shapes = shape_grid(round(rows.shape[1] ** 0.5) - 1)
-    logs = rows @ shapes.grid.basis
+    logs = shapes.grid.values(rows)
     form, axes = forms(logs, shapes.grid)
     radii = np.exp(logs - logs.mean(axis=1, keepdims=True))
     return _table(shapes, np.log(equivalent_radii), form, axes, radii)
@@ -81,7 +81,7 @@ def _of_batch(coefficients: FloatArray) -> FloatArray:
     found = principal_axes(coefficients)
     form = np.diff(found.log_ratios, axis=1)[:, ::-1]
     means = coefficients[:, :1] / np.sqrt(4 * np.pi)
-    radii = np.maximum(coefficients @ shapes.grid.basis / means, _MIN_RADIUS)
+    radii = np.maximum(shapes.grid.values(coefficients) / means, _MIN_RADIUS)
     return _table(shapes, np.log(3 * found.volumes / (4 * np.pi)) / 3, form, found.axes, radii)
 
 
@@ -120,14 +120,14 @@ def outer_features_of_radii(coefficients: FloatArray, shares: FloatArray) -> Flo
     """Outer features of radius functions (n, (l_max + 1)^2)."""
     l_max = round(coefficients.shape[1] ** 0.5) - 1
     rows = coefficients / (coefficients[:, :1] / np.sqrt(4 * np.pi))
-    radii = np.maximum(rows @ shape_grid(l_max).grid.basis, _MIN_RADIUS)
+    radii = np.maximum(shape_grid(l_max).grid.values(rows), _MIN_RADIUS)
     return outer_features(np.log(radii), _squared_slopes(rows, l_max) / radii**2, shares, l_max)
 
 
 def outer_features_of_log_radii(rows: FloatArray, shares: FloatArray) -> FloatArray:
     """Outer features of the exponentials of expansions (n, (l_max + 1)^2)."""
     l_max = round(rows.shape[1] ** 0.5) - 1
-    return outer_features(rows @ shape_grid(l_max).grid.basis, _squared_slopes(rows, l_max), shares, l_max)
+    return outer_features(shape_grid(l_max).grid.values(rows), _squared_slopes(rows, l_max), shares, l_max)
 
 
 def _squared_slopes(rows: FloatArray, l_max: int) -> FloatArray:

@@ -1,6 +1,6 @@
 """What a chosen l_max means for the descriptors of a sample (section 3.1, Eq. 10, Fig. 3)."""
 
-from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from itertools import groupby
@@ -18,15 +18,15 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.harmonics.fit import HarmonicFit
 from regolith_studio.harmonics.fit_options import DEFAULT_FIT_OPTIONS, FitOptions
-from regolith_studio.harmonics.surface import DEFAULT_LEVEL, gallery
+from regolith_studio.harmonics.surface import LEVEL_BY_DEGREE, gallery
 from regolith_studio.io.tables import Column, Table
 from regolith_studio.studies.progress import StudyProgress
 
 DEFAULT_DEGREES = tuple(range(1, 21))
 N_RESAMPLES = 1000
-LEVEL_BY_DEGREE = ((1, 2), (4, 3))
-"""Highest degree and the icosphere level that is enough up to there: ten vertices a wave or more. The
-exact box of a nearly round surface costs most, and finer triangles add nothing to it."""
+EXTRAPOLATED = ("surface_area", "sphericity", "convex_hull_volume", "convexity")
+"""Descriptors that near those of the smooth surface with the square of the edge length: their values on
+meshes of two levels are extrapolated. Sides of boxes are not: they jump where two boxes are nearly tied."""
 
 Mapper = Callable[[Callable[[Mesh], "FloatArray | str"], Iterable[Mesh]], Iterable["FloatArray | str"]]
 """Anything that maps a picklable function in order: ``map``, or ``imap`` of a process pool."""
@@ -135,15 +135,13 @@ def resampled_rmsre(errors: FloatArray, weights: ArrayLike) -> FloatArray:
 def lmax_errors(
     mesh: Mesh,
     degrees: Sequence[int] = DEFAULT_DEGREES,
-    level: int = DEFAULT_LEVEL,
     keys: Sequence[str] = LOSS_KEYS,
     fit_options: FitOptions = DEFAULT_FIT_OPTIONS,
 ) -> FloatArray:
     """Relative errors of the descriptors of one particle's fit, shape (degrees, keys).
 
-    One fit to the highest degree, cut at each; the surfaces are meshed on ``icosphere(level)``, those of
-    the lowest degrees on a coarser one, and measured by the same routines as the particle. NaN where a
-    fit has a negative radius.
+    One fit to the highest degree, cut at each; the surfaces are meshed on icospheres as fine as their degree
+    asks for and measured by the same routines as the particle. NaN where a fit has a negative radius.
 
     Raises
     ------
@@ -153,25 +151,27 @@ def lmax_errors(
     wanted = describe(mesh, keys)
     fit = fit_options.fit(mesh, max(degrees))
     errors = np.full((len(degrees), len(keys)), np.nan)
-    for row, surface in enumerate(_surfaces(fit, degrees, level)):
-        if surface is not None:
-            found = describe(surface, keys)
+    for row, (coarse, fine) in enumerate(_surfaces(fit, degrees)):
+        if coarse is not None and fine is not None:
+            found = dict(describe(fine, keys))
+            for key, value in describe(coarse, [key for key in keys if key in EXTRAPOLATED]).items():
+                found[key] += (found[key] - value) / 3
             errors[row] = [found[key] / wanted[key] - 1 for key in keys]
     return errors
 
 
-def _surfaces(fit: HarmonicFit, degrees: Sequence[int], level: int) -> Iterable[Mesh | None]:
-    """The fit cut at each of `degrees`, none finer than `level` nor than the degree asks for."""
-    levels = [min([level, *(enough for last, enough in LEVEL_BY_DEGREE if d <= last)]) for d in degrees]
-    for chosen, members in groupby(zip(levels, degrees, strict=True), key=itemgetter(0)):
-        for _, surface in gallery(fit, [degree for _, degree in members], chosen):
-            yield surface
+def _surfaces(fit: HarmonicFit, degrees: Sequence[int]) -> Iterator[tuple[Mesh | None, Mesh | None]]:
+    """The fit cut at each of `degrees`, on an icosphere that is fine enough and on the next coarser one."""
+    levels = [next(enough for last, enough in LEVEL_BY_DEGREE if degree <= last) for degree in degrees]
+    for level, members in groupby(zip(levels, degrees, strict=True), key=itemgetter(0)):
+        cuts = [degree for _, degree in members]
+        both = zip(gallery(fit, cuts, level - 1), gallery(fit, cuts, level), strict=True)
+        yield from ((coarse, fine) for (_, coarse), (_, fine) in both)
 
 
 def lmax_study(
     particles: Sequence[Particle],
     degrees: Sequence[int] = DEFAULT_DEGREES,
-    level: int = DEFAULT_LEVEL,
     keys: Sequence[str] = LOSS_KEYS,
     mapper: Mapper = map,
     seed: int = 0,
@@ -197,7 +197,7 @@ def lmax_study(
     if not particles or not degrees:
         raise InputError("A study of l_max needs at least one particle and one degree.")
     chosen = tuple(sorted(set(degrees)))
-    options = {"degrees": chosen, "level": level, "keys": tuple(keys), "fit_options": fit_options}
+    options = {"degrees": chosen, "keys": tuple(keys), "fit_options": fit_options}
     work: Callable[[Mesh], FloatArray | str] = partial(errors_or_reason, options=options)
     study = LmaxStudy(chosen, tuple(keys), (), (), np.empty((0, len(chosen), len(keys))), seed=seed)
     outcomes = mapper(work, (particle.mesh for particle in particles))
@@ -241,7 +241,8 @@ def rmsre_table(study: LmaxStudy) -> Table:
     percent = [Column(name, "%") for name in ("rmsre", "rmsre_low", "rmsre_high")]
     columns = (*map(Column, ("group", "l_max", "descriptor", "symbol")), *percent, Column("n_particles"))
     notes = (
-        "Root mean square over particles of (D(particle) - D(fit)) / D(particle); exact bounding boxes.",
+        "Root mean square over particles of (D(particle) - D(fit)) / D(particle); exact bounding boxes;"
+        " areas and hulls of fits extrapolated to infinitely fine meshes.",
         f"Bands: {study.confidence:.0%}, {N_RESAMPLES} resamples of the particles, seed {study.seed}.",
         *(f"{name} was left out: {reason}" for name, reason in study.failures),
     )

@@ -5,7 +5,7 @@ that it has not seen is no larger cannot be told from the sample by that descrip
 """
 
 from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
@@ -30,8 +30,12 @@ from regolith_studio.studies.population_distances import (
 )
 from regolith_studio.studies.progress import StudyProgress
 
-MESH_LEVEL = 3
-"""Icosphere level of the meshes that are measured: 642 vertices, and the exact volume of the series."""
+MESH_LEVEL = 4
+"""Icosphere level of the meshes that are measured: 2,562 vertices, and the exact volume of the series."""
+PAPER_DEGREE = 10
+"""Of the paper's model (section 3.1)."""
+FRAME_DEGREE = 10
+"""Degree at which drawn and measured particles are compared one by one."""
 MEASURE_BATCH = 25
 """Particles that one process measures at a time."""
 FRAME_BATCH = 100
@@ -137,8 +141,8 @@ def _descriptor_row(draws: Realizations, index: int, keys: tuple[str, ...], leve
 
 def frames_of(draws: Realizations, l_max: int) -> FloatArray:
     """The radius of every particle in the frame of its axes, shape (n, (l_max + 1)^2)."""
-    if draws.scale == "radius" and draws.l_max == l_max:
-        return canonical(draws.coefficients)
+    if draws.scale == "radius" and draws.l_max >= l_max:
+        return canonical(draws.coefficients[:, : (l_max + 1) ** 2])
     return canonical(np.stack([draws.particle(index, l_max).values for index in range(len(draws))]))
 
 
@@ -161,6 +165,8 @@ class ModelEvaluation:
     ----------
     key
         Of ``MODELS``.
+    l_max
+        Degree of its draws.
     distances
         To the half that the model has not seen.
     intervals
@@ -176,6 +182,7 @@ class ModelEvaluation:
     """
 
     key: str
+    l_max: int
     distances: PopulationDistances
     intervals: Intervals
     novelty: FloatArray
@@ -193,11 +200,14 @@ class PopulationStudy:
     keys
         Descriptors, in the order of all tables.
     l_max
-        Degree of measured and of drawn particles.
+        Degree of the measured particles, and so of the comparison.
     unit
         Of length.
     measured
-        Descriptors of the sample's particles, shape (n, keys).
+        Descriptors of the sample's particles with all their degrees, shape (n, keys).
+    cut_degree, cut
+        Degree of the paper's model, or the one asked for, and descriptors of the particles cut at it, shape
+        (m, keys).
     floor
         PopulationDistances between random halves.
     models
@@ -209,13 +219,15 @@ class PopulationStudy:
     seed
         Of splits and draws.
     left_out
-        Particles whose series has a negative radius at this degree.
+        Particles whose series has a negative radius.
     """
 
     keys: tuple[str, ...]
     l_max: int
     unit: str
     measured: FloatArray
+    cut_degree: int
+    cut: FloatArray
     floor: PopulationDistances
     models: tuple[ModelEvaluation, ...]
     n_draws: int
@@ -233,7 +245,7 @@ def population_study(
     sample: Sample,
     models: Sequence[str] | None = None,
     *,
-    l_max: int = 10,
+    l_max: int | None = None,
     n_draws: int | None = None,
     n_splits: int = 5,
     n_repeats: int = 5,
@@ -254,11 +266,12 @@ def population_study(
     models
         Keys of ``MODELS``; all if ``None``.
     l_max
-        Degree at which measured and drawn particles are compared; the models see all that the sample has.
+        Degree of drawn particles and of the cut sample; by default that of each model's settings, and 10.
+        Both are compared with the measured particles with all their degrees.
     n_draws
         By default as many as the held-out half has, so that the noise is that of the floor; at most 1,000.
     settings
-        Settings by model key; by default the models' own with this `l_max`.
+        Settings by model key; by default those of :func:`default_settings`.
     mapper
         ``map``, or the ordered lazy map of a process pool.
 
@@ -270,26 +283,46 @@ def population_study(
     chosen = tuple(MODELS) if models is None else tuple(models)
     drawn = default_draws(len(sample)) if n_draws is None else n_draws
     _check_arguments(sample, chosen, keys, (drawn, n_splits, n_repeats))
-    work = StudyExecutor(tuple(keys), level, mapper, len(sample) + len(chosen) * n_splits * n_repeats * drawn)
-    known = Realizations(sample.truncated(l_max).coefficients, "radius", "measured", seed, sample.unit)
+    cut_degree = min(PAPER_DEGREE, sample.l_max) if l_max is None else l_max
+    n_measured = len(sample) * (1 + (cut_degree < sample.l_max))
+    work = StudyExecutor(tuple(keys), level, mapper, n_measured + len(chosen) * n_splits * n_repeats * drawn)
+    known = Realizations(sample.coefficients, "radius", "measured", seed, sample.unit)
     table = yield from work.measured(known, N_("measured particles"))
     keep = np.flatnonzero(np.isfinite(table).all(axis=1))
     if len(keep) < MIN_PARTICLES:
         raise InputError(
-            f"Only {len(keep)} particles bound a solid at l_max = {l_max}; {MIN_PARTICLES} are needed."
+            f"Only {len(keep)} particles bound a solid at l_max = {sample.l_max}; {MIN_PARTICLES} are needed."
         )
-    frames = yield from work.framed(known.chosen(keep), l_max, N_("measured particles"))
+    cut = table[keep]
+    if cut_degree < sample.l_max:
+        rows = sample.truncated(cut_degree).coefficients[keep]
+        shorter = Realizations(rows, "radius", "measured", seed, sample.unit)
+        cut = yield from work.measured(shorter, N_("measured particles"))
+        cut = cut[np.isfinite(cut).all(axis=1)]
+    frame_degree = min(FRAME_DEGREE, cut_degree)
+    frames = yield from work.framed(known.chosen(keep), frame_degree, N_("measured particles"))
     half = _TrainTestSplit(sample.chosen(keep), table[keep], frames, work)
     floor = yield from half.floor(seed)
     rounds: dict[str, list[_Round]] = {key: [] for key in chosen}
     for split in range(n_splits):
         for key in chosen:
-            options = (settings or {}).get(key) or MODELS[key].Settings(l_max=l_max)
+            options = (settings or {}).get(key) or default_settings(key, sample, l_max)
             rounds[key] += yield from half.rounds(key, options, split, (drawn, n_repeats, seed))
         judged = tuple(_evaluation_of(key, rounds[key]) for key in chosen)
         left_out = len(sample) - len(keep)
         study = PopulationStudy(
-            tuple(keys), l_max, sample.unit, half.table, floor, judged, drawn, n_repeats, seed, left_out
+            tuple(keys),
+            sample.l_max,
+            sample.unit,
+            half.table,
+            cut_degree,
+            cut,
+            floor,
+            judged,
+            drawn,
+            n_repeats,
+            seed,
+            left_out,
         )
         yield StudyProgress(
             work.done,
@@ -303,6 +336,12 @@ def population_study(
 def default_draws(n_measured: int) -> int:
     """Particles of each drawing where no number is given: half of those measured, 20 to 1,000."""
     return max(MIN_PARTICLES, min(MAX_DRAWS, n_measured // 2))
+
+
+def default_settings(key: str, sample: Sample, l_max: int | None = None) -> Any:
+    """The settings of a model with the degree asked for, or its own where the sample has it."""
+    settings = MODELS[key].Settings()
+    return replace(settings, l_max=min(settings.l_max, sample.l_max) if l_max is None else l_max)
 
 
 def _check_arguments(
@@ -337,6 +376,7 @@ class _Round:
     rejected: float
     table: FloatArray
     criterion: tuple[float, ...]
+    l_max: int
 
 
 @dataclass(frozen=True, eq=False)
@@ -379,7 +419,7 @@ class _TrainTestSplit:
             apart = distances([(self.table[test], table)], seeds[repeat], self.work.size_column)
             yield self.work.progress(message)
             ends = intervals(self.table[test], table, apart, seeds[repeat], self.work.size_column)
-            found.append(_Round(apart, ends, new, 1 - draws.acceptance, table, criterion))
+            found.append(_Round(apart, ends, new, 1 - draws.acceptance, table, criterion, draws.l_max))
         return found
 
     def _novelty(
@@ -397,6 +437,7 @@ def _evaluation_of(key: str, rounds: Sequence[_Round]) -> ModelEvaluation:
     }
     return ModelEvaluation(
         key,
+        rounds[0].l_max,
         PopulationDistances.joined([each.distances for each in rounds]),
         Intervals(**ends),
         np.array([each.novelty for each in rounds if each.novelty is not None]),

@@ -7,7 +7,7 @@ import numpy as np
 from regolith_studio.io.tables import Column, Table
 from regolith_studio.messages import N_, Message
 from regolith_studio.studies.population import N_FLOOR_SPLITS, ModelEvaluation, PopulationStudy
-from regolith_studio.studies.population_distances import CONFIDENCE, N_RESAMPLES, WEIGHTINGS
+from regolith_studio.studies.population_distances import CONFIDENCE, N_RESAMPLES, WEIGHTINGS, distances
 
 PERCENTAGES = (
     "wasserstein",
@@ -16,6 +16,7 @@ PERCENTAGES = (
     "floor",
     "floor_p5",
     "floor_p95",
+    "cut_sample",
     "kolmogorov_smirnov",
     "kolmogorov_smirnov_low",
     "kolmogorov_smirnov_high",
@@ -28,17 +29,23 @@ PAPERS_PAIRS = AT_NOISE[:3]
 LEAST_GAIN, MOST_FLOORS, MOST_ENERGY, LEAST_NOVELTY = 8.0, 2.0, 0.3, 0.6
 
 
+def size_column(study: PopulationStudy) -> int | None:
+    """Column of the equivalent radius, if it was measured."""
+    return study.keys.index("equivalent_radius") if "equivalent_radius" in study.keys else None
+
+
 def distance_table(study: PopulationStudy) -> Table:
     """Figs. 4 and 5 as numbers: a row for each model, weighting and descriptor."""
     rows = []
     low, high = (np.percentile(study.floor.wasserstein, p, axis=0) for p in (5, 95))
+    (cut,) = distances([(study.measured, study.cut)], study.seed, size_column(study)).wasserstein
     floor, gap = study.floor.wasserstein.mean(axis=0), study.floor.kolmogorov.mean(axis=0)
     for model in study.models:
         far, ks = model.distances.wasserstein, model.distances.kolmogorov
         for w, weighting in enumerate(WEIGHTINGS):
             for k, key in enumerate(study.keys):
                 mean, spread = far[:, w, k].mean(), model.intervals.wasserstein[:, w, k]
-                noise = (floor[w, k], low[w, k], high[w, k])
+                noise = (floor[w, k], low[w, k], high[w, k], cut[w, k])
                 shares = [100 * value for value in (mean, *spread, *noise)]
                 ends = 100 * model.intervals.kolmogorov[:, w, k]
                 gaps = (100 * ks[:, w, k].mean(), *ends, 100 * gap[w, k])
@@ -136,12 +143,12 @@ def _targets(study: PopulationStudy, model: ModelEvaluation) -> Iterator[tuple[s
 def _notes(study: PopulationStudy) -> tuple[str, ...]:
     splits = len(study.models[0].novelty) if study.models else 0
     once = N_(
-        "{count} measured particles at l_max = {degree}, {left} left out; fitted to one half, judged on the"
-        " other; {splits} {split}, {draws} draws once from each fit, seed {seed}."
+        "{count} measured particles with degrees up to {degree}, {left} left out; fitted to one half, judged"
+        " on the other; {splits} {split}, {draws} draws once from each fit, seed {seed}."
     )
     often = N_(
-        "{count} measured particles at l_max = {degree}, {left} left out; fitted to one half, judged on the"
-        " other; {splits} {split}, {draws} draws {repeats} times from each fit, seed {seed}."
+        "{count} measured particles with degrees up to {degree}, {left} left out; fitted to one half, judged"
+        " on the other; {splits} {split}, {draws} draws {repeats} times from each fit, seed {seed}."
     )
     return (
         Message(
@@ -157,6 +164,8 @@ def _notes(study: PopulationStudy) -> tuple[str, ...]:
         ),
         "Wasserstein distances are shares of the measured mean; the floor is the distance between random "
         f"halves, {N_FLOOR_SPLITS} of them; by volume means weighted with the cube of the equivalent radius.",
+        Message(N_("The cut sample is the measured one cut at l_max = {degree}."), degree=study.cut_degree),
+        "Degrees of the draws: " + ", ".join(f"{model.key} {model.l_max}" for model in study.models) + ".",
         f"Low and high hold the distance of one round in {CONFIDENCE:.0%} of {N_RESAMPLES} resamples of "
         "measured and drawn particles, shifted back by what resampling adds.",
         "Energy distances are unbiased, of standardised columns; a classifier at 0.5 cannot tell measured "

@@ -22,7 +22,7 @@ STUDIES: dict[str, tuple[Any, str, tuple[object, ...]]] = {
         "coarsen_column",
         ("--method", "quadric", "--loss", "all", "--loss", "only_volume"),
     ),
-    "lmax": (lmax, "errors_or_reason", ("--degrees", "1,4", "--level", 2)),
+    "lmax": (lmax, "errors_or_reason", ("--degrees", "1,4")),
 }
 
 
@@ -73,7 +73,7 @@ def test_that_other_options_and_other_inputs_are_refused(
     command, grains: Path, tmp_path: Path, broken_off, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     shutil.copytree(grains, tmp_path / "grains")
-    words = ("study", "lmax", tmp_path / "grains", "-o", tmp_path / "out", "--level", 2, "--degrees")
+    words = ("study", "lmax", tmp_path / "grains", "-o", tmp_path / "out", "--degrees")
     broken_off("lmax", 1)
     command(*words, "1,4")
     monkeypatch.undo()

@@ -72,3 +72,12 @@ def test_that_numbers_of_no_field_are_refused(mean: float, spectrum: list[float]
 def test_that_a_range_that_the_field_never_reaches_is_refused() -> None:
     with pytest.raises(InputError, match="only 0 have a positive radius and the size asked for"):
         GaussianField(3.5, np.array([0.01, 0.0, 0.01])).draw(5, 0, (100.0, 200.0))
+
+
+def test_that_rejection_makes_the_kept_draws_larger_and_rounder() -> None:
+    """Of radii N(1, 1) those above zero have the mean 1 + phi(1) / Phi(1)."""
+    bias = GaussianField(1.0, np.array([1.0])).rejection_bias()
+    assert bias.rejected == pytest.approx(0.1587, abs=0.02)
+    assert bias.mean_radius == pytest.approx(0.2876, abs=0.04)
+    rough = GaussianField(3.5, np.array([0.1, 0.0, 0.3, 0.1, 0.05])).rejection_bias()
+    assert rough.mean_radius > 0 > rough.second_degree

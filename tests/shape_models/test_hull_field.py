@@ -38,7 +38,7 @@ def _dented(n: int, seed: int = 0) -> np.ndarray:
     rng = np.random.default_rng(seed)
     rows = 0.05 * rng.normal(size=(n, 49))
     rows[:, 0] = 0.0
-    return np.asarray(rows @ hull_grid(14, 6).grid.basis)
+    return np.asarray(hull_grid(14, 6).grid.values(rows))
 
 
 def test_that_the_hull_of_an_ellipsoid_is_itself() -> None:
@@ -143,7 +143,7 @@ def test_that_a_body_gets_the_form_wanted() -> None:
     rng = np.random.default_rng(4)
     rough = rng.normal(size=(30, 49)) * 0.04
     wanted = rng.uniform(0.0, 0.5, size=(30, 2))
-    once, twice = (forms(with_forms(rough @ grid.basis, wanted, grid, steps), grid)[0] for steps in (1, 2))
+    once, twice = (forms(with_forms(grid.values(rough), wanted, grid, steps), grid)[0] for steps in (1, 2))
     assert np.abs(once - wanted).max() < 0.1
     assert np.abs(twice - wanted).max() < 0.3 * np.abs(once - wanted).max()
 
@@ -152,7 +152,7 @@ def test_that_the_form_on_the_grid_is_that_of_the_solid() -> None:
     coefficients = np.zeros((1, 121))
     coefficients[0, [0, 4, 6, 8, 20]] = 10.0, 0.3, 0.8, -0.5, 0.4
     grid = shape_grid(10).grid
-    on_grid, _ = forms(np.log(coefficients @ grid.basis), grid)
+    on_grid, _ = forms(np.log(grid.values(coefficients)), grid)
     np.testing.assert_allclose(on_grid, shape_features(coefficients)[:, FORM], atol=1e-6)
     mesh = virtual_mesh(Realizations(coefficients, "radius", "measured", 0), 0, 5)
     second = np.linalg.eigvalsh(np.trace(mesh.inertia) / 2 * np.eye(3) - mesh.inertia)

@@ -103,7 +103,7 @@ def test_that_turning_makes_long_particles_hardly_rougher_than_measured() -> Non
     sphericities would spread 9 % more."""
     drawn = materials()["ma165"].model(20).draw(300, 0)
     rows = np.stack([drawn.particle(i).values for i in range(300)])
-    draws = MODEL.fit(Sample(rows)).draw(1500, 1)
+    draws = MODEL.fit(Sample(rows), SampleMatchedSettings(l_max=10)).draw(1500, 1)
     own, theirs = (
         np.log(1 / (1 + np.exp(-outer_features_of_radii(each, np.zeros(len(each)))[:, SPHERICITY])))
         for each in (draws.coefficients, rows[np.asarray(draws.parents), :121])

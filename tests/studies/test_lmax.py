@@ -18,6 +18,7 @@ from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.harmonics.fit import fit_harmonics
 from regolith_studio.harmonics.surface import reconstruct
+from regolith_studio.readers.particles import sample_particles
 from regolith_studio.studies.figures.lmax import lmax_figure, write_lmax_study
 from regolith_studio.studies.lmax import (
     LmaxStudy,
@@ -55,7 +56,7 @@ def particles():
 
 @pytest.fixture(scope="module")
 def study(particles):
-    return finished(lmax_study(particles, DEGREES, level=2))[1]
+    return finished(lmax_study(particles, DEGREES))[1]
 
 
 @pytest.fixture
@@ -68,16 +69,22 @@ def made_up():
 def test_that_the_rmsre_is_equation_ten_of_the_same_fits(study, particles):
     fits = [fit_harmonics(particle.mesh, 8) for particle in particles]
     wanted = [describe(particle.mesh, LOSS_KEYS) for particle in particles]
-    for row, degree in zip(study.rmsre(), DEGREES, strict=True):
-        found = [describe(reconstruct(fit, degree, level=2), LOSS_KEYS) for fit in fits]
-        expected = rmsre(wanted, found, LOSS_KEYS)
-        np.testing.assert_allclose(row, [expected[key] for key in LOSS_KEYS], rtol=1e-6)
+    boxes = ("volume", "min_diameter", "max_diameter", "aspect_ratio")
+    for row, degree, level in zip(study.rmsre(), DEGREES, (3, 3, 4), strict=True):
+        found = [describe(reconstruct(fit, degree, level=level), LOSS_KEYS) for fit in fits]
+        expected = rmsre(wanted, found, boxes)
+        np.testing.assert_allclose(
+            [row[LOSS_KEYS.index(key)] for key in boxes], [expected[key] for key in boxes], rtol=1e-6
+        )
 
 
-def test_that_coarser_meshes_of_low_degrees_change_little(particles, monkeypatch):
-    quick = lmax_errors(particles[0].mesh, (1, 2, 4))
-    monkeypatch.setattr("regolith_studio.studies.lmax.LEVEL_BY_DEGREE", ())
-    np.testing.assert_allclose(quick, lmax_errors(particles[0].mesh, (1, 2, 4)), atol=0.015)
+def test_that_errors_are_those_of_meshes_so_fine_that_finer_ones_change_nothing():
+    keys = ("sphericity", "convex_hull_volume")
+    grain = next(each.mesh for each in sample_particles() if each.name == "angular-1")
+    wanted, fit = describe(grain, keys), fit_harmonics(grain, 10)
+    for degree, errors in zip((2, 4, 10), lmax_errors(grain, (2, 4, 10), keys), strict=True):
+        found = describe(reconstruct(fit, degree, level=6), keys)
+        np.testing.assert_allclose(errors, [found[key] / wanted[key] - 1 for key in keys], atol=1e-3)
 
 
 def test_that_the_volume_error_falls_with_l_max(study):
@@ -114,7 +121,7 @@ def test_that_a_resample_counts_particles_as_often_as_its_weights_say():
 
 
 def test_that_each_particle_is_told_of_with_the_study_so_far(particles):
-    events, result = finished(lmax_study(particles, (1, 2), level=1))
+    events, result = finished(lmax_study(particles, (1, 2)))
     assert [(e.done, e.total, e.message) for e in events] == [(i + 1, 3, f"grain {i}") for i in range(3)]
     assert [len(e.partial.names) for e in events] == [1, 2, 3]
     np.testing.assert_array_equal(events[-1].partial.errors, result.errors)
@@ -123,12 +130,12 @@ def test_that_each_particle_is_told_of_with_the_study_so_far(particles):
 def test_that_a_broken_particle_is_listed_and_stops_nothing(particles):
     mesh = particles[0].mesh
     broken = Particle("broken", Mesh(mesh.vertices, mesh.faces[1:]), "long")
-    _, result = finished(lmax_study([broken, *particles], (1,), level=1))
+    _, result = finished(lmax_study([broken, *particles], (1,)))
     assert result.names == ("grain 0", "grain 1", "grain 2")
     assert result.failures[0][0] == "broken"
     assert "open" in result.failures[0][1]
     with pytest.raises(InputError, match=r"None of the 1 particles can be fitted: "):
-        finished(lmax_study([broken], (1,), level=1))
+        finished(lmax_study([broken], (1,)))
 
 
 def test_that_a_study_of_nothing_is_refused(particles):
@@ -139,8 +146,8 @@ def test_that_a_study_of_nothing_is_refused(particles):
 
 def test_that_a_process_pool_gives_the_same_numbers(particles):
     with ProcessPoolExecutor(1, get_context("spawn")) as pool:
-        _, result = finished(lmax_study(particles, (1, 4), level=1, mapper=pool.map))
-    wanted = [lmax_errors(particle.mesh, (1, 4), level=1) for particle in particles]
+        _, result = finished(lmax_study(particles, (1, 4), mapper=pool.map))
+    wanted = [lmax_errors(particle.mesh, (1, 4)) for particle in particles]
     np.testing.assert_array_equal(result.errors, wanted)
 
 

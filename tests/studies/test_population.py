@@ -5,13 +5,22 @@ from pathlib import Path
 import matplotlib.image
 import numpy as np
 import pytest
+from scipy.stats import wasserstein_distance
 
 from regolith_studio.errors import InputError
 from regolith_studio.harmonics.coefficients import degrees, orders
 from regolith_studio.harmonics.io import from_complex_rows
+from regolith_studio.shape_models.realizations import Realizations
 from regolith_studio.shape_models.sample import Sample
 from regolith_studio.studies.figures.population import components_figure, write_population_study
-from regolith_studio.studies.population import KEYS, N_FLOOR_SPLITS, PopulationStudy, population_study
+from regolith_studio.studies.population import (
+    KEYS,
+    N_FLOOR_SPLITS,
+    PopulationStudy,
+    default_settings,
+    descriptors_of,
+    population_study,
+)
 from regolith_studio.studies.population_distances import PopulationDistances, distances
 from regolith_studio.studies.population_tables import (
     distance_table,
@@ -205,7 +214,7 @@ def test_that_whatever_takes_long_is_shared_out_and_the_floor_told_split_by_spli
     options = {"l_max": 2, "n_draws": 20, "n_splits": 1, "n_repeats": 2, "level": 1}
     steps, _ = run(rough_sample(24), ["log_field"], mapper=noting, **options)
     assert asked == [
-        *("descriptors_of", "frames_of", "fit_and_draw"),
+        *("descriptors_of", "descriptors_of", "frames_of", "fit_and_draw"),
         *("descriptors_of", "frames_of", "descriptors_of"),
     ]
     assert sum("noise of sampling" in step.message for step in steps) == N_FLOOR_SPLITS
@@ -218,3 +227,27 @@ def test_that_distances_do_not_depend_on_how_pairs_are_shared_out() -> None:
     parts = PopulationDistances.joined([distances([pair], 7, None, first=i) for i, pair in enumerate(pairs)])
     for name in PopulationDistances.__annotations__:
         np.testing.assert_array_equal(getattr(whole, name), getattr(parts, name))
+
+
+def test_that_draws_are_compared_with_the_particles_and_not_with_the_sample_cut_at_their_degree() -> None:
+    sample = rough_sample(40, 8)
+    _, study = run(sample, ["gaussian_field"], l_max=2, n_draws=20, n_splits=1, n_repeats=1, level=2)
+    whole = descriptors_of(realizations(sample), ("sphericity",), 2)
+    cut = descriptors_of(realizations(sample.truncated(2)), ("sphericity",), 2)
+    column = KEYS.index("sphericity")
+    np.testing.assert_allclose(study.measured[:, [column]], whole)
+    np.testing.assert_allclose(study.cut[:, [column]], cut)
+    table = distance_table(study)
+    row = table.column("descriptor").index("sphericity")
+    gap = 100 * wasserstein_distance(whole[:, 0], cut[:, 0]) / whole.mean()
+    assert table.column("cut_sample")[row] == pytest.approx(gap)
+
+
+def test_that_models_are_drawn_at_their_own_degree_where_the_sample_has_it() -> None:
+    assert default_settings("sample_matched", rough_sample(5, 12)).l_max == 12
+    assert default_settings("gaussian_field", rough_sample(5, 12)).l_max == 10
+    assert default_settings("gaussian_field", rough_sample(5, 7)).l_max == 7
+
+
+def realizations(sample: Sample) -> Realizations:
+    return Realizations(sample.coefficients, "radius", "measured", 0)

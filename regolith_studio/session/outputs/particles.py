@@ -24,6 +24,7 @@ from regolith_studio.jobs.volume_jobs import ExtractedFile
 from regolith_studio.messages import N_
 from regolith_studio.readers.shape_files import ShapeSource
 from regolith_studio.session.outputs.descriptors import described, descriptor_table
+from regolith_studio.shape_models.chunked_sampling import RejectionSampler
 from regolith_studio.shape_models.protocol import FittedModel
 from regolith_studio.shape_models.realizations import Realizations
 from regolith_studio.shape_models.sample import Sample
@@ -191,7 +192,15 @@ def generation_document(made: Generated) -> dict[str, Any]:
         "acceptance": draws.acceptance,
         "coefficients": f"of {'the radius' if draws.scale == 'radius' else 'ln radius'}; {CONVENTION}",
         "components": _components(made),
+        "rejection_bias": _rejection_bias(made),
     }
+
+
+def _rejection_bias(made: Generated) -> dict[str, float] | None:
+    """How kept draws differ from the model that rejects others; nothing where none was rejected."""
+    if not made.draws.rejected or not isinstance(made.model, RejectionSampler):
+        return None
+    return asdict(made.model.rejection_bias())
 
 
 def _components(made: Generated) -> list[dict[str, Any]]:

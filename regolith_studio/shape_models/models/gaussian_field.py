@@ -4,9 +4,8 @@ c_00 is N(mu, A_0), c_lm is N(0, A_l), all independent. Nothing keeps the radius
 radius is not are thrown away and counted, which the paper does not mention.
 """
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from functools import partial
 from typing import Any, ClassVar
 
 import numpy as np
@@ -16,11 +15,8 @@ from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray, locked_floats
 from regolith_studio.harmonics.coefficients import degrees
 from regolith_studio.messages import N_
-from regolith_studio.shape_models.chunked_sampling import ChunkedSampler, accepted, chunks
-from regolith_studio.shape_models.protocol import SizeRange
-from regolith_studio.shape_models.realizations import Realizations, acceptable
+from regolith_studio.shape_models.chunked_sampling import RejectionSampler
 from regolith_studio.shape_models.sample import Sample
-from regolith_studio.shape_models.size_law import checked_bounds
 
 KEY = "gaussian_field"
 
@@ -37,8 +33,10 @@ class GaussianFieldSettings:
 
 
 @dataclass(frozen=True, eq=False)
-class GaussianField(ChunkedSampler):
+class GaussianField(RejectionSampler):
     """The field's numbers.
+
+    The draws that are kept are larger and rounder than the field (:meth:`rejection_bias`).
 
     Parameters
     ----------
@@ -80,24 +78,12 @@ class GaussianField(ChunkedSampler):
         """The field with another spectrum, edited by hand."""
         return replace(self, spectrum=np.asarray(spectrum, dtype=np.float64))
 
-    def draw_chunks(self, n: int, seed: int, size_range: SizeRange | None = None) -> Iterator[Realizations]:
-        """`n` particles of the field with a positive radius, and in the range of equivalent radii if given.
-
-        Raises
-        ------
-        InputError
-            If `n` is negative, the range is none, or hardly any draw is acceptable.
-        """
-        bounds = checked_bounds(size_range)
-        for rng, wanted in chunks(n, seed):
-            rows, rejected = accepted(partial(self._propose, rng), partial(acceptable, bounds), wanted)
-            yield Realizations(rows, "radius", KEY, seed, self.unit, rejected)
-
-    def _propose(self, rng: np.random.Generator, n: int) -> FloatArray:
+    def propose(self, rng: np.random.Generator, n: int) -> FloatArray:
+        """Coefficients of `n` draws, and a last column of zeros: the field has one component."""
         length = (self.l_max + 1) ** 2
         rows = rng.standard_normal((n, length)) * np.sqrt(self.spectrum)[degrees(length)]
         rows[:, 0] += self.mean
-        return rows
+        return np.column_stack([rows, np.zeros(n)])
 
     def stored(self) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
         """Plain values for JSON, no arrays."""

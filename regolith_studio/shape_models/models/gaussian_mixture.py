@@ -6,35 +6,31 @@ Bayes. Draws whose radius is not positive are rejected and counted; ``mixture_fi
 where there are none.
 """
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import partial
 from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from regolith_studio.errors import InputError
-from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray, locked_floats
+from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats
 from regolith_studio.harmonics.coefficients import degrees
 from regolith_studio.messages import N_
-from regolith_studio.shape_models.chunked_sampling import ChunkedSampler, accepted, chunks
+from regolith_studio.shape_models.chunked_sampling import RejectionSampler
 from regolith_studio.shape_models.mixture import (
     MixtureSettings,
     NamedComponents,
     chosen_mixture,
-    component_names,
+    restored_components,
 )
-from regolith_studio.shape_models.protocol import SizeRange
-from regolith_studio.shape_models.realizations import Realizations, acceptable
 from regolith_studio.shape_models.sample import Sample
-from regolith_studio.shape_models.size_law import checked_bounds
 
 KEY = "gaussian_mixture"
 
 
 @dataclass(frozen=True, eq=False)
-class GaussianMixture(NamedComponents, ChunkedSampler):
+class GaussianMixture(NamedComponents, RejectionSampler):
     """A fitted mixture, the component with the largest share first.
 
     Parameters
@@ -73,32 +69,16 @@ class GaussianMixture(NamedComponents, ChunkedSampler):
         k = len(self.weights)
         object.__setattr__(self, "weights", locked_floats(self.weights, (None,), "weights"))
         object.__setattr__(self, "means", locked_floats(self.means, (k,), "means"))
-        object.__setattr__(self, "spectra", locked_floats(self.spectra, (k, None), "spectra"))
-        if not ((self.spectra >= 0).all() and (self.weights >= 0).all() and self.weights.sum() > 0):
-            raise InputError("Shares and variances of a mixture must not be negative.")
-        object.__setattr__(self, "bic", tuple(float(value) for value in self.bic))
-        object.__setattr__(self, "names", component_names(self.names, k))
+        self.check_components(k)
+        if not ((self.weights >= 0).all() and self.weights.sum() > 0):
+            raise InputError("Shares of a mixture must not be negative.")
 
     def __reduce__(self) -> tuple[Callable[..., "GaussianMixture"], tuple[Any, ...]]:
         fields = (self.weights, self.means, self.spectra, self.unit, self.bic, self.names, self.labels)
         return GaussianMixture, fields
 
-    def draw_chunks(self, n: int, seed: int, size_range: SizeRange | None = None) -> Iterator[Realizations]:
-        """`n` particles with a positive radius, and in the range of equivalent radii if given.
-
-        Raises
-        ------
-        InputError
-            If `n` is negative, the range is none, or hardly any draw is acceptable.
-        """
-        bounds = checked_bounds(size_range)
-        for rng, wanted in chunks(n, seed):
-            rows, rejected = accepted(partial(self._propose, rng), partial(_acceptable, bounds), wanted)
-            component = rows[:, -1].astype(np.int64)
-            yield Realizations(rows[:, :-1], "radius", KEY, seed, self.unit, rejected, components=component)
-
-    def _propose(self, rng: np.random.Generator, n: int) -> FloatArray:
-        """Coefficients, and the component of each in a last column."""
+    def propose(self, rng: np.random.Generator, n: int) -> FloatArray:
+        """Coefficients of `n` draws, and the component of each in a last column."""
         component = rng.choice(len(self.weights), n, p=self.weights / self.weights.sum())
         length = (self.l_max + 1) ** 2
         rows = rng.standard_normal((n, length)) * np.sqrt(self.spectra)[component][:, degrees(length)]
@@ -107,19 +87,8 @@ class GaussianMixture(NamedComponents, ChunkedSampler):
 
     def stored(self) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
         """Plain values for JSON; the labels of the measured particles."""
-        values = {
-            "weights": self.weights.tolist(),
-            "means": self.means.tolist(),
-            "spectra": self.spectra.tolist(),
-            "unit": self.unit,
-            "bic": list(self.bic),
-            "names": list(self.names),
-        }
-        return values, {} if self.labels is None else {"labels": self.labels}
-
-
-def _acceptable(bounds: SizeRange | None, rows: FloatArray) -> BoolArray:
-    return acceptable(bounds, np.ascontiguousarray(rows[:, :-1]))
+        values, arrays = self.stored_components()
+        return {"weights": self.weights.tolist(), "means": self.means.tolist(), **values}, arrays
 
 
 class GaussianMixtureModel:
@@ -157,11 +126,7 @@ class GaussianMixtureModel:
         return GaussianMixture(
             values["weights"],
             values["means"],
-            values["spectra"],
-            str(values["unit"]),
-            tuple(values["bic"]),
-            tuple(values["names"]),
-            arrays.get("labels"),
+            *restored_components(values, arrays),
         )
 
 

@@ -10,7 +10,7 @@ the sample's extents, sphericities and shares. No measured particle is stored; s
 shapes of its ends.
 """
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any, ClassVar
 
@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from regolith_studio.errors import InputError
-from regolith_studio.geometry.arrays import FloatArray, locked_floats
+from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats
 from regolith_studio.messages import N_
 from regolith_studio.shape_models.calibration import (
     CalibrationOffset,
@@ -27,15 +27,13 @@ from regolith_studio.shape_models.calibration import (
     features_and_target,
     measured_features,
 )
-from regolith_studio.shape_models.chunked_sampling import CHUNK, ChunkedSampler, chunks
+from regolith_studio.shape_models.chunked_sampling import CHUNK, SizedSampler
 from regolith_studio.shape_models.copula import GaussianCopula
 from regolith_studio.shape_models.inertia_ellipsoid import log_ellipsoids, with_forms
-from regolith_studio.shape_models.log_radius import log_shapes, sized
-from regolith_studio.shape_models.protocol import SizeRange
-from regolith_studio.shape_models.realizations import Realizations
+from regolith_studio.shape_models.log_radius import log_shapes
 from regolith_studio.shape_models.sample import Sample
 from regolith_studio.shape_models.shape_features import CONVEXITY, FORM, POWERS, shape_grid, with_powers
-from regolith_studio.shape_models.size_law import SIZE_LAWS, SizeLaw, checked_bounds, size_law_from
+from regolith_studio.shape_models.size_law import SIZE_LAWS, SizeLaw, size_law_from
 
 KEY = "hull_field"
 DEGREES = (3, 20)
@@ -70,7 +68,7 @@ class HullFieldSettings:
 
 
 @dataclass(frozen=True, eq=False)
-class HullField(ChunkedSampler):
+class HullField(SizedSampler):
     """A fitted hull field.
 
     Parameters
@@ -116,19 +114,11 @@ class HullField(ChunkedSampler):
         """Degree of ln r."""
         return len(self.spectrum) - 1
 
-    def draw_chunks(self, n: int, seed: int, size_range: SizeRange | None = None) -> Iterator[Realizations]:
-        """`n` particles; their equivalent radii follow the law of sizes, cut to the range if given.
-
-        Raises
-        ------
-        InputError
-            If `n` is negative or the range is none.
-        """
-        bounds = checked_bounds(size_range)
-        for rng, wanted in chunks(n, seed):
-            radii, _ = self.sizes.draw(CHUNK, rng, bounds)
-            shapes = self._shapes(self.numbers.draw(np.log(radii), rng), rng)
-            yield Realizations(sized(shapes, radii)[:wanted], "log_radius", KEY, seed, self.unit)
+    def shapes(
+        self, radii: FloatArray, _components: IntArray, rng: np.random.Generator
+    ) -> tuple[FloatArray, dict[str, IntArray]]:
+        """Surfaces drawn to their hulls, with numbers that go with these sizes."""
+        return self._shapes(self.numbers.draw(np.log(radii), rng), rng), {}
 
     def _shapes(self, numbers: FloatArray, rng: np.random.Generator) -> FloatArray:
         """Coefficients of ln r, up to size, of particles that come out with these numbers (n, d)."""
@@ -139,9 +129,9 @@ class HullField(ChunkedSampler):
         ellipsoids = log_ellipsoids(grid.directions, form, frames)
         field = rng.standard_normal((len(wanted), (self.l_max + 1) ** 2))
         field[:, 0] = 0.0
-        rough = ellipsoids + with_powers(field, ROUGHNESS**2 * power) @ grid.basis
+        rough = ellipsoids + grid.values(with_powers(field, ROUGHNESS**2 * power))
         surface = grid.expanded(shapes.drawn(rough, self.faceting) - ellipsoids)
-        finished = ellipsoids + with_powers(surface, power) @ grid.basis
+        finished = ellipsoids + grid.values(with_powers(surface, power))
         shares = 1 / (1 + np.exp(-wanted[:, CONVEXITY]))
         filled = shapes.with_convexities(with_forms(finished, form, grid, FORM_STEPS[0]), shares)
         return grid.expanded(with_forms(filled, form, grid, FORM_STEPS[1]))

@@ -5,7 +5,7 @@ nothing is thrown away, and size and shape extrapolate apart. The exponential co
 brings the elongated particles that an isotropic field in r cannot make.
 """
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any, ClassVar
 
@@ -16,12 +16,10 @@ from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats
 from regolith_studio.harmonics.coefficients import degrees
 from regolith_studio.messages import N_
-from regolith_studio.shape_models.chunked_sampling import CHUNK, ChunkedSampler, chunks
-from regolith_studio.shape_models.log_radius import directed, log_shapes, sized
-from regolith_studio.shape_models.protocol import SizeRange
-from regolith_studio.shape_models.realizations import Realizations
+from regolith_studio.shape_models.chunked_sampling import SizedSampler
+from regolith_studio.shape_models.log_radius import directed, log_shapes
 from regolith_studio.shape_models.sample import Sample
-from regolith_studio.shape_models.size_law import SIZE_LAWS, SizeLaw, checked_bounds, size_law_from
+from regolith_studio.shape_models.size_law import SIZE_LAWS, SizeLaw, size_law_from
 
 KEY = "log_field"
 SPECTRA = (N_("resampled"), N_("pooled"))
@@ -55,7 +53,7 @@ class LogFieldSettings:
 
 
 @dataclass(frozen=True, eq=False)
-class LogField(ChunkedSampler):
+class LogField(SizedSampler):
     """The field's numbers.
 
     Parameters
@@ -117,35 +115,21 @@ class LogField(ChunkedSampler):
         """The field with one spectrum for all particles, edited by hand."""
         return replace(self, spectrum=np.asarray(spectrum, dtype=np.float64), powers=None, radii=None)
 
-    def draw_chunks(self, n: int, seed: int, size_range: SizeRange | None = None) -> Iterator[Realizations]:
-        """`n` particles; their equivalent radii follow the law of sizes, cut to the range if given.
-
-        Raises
-        ------
-        InputError
-            If `n` is negative or the range is none.
-        """
-        bounds = checked_bounds(size_range)
-        for rng, wanted in chunks(n, seed):
-            radii, _ = self.sizes.draw(CHUNK, rng, bounds)
-            shapes, parents = self._shapes(radii, rng)
-            rows = sized(shapes, radii)[:wanted]
-            yield Realizations(rows, "log_radius", KEY, seed, self.unit, parents=parents[:wanted])
-
-    def _shapes(self, radii: FloatArray, rng: np.random.Generator) -> tuple[FloatArray, IntArray]:
-        """Coefficients of ln r up to size, and the measured particles that lent their spectra."""
+    def shapes(
+        self, radii: FloatArray, _components: IntArray, rng: np.random.Generator
+    ) -> tuple[FloatArray, dict[str, IntArray]]:
+        """Fields with the pooled spectrum, or with those of parents, measured particles of like size."""
         if self.powers is not None and self.radii is not None:
             reach = min(NEIGHBOURS_IN_SIZE, len(self.radii))
             first = np.searchsorted(self.radii, radii) - reach // 2
             first = np.clip(first, 0, len(self.radii) - reach)
             parents = first + rng.integers(reach, size=len(radii))
             jitter = np.exp(SPECTRUM_JITTER * rng.standard_normal((len(radii), self.l_max + 1)))
-            return directed(self.powers[parents] * jitter, rng), parents
+            return directed(self.powers[parents] * jitter, rng), {"parents": parents}
         length = (self.l_max + 1) ** 2
         relative = np.log(radii / self.reference_radius)
         variances = self.spectrum * np.exp(relative[:, None] * self.exponents)
-        rows = rng.standard_normal((len(radii), length)) * np.sqrt(variances)[:, degrees(length)]
-        return rows, np.full(len(radii), -1)
+        return rng.standard_normal((len(radii), length)) * np.sqrt(variances)[:, degrees(length)], {}
 
     def stored(self) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
         """Plain values for JSON, and the measured spectra if there are any."""

@@ -5,35 +5,32 @@ material, or size classes of different shape. In ln r, so that no draw has a neg
 components is the one with the lowest information criterion of Bayes.
 """
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from regolith_studio.errors import InputError
-from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats
+from regolith_studio.geometry.arrays import FloatArray, IntArray
 from regolith_studio.harmonics.coefficients import degrees
 from regolith_studio.messages import N_
-from regolith_studio.shape_models.chunked_sampling import CHUNK, ChunkedSampler, chunks
-from regolith_studio.shape_models.log_radius import log_shapes, sized
+from regolith_studio.shape_models.chunked_sampling import SizedSampler
+from regolith_studio.shape_models.log_radius import log_shapes
 from regolith_studio.shape_models.mixture import (
     MixtureSettings,
     NamedComponents,
     chosen_mixture,
-    component_names,
+    restored_components,
 )
-from regolith_studio.shape_models.protocol import SizeRange
-from regolith_studio.shape_models.realizations import Realizations
 from regolith_studio.shape_models.sample import Sample
-from regolith_studio.shape_models.size_law import LogNormalSizes, checked_bounds
+from regolith_studio.shape_models.size_law import LogNormalSizes
 
 KEY = "mixture_field"
 
 
 @dataclass(frozen=True, eq=False)
-class MixtureField(NamedComponents, ChunkedSampler):
+class MixtureField(NamedComponents, SizedSampler):
     """A fitted mixture, the component with the largest share first.
 
     Parameters
@@ -61,43 +58,25 @@ class MixtureField(NamedComponents, ChunkedSampler):
     key: ClassVar[str] = KEY
 
     def __post_init__(self) -> None:
-        k = len(self.sizes.weights)
-        object.__setattr__(self, "spectra", locked_floats(self.spectra, (k, None), "spectra"))
-        if not (self.spectra >= 0).all():
-            raise InputError("A spectrum needs one variance A_l for each degree, none of them negative.")
-        object.__setattr__(self, "bic", tuple(float(value) for value in self.bic))
-        object.__setattr__(self, "names", component_names(self.names, k))
+        self.check_components(len(self.sizes.weights))
 
     def __reduce__(self) -> tuple[Callable[..., "MixtureField"], tuple[Any, ...]]:
         fields = (self.sizes, self.spectra, self.unit, self.bic, self.names, self.labels)
         return MixtureField, fields
 
-    def draw_chunks(self, n: int, seed: int, size_range: SizeRange | None = None) -> Iterator[Realizations]:
-        """`n` particles; `components` of the draws holds the component of each.
-
-        Raises
-        ------
-        InputError
-            If `n` is negative or the range is none.
-        """
-        bounds = checked_bounds(size_range)
+    def shapes(
+        self, radii: FloatArray, components: IntArray, rng: np.random.Generator
+    ) -> tuple[FloatArray, dict[str, IntArray]]:
+        """Fields with the spectra of their components."""
         length = (self.l_max + 1) ** 2
-        for rng, wanted in chunks(n, seed):
-            radii, component = self.sizes.draw(CHUNK, rng, bounds)
-            scales = np.sqrt(self.spectra[component])[:, degrees(length)]
-            rows = sized(rng.standard_normal((CHUNK, length)) * scales, radii)[:wanted]
-            yield Realizations(rows, "log_radius", KEY, seed, self.unit, components=component[:wanted])
+        scales = np.sqrt(self.spectra[components])[:, degrees(length)]
+        return rng.standard_normal((len(radii), length)) * scales, {"components": components}
 
     def stored(self) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
         """Plain values for JSON; the labels of the measured particles."""
-        values = {
-            "sizes": {name: getattr(self.sizes, name).tolist() for name in self.sizes.__dataclass_fields__},
-            "spectra": self.spectra.tolist(),
-            "unit": self.unit,
-            "bic": list(self.bic),
-            "names": list(self.names),
-        }
-        return values, {} if self.labels is None else {"labels": self.labels}
+        values, arrays = self.stored_components()
+        sizes = {name: getattr(self.sizes, name).tolist() for name in self.sizes.__dataclass_fields__}
+        return {"sizes": sizes, **values}, arrays
 
 
 class MixtureFieldModel:
@@ -127,14 +106,7 @@ class MixtureFieldModel:
 
     def restored(self, values: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> MixtureField:
         """The mixture from its stored values."""
-        return MixtureField(
-            LogNormalSizes(**values["sizes"]),
-            values["spectra"],
-            str(values["unit"]),
-            tuple(values["bic"]),
-            tuple(values["names"]),
-            arrays.get("labels"),
-        )
+        return MixtureField(LogNormalSizes(**values["sizes"]), *restored_components(values, arrays))
 
 
 MODEL = MixtureFieldModel()

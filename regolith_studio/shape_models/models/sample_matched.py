@@ -12,9 +12,10 @@ It is a smoothed bootstrap: it makes no size and no form that was not measured i
 beyond the sample, take ``log_field``.
 """
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from math import isqrt
 from typing import Any, ClassVar
 
 import numpy as np
@@ -25,15 +26,14 @@ from scipy.spatial.transform import Rotation
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats
 from regolith_studio.harmonics.coefficients import degrees
-from regolith_studio.harmonics.sphere_grid import enclosed_volumes, sphere_grid
+from regolith_studio.harmonics.sphere_grid import sphere_grid
 from regolith_studio.messages import N_
-from regolith_studio.shape_models.chunked_sampling import CHUNK, ChunkedSampler, chunks
+from regolith_studio.shape_models.chunked_sampling import CHUNK, SizedSampler
 from regolith_studio.shape_models.inertia_ellipsoid import PrincipalAxes, principal_axes
 from regolith_studio.shape_models.linear_maps import Tables, mapped_radii, radius_tables
-from regolith_studio.shape_models.protocol import SizeRange
-from regolith_studio.shape_models.realizations import Realizations, positive_rows
+from regolith_studio.shape_models.realizations import Scale, positive_rows
 from regolith_studio.shape_models.sample import Sample
-from regolith_studio.shape_models.size_law import LogNormalSizes, checked_bounds
+from regolith_studio.shape_models.size_law import LogNormalSizes
 
 KEY = "sample_matched"
 OVERSAMPLING = 2
@@ -52,7 +52,7 @@ class SampleMatchedSettings:
     """Parameters
     ----------
     l_max
-        Degree of the particles drawn.
+        Degree of the particles drawn; by default all that the sample has.
     turn
         Mean angle of the rotation of a round particle, radians; angles are even between 0.6 and 1.4 times as
         much, and smaller by short over long axis: on a long particle the same angle changes more, and more
@@ -64,7 +64,7 @@ class SampleMatchedSettings:
         Standard deviation of ln r_eq about the measured one.
     """
 
-    l_max: int = 10
+    l_max: int = 30
     turn: float = field(
         default=0.45,
         metadata={
@@ -95,7 +95,7 @@ class SampleMatchedSettings:
 
 
 @dataclass(frozen=True, eq=False)
-class SampleMatched(ChunkedSampler):
+class SampleMatched(SizedSampler):
     """The measured particles and how far to leave them.
 
     Parameters
@@ -115,6 +115,7 @@ class SampleMatched(ChunkedSampler):
     unit: str = "um"
     gain: FloatArray | None = None
     key: ClassVar[str] = KEY
+    scale: ClassVar[Scale] = "radius"
 
     def __post_init__(self) -> None:
         rows = locked_floats(self.coefficients, (None, None), "coefficients")
@@ -131,6 +132,11 @@ class SampleMatched(ChunkedSampler):
     def l_max(self) -> int:
         """Degree of the particles it draws."""
         return self.settings.l_max
+
+    @property
+    def _base(self) -> int:
+        """Degree of the measured particles that are mapped."""
+        return isqrt(self.coefficients.shape[1]) - 1
 
     @cached_property
     def sizes(self) -> LogNormalSizes:
@@ -161,24 +167,17 @@ class SampleMatched(ChunkedSampler):
         mutual = (found[found] == own[:, :, None]).any(axis=2)
         return np.asarray(np.where(mutual, found, own), dtype=np.int64)
 
-    def draw_chunks(self, n: int, seed: int, size_range: SizeRange | None = None) -> Iterator[Realizations]:
-        """`n` particles; their equivalent radii are the measured ones blurred, cut to the range if given.
+    def shapes(
+        self, radii: FloatArray, components: IntArray, rng: np.random.Generator
+    ) -> tuple[FloatArray, dict[str, IntArray]]:
+        """Measured particles, their parents, turned within ellipsoids of their neighbourhood.
 
-        Where nothing was measured in the range, sizes are even in ln r and shapes those nearest in size.
-
-        Raises
-        ------
-        InputError
-            If `n` is negative or the range is none.
+        Where nothing was measured in a range of sizes, sizes are even in ln r and shapes the nearest in size.
         """
-        bounds = checked_bounds(size_range)
-        for rng, wanted in chunks(n, seed):
-            radii, parents = self.sizes.draw(CHUNK, rng, bounds)
-            column = rng.integers(self._neighbours.shape[1], size=CHUNK)
-            forms = self._neighbours[parents, column]
-            spins = _spins(rng, self.settings.turn) * self._roundness(parents, forms)[:, None]
-            rows = _sized(self._turned(parents, forms, spins), radii)
-            yield Realizations(rows[:wanted], "radius", KEY, seed, self.unit, parents=parents[:wanted])
+        column = rng.integers(self._neighbours.shape[1], size=len(radii))
+        forms = self._neighbours[components, column]
+        spins = _spins(rng, self.settings.turn) * self._roundness(components, forms)[:, None]
+        return self._turned(components, forms, spins), {"parents": components}
 
     def _roundness(self, parents: IntArray, forms: IntArray) -> FloatArray:
         """Short over long axis of whichever ellipsoid is the longer one, shape (n,)."""
@@ -204,7 +203,7 @@ class SampleMatched(ChunkedSampler):
         back = np.swapaxes(axes, 1, 2) / lengths[forms][:, :, None]
         turn_back = Rotation.from_rotvec(-spins).as_matrix()
         inverses = (axes * lengths[parents][:, None, :]) @ turn_back @ back
-        grid = sphere_grid(_mapping_degree(self.l_max), self.l_max)
+        grid = sphere_grid(_mapping_degree(self.l_max, self._base), self.l_max)
         radii = np.empty((len(parents), len(grid.directions)))
         mapped_radii(self._tables, parents, np.ascontiguousarray(inverses), grid.directions, radii)
         return np.asarray(grid.expanded(radii) * np.asarray(self.gain)[degrees((self.l_max + 1) ** 2)])
@@ -213,7 +212,10 @@ class SampleMatched(ChunkedSampler):
         """The same with the gain by which its particles have the power of the measured ones."""
         draws = replace(self, gain=None).draw(N_COMPARED, 0)
         measured = self.coefficients[draws.parents, : draws.coefficients.shape[1]]
-        return replace(self, gain=roughness_gain(draws.coefficients, measured))
+        better = replace(self, gain=roughness_gain(draws.coefficients, measured))
+        for name in ("_axes", "_tables", "_neighbours", "sizes"):  # which do not depend on the gain
+            better.__dict__[name] = getattr(self, name)
+        return better
 
     def stored(self) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
         """The settings for JSON; the measured coefficients."""
@@ -222,9 +224,9 @@ class SampleMatched(ChunkedSampler):
         return values, {"coefficients": self.coefficients}
 
 
-def _mapping_degree(l_max: int) -> int:
-    """Degree of the grid on which mapped radii are expanded: it separates all degrees up to 2.2 l_max."""
-    return int(1.6 * l_max) + 1
+def _mapping_degree(l_max: int, base: int) -> int:
+    """Degree of the grid on which mapped radii are expanded: it separates those up to 1.2 times the base."""
+    return (5 * l_max + 6 * base) // 10 + 1
 
 
 def _spins(rng: np.random.Generator, turn: float) -> FloatArray:
@@ -232,14 +234,6 @@ def _spins(rng: np.random.Generator, turn: float) -> FloatArray:
     axes = rng.standard_normal((CHUNK, 3))
     axes /= np.linalg.norm(axes, axis=1, keepdims=True)
     return np.asarray(axes * turn * rng.uniform(0.6, 1.4, (CHUNK, 1)))
-
-
-def _sized(rows: FloatArray, radii: FloatArray) -> FloatArray:
-    """The radius functions with equivalent radii `radii` exactly."""
-    l_max = round(rows.shape[1] ** 0.5) - 1
-    grid = sphere_grid(3 * l_max // 2 + 1, l_max)
-    volumes = enclosed_volumes(rows @ grid.basis, grid)
-    return np.asarray(rows * (radii / np.cbrt(3 * volumes / (4 * np.pi)))[:, None])
 
 
 class SampleMatchedModel:
@@ -261,7 +255,7 @@ class SampleMatchedModel:
             If a setting is out of range, the sample is not expanded so far, or fewer than two particles have
             a positive radius.
         """
-        chosen = settings or SampleMatchedSettings()
+        chosen = settings or replace(SampleMatchedSettings(), l_max=min(30, sample.l_max))
         if not 0 <= chosen.turn <= 2 or chosen.n_neighbours < 1 or not 0 <= chosen.size_jitter <= 1:
             raise InputError(
                 "The turn must be 0 to 2 radians, the neighbours at least 1 and the size jitter 0 to 1, got "
@@ -271,10 +265,10 @@ class SampleMatchedModel:
             raise InputError(f"Particles that can be turned need l_max of at least 1, got {chosen.l_max}.")
         sample.truncated(chosen.l_max)  # refuses what the sample lacks
         usable = sample.truncated(min(sample.l_max, OVERSAMPLING * chosen.l_max)).star_shaped()
-        cut = usable.truncated(chosen.l_max)
-        keep = np.flatnonzero(positive_rows(cut.coefficients))
-        if len(keep) < len(usable):
-            usable = usable.chosen(keep)
+        if usable.l_max > chosen.l_max:
+            keep = np.flatnonzero(positive_rows(usable.truncated(chosen.l_max).coefficients))
+            if len(keep) < len(usable):
+                usable = usable.chosen(keep)
         fitted = SampleMatched(usable.coefficients, chosen, sample.unit)
         return fitted if usable.l_max >= OVERSAMPLING * chosen.l_max else fitted.roughened()
 

@@ -22,6 +22,7 @@ from regolith_studio.studies.population_tables import (
     distance_table,
     pair_table,
     ranking_table,
+    size_column,
     target_table,
 )
 
@@ -41,13 +42,24 @@ def density_figure(study: PopulationStudy, weighting: str = "number", columns: i
     """Fig. 4 (by number) or Fig. 5 (by volume): histograms with bins shared by all, outer 0.2 % cut off."""
     figure, axes = _panels(len(study.keys), columns)
     for axis, column in zip(axes, range(len(study.keys)), strict=False):
-        tables = [study.measured, *(model.table for model in study.models)]
+        tables = [study.measured, study.cut, *(model.table for model in study.models)]
         low, high = np.percentile(np.concatenate([table[:, column] for table in tables]), [0.1, 99.9])
         bins = np.linspace(low, max(high, low + 1e-12), N_BINS + 1).tolist()
         weights = [class_weights(table, weighting, size_column(study)) for table in tables]
         measured = study.measured[:, column]
         axis.hist(measured, bins, weights=weights[0], density=True, color=MEASURED, label="measured")
-        for table, weight, model, colour in zip(tables[1:], weights[1:], study.models, COLOURS, strict=False):
+        if study.cut_degree < study.l_max:
+            axis.hist(
+                study.cut[:, column],
+                bins,
+                weights=weights[1],
+                density=True,
+                histtype="step",
+                color="black",
+                linestyle=":",
+                label=cut_label(study),
+            )
+        for table, weight, model, colour in zip(tables[2:], weights[2:], study.models, COLOURS, strict=False):
             axis.hist(
                 table[:, column],
                 bins,
@@ -72,6 +84,9 @@ def quantile_figure(study: PopulationStudy, columns: int = N_COLUMNS) -> Figure:
     for column, axis in enumerate(axes):
         measured = np.percentile(study.measured[:, column], shares)
         axis.plot(measured[[0, -1]], measured[[0, -1]], color="black", linewidth=0.8)
+        if study.cut_degree < study.l_max:
+            cut = np.percentile(study.cut[:, column], shares)
+            axis.plot(measured, cut, ":", color="black", label=cut_label(study))
         for model, colour in zip(study.models, COLOURS, strict=False):
             found = np.percentile(model.table[:, column], shares)
             axis.plot(measured, found, ".", color=colour, markersize=3, label=MODELS[model.key].label)
@@ -167,6 +182,11 @@ def write_population_study(
     return tuple(files)
 
 
+def cut_label(study: PopulationStudy) -> str:
+    """Name of the second measured line."""
+    return f"measured, cut at l = {study.cut_degree}"
+
+
 def _panels(n: int, columns: int) -> tuple[Figure, list[Axes]]:
     columns = min(columns, n)
     rows = ceil(n / columns)
@@ -183,11 +203,6 @@ def _label(study: PopulationStudy, column: int) -> str:
     power = {1: "", 2: "²", 3: "³", 5: "⁵"}
     suffix = f" ({unit}{power[row.dimension]})" if row.dimension else ""
     return f"{row.label.lower()}{suffix}"
-
-
-def size_column(study: PopulationStudy) -> int | None:
-    """Column of the equivalent radius, if it was measured."""
-    return study.keys.index("equivalent_radius") if "equivalent_radius" in study.keys else None
 
 
 def _common_grid(tables: list[FloatArray]) -> tuple[FloatArray, FloatArray]:

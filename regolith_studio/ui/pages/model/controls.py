@@ -119,13 +119,14 @@ class SourceControls(QWidget):
             self.source.setCurrentIndex(at)
         if (at := self.model.findData(value.get("model"))) >= 0:
             self.model.setCurrentIndex(at)
-        self.l_max.setValue(int(value.get("l_max", 10)))
+        self.l_max.setValue(int(value.get("l_max", default_degree(DEFAULT_MODEL))))
         self.half.setChecked(bool(value.get("half", False)))
         for key, form in self.forms.items():
             form.setValue(dict(value.get("settings", {})).get(key, {}))
 
     def _show_model(self) -> None:
         key = self.model.currentData()
+        self.l_max.setValue(default_degree(key))
         self.summary.setText(tr(MODELS[key].summary))
         self._forms.setCurrentWidget(self.forms[key])
         for each, form in self.forms.items():
@@ -136,7 +137,7 @@ class SourceControls(QWidget):
             self.model.addItem(tr(model.label), key)
             self._forms.addWidget(self.forms[key])
         self.model.setCurrentIndex(self.model.findData(DEFAULT_MODEL))
-        self.l_max.setValue(10)
+        self.l_max.setValue(default_degree(DEFAULT_MODEL))
         self.half.setToolTip(tr("The other half is then new to the model, as in its judgement."))
         names = {
             "source": tr("What to draw from"),
@@ -308,6 +309,11 @@ def order_from(source: Mapping[str, Any], drawing: Mapping[str, Any], brings_mod
     return GenerationRequest(
         key, settings, degree, drawing["n"], drawing["seed"], None if bounds is None else tuple(bounds)
     )
+
+
+def default_degree(model: str) -> int:
+    """Degree of a model's draws where none is chosen; the slider ends at that of the source."""
+    return int(MODELS[model].Settings().l_max)
 
 
 def _without_degree(kind: type[Any]) -> type[Any]:

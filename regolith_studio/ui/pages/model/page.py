@@ -31,7 +31,7 @@ from regolith_studio.shape_models.spectrum_sliders import can_be_edited, relativ
 from regolith_studio.ui.latest_job import LatestJob
 from regolith_studio.ui.layout import padded, scrolled_column, side_by_side, stacked, tabs
 from regolith_studio.ui.page import PageContext, PageWidget
-from regolith_studio.ui.pages.model.controls import DrawControls, SourceControls, order_from
+from regolith_studio.ui.pages.model.controls import DrawControls, SourceControls, default_degree, order_from
 from regolith_studio.ui.pages.model.distributions import DistributionsPanel
 from regolith_studio.ui.pages.model.evaluation_panel import EvaluationPanel
 from regolith_studio.ui.pages.model.files import save_card, save_model
@@ -213,8 +213,9 @@ class ModelPage(PageWidget):
             raise InputError(tr("Models are judged on measured particles: fit one to a sample first."))
         order, chosen = self._order(), self.evaluation.value()
         key = str(self.source.value()["model"])
+        usual = min(default_degree(key), sample.l_max)
         options = {
-            "l_max": order.l_max or 10,
+            "l_max": None if order.l_max == usual else order.l_max,
             "n_splits": chosen["splits"],
             "n_repeats": chosen["repeats"],
             "seed": order.seed,
