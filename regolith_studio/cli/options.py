@@ -162,7 +162,7 @@ Target = Annotated[
     str,
     typer.Option(
         "--target",
-        help="Surface to approximate: fit (spherical harmonics, as in the paper) or particle.",
+        help="Surface to approximate: particle, or fit (its spherical harmonics, as in the paper).",
         metavar="T",
     ),
 ]
@@ -275,7 +275,7 @@ class CoarseningOptions:
     method: Method = ""
     weight: Weights = None
     set_: Settings = None
-    target: Target = "fit"
+    target: Target = "particle"
     l_max: LMax = 10
     radii: FitOptions
 

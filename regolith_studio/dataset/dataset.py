@@ -125,21 +125,31 @@ class CoarseningRecord:
 
 @dataclass(frozen=True)
 class Representation:
-    """How well the representatives reproduce the population that they were chosen from.
+    """How well a dataset reproduces the population that its representatives were chosen from.
 
     Parameters
     ----------
     n_particles
         Of the population.
     errors
-        Wasserstein distance per descriptor, in its standard deviations.
+        Of the shapes in the dataset: Wasserstein distance per descriptor, in standard deviations of the
+        population.
+    source_errors
+        The same of the particles that the shapes were made from.
     sampling_noise
         The same between the population and its material.
+    population
+        Quantiles of each descriptor of the population, at even shares.
+    deviations
+        Standard deviation of each descriptor of the population.
     """
 
     n_particles: int
     errors: Mapping[str, float]
+    source_errors: Mapping[str, float]
     sampling_noise: Mapping[str, float]
+    population: Mapping[str, tuple[float, ...]]
+    deviations: Mapping[str, float]
 
 
 @dataclass(frozen=True)

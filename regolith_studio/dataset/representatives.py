@@ -131,7 +131,7 @@ def representation_error(
     particles have if each takes the shape of its representative and keeps its equivalent diameter. Both are
     weighted as in the choice.
     """
-    values, counted = _compared(population, representatives.weighting)
+    values, counted = compared_values(population, representatives.weighting)
     weights = [one.weight for one in representatives.classes]
     chosen, diameters = representatives.chosen, equivalent_diameters(population)
     errors = {}
@@ -158,7 +158,7 @@ def sampling_noise(
     sqrt(1/n + 1/m): of n against the whole material they are half of those between halves of the n.
     """
     generator = np.random.default_rng(np.random.SeedSequence(seed))
-    values, counted = _compared(population, weighting)
+    values, counted = compared_values(population, weighting)
     total = dict.fromkeys(values, 0.0)
     for _ in range(repeats):
         order = generator.permutation(len(counted))
@@ -168,7 +168,7 @@ def sampling_noise(
     return {key: distance / (2 * repeats) for key, distance in total.items()}
 
 
-def _compared(
+def compared_values(
     population: Sequence[Mapping[str, float]], weighting: Weighting
 ) -> tuple[dict[str, FloatArray], FloatArray]:
     """Values of the compared descriptors, and the weight of each particle."""

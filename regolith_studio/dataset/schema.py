@@ -112,14 +112,24 @@ class CoarseningRecordModel(SchemaModel):
 
 
 class RepresentationRecord(SchemaModel):
-    """How well the representatives reproduce the population that they were chosen from."""
+    """How well the dataset reproduces the population that its representatives were chosen from."""
 
     n_particles: Annotated[int, Field(ge=1, description="Of the population.")]
     errors: dict[str, float] = Field(
-        description="Wasserstein distance per descriptor, in its standard deviations."
+        description="Of the shapes in the dataset: Wasserstein distance per descriptor, in standard "
+        "deviations of the population."
+    )
+    source_errors: dict[str, float] = Field(
+        description="The same of the particles that the shapes were made from."
     )
     sampling_noise: dict[str, float] = Field(
         description="The same between the population and its material: the resolution of the sample."
+    )
+    population: dict[str, tuple[float, ...]] = Field(
+        description="Quantiles of each descriptor of the population at even shares, counted as the weights."
+    )
+    deviations: dict[str, float] = Field(
+        description="Standard deviation of each descriptor of the population."
     )
 
 

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from regolith_studio.dataset.dataset import SHAPE_TOLERANCE
+from regolith_studio.dataset.dataset import SHAPE_TOLERANCE, Dataset
 from regolith_studio.dataset.folder_io import (
     DOCUMENT,
     README,
@@ -14,6 +14,7 @@ from regolith_studio.dataset.folder_io import (
     read_mesh_bytes,
     real_path,
 )
+from regolith_studio.dataset.representation import polyhedra_errors
 from regolith_studio.dataset.schema import RepresentativeRecord
 from regolith_studio.dataset.serialization import dataset_of, shape_of
 from regolith_studio.errors import DatasetError, RegolithError
@@ -23,6 +24,8 @@ from regolith_studio.geometry.topology import edge_table
 from regolith_studio.io.atomic import recover_folder
 from regolith_studio.io.stl import stl_triangles
 
+REPRESENTATION_TOLERANCE = 1e-4
+"""Of the errors of the shapes, in standard deviations of the population."""
 FLOAT32_TOLERANCE = 1e-6
 """Tolerance of the STL's float32 coordinates at a size of about 1."""
 
@@ -32,7 +35,8 @@ def validate_dataset(folder: Path | str) -> list[str]:
 
     Checked are the schema (weights, size distributions, unknown fields, paths), the list of files,
     every hash, and every shape: closed, convex, as many facets as stated, unit volume, centroid at
-    the origin, and the same shape in the STL file as in the half-spaces.
+    the origin, and the same shape in the STL file as in the half-spaces. How well the shapes stand for their
+    population is computed again.
     """
     target = recover_folder(real_path(folder))
     try:
@@ -43,10 +47,23 @@ def validate_dataset(folder: Path | str) -> list[str]:
         if not (target / README).is_file():
             problems.append(f"{README} is missing.")
         if not problems:
-            dataset_of(document, DOCUMENT)
+            problems += _representation_problems(dataset_of(document, DOCUMENT))
     except RegolithError as error:
         return [str(error)]
     return problems
+
+
+def _representation_problems(dataset: Dataset) -> list[str]:
+    """What the document says of the shapes and they do not have."""
+    stated = dataset.provenance.representation
+    if stated is None:
+        return []
+    found = polyhedra_errors(dataset, stated)
+    return [
+        f"{DOCUMENT} states an error of {error:.4g} in {key}, the shapes have {found[key]:.4g}."
+        for key, error in stated.errors.items()
+        if not abs(error - found[key]) <= REPRESENTATION_TOLERANCE
+    ]
 
 
 def _record_problems(folder: Path, record: RepresentativeRecord) -> list[str]:

@@ -47,8 +47,8 @@ class CoarseningRequest:
     settings
         The method's settings that differ from its defaults, as (name, value) pairs.
     target
-        ``fit``: the surface at degree `l_max`, drawn at `level`, is imitated (section 3.2);
-        ``particle``: the mesh itself.
+        ``particle``: the mesh itself is imitated; ``fit``: the surface at degree `l_max`, drawn at `level`
+        (section 3.2).
     fit_options
         How the fit is made, to degree 30 or `l_max`.
     largest_error
@@ -60,7 +60,7 @@ class CoarseningRequest:
     method: str = DEFAULT_METHOD
     settings: tuple[tuple[str, bool | int | float | str], ...] = ()
     seed: int = 0
-    target: str = "fit"
+    target: str = "particle"
     l_max: int = 10
     level: int = 4
     fit_options: FitOptions = DEFAULT_FIT_OPTIONS

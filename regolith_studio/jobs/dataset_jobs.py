@@ -16,6 +16,7 @@ from regolith_studio.dataset.export import (
 )
 from regolith_studio.dataset.exporters import EXPORTERS
 from regolith_studio.dataset.folder_io import dataset_hash, read_dataset, write_dataset
+from regolith_studio.dataset.representation import polyhedra_errors
 from regolith_studio.dataset.size_distributions import Weighting
 from regolith_studio.dataset.size_parsing import SizeRule, parse_sizes
 from regolith_studio.dataset.streaming import check_count
@@ -206,7 +207,11 @@ def dataset_of(
         source = replace(source, processing_steps=steps, representation=chosen.representation)
     if sizing is not None:
         classes = [replace(one, sizes=sizing(one)) for one in classes]
-    return build_dataset(good, classes, name=name, weighting=weighting, provenance=source)
+    dataset = build_dataset(good, classes, name=name, weighting=weighting, provenance=source)
+    if (known := source.representation) is None:
+        return dataset
+    known = replace(known, errors=polyhedra_errors(dataset, known))
+    return replace(dataset, provenance=replace(dataset.provenance, representation=known))
 
 
 def _provenance_of(

@@ -6,12 +6,11 @@ from dataclasses import dataclass, replace
 
 from regolith_studio.dataset.dataset import Representation
 from regolith_studio.dataset.quality import QualityCurve, curve_counts, quality_steps
+from regolith_studio.dataset.representation import representation_of
 from regolith_studio.dataset.representatives import (
     NEEDED,
     RepresentativeSelection,
     choose_representatives,
-    representation_error,
-    sampling_noise,
 )
 from regolith_studio.dataset.size_distributions import Weighting
 from regolith_studio.descriptors.describe import Descriptors
@@ -119,10 +118,7 @@ class ChosenParticles:
 
     def measured(self, population: MeasuredPopulation) -> "ChosenParticles":
         """With how well they stand for the population that they were chosen from."""
-        rows, weighting = population.descriptors, self.representatives.weighting
-        errors = representation_error(rows, self.representatives)
-        noise = sampling_noise(rows, weighting) if len(rows) > 1 else {}
-        return replace(self, representation=Representation(len(rows), errors, noise))
+        return replace(self, representation=representation_of(population.descriptors, self.representatives))
 
 
 def measure_population(particles: Sequence[Particle], workers: int | Executor = 1) -> Steps:

@@ -67,9 +67,9 @@ class Choices(FitOptions):
         maximum=LEVEL_LIMITS[1],
     )
     target: str = setting(
-        "fit",
+        "particle",
         "Target",
-        "What the coarsening imitates: the fit (section 3.2 of the paper) or the particle.",
+        "What the coarsening imitates: the particle, or its fit (section 3.2 of the paper).",
         choices=TARGETS,
     )
     method: str = setting(DEFAULT_METHOD, "Coarsening method", "Key of the coarsening method.")

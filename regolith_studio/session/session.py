@@ -64,7 +64,8 @@ class Session:
         self.particles: tuple[ParticleEntry, ...] = ()
         self.results = Results()
         self._runner = runner
-        self._history: History[Choices] = History(choices or Choices())
+        chosen = choices or Choices(target="fit")  # the window begins with the paper's chain
+        self._history: History[Choices] = History(chosen)
         self._board = TaskBoard(runner, self.events.tasks.emit)
         self._live = LiveResults(self, self._board)
         self._studied: dict[Kind, Choices] = {}

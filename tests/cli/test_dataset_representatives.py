@@ -1,12 +1,14 @@
 """``dataset build --representatives``."""
 
 import csv
+import json
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from regolith_studio.dataset.folder_io import read_dataset
+from regolith_studio.dataset.validation import validate_dataset
 from regolith_studio.io.stl import stl_bytes
 
 from .conftest import ellipsoid
@@ -44,7 +46,14 @@ def test_that_two_representatives_stand_for_balls_and_needles(command, crowd: Pa
     assert len(needles.sizes.diameters_um) == 3
     assert "2 representatives of 9 particles" in dataset.provenance.processing_steps[1]
     assert dataset.provenance.representation.n_particles == 9
-    assert 0 < dataset.provenance.representation.errors["aspect_ratio"] < 1
+    assert 0 < dataset.provenance.representation.source_errors["aspect_ratio"] < 1
+    assert dataset.provenance.representation.errors["sphericity"] > 1  # the polyhedra of balls are no balls
+    assert validate_dataset(tmp_path / "set") == []
+    text = (tmp_path / "set" / "dataset.json").read_text(encoding="utf-8")
+    document = json.loads(text)
+    document["metadata"]["representation"]["errors"]["sphericity"] = 0.2
+    (tmp_path / "set" / "dataset.json").write_text(json.dumps(document), encoding="utf-8")
+    assert "states an error of 0.2 in sphericity, the shapes have" in validate_dataset(tmp_path / "set")[0]
     with curve.open(newline="") as file:
         rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
     errors = [float(row["mean"]) for row in rows[:-1]]

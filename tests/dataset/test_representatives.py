@@ -7,12 +7,14 @@ import pytest
 from scipy.stats import norm, wasserstein_distance
 
 from regolith_studio.dataset.build import build_dataset
+from regolith_studio.dataset.representation import polyhedra_errors, representation_of
 from regolith_studio.dataset.representatives import (
     choose_representatives,
     representation_error,
     sampling_noise,
     shape_features,
 )
+from regolith_studio.descriptors.describe import describe
 from regolith_studio.errors import InputError
 
 from .example import entry
@@ -146,3 +148,24 @@ def test_that_ten_real_particles_stand_for_the_cement_better_than_ten_at_random(
     chosen = representation_error(rows, choose_representatives(rows, 10))
     assert chosen["aspect_ratio"] < 0.25
     assert chosen["sphericity"] < 0.25
+
+
+def test_that_errors_of_the_written_shapes_are_those_of_their_polyhedra_and_not_of_their_sources() -> None:
+    """One polyhedron for a population: every particle is as far away as its AR and S say."""
+    rows = population()
+    chosen = choose_representatives(rows, 1)
+    dataset = build_dataset([entry(0)], chosen.classes)
+    known = representation_of(rows, chosen)
+    found = polyhedra_errors(dataset, known)
+    shape = describe(dataset.representatives[0].shape, ("aspect_ratio", "sphericity"))
+    for key, value in shape.items():
+        each = np.array([row[key] for row in rows])
+        assert found[key] == pytest.approx(np.abs(each - value).mean() / each.std(), rel=0.01)
+    assert found["convexity"] > known.source_errors["convexity"]
+    scale = (np.pi / 6) ** (1 / 3) * describe(dataset.representatives[0].shape, ("min_diameter",))[
+        "min_diameter"
+    ]
+    lengths = np.array([row["min_diameter"] for row in rows])
+    diameters = np.cbrt(6 / np.pi * np.array([row["volume"] for row in rows]))
+    expected = wasserstein_distance(lengths, scale * diameters) / lengths.std()
+    assert found["min_diameter"] == pytest.approx(expected, rel=0.03)

@@ -22,7 +22,7 @@ from regolith_studio.readers.particles import unique_names
 SPHERE = icosphere(3)
 GRAIN = Mesh(SPHERE.vertices * [30.0, 20.0, 15.0], SPHERE.faces)
 FLAT = Mesh([[0, 0, 0], [9, 0, 0], [0, 9, 0], [9, 9, 0]], [[0, 1, 2], [0, 2, 1], [1, 3, 2], [1, 2, 3]])
-ORDER = CoarseningRequest(LossWeights.from_preset("all"), method="quadric", l_max=4, level=2)
+ORDER = CoarseningRequest(LossWeights.from_preset("all"), method="quadric", target="fit", l_max=4, level=2)
 
 
 def played(steps: Steps) -> tuple[list[Step], Any]:

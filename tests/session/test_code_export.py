@@ -17,7 +17,7 @@ from regolith_studio.session.project import Project, input_shown, inputs_of, rea
 from regolith_studio.session.recipe import SAMPLE
 from regolith_studio.session.session import Session
 
-CHOICES = Choices(method="quadric", level=2, l_max=4, n_facets=14, seed=3)
+CHOICES = Choices(method="quadric", target="fit", level=2, l_max=4, n_facets=14, seed=3)
 
 
 @pytest.fixture

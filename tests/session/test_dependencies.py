@@ -8,7 +8,7 @@ import pytest
 from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.session.choices import LIVE, Choices, Kind, depends, needs, plan
 
-HERE = Choices(selected="a")
+HERE = Choices(selected="a", target="fit")
 FIT, SURFACE, DESCRIPTORS, COARSENING = LIVE
 
 
@@ -26,7 +26,7 @@ def test_that_the_first_particle_makes_everything_necessary() -> None:
 
 
 def test_that_equal_choices_make_nothing_necessary() -> None:
-    assert kinds(HERE, Choices(selected="a")) == []
+    assert kinds(HERE, Choices(selected="a", target="fit")) == []
 
 
 def test_that_a_particle_is_not_fitted_twice() -> None:

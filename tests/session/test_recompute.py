@@ -60,7 +60,7 @@ def held() -> Held:
 
 @pytest.fixture
 def session(held: Held) -> Session:
-    made = Session(held, Choices(method="quadric", level=2, l_max=4))
+    made = Session(held, Choices(method="quadric", level=2, l_max=4, target="fit"))
     egg = icosphere(3)
     made.adopt([Particle("egg", egg.moved(scale=20.0))])
     held.all()

@@ -22,7 +22,7 @@ from regolith_studio.session import recompute
 from regolith_studio.session.choices import Choices, Kind
 from regolith_studio.session.session import Session
 
-SMALL = Choices(method="quadric", level=2, l_max=4)
+SMALL = Choices(method="quadric", level=2, l_max=4, target="fit")
 
 
 def ellipsoid(a: float, b: float, c: float) -> Mesh:

@@ -35,7 +35,9 @@ from regolith_studio.session.session import Session
 from regolith_studio.shape_models.materials import materials
 from regolith_studio.shape_models.spectrum_sliders import relative_amplitudes, with_amplitudes
 
-CHOICES = Choices(method="annealing", settings=(("iterations", 12),), level=2, l_max=4, n_facets=12, seed=3)
+CHOICES = Choices(
+    method="annealing", target="fit", settings=(("iterations", 12),), level=2, l_max=4, n_facets=12, seed=3
+)
 ONLY_DATASET = Outputs(descriptors=False, meshes=False, summary=False)
 LEVEL = 2
 
