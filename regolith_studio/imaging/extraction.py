@@ -9,7 +9,7 @@ Where the grey values are at hand, they can tell the surface and above all its v
 The volume is seen slab by slab: once for the sizes and boxes of the labels, once to cut them out.
 """
 
-from collections.abc import Generator, Iterator, Mapping
+from collections.abc import Generator, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal, get_args
 
@@ -23,13 +23,22 @@ from regolith_studio.geometry.particle import Particle, Source
 from regolith_studio.imaging.bounding_boxes import Box, box_between, grown, touches, within
 from regolith_studio.imaging.connected_components import largest_component, pores_filled
 from regolith_studio.imaging.grain_surface import MARGIN, grey_mesh, mask_mesh
-from regolith_studio.imaging.label_table import GrainCrop, grain_crops, label_masks, label_table
+from regolith_studio.imaging.label_table import (
+    GrainCrop,
+    contact_areas,
+    grain_crops,
+    label_masks,
+    label_table,
+)
 from regolith_studio.imaging.volume_slabs import SliceSource
 from regolith_studio.messages import N_, count_message
 
 Surface = Literal["mask", "grey"]
 SURFACES: tuple[Surface, ...] = get_args(Surface)
 
+WIDE_NECK = 0.6
+"""Radius of the contact with a cut grain, over that of the ball of a label's volume, from which on the
+label is a piece of it."""
 _COARSE, _OF_MASK = "Only", "The surface is that of the mask"
 _Made = tuple[int, Mesh, tuple[str, ...], Surface]
 
@@ -118,7 +127,7 @@ class Extraction:
     found
         In the order of their labels; empty where they were not collected.
     border
-        Labels left out because they touch the border.
+        Labels left out because they touch the border, or are pieces of grains that do.
     small
         Labels left out because they are too small.
     n_found
@@ -207,6 +216,8 @@ def extraction_steps(
     boxes, sizes = table.boxes(), table.sizes()
     width = max(4, len(str(max(boxes))))
     border = [k for k, box in boxes.items() if settings.exclude_border and touches(box, volume.shape)]
+    if grey is not None and border:
+        border += pieces_of_cut_grains(contact_areas(volume), sizes, border)
     small = [k for k in set(boxes).difference(border) if sizes[k] < settings.min_voxels]
     wanted = {k: box for k, box in boxes.items() if k not in {*border, *small}}
     found: list[ExtractedParticle] = []
@@ -220,6 +231,31 @@ def extraction_steps(
         yield ExtractionProgress(done, len(wanted), extracted)
     ordered = tuple(sorted(found, key=lambda each: each.label))
     return Extraction(ordered, tuple(border), tuple(sorted(small)), len(wanted))
+
+
+def pieces_of_cut_grains(
+    contacts: Mapping[tuple[int, int], float], sizes: Mapping[int, int], border: Sequence[int]
+) -> list[int]:
+    """Labels that a watershed has parted from a grain which the border cuts, in ascending order.
+
+    They touch a label at the border over a disc of more than :data:`WIDE_NECK` of their own radius. Whole
+    grains touch in points and blurred necks; the lobes of one grain over most of their width.
+
+    Parameters
+    ----------
+    contacts
+        Of :func:`~regolith_studio.imaging.label_table.contact_areas`.
+    sizes
+        Voxels of each label.
+    border
+        Labels at the border.
+    """
+    cut, found = set(border), set()
+    for pair, area in contacts.items():
+        inner = [label for label in pair if label not in cut]
+        if len(inner) == 1 and 2 * np.sqrt(area / np.pi) > WIDE_NECK * voxel_diameter(sizes[inner[0]]):
+            found.add(inner[0])
+    return sorted(found)
 
 
 def voxel_diameter(n_voxels: int) -> float:
@@ -289,7 +325,8 @@ def grey_surface(
     part = within(box, wider)
     body, notes = _one_body(crop.own[part], settings)
     padding = [(a.start, n - a.stop) for a, n in zip(part, crop.own.shape, strict=True)]
-    mesh = grey_mesh(crop, np.pad(body, padding), settings.iterations, settings.pass_band)
+    cubic = float(np.ptp(voxel_size)) <= 1e-3 * float(voxel_size.max())
+    mesh = grey_mesh(crop, np.pad(body, padding), settings.iterations, settings.pass_band, cubic)
     if isinstance(mesh, str):
         notes.append(f"{_OF_MASK}: {mesh}.")
         return (

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from scipy import ndimage
 from skimage import measure
 
-from regolith_studio.geometry.arrays import BoolArray
+from regolith_studio.geometry.arrays import BoolArray, FloatArray
 from regolith_studio.geometry.kernels import kernel
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.imaging.connected_components import largest_component, pores_filled
@@ -55,6 +55,8 @@ _PRESMOOTHING = 0.42
 """Standard deviation in voxels of the Gaussian before the first contour."""
 _STEPS = 8
 """Steps of the refinement to grey values."""
+_BLURS, _BLUR_STEPS = (0.1, 2.0), 20
+"""Limits of the blur in voxels, and steps towards that along each axis."""
 _WIDENING, _POWER, _MAX_PASS_BAND = 0.65, 0.4, 0.3
 """Pass band of the smoothing after each step: widening * usual band / noise^power, limited to the maximum.
 Chosen on balls, ellipsoids, polyhedra and rough grains at noise of 2, 5 and 10 % of the contrast."""
@@ -76,7 +78,13 @@ MAX_DEPTH = 4
 """Distance in voxels at which depths are cut off."""
 
 
-def grey_mesh(crop: GrainCrop, body: BoolArray, iterations: int = 20, pass_band: float = 0.13) -> Mesh | str:
+def grey_mesh(
+    crop: GrainCrop,
+    body: BoolArray,
+    iterations: int = 20,
+    pass_band: float = 0.13,
+    cubic_voxels: bool = True,
+) -> Mesh | str:
     """The grain's surface in voxels of the crop, or the reason why the grey values do not define it.
 
     Where other grains touch it, the surface is that of the mask; brightness between two grains
@@ -90,6 +98,8 @@ def grey_mesh(crop: GrainCrop, body: BoolArray, iterations: int = 20, pass_band:
         The grain's voxels that count: of one piece, without pores.
     iterations, pass_band
         Of the smoothing; without any iteration the surface is the contour alone.
+    cubic_voxels
+        Whether voxels have equal edges; otherwise the blur is measured along each.
     """
     others, values = crop.others | (crop.own & ~body), crop.values.astype(np.float32)
     inside, outside = depth(body), depth(~body)
@@ -106,7 +116,7 @@ def grey_mesh(crop: GrainCrop, body: BoolArray, iterations: int = 20, pass_band:
     if iterations:
         wider = min(_WIDENING * pass_band / max(noise, 1e-6) ** _POWER, _MAX_PASS_BAND)
         how = RefinementSettings(_STEPS, iterations, wider, _TWICING)
-        blur = _blur(rim, noise, mesh.surface_area)
+        blur = _blur(rim, noise, mesh, cubic_voxels)
         fit = refined_to_scan(mesh, rim, told, blur, how)
         mesh = without_crossings(fit, windowed_sinc(rough, iterations, min(LIGHT_SMOOTHING * pass_band, 2.0)))
     return with_volume(mesh, volume)
@@ -145,7 +155,6 @@ def _rim(share: Floats, others: BoolArray, inside: Floats, outside: Floats) -> t
     if others.any():
         away = depth(~others)
         touched = body & (away <= _CONTACT)
-        rim[touched] = 1.0
         rim[~body & (away == outside)] *= 0.5
         rim[~body & (away < outside)] = 0.0
         if touched.any():
@@ -154,14 +163,30 @@ def _rim(share: Floats, others: BoolArray, inside: Floats, outside: Floats) -> t
     return rim, told
 
 
-def _blur(rim: Floats, noise: float, area: float) -> float:
-    """Standard deviation of the blur, in voxels, from the sum of u (1 - u).
+def _blur(rim: Floats, noise: float, mesh: Mesh, cubic_voxels: bool) -> FloatArray:
+    """Standard deviations of the blur along the axes, in voxels, from the sum of u (1 - u), shape (3,).
 
-    Across a plane edge blurred by a Gaussian the integral of u (1 - u) is sigma / sqrt(pi).
+    Across a plane edge blurred by a Gaussian the integral of u (1 - u) is sigma / sqrt(pi). In cubic voxels
+    sigma is the same along all axes. In others the sum is shared out by the squared components of the
+    gradient, and sigma^2 of an edge with the unit normal n is that of each axis times n^2.
     """
-    uncertain = rim[(rim != 0.0) & (rim != 1.0)].astype(np.float64)
-    total = float((uncertain * (1.0 - uncertain) + noise**2).sum())
-    return float(np.clip(np.sqrt(np.pi) * total / area, 0.1, 2.0))
+    uncertain = (rim != 0.0) & (rim != 1.0)
+    share = rim[uncertain].astype(np.float64)
+    spread = np.sqrt(np.pi) * (share * (1.0 - share) + noise**2)
+    blur = np.full(3, np.clip(spread.sum() / mesh.surface_area, *_BLURS))
+    if cubic_voxels:
+        return blur
+    smooth = ndimage.gaussian_filter(rim, 1.0)
+    slopes = np.stack([np.gradient(smooth, axis=axis)[uncertain] for axis in range(3)]) ** 2
+    measured = (slopes / np.maximum(slopes.sum(axis=0), 1e-12)) @ spread
+    corners = mesh.triangles
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    area = np.linalg.norm(normals, axis=1) / 2
+    along = (normals / np.maximum(2 * area, 1e-12)[:, None]) ** 2
+    for _ in range(_BLUR_STEPS):
+        expected = (area * np.sqrt(along @ blur**2)) @ along
+        blur = np.clip(blur * measured / expected, *_BLURS)
+    return blur
 
 
 def _contoured(share: Floats) -> Mesh:

@@ -99,6 +99,24 @@ def label_table(source: SliceSource) -> LabelTable:
     return LabelTable(present, counts[present], low[present], high[present])
 
 
+def contact_areas(source: SliceSource) -> dict[tuple[int, int], float]:
+    """Area, in faces of a voxel, over which each two labels touch, the lower label first.
+
+    Counts of faces along the three axes are the components of a flat contact's area vector.
+    """
+    faces: dict[tuple[int, int], IntArray] = {}
+    for first, stop in slab_ranges(source.shape):
+        slab = source.read(first, min(stop + 1, source.shape[2]))
+        for axis in range(3):
+            own = slab if axis == 2 else slab[:, :, : stop - first]
+            low, high = (own.take(range(k, own.shape[axis] - 1 + k), axis=axis) for k in (0, 1))
+            meet = (low != high) & (low > 0) & (high > 0)
+            pairs = np.sort(np.stack([low[meet], high[meet]], axis=1).astype(np.int64), axis=1)
+            for pair, count in zip(*np.unique(pairs, axis=0, return_counts=True), strict=True):
+                faces.setdefault((int(pair[0]), int(pair[1])), np.zeros(3, dtype=np.int64))[axis] += count
+    return {pair: float(np.linalg.norm(counts)) for pair, counts in faces.items()}
+
+
 def label_masks(source: SliceSource, boxes: Mapping[int, Box]) -> Iterator[tuple[int, BoolArray]]:
     """Each label with its mask in its box, in the order in which the slabs complete them."""
     for label, (mask,) in _cuts((source,), boxes, lambda label, parts: (parts[0] == label,)):

@@ -68,7 +68,9 @@ class RefinementSettings:
     twicing: float = 0.0
 
 
-def refined_to_scan(mesh: Mesh, share: Floats, rim: BoolArray, blur: float, how: RefinementSettings) -> Mesh:
+def refined_to_scan(
+    mesh: Mesh, share: Floats, rim: BoolArray, blur: FloatArray, how: RefinementSettings
+) -> Mesh:
     """The mesh, in voxels, moved to where it reproduces the shares best.
 
     Parameters
@@ -78,15 +80,16 @@ def refined_to_scan(mesh: Mesh, share: Floats, rim: BoolArray, blur: float, how:
     rim
         Voxels that count.
     blur
-        Standard deviation of the blur as an edge shows it, in voxels, the voxel's own width in it.
+        Standard deviations along the axes of the blur as an edge shows it, in voxels, the voxel's own width
+        in it, shape (3,).
     """
-    point_spread = float(np.sqrt(max(blur**2 - _BOX, 0.0)))
+    point_spread = np.sqrt(np.maximum(blur**2 - _BOX, 0.0))
 
     def missing(mesh: Mesh) -> Floats:
         seen = ndimage.gaussian_filter(coverage(mesh, _shape(share), _COLUMNS), point_spread)
         return np.asarray(np.where(rim, share - seen, np.float32(0.0)))
 
-    return _moved(mesh, missing, blur, _REACH, how)
+    return _moved(mesh, missing, float(blur.mean()), _REACH, how)
 
 
 def refined_to_mask(mesh: Mesh, mask: BoolArray, how: RefinementSettings) -> Mesh:

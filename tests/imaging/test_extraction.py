@@ -16,9 +16,10 @@ from regolith_studio.imaging.extraction import (
     border_weight,
     extract_particles,
     extraction_steps,
+    pieces_of_cut_grains,
     voxel_diameter,
 )
-from regolith_studio.imaging.label_table import label_table
+from regolith_studio.imaging.label_table import contact_areas, label_table
 from regolith_studio.imaging.sample_volumes import sample_volume
 from regolith_studio.imaging.volume import Volume
 from tools.make_samples.grains import even_sphere, random_rotation
@@ -252,3 +253,30 @@ def test_that_the_real_label_volume_comes_in(real_data) -> None:
     extraction = extract_particles(Volume(array.T, (1, 1, 1), "labels", "cement"))
     assert len(extraction.particles) + len(extraction.border) + len(extraction.small) == 150
     assert all(particle.mesh.volume > 0 for particle in extraction.particles)
+
+
+def test_that_the_contact_of_two_halves_of_a_ball_has_the_area_of_its_cross_section() -> None:
+    places = grid(12.0)
+    ball = np.linalg.norm(places, axis=-1) <= 12.0
+    for normal in ([1.0, 0.0, 0.0], [0.0, 0.6, 0.8], [0.48, 0.6, 0.64]):
+        halves = np.where(places @ normal > 0.3, 2, 1) * ball
+        ((pair, area),) = contact_areas(
+            Volume(halves.astype(np.uint8), (1, 1, 1), "labels", "halves")
+        ).items()
+        assert pair == (1, 2)
+        assert area == pytest.approx(np.pi * 12.0**2, rel=0.08)
+
+
+def test_that_a_lobe_of_a_cut_grain_is_left_out_with_it_and_a_grain_that_touches_it_is_kept() -> None:
+    """Two balls of radius 9 whose centres are 9 apart share a disc of .87 radii; at 17.5 of .23."""
+    at = np.stack(np.meshgrid(*[np.arange(60)] * 3, indexing="ij"), axis=-1)
+    for distance, kept in ((9.0, 1), (17.5, 2)):
+        near = [np.linalg.norm(at - [x, 30, 30], axis=-1) for x in (4.0, 4.0 + distance, 45.0)]
+        solid = np.min(near, axis=0) <= 9.0
+        numbers = np.where(solid, np.argmin(near, axis=0) + 1, 0).astype(np.uint8)
+        grey = Volume((solid * 200).astype(np.uint8), (1, 1, 1), "grey", "scan")
+        cut = Volume(numbers, (1, 1, 1), "labels", "labels")
+        found = extract_particles(cut, grey=grey)
+        assert len(found.labels) == kept
+        assert len(extract_particles(cut).labels) == 2  # labels that were given are taken as they are
+    assert pieces_of_cut_grains({(1, 2): 200.0}, {1: 900, 2: 3000}, [1]) == [2]

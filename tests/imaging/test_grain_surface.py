@@ -141,6 +141,34 @@ def test_that_two_balls_that_touch_are_parted_where_their_masks_are() -> None:
         assert each.particle.mesh.volume == pytest.approx(4 / 3 * np.pi * 12**3 - cap + moved, rel=0.01)
 
 
+def test_that_a_ball_that_touches_six_others_is_no_larger_than_one_alone() -> None:
+    """With all brightness about the contacts counted for both sides it came out 2.5 % too large."""
+    centre, radius = np.full(3, 34.3), 11.0
+    neighbours = [centre + 2 * radius * sign * axis for axis in np.eye(3) for sign in (1, -1)]
+    share = sum(coverage(ball(each, radius), (69, 69, 69), fine=3) for each in [centre, *neighbours])
+    grey = scanned(np.minimum(share, 1.0), 0.03)
+    labels = segment(grey).labels
+    middle = labels.array[34, 34, 34]
+    found = extract_particles(labels, GREY, grey=grey).found
+    mesh = next(each.particle.mesh for each in found if each.label == middle)
+    assert mesh.volume == pytest.approx(4 / 3 * np.pi * radius**3, rel=0.01)
+
+
+def test_that_a_blur_that_differs_along_the_axes_stretches_nothing() -> None:
+    """A blur of one length in voxels of 2 : 3 : 5 is three blurs in voxels; with one for all of them, extents
+    along the finest axis were 3.8 % too large."""
+    voxel = np.array([2.0, 3.0, 5.0])
+    radius, centre = 11 * np.cbrt(voxel.prod()), 0.3 * voxel
+    shape = tuple(int(2 * np.ceil(radius / edge) + 19) for edge in voxel)
+    middle = (np.array(shape) // 2) * voxel + centre
+    share = coverage(lambda at: (radius - np.linalg.norm(at * voxel - middle, axis=-1)) / voxel.max(), shape)
+    values = RESIN + (GRAIN - RESIN) * ndimage.gaussian_filter(share, BLUR * np.cbrt(voxel.prod()) / voxel)
+    grey = Volume(values.astype(np.float32), voxel, "grey", "scan")
+    labels = Volume((values > (RESIN + GRAIN) / 2).astype(np.uint8), voxel, "labels", "grains")
+    mesh = only(labels, grey).particle.mesh
+    np.testing.assert_allclose(np.ptp(mesh.vertices, axis=0), 2 * radius, rtol=0.015)
+
+
 def test_that_a_close_neighbour_takes_nothing_and_gives_nothing() -> None:
     centres = (np.array([18.2, 20.1, 20.3]), np.array([44.6, 20.1, 20.3]))
     share = sum(coverage(ball(centre, 12.0), (65, 41, 41)) for centre in centres)
