@@ -3,12 +3,10 @@
 from itertools import combinations
 
 import numpy as np
-from scipy.spatial import cKDTree
 from scipy.spatial.distance import cdist
 
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray
-from regolith_studio.shape_models.inertia_ellipsoid import canonical
 
 N_FOLDS = 5
 RIDGE = 1e-2
@@ -109,30 +107,6 @@ def classifier_accuracy(measured: FloatArray, drawn: FloatArray, rng: np.random.
         slopes = _logistic(features[train], kinds[train])
         right += int(((features[test] @ slopes > 0) == (kinds[test] > 0.5)).sum())
     return right / (2 * n)
-
-
-def nearest_neighbour_ratio(measured: FloatArray, drawn: FloatArray) -> FloatArray:
-    """Distance of each drawn particle to the nearest measured one, relative to that within the sample, shape
-    (m,).
-
-    Root-mean-square distance of radius functions of size one in the frames of their principal axes; the unit
-    is the median distance of a measured particle to the nearest other one. Copies have 0, particles from the
-    same source 1 in the median.
-
-    Parameters
-    ----------
-    measured, drawn
-        Coefficients of radii, shapes (n, k) and (m, k).
-    """
-    return nearest_neighbour_ratio_in_frame(canonical(measured), canonical(drawn))
-
-
-def nearest_neighbour_ratio_in_frame(measured: FloatArray, drawn: FloatArray) -> FloatArray:
-    """As :func:`nearest_neighbour_ratio`, of rows by ``canonical``."""
-    tree = cKDTree(measured)
-    own = np.asarray(tree.query(tree.data, k=[2])[0])
-    unit = float(np.median(own))
-    return np.asarray(tree.query(drawn)[0] / max(unit, 1e-300))
 
 
 def _rising_share(values: FloatArray, weights: FloatArray, places: FloatArray) -> FloatArray:

@@ -16,9 +16,9 @@ from regolith_studio.descriptors.describe import describe
 from regolith_studio.errors import InputError, RegolithError
 from regolith_studio.geometry.arrays import FloatArray, IntArray
 from regolith_studio.messages import N_, Message
-from regolith_studio.shape_models.goodness_of_fit import nearest_neighbour_ratio_in_frame
 from regolith_studio.shape_models.inertia_ellipsoid import canonical
 from regolith_studio.shape_models.models import MODELS
+from regolith_studio.shape_models.novelty import distances_among, nearest_over_rotations
 from regolith_studio.shape_models.realizations import Realizations, virtual_mesh
 from regolith_studio.shape_models.sample import Sample
 from regolith_studio.studies.population_distances import (
@@ -38,6 +38,9 @@ FRAME_DEGREE = 10
 """Degree at which drawn and measured particles are compared one by one."""
 MEASURE_BATCH = 25
 """Particles that one process measures at a time."""
+N_NOVEL = 100
+"""Draws of each fit, and measured particles of each half, whose nearest particle is looked for."""
+NOVEL_BATCH = 10
 FRAME_BATCH = 100
 """Particles that one process turns into the frame of their axes at a time."""
 
@@ -112,6 +115,17 @@ class StudyExecutor:
             yield self.progress(message)
         return np.concatenate(rows)
 
+    def gathered(
+        self, work: Callable[[Any], Any], parts: Iterable[Any], message: str
+    ) -> Generator[StudyProgress, None, list[Any]]:
+        """The result of each part, in order."""
+        found = []
+        for result in self.mapper(work, parts):
+            if result is not None:
+                found.append(result)
+            yield self.progress(message)
+        return found
+
     def drawn(
         self, task: FitTask, message: str
     ) -> Generator[StudyProgress, None, tuple[tuple[Realizations, ...], tuple[float, ...]]]:
@@ -172,7 +186,10 @@ class ModelEvaluation:
     intervals
         Of the distances of one round.
     novelty
-        Median over the first draws of each split, shape (splits,).
+        Median over the first draws of each split of the distance to the nearest measured particle over all
+        rotations, over that among measured ones, shape (splits,).
+    near_parents
+        Share of these draws whose nearest particle is the one that they were made from, shape (splits,).
     rejected
         Draws thrown away, as a share of all, shape (rounds,).
     table
@@ -186,6 +203,7 @@ class ModelEvaluation:
     distances: PopulationDistances
     intervals: Intervals
     novelty: FloatArray
+    near_parents: FloatArray
     rejected: FloatArray
     table: FloatArray
     criterion: tuple[float, ...] = ()
@@ -372,7 +390,7 @@ class _Round:
 
     distances: PopulationDistances
     intervals: Intervals
-    novelty: float | None
+    novelty: tuple[float, float] | None
     rejected: float
     table: FloatArray
     criterion: tuple[float, ...]
@@ -424,10 +442,19 @@ class _TrainTestSplit:
 
     def _novelty(
         self, train: IntArray, draws: Realizations, message: str
-    ) -> Generator[StudyProgress, None, float]:
-        l_max = round(self.frames.shape[1] ** 0.5) - 1
-        drawn = yield from self.work.framed(draws, l_max, message)
-        return float(np.median(nearest_neighbour_ratio_in_frame(self.frames[train], drawn)))
+    ) -> Generator[StudyProgress, None, tuple[float, float]]:
+        """Median novelty of the first draws, and the share of them that are nearest to their parents."""
+        l_max, measured = round(self.frames.shape[1] ** 0.5) - 1, self.frames[train]
+        first = draws.chosen(range(min(N_NOVEL, len(draws))))
+        drawn = yield from self.work.framed(first, l_max, message)
+        picks = np.unique(np.linspace(0, len(train) - 1, N_NOVEL).astype(np.int64))
+        parts = [picks[i : i + NOVEL_BATCH] for i in range(0, len(picks), NOVEL_BATCH)]
+        own = yield from self.work.gathered(partial(distances_among, measured), parts, message)
+        rows = [drawn[i : i + NOVEL_BATCH] for i in range(0, len(drawn), NOVEL_BATCH)]
+        found = yield from self.work.gathered(partial(nearest_over_rotations, measured), rows, message)
+        distances, nearest = (np.concatenate([each[k] for each in found]) for k in (0, 1))
+        ratio = float(np.median(distances)) / max(float(np.median(np.concatenate(own))), 1e-300)
+        return ratio, float((nearest == np.asarray(first.parents)).mean())
 
 
 def _evaluation_of(key: str, rounds: Sequence[_Round]) -> ModelEvaluation:
@@ -435,12 +462,14 @@ def _evaluation_of(key: str, rounds: Sequence[_Round]) -> ModelEvaluation:
         name: np.mean([getattr(each.intervals, name) for each in rounds], axis=0)
         for name in Intervals.__annotations__
     }
+    new, near_parents = np.array([each.novelty for each in rounds if each.novelty is not None]).T
     return ModelEvaluation(
         key,
         rounds[0].l_max,
         PopulationDistances.joined([each.distances for each in rounds]),
         Intervals(**ends),
-        np.array([each.novelty for each in rounds if each.novelty is not None]),
+        new,
+        near_parents,
         np.array([each.rejected for each in rounds]),
         rounds[0].table,
         rounds[0].criterion,

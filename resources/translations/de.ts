@@ -2588,6 +2588,10 @@
         <translation>Kleinster Durchmesser</translation>
     </message>
     <message>
+        <source>Mirror images</source>
+        <translation>Spiegelbilder</translation>
+    </message>
+    <message>
         <source>Mixture of fields</source>
         <translation>Mischung von Feldern</translation>
     </message>
@@ -4302,6 +4306,10 @@
     <message>
         <source>The command line that does the same</source>
         <translation>Die Kommandozeile, die dasselbe tut</translation>
+    </message>
+    <message>
+        <source>The cut sample is the measured one cut at l_max = {degree}.</source>
+        <translation>Die abgeschnittene Probe ist die gemessene, abgeschnitten bei l_max = {degree}.</translation>
     </message>
     <message>
         <source>The dataset is in {folder}.</source>
@@ -6320,12 +6328,12 @@
         <translation>{count} Verluste</translation>
     </message>
     <message>
-        <source>{count} measured particles at l_max = {degree}, {left} left out; fitted to one half, judged on the other; {splits} {split}, {draws} draws once from each fit, seed {seed}.</source>
-        <translation>{count} gemessene Partikel bei l_max = {degree}, {left} ausgelassen; an eine Hälfte angepasst, an der anderen beurteilt; {splits} {split}, einmal {draws} Ziehungen je Fit, Startwert {seed}.</translation>
+        <source>{count} measured particles with degrees up to {degree}, {left} left out; fitted to one half, judged on the other; {splits} {split}, {draws} draws once from each fit, seed {seed}.</source>
+        <translation>{count} gemessene Partikel mit Graden bis {degree}, {left} ausgelassen; angepasst an eine Hälfte, beurteilt an der anderen; {splits} {split}, je Anpassung einmal {draws} gezogen, Startwert {seed}.</translation>
     </message>
     <message>
-        <source>{count} measured particles at l_max = {degree}, {left} left out; fitted to one half, judged on the other; {splits} {split}, {draws} draws {repeats} times from each fit, seed {seed}.</source>
-        <translation>{count} gemessene Partikel bei l_max = {degree}, {left} ausgelassen; an eine Hälfte angepasst, an der anderen beurteilt; {splits} {split}, {repeats}-mal {draws} Ziehungen je Fit, Startwert {seed}.</translation>
+        <source>{count} measured particles with degrees up to {degree}, {left} left out; fitted to one half, judged on the other; {splits} {split}, {draws} draws {repeats} times from each fit, seed {seed}.</source>
+        <translation>{count} gemessene Partikel mit Graden bis {degree}, {left} ausgelassen; angepasst an eine Hälfte, beurteilt an der anderen; {splits} {split}, je Anpassung {repeats} Mal {draws} gezogen, Startwert {seed}.</translation>
     </message>
     <message>
         <source>{count} of the open particles come from no file and cannot be part of a batch.</source>

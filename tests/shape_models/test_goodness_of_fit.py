@@ -3,13 +3,10 @@ import pytest
 from scipy.stats import ks_2samp, wasserstein_distance
 
 from regolith_studio.errors import InputError
-from regolith_studio.harmonics.coefficients import ShCoefficients
-from regolith_studio.harmonics.rotation import rotated
 from regolith_studio.shape_models.goodness_of_fit import (
     classifier_accuracy,
     energy_distance,
     kolmogorov_smirnov,
-    nearest_neighbour_ratio,
     relative_wasserstein,
     resampled_distances,
 )
@@ -81,17 +78,3 @@ def test_that_a_classifier_sees_a_correlation_that_the_columns_hide() -> None:
 def test_that_a_classifier_needs_ten_particles_of_either_kind() -> None:
     with pytest.raises(InputError, match="at least 10 particles of either kind, got 4"):
         classifier_accuracy(np.zeros((4, 2)), np.zeros((50, 2)), RNG(0))
-
-
-def test_that_turned_and_enlarged_copies_are_not_new() -> None:
-    rng = RNG(3)
-    degree = np.repeat(np.arange(5), 2 * np.arange(5) + 1)
-    rows = rng.normal(size=(30, 25)) * 0.4 * np.maximum(degree, 1.0) ** -2.0
-    rows[:, 0] = np.sqrt(4 * np.pi)
-    matrix = np.linalg.qr(rng.normal(size=(3, 3)))[0]
-    matrix *= np.linalg.det(matrix)
-    copies = np.stack([3 * rotated(ShCoefficients(row), matrix).values for row in rows])
-    assert nearest_neighbour_ratio(rows, copies).max() < 1e-6
-    others = rng.normal(size=(30, 25)) * 0.4 * np.maximum(degree, 1.0) ** -2.0
-    others[:, 0] = np.sqrt(4 * np.pi)
-    assert np.median(nearest_neighbour_ratio(rows, others)) == pytest.approx(1.0, abs=0.25)

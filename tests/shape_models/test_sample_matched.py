@@ -10,11 +10,11 @@ from regolith_studio.harmonics.coefficients import ShCoefficients, orders
 from regolith_studio.harmonics.legendre import harmonics
 from regolith_studio.harmonics.sphere_grid import sphere_grid
 from regolith_studio.harmonics.surface import reconstruct
-from regolith_studio.shape_models.goodness_of_fit import nearest_neighbour_ratio
 from regolith_studio.shape_models.inertia_ellipsoid import canonical, principal_axes
 from regolith_studio.shape_models.linear_maps import _cubic, mapped_radii, radius_tables
 from regolith_studio.shape_models.materials import materials
 from regolith_studio.shape_models.models.sample_matched import MODEL, SampleMatchedSettings
+from regolith_studio.shape_models.novelty import distances_among, nearest_over_rotations
 from regolith_studio.shape_models.realizations import virtual_mesh
 from regolith_studio.shape_models.sample import Sample
 from regolith_studio.shape_models.shape_features import SPHERICITY, outer_features_of_radii
@@ -77,7 +77,7 @@ def test_that_no_turn_and_no_neighbours_give_the_measured_particles_back(
     rough_sample: Callable[..., Sample],
 ) -> None:
     sample = rough_sample(20, 5)
-    still = SampleMatchedSettings(l_max=5, turn=0.0, n_neighbours=1, size_jitter=0.0)
+    still = SampleMatchedSettings(l_max=5, turn=0.0, n_neighbours=1, size_jitter=0.0, mirrored=False)
     draws = MODEL.fit(sample, still).draw(30, 0)
     assert draws.parents is not None
     expected = sample.coefficients[draws.parents]
@@ -95,7 +95,21 @@ def test_that_turning_within_the_ellipsoid_keeps_the_share_of_the_hull(cement: S
     ]
     assert np.mean(own) == pytest.approx(np.mean(theirs), rel=0.003)
     assert ks_2samp(own, theirs).statistic < 0.1
-    assert np.median(nearest_neighbour_ratio(cement.truncated(10).coefficients, draws.coefficients)) > 0.6
+
+
+def test_that_mirror_images_are_as_new_as_measured_particles_are_to_each_other(cement: Sample) -> None:
+    """Without mirroring nearly all draws are nearest to their own parents, at half of that distance."""
+    measured = canonical(cement.truncated(10).coefficients)
+    among = np.median(distances_among(measured, np.arange(0, len(measured), 10)))
+    found = {}
+    for mirrored in (True, False):
+        draws = MODEL.fit(cement, SampleMatchedSettings(l_max=10, mirrored=mirrored)).draw(40, 0)
+        distances, nearest = nearest_over_rotations(measured, canonical(draws.coefficients))
+        found[mirrored] = np.median(distances) / among, (nearest == draws.parents).mean()
+    assert found[True][0] > 0.9
+    assert found[True][1] < 0.6
+    assert found[False][0] < 0.6
+    assert found[False][1] > 0.9
 
 
 def test_that_turning_makes_long_particles_hardly_rougher_than_measured() -> None:

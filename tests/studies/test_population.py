@@ -215,7 +215,7 @@ def test_that_whatever_takes_long_is_shared_out_and_the_floor_told_split_by_spli
     steps, _ = run(rough_sample(24), ["log_field"], mapper=noting, **options)
     assert asked == [
         *("descriptors_of", "descriptors_of", "frames_of", "fit_and_draw"),
-        *("descriptors_of", "frames_of", "descriptors_of"),
+        *("descriptors_of", "frames_of", "distances_among", "nearest_over_rotations", "descriptors_of"),
     ]
     assert sum("noise of sampling" in step.message for step in steps) == N_FLOOR_SPLITS
 

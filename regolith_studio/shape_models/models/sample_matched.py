@@ -8,6 +8,9 @@ all degrees that the sample has, up to twice the degree of the draws, and cut af
 are: so both lose the same by the cut. Where the sample has no more degrees than the draws, mapped particles
 are given the mean power that the measured ones have at each degree from the third on.
 
+In the end particles are mirrored: no descriptor changes, and draws are as far from every measured particle
+over all rotations as other particles of the material are.
+
 It is a smoothed bootstrap: it makes no size and no form that was not measured in the neighbourhood. To go
 beyond the sample, take ``log_field``.
 """
@@ -25,7 +28,7 @@ from scipy.spatial.transform import Rotation
 
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats
-from regolith_studio.harmonics.coefficients import degrees
+from regolith_studio.harmonics.coefficients import degrees, orders
 from regolith_studio.harmonics.sphere_grid import sphere_grid
 from regolith_studio.messages import N_
 from regolith_studio.shape_models.chunked_sampling import CHUNK, SizedSampler
@@ -62,6 +65,9 @@ class SampleMatchedSettings:
         them.
     size_jitter
         Standard deviation of ln r_eq about the measured one.
+    mirrored
+        Whether particles are mirrored in the end, which changes no descriptor. Mirror images are as far from
+        the measured particles as other particles of the material are; without it draws are near copies.
     """
 
     l_max: int = 30
@@ -92,6 +98,7 @@ class SampleMatchedSettings:
             "tip": N_("Deviation in ln r_eq."),
         },
     )
+    mirrored: bool = field(default=True, metadata={"label": N_("Mirror images")})
 
 
 @dataclass(frozen=True, eq=False)
@@ -177,7 +184,10 @@ class SampleMatched(SizedSampler):
         column = rng.integers(self._neighbours.shape[1], size=len(radii))
         forms = self._neighbours[components, column]
         spins = _spins(rng, self.settings.turn) * self._roundness(components, forms)[:, None]
-        return self._turned(components, forms, spins), {"parents": components}
+        rows = self._turned(components, forms, spins)
+        if self.settings.mirrored:
+            rows[:, orders(rows.shape[1]) < 0] *= -1.0  # y -> -y
+        return rows, {"parents": components}
 
     def _roundness(self, parents: IntArray, forms: IntArray) -> FloatArray:
         """Short over long axis of whichever ellipsoid is the longer one, shape (n,)."""

@@ -214,7 +214,7 @@ class EvaluationPanel(QWidget):
         table = ranking_table(judged.study)
         self.ranking.setRowCount(len(table.rows))
         for row, cells in enumerate(table.rows):
-            key, near, gap, energy, accuracy, novelty, rejected = cells
+            key, near, gap, energy, accuracy, novelty, rejected, _ = cells
             words = (
                 tr(MODELS[str(key)].label),
                 f"{near:.2f}",
