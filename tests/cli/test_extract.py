@@ -122,10 +122,10 @@ def test_that_a_probability_map_of_an_hdf5_file_is_taken(command, tmp_path: Path
         (("--border", "cut"), "Grains at the border are to exclude or to keep"),
         (("--kind", "colour"), "labels or grey values"),
         (("--voxel-size", "1,2"), "three as X,Y,Z"),
-        (("--voxel-size", "-1"), "positive number"),
+        (("--voxel-size", "-1"), "from 1e-12 to 1e+12"),
         (("--shape", "3x4"), "NX,NY,NZ"),
         (("--h-maxima", "-1"), "h-maxima"),
-        (("--min-voxels", "-1"), "number of voxels"),
+        (("--min-voxels", "-1"), "--min-voxels"),
         (("--recipe", "nowhere.json"), "cannot be opened"),
     ],
 )

@@ -21,7 +21,7 @@ from regolith_studio.session.choices import Choices
         ({"n_triangles": 7}, "7 triangles are too few"),
         ({"n_triangles": 70.5}, "whole number"),
         ({"largest_error": 0.0}, "above 0 per cent"),
-        ({"largest_error": float("nan")}, "above 0 per cent"),
+        ({"largest_error": float("nan")}, "must be a number"),
         ({"stop_at": "midnight"}, "'midnight'"),
         ({"seed": -1}, "seed"),
         ({"target": "moon"}, "'moon'"),
