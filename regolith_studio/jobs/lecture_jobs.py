@@ -274,7 +274,7 @@ def draw_field(material: str, amplitudes: FloatArray, seed: int, level: int = 4)
     card = materials().get(material)
     if card is None:
         raise InputError(f"There is no material {material!r}; there are {', '.join(materials())}.")
-    model = with_amplitudes(card.model(len(amplitudes)), np.asarray(amplitudes, dtype=np.float64))
+    model = with_amplitudes(card.field(len(amplitudes)), np.asarray(amplitudes, dtype=np.float64))
     draws = model.draw(1, seed)
     mesh = virtual_mesh(draws, 0, level)
     relative = draws.coefficients[0].copy()

@@ -34,7 +34,6 @@ from regolith_studio.shape_models.sample import Sample
 from regolith_studio.shape_models.size_law import checked_bounds
 
 STL_HEADER = "Regolith Studio, virtual particle, micrometres"
-CARD_MODEL = "log_field"
 PAPER_DEGREE = 10
 BATCH_SIZE = 20
 """Particles that one process makes at a time."""
@@ -143,6 +142,18 @@ def fit_model(source: ShapeSource, request: GenerationRequest) -> Steps:
     return MODELS[key].fit(content, settings)
 
 
+def make_card(sample: Sample, name: str, label: str, origin: str) -> Steps:
+    """The card of a sample with its hull field, judged against the sample; returns a ``MaterialCard``.
+
+    Raises
+    ------
+    InputError
+        As :meth:`~regolith_studio.shape_models.materials.MaterialCard.of`.
+    """
+    yield Started(N_("Making a material card"))
+    return MaterialCard.of(sample, name, label, origin)
+
+
 def draw(model: FittedModel, request: GenerationRequest) -> Steps:
     """Draw the particles of a request, chunk by chunk; returns :class:`Realizations`."""
     yield Started(N_("Drawing"), request.n)
@@ -154,10 +165,10 @@ def draw(model: FittedModel, request: GenerationRequest) -> Steps:
 
 
 def _model_of_card(card: MaterialCard, request: GenerationRequest) -> FittedModel:
-    if request.model not in ("", CARD_MODEL) or request.settings:
+    if request.model not in ("", card.key) or request.settings:
         raise InputError(
             f"The card {card.name} holds no particles, so that no other model can be fitted to it: it brings "
-            f"{CARD_MODEL} with settings of its own."
+            f"{card.key} with settings of its own."
         )
     return card.model(min(PAPER_DEGREE, card.l_max) if request.l_max is None else request.l_max)
 

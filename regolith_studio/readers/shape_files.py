@@ -161,7 +161,9 @@ def _lower(sentence: str) -> str:
 
 def _in_micrometres(card: MaterialCard) -> MaterialCard:
     factor = unit_factor(card.unit)
-    return card.model_copy(update={"median_radius": card.median_radius * factor, "unit": "um"})
+    hull_field = card.hull_field if factor == 1 else None  # its numbers are in the unit of the card
+    changes = {"median_radius": card.median_radius * factor, "unit": "um", "hull_field": hull_field}
+    return card.model_copy(update=changes)
 
 
 Share = Annotated[float, Field(ge=0.0, le=1.0)]

@@ -1,15 +1,18 @@
 """Material cards: a whole model of a material in one small JSON file.
 
 A card holds the relative amplitudes sqrt(A_l) / mu of a size-normalised angular power spectrum and a
-log-normal law of sizes: what publications print. Its model is a field in ln r. To first order
+log-normal law of sizes: what publications print. The model of such numbers is a field in ln r. To first order
 ln(r / mean) = r / mean - 1, so that A_l of ln r is 4 pi times the squared relative amplitude.
+
+Random phases are not the shape of a real material. The card of a sample therefore also holds the numbers of
+its hull field, which is then the card's model, and how far 1,000 draws of it are from the sample.
 """
 
 from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
 from types import MappingProxyType
-from typing import Annotated, Self
+from typing import Annotated, Any, Self
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
@@ -18,11 +21,21 @@ from regolith_studio.errors import FileError, InputError, format_validation_erro
 from regolith_studio.io.atomic import write_bytes
 from regolith_studio.io.json_text import json_bytes
 from regolith_studio.resources import resource
+from regolith_studio.shape_models.calibration import measured_features
+from regolith_studio.shape_models.goodness_of_fit import relative_wasserstein
+from regolith_studio.shape_models.models.hull_field import DEGREES, HullFieldSettings
+from regolith_studio.shape_models.models.hull_field import MODEL as HULL_FIELD_MODEL
 from regolith_studio.shape_models.models.log_field import LogField, LogFieldModel, LogFieldSettings
+from regolith_studio.shape_models.protocol import FittedModel
 from regolith_studio.shape_models.sample import Sample
+from regolith_studio.shape_models.shape_features import CONVEXITY, outer_features_of_radii, shape_features
 from regolith_studio.shape_models.size_law import LogNormalSizes
 
 LARGEST_CARD = 1_000_000
+LOG_FIELD, HULL_FIELD = "log_field", "hull_field"
+HULL_DEGREE = 10
+N_JUDGED = 1000
+JUDGED = ("equivalent_radius", "aspect_ratio", "sphericity", "convexity")
 Positive = Annotated[float, Field(gt=0.0)]
 Amplitude = Annotated[float, Field(ge=0.0, le=1.0)]
 
@@ -43,14 +56,29 @@ class MaterialCard(BaseModel):
         min_length=2, description="sqrt(A_l) / mu for l = 1, 2, ..., mu the mean of c_00."
     )
 
+    hull_field: dict[str, Any] | None = Field(
+        default=None, description="Numbers of the hull field of the sample; none for published statistics."
+    )
+    judgement: dict[str, float] | None = Field(
+        default=None,
+        description="Wasserstein distance of draws of the hull field to the sample, percent of the mean.",
+    )
+
     @property
     def l_max(self) -> int:
         """Highest degree that the card knows."""
         return len(self.relative_amplitudes)
 
+    @property
+    def key(self) -> str:
+        """Of its model in ``MODELS``."""
+        return LOG_FIELD if self.hull_field is None else HULL_FIELD
+
     @classmethod
     def of(cls, sample: Sample, name: str, label: str, origin: str, l_max: int | None = None) -> Self:
-        """The card of a sample, by the pooled field in ln r; numbers rounded to three digits.
+        """The card of a sample: its statistics rounded to three digits, its hull field, and their judgement.
+
+        Samples below l = 3 have no hull field.
 
         Raises
         ------
@@ -61,6 +89,9 @@ class MaterialCard(BaseModel):
         settings = LogFieldSettings(degree, "pooled", "log_normal", size_dependent=False)
         field = LogFieldModel().fit(sample, settings)
         radii = sample.star_shaped().equivalent_radii
+        hull, judgement = None, None
+        if degree >= DEGREES[0]:
+            hull, judgement = _judged_hull_field(sample, min(degree, HULL_DEGREE))
         try:
             return cls(
                 name=name,
@@ -73,13 +104,27 @@ class MaterialCard(BaseModel):
                 relative_amplitudes=tuple(
                     _rounded(float(value)) for value in np.sqrt(field.spectrum[1:] / (4 * np.pi))
                 ),
+                hull_field=hull,
+                judgement=judgement,
             )
         except ValidationError as error:
             raise InputError(
                 f"The sample makes no card: {format_validation_error(error.errors(include_url=False))}."
             ) from error
 
-    def model(self, l_max: int = 10) -> LogField:
+    def model(self, l_max: int = 10) -> FittedModel:
+        """The hull field where the card has one of this degree, or else the field in ln r.
+
+        Raises
+        ------
+        InputError
+            If the card does not reach `l_max`.
+        """
+        if self.hull_field is None or len(self.hull_field["spectrum"]) != l_max + 1:
+            return self.field(l_max)
+        return HULL_FIELD_MODEL.restored(self.hull_field, {})
+
+    def field(self, l_max: int = 10) -> LogField:
         """The field in ln r of the material.
 
         Raises
@@ -94,6 +139,28 @@ class MaterialCard(BaseModel):
             np.ones(1), np.array([np.log(self.median_radius)]), np.array([self.log_deviation])
         )
         return LogField(4 * np.pi * amplitudes**2, sizes, self.unit, self.median_radius)
+
+
+def _judged_hull_field(sample: Sample, l_max: int) -> tuple[dict[str, Any], dict[str, float]]:
+    """Numbers of the hull field of a sample, and the distances of its draws from the sample in percent.
+
+    Aspect ratio, sphericity and share of the hull are those of
+    :mod:`~regolith_studio.shape_models.shape_features`, on a grid of directions.
+    """
+    fitted = HULL_FIELD_MODEL.fit(sample, HullFieldSettings(l_max, "log_normal_mixture"))
+    draws = fitted.draw(N_JUDGED, 0)
+    sizes = draws.equivalent_radii()
+    measured = sample.truncated(l_max).star_shaped()
+    shares = shape_features(measured.coefficients)[:, CONVEXITY]
+    outer = outer_features_of_radii(measured.coefficients, shares)
+    drawn = measured_features(draws.coefficients, sizes)[1]
+    tables = [
+        np.column_stack([radii, np.exp(table[:, 0]), 1 / (1 + np.exp(-table[:, 1:]))])
+        for radii, table in ((measured.equivalent_radii, outer), (sizes, drawn))
+    ]
+    ones = [np.ones(len(table)) for table in tables]
+    distances = [relative_wasserstein(*pair, *ones) for pair in zip(tables[0].T, tables[1].T, strict=True)]
+    return fitted.stored()[0], {key: _rounded(100 * far) for key, far in zip(JUDGED, distances, strict=True)}
 
 
 def materials() -> Mapping[str, MaterialCard]:

@@ -2444,6 +2444,10 @@
         <translation>Datensatz wird gemacht</translation>
     </message>
     <message>
+        <source>Making a material card</source>
+        <translation>Eine Materialkarte wird erstellt</translation>
+    </message>
+    <message>
         <source>Making meshes</source>
         <translation>Netze werden erzeugt</translation>
     </message>

@@ -5,6 +5,8 @@ import numpy as np
 import pytest
 
 from regolith_studio.errors import FileError, InputError
+from regolith_studio.harmonics.sphere_grid import sphere_grid
+from regolith_studio.shape_models.inertia_ellipsoid import principal_axes
 from regolith_studio.shape_models.log_radius import sized
 from regolith_studio.shape_models.materials import MaterialCard, materials, read_card, write_card
 from regolith_studio.shape_models.models.log_field import MODEL, LogFieldSettings
@@ -53,6 +55,26 @@ def test_that_a_card_read_back_is_the_card_that_was_written(
     assert read_card(write_card(card, tmp_path / "rough.json")) == card
     field = MODEL.fit(rough_sample(20, 4), LogFieldSettings(4, "pooled", "log_normal", False))
     np.testing.assert_allclose(card.model(4).spectrum, field.spectrum, rtol=0.02, atol=1e-12)
+
+
+def test_that_the_card_of_a_sample_draws_its_shapes_and_says_how_well() -> None:
+    """Half ellipsoids of 2 : 1.4 : 1, half spheres: no field with random phases has such aspect ratios."""
+    drawn = materials()["ma165"].field(6).draw(120, 0)
+    rows = np.stack([drawn.particle(i).values for i in range(120)])
+    grid = sphere_grid(24, 6)
+    stretched = np.linalg.norm(grid.directions / [2.0, 1.4, 1.0], axis=1) ** -1
+    rows[::2] = grid.expanded(grid.values(rows[::2]) * stretched)
+    sample = Sample(rows)
+    card = MaterialCard.of(sample, "mixed", "Mixed", "Synthetic, for a test.")
+    assert card.key == "hull_field"
+    assert card.judgement is not None
+    assert card.judgement["convexity"] < 2.0
+    assert card.judgement["aspect_ratio"] < 6.0
+    draws = card.model(6).draw(400, 1)
+    axes = np.exp(np.abs(principal_axes(np.stack([draws.particle(i).values for i in range(400)])).log_ratios))
+    measured = np.exp(np.abs(principal_axes(rows).log_ratios))
+    assert axes.mean() == pytest.approx(measured.mean(), rel=0.03)
+    assert materials()["ma165"].key == "log_field"
 
 
 @pytest.mark.parametrize("l_max", [0, 31])

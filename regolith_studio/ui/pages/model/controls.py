@@ -21,8 +21,9 @@ from PySide6.QtWidgets import (
 )
 
 from regolith_studio.errors import InputError
-from regolith_studio.jobs.model_jobs import CARD_MODEL, GenerationRequest
+from regolith_studio.jobs.model_jobs import GenerationRequest
 from regolith_studio.messages import N_
+from regolith_studio.shape_models.materials import LOG_FIELD
 from regolith_studio.shape_models.models import DEFAULT_MODEL, MODELS
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.fixed_height_text import FixedHeightText
@@ -99,7 +100,7 @@ class SourceControls(QWidget):
         if brings_model:
             self.model.setCurrentIndex(self.model.findData(brings_model))
         self.fit.setText(tr("Use the model") if brings_model else tr("Fit the model"))
-        self.l_max.setEnabled(brings_model in ("", CARD_MODEL))
+        self.l_max.setEnabled(brings_model in ("", LOG_FIELD))
         self.l_max.slider.setMaximum(max_degree)
         self.l_max.field.setMaximum(max_degree)
 
@@ -305,7 +306,7 @@ def order_from(source: Mapping[str, Any], drawing: Mapping[str, Any], brings_mod
         )
     key = "" if brings_model else str(source["model"])
     settings = tuple(source["settings"].get(key, {}).items()) if key else ()
-    degree = None if brings_model not in ("", CARD_MODEL) else int(source["l_max"])
+    degree = None if brings_model not in ("", LOG_FIELD) else int(source["l_max"])
     return GenerationRequest(
         key, settings, degree, drawing["n"], drawing["seed"], None if bounds is None else tuple(bounds)
     )

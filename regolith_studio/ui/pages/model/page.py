@@ -191,7 +191,7 @@ class ModelPage(PageWidget):
         if sample is None or self._fitted is None:
             self._context.toast.problem(tr("A card is made of a fitted sample: fit a model to one first."))
             return
-        save_card(self, self._context.toast, sample, self._fitted.source)
+        save_card(self, self._context, sample, self._fitted.source)
 
     # --- work ----------------------------------------------------------------------------------
 

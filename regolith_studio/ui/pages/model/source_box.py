@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from math import exp
 
 from regolith_studio.errors import InputError
-from regolith_studio.jobs.model_jobs import CARD_MODEL, ModelOrigin
+from regolith_studio.jobs.model_jobs import ModelOrigin
 from regolith_studio.jobs.particle_jobs import FIT_DEGREE
 from regolith_studio.readers.shape_files import ShapeSource
 from regolith_studio.session.session import Session
@@ -64,7 +64,7 @@ class SourceBox:
         content = self._files[key].content if key in self._files else materials()[key]
         match content:
             case MaterialCard():
-                return SourceKind(CARD_MODEL, content.l_max, translate(content.origin))
+                return SourceKind(content.key, content.l_max, translate(content.origin))
             case Sample():
                 words = tr("{count} particles up to l = {degree}.", count=len(content), degree=content.l_max)
                 return SourceKind("", content.l_max, words)
