@@ -11,8 +11,6 @@ def main() -> None:
     SIGTERM, as a queue sends it when the time is over, and SIGHUP, as a closed terminal sends it, end a
     command as Ctrl+C does: nothing half-written stays. The window is left to Qt.
     """
-    from regolith_studio.cli.entry import run
-
     asked: list[int] = []
 
     def stop(number: int, _frame: Any) -> None:
@@ -24,7 +22,13 @@ def main() -> None:
             number = getattr(signal, name, None)  # Windows has no SIGHUP, and nohup ignores it
             if number is not None and signal.getsignal(number) is not signal.SIG_IGN:
                 signal.signal(number, stop)
-    code = run(sys.argv[1:])
+    try:
+        from regolith_studio.cli.entry import run
+
+        code = run(sys.argv[1:])
+    except KeyboardInterrupt:  # while modules were loaded
+        print("Stopped.", file=sys.stderr)  # noqa: T201
+        code = 130
     sys.exit(128 + asked[0] if asked else code)
 
 

@@ -103,6 +103,23 @@ def test_that_check_answers_without_a_display_and_survives_a_broken_opengl() -> 
         assert "OpenGL renderer string" in report["opengl"]
 
 
+@pytest.mark.skipif(os.name == "nt", reason="signals are a matter of POSIX")
+def test_that_a_signal_while_modules_are_loaded_is_no_traceback() -> None:
+    code = (
+        "import os, signal, sys\n"
+        "class Loading:\n"
+        "    def find_spec(self, name, *_):\n"
+        "        if name == 'regolith_studio.cli.commands':\n"
+        "            os.kill(os.getpid(), signal.SIGTERM)\n"
+        "sys.meta_path.insert(0, Loading())\n"
+        "sys.argv = ['regolith-studio', 'check']\n"
+        "from regolith_studio.__main__ import main\n"
+        "main()\n"
+    )
+    ended = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, timeout=60)
+    assert (ended.returncode, ended.stderr) == (143, "Stopped.\n")
+
+
 def test_that_a_library_that_is_missing_is_named_with_its_packages(
     monkeypatch: pytest.MonkeyPatch, command: Callable[..., Said]
 ) -> None:

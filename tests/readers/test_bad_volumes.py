@@ -126,6 +126,8 @@ def nrrds() -> Iterator[Bad]:
         yield f"encoding-{encoding}.nrrd", nrrd("encoding", encoding), "is an NRRD in "
     for number, data in enumerate((b"", b"\x1f\x8b", b"x" * 50, gzip.compress(SLICES.tobytes())[:40])):
         yield f"gzip-{number}.nrrd", nrrd("encoding", "gzip", data), "is damaged|is cut short"
+    packed = gzip.compress(SLICES.tobytes() + bytes(1_000_000))
+    yield "gzip-long.nrrd", nrrd("encoding", "gzip", packed[:-8] + bytes(8)), "is damaged"
     yield "gzip-short.nrrd", nrrd("encoding", "gz", gzip.compress(bytes(9))), "is cut short"
     for number, target in enumerate(("/etc/passwd", "../a.raw", "sub/a.raw", "..", "C:\\a.raw")):
         yield f"elsewhere-{number}.nhdr", nrrd("data file", target), "only a file in the same folder is read"

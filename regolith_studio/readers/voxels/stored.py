@@ -182,7 +182,7 @@ class InflatedStream:
             count -= len(self._piece(min(count, _CHUNK)))
 
     def check_end(self) -> None:
-        """Verify the checksum after the last byte, unless the stream continues.
+        """Verify the checksums after the last byte; what follows the voxels is unpacked for that.
 
         Raises
         ------
@@ -190,7 +190,8 @@ class InflatedStream:
             If it is wrong or missing.
         """
         if not self._inflater.eof:
-            self._piece(1, may_end=True)
+            while self._piece(_CHUNK, may_end=True):
+                pass
 
     def _piece(self, most: int, may_end: bool = False) -> bytes:
         while True:
