@@ -54,5 +54,5 @@ def _pictures(done: "RecipeRun") -> tuple[tuple[str, str], ...]:
     except RegolithError as error:
         done.problems.append(str(error))
         return ()
-    caption = f"{first.name}: CT particle, spherical-harmonics fit and coarsened polyhedron"
+    caption = f"{first.name}: synthetic particle, its spherical-harmonics fit and coarsened polyhedron"
     return ((PICTURE, caption),)

@@ -53,7 +53,7 @@ def degree_picture(
     InputError
         If a degree is negative or above that of the fit.
     """
-    shown: list[tuple[Mesh | None, str]] = [(particle, N_("CT particle"))]
+    shown: list[tuple[Mesh | None, str]] = [(particle, N_("Particle"))]
     shown += [(surface, degree_title(fit, degree)) for degree, surface in gallery(fit, degrees, level)]
     columns = min(N_COLUMNS, len(shown))
     rows = ceil(len(shown) / columns)
@@ -116,7 +116,7 @@ def _frames(
             plotter.subplot(0, column)
             plotter_setup.set_stage(plotter, palette.PAPER)
         plotter.subplot(0, 0)
-        _fill(plotter, particle, N_("CT particle"), is_particle=True)
+        _fill(plotter, particle, N_("Particle"), is_particle=True)
         cameras.apply_pose(plotter, pose)
         plotter.subplot(0, 1)
         for degree, surface in gallery(fit, degrees, level):

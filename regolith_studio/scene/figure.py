@@ -96,7 +96,7 @@ def _fill(
 def view_titles(l_max: int, polyhedron: ConvexPolyhedron | CoarseningResult) -> tuple[str, str, str]:
     """The titles that the window and the figures share; facets are not triangles, so both are named."""
     return (
-        N_("CT particle"),
+        N_("Particle"),
         f"Spherical-harmonics fit, l_max = {l_max}",
         f"Polyhedron, {polyhedron.n_facets} facets "
         f"({polyhedron.n_vertices} vertices, {polyhedron.n_triangles} triangles)",

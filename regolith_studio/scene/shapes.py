@@ -16,7 +16,7 @@ from regolith_studio.scene.palette import Material, ThemeColors
 
 PARTICLE, FIT, POLYHEDRON = "particle", "fit", "polyhedron"
 NAMES = (PARTICLE, FIT, POLYHEDRON)
-LABELS = {PARTICLE: N_("CT particle"), FIT: "Fit", POLYHEDRON: N_("Polyhedron")}
+LABELS = {PARTICLE: N_("Particle"), FIT: "Fit", POLYHEDRON: N_("Polyhedron")}
 MATERIALS: dict[str, Material] = {
     PARTICLE: palette.PARTICLE_MATERIAL,
     FIT: palette.FIT_MATERIAL,

@@ -21,7 +21,7 @@ Scalar = bool | int | float | str
 L_MAX_LIMIT = 30
 """Highest degree that is fitted; every lower one is a truncation of that fit."""
 LEVEL_LIMITS = (0, 7)
-TARGETS = {"fit": "surface of the spherical-harmonics fit", "particle": "CT particle itself"}
+TARGETS = {"fit": "surface of the spherical-harmonics fit", "particle": "particle itself"}
 STOPS = {
     "facets": "a number of facets",
     "triangles": "a number of triangles",

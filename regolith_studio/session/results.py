@@ -54,7 +54,7 @@ class Results:
         The fit's surface in the particle's frame, micrometres, and the degree at which it is cut: the
         chosen one when nothing runs; while a slider is dragged, one that it has passed.
     particle_descriptors, fit_descriptors, fit_errors
-        Of the CT particle, of `surface`, and the relative errors (Eq. 8) of the second.
+        Of the particle, of `surface`, and the relative errors (Eq. 8) of the second.
     coarsening_progress
         The newest step of the coarsening that runs or ran.
     best

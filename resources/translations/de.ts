@@ -732,14 +732,6 @@
         <translation>CSV, JSON, PNG, SVG</translation>
     </message>
     <message>
-        <source>CT particle</source>
-        <translation>CT-Partikel</translation>
-    </message>
-    <message>
-        <source>CT particle, {name}</source>
-        <translation>CT-Partikel, {name}</translation>
-    </message>
-    <message>
         <source>Cards (*.json)</source>
         <translation>Karten (*.json)</translation>
     </message>
@@ -2296,8 +2288,8 @@
         <translation>Ausgelassen: {names}.</translation>
     </message>
     <message>
-        <source>Left: the particle as the CT scan measured it. Middle: its spherical-harmonics fit. Right: the convex polyhedron that a DEM solver will roll. Drag to turn: all three turn together.</source>
-        <translation>Links: das Partikel, wie die CT es gemessen hat. Mitte: sein Fit mit Kugelflächenfunktionen. Rechts: das konvexe Polyeder, das ein DEM-Programm rollen lässt. Zum Drehen ziehen: alle drei drehen sich gemeinsam.</translation>
+        <source>Left: the particle as it was read; the shipped ones are synthetic. Middle: its spherical-harmonics fit. Right: the convex polyhedron that a DEM solver will roll. Drag to turn: all three turn together.</source>
+        <translation>Links: das Partikel, wie es gelesen wurde; die mitgelieferten sind synthetisch. Mitte: sein Fit mit Kugelflächenfunktionen. Rechts: das konvexe Polyeder, das ein DEM-Programm rollen lässt. Zum Drehen ziehen: alle drei drehen sich gemeinsam.</translation>
     </message>
     <message>
         <source>Length unit</source>
@@ -3118,6 +3110,10 @@
     <message>
         <source>Particle mass</source>
         <translation>Masse der Partikel</translation>
+    </message>
+    <message>
+        <source>Particle, {name}</source>
+        <translation>Partikel, {name}</translation>
     </message>
     <message>
         <source>Particles</source>
@@ -6084,10 +6080,6 @@
         <translation>tcp://HOST:8786 oder tls://HOST:8786</translation>
     </message>
     <message>
-        <source>the CT particle itself</source>
-        <translation>das CT-Partikel selbst</translation>
-    </message>
-    <message>
         <source>the convex polyhedra themselves</source>
         <translation>die konvexen Polyeder selbst</translation>
     </message>
@@ -6102,6 +6094,10 @@
     <message>
         <source>the particle</source>
         <translation>das Partikel</translation>
+    </message>
+    <message>
+        <source>the particle itself</source>
+        <translation>das Partikel selbst</translation>
     </message>
     <message>
         <source>the surface of the spherical-harmonics fit at l&lt;sub&gt;max&lt;/sub&gt; = {l_max}</source>

@@ -92,8 +92,8 @@ def test_that_the_section_draws_and_measures_what_the_plane_cuts(window):
     assert plane.offset == pytest.approx(middle + 5.0, abs=0.05)
     labels = [curve.label for curve in panel.plot.curves]
     area = cross_section(mesh, (0, 0, 1), plane.offset).area
-    assert labels[0] == f"CT particle {grouped_number(area)} µm²"
-    assert [label.split()[0] for label in labels] == ["CT", "Fit", "Polyhedron"]
+    assert labels[0] == f"Particle {grouped_number(area)} µm²"
+    assert [label.split()[0] for label in labels] == ["Particle", "Fit", "Polyhedron"]
     for name in ("particle", "fit", "polyhedron"):
         assert actor(window, name, clipping.CAP) is not None
         assert actor(window, name, clipping.CUT + "polyhedron") is not None

@@ -178,7 +178,7 @@ def _particles(summary: Summary) -> str:
         for each in summary.described
     ]
     note = _more(summary.n_particles, "descriptors.csv")
-    return "<h2>The particles as measured</h2>" + (f"<p>{note}</p>" if note else "") + _table(header, rows)
+    return "<h2>The particles</h2>" + (f"<p>{note}</p>" if note else "") + _table(header, rows)
 
 
 def _problems(problems: Sequence[str]) -> str:

@@ -48,7 +48,7 @@ def summary(count: int, choices: Choices) -> list[tuple[str, str]]:
     preset = tr(presets()[choices.preset].label)
     if choices.preset_modified:
         preset = tr("{preset}, modified", preset=preset)
-    target = tr("the CT particle itself")
+    target = tr("the particle itself")
     if choices.target == "fit":
         target = tr(
             "the surface of the spherical-harmonics fit at l<sub>max</sub> = {l_max}", l_max=choices.l_max

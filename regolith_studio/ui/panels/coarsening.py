@@ -57,7 +57,7 @@ ERROR = NumberSpec(
         " CH, which cannot both be met, beyond what none can avoid."
     ),
 )
-TARGET_LABELS = {"fit": N_("Spherical-harmonics fit"), "particle": N_("CT particle")}
+TARGET_LABELS = {"fit": N_("Spherical-harmonics fit"), "particle": N_("Particle")}
 SEED_LIMIT = 2**31 - 1
 LINES = 2
 """Visible lines of the reason why a request could not be met."""

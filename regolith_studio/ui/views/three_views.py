@@ -1,4 +1,4 @@
-"""CT particle, fit and polyhedron side by side: the three views that are always there."""
+"""Particle, fit and polyhedron side by side: the three views that are always there."""
 
 import html
 from functools import partial
@@ -94,7 +94,7 @@ class ThreeViews(QSplitter):
         self.views[PARTICLE].draw(lambda plotter: surfaces.show_particle(plotter, mesh))
         self.comparison.set_shapes(self._shapes, *NAMES)
         self.frames[PARTICLE].set_texts(
-            tr("CT particle, {name}", name=html.escape(entry.id)),
+            tr("Particle, {name}", name=html.escape(entry.id)),
             tr("{size}, {count:,} triangles", size=_lengths(mesh.bounds), count=len(mesh.faces)),
             html.escape(entry.id),
         )
@@ -274,7 +274,7 @@ class ThreeViews(QSplitter):
         return self._hidden
 
     def _empty_titles(self) -> None:
-        self.frames[PARTICLE].set_texts(tr("CT particle"))
+        self.frames[PARTICLE].set_texts(tr("Particle"))
         self.frames[FIT].set_texts(tr("Spherical-harmonics fit"), tr("waiting for the coefficients …"))
         late = tr("on its way; the very first one takes longer …")
         self.frames[POLYHEDRON].set_texts(tr("Polyhedron"), late)

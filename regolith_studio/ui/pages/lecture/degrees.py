@@ -60,7 +60,7 @@ class DegreesView(QWidget):
         self._particle, self._steps = mesh, ()
         self.playback.pause()
         self.playback.set_count(0)
-        self.frames["particle"].set_texts(tr("CT particle, {name}", name=name))
+        self.frames["particle"].set_texts(tr("Particle, {name}", name=name))
         self.frames["fit"].set_texts(tr("Spherical-harmonics fit"))
         self.frames["particle"].view.draw(lambda plotter: surfaces.show_particle(plotter, mesh))
         self.frames["fit"].view.draw(surfaces.clear)
