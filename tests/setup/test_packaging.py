@@ -66,6 +66,15 @@ def test_that_every_dependency_is_pinned() -> None:
     assert names - {PROJECT["name"]} <= pins
 
 
+def test_that_the_guide_says_of_every_dependency_what_it_does_here() -> None:
+    guide = (ROOT / "docs" / "installing.md").read_text(encoding="utf-8")
+    rows = [
+        line.split("|")[1] for line in guide.partition("## What is installed")[2].splitlines() if "|" in line
+    ]
+    explained = {name.strip() for row in rows for name in row.split(",")}
+    assert {line.split(">")[0] for line in PROJECT["dependencies"]} <= explained
+
+
 @pytest.mark.slow
 def test_that_the_wheel_holds_the_package_and_its_resources_and_nothing_else(wheel: Path) -> None:
     with zipfile.ZipFile(wheel) as archive:
