@@ -22,8 +22,9 @@ import tempfile
 import time
 from collections.abc import Callable
 from contextlib import suppress
-from functools import cache
+from functools import cache, lru_cache, wraps
 from pathlib import Path
+from threading import get_ident
 from typing import Any, TypeVar, cast
 
 import numba
@@ -31,6 +32,7 @@ from numba.core.caching import FunctionCache
 from platformdirs import user_cache_path
 
 F = TypeVar("F", bound=Callable[..., object])
+T = TypeVar("T")
 
 UNUSED_DAYS = 60
 """Folders of machine code that no process has used for so long are deleted."""
@@ -66,6 +68,20 @@ def kernel_noalloc(function: F) -> F:
 def inline_kernel(function: F) -> F:
     """Compile a small function of innermost loops: only kernels call it, and LLVM inlines it there."""
     return cast(F, numba.njit(**_OPTIONS, **_NO_COUNTING)(function))
+
+
+def kept_in_thread(make: Callable[[int], T]) -> Callable[[int], T]:
+    """Make the scratch memory of a kernel once for each size, in each thread; every call overwrites it."""
+
+    @lru_cache(maxsize=256)
+    def of_thread(size: int, _thread: int) -> T:
+        return make(size)
+
+    @wraps(make)
+    def scratch(size: int) -> T:
+        return of_thread(size, get_ident())
+
+    return scratch
 
 
 class _KernelCache(_FUNCTION_CACHE):  # type: ignore[misc]

@@ -11,6 +11,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numba
@@ -258,3 +259,12 @@ def test_that_a_signal_during_a_kernel_raises_where_it_was_called() -> None:
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=200)
     assert done.returncode == 0, done.stderr
     assert done.stdout.split() == ["raised"] * 10
+
+
+def test_that_threads_have_scratch_memory_of_their_own_and_use_it_again() -> None:
+    memory = kernels.kept_in_thread(np.empty)
+    assert memory(3) is memory(3)
+    assert memory(3).shape == (3,)
+    assert memory(4).shape == (4,)
+    with ThreadPoolExecutor(1) as other:
+        assert other.submit(memory, 3).result() is not memory(3)

@@ -8,21 +8,29 @@ from regolith_studio.coarsening.core.box_contacts import fill_points, pose_of, s
 from regolith_studio.coarsening.core.plane_coordinates import fill_gradient
 from regolith_studio.coarsening.core.polyhedron_measures import MeasuredPolyhedron, add_vertex_charges
 from regolith_studio.geometry.arrays import FloatArray, IntArray
-from regolith_studio.geometry.kernels import kernel_noalloc
+from regolith_studio.geometry.kernels import kept_in_thread, kernel_noalloc
 from regolith_studio.geometry.vectors import Vector, cross, dot, mixed, row
 
 
 class GradientWorkspace(NamedTuple):
-    """Memory: nine vertices (9, 3) of a box, forces (3, 9, 3) on them, charges (n, 4) of the planes."""
+    """Memory: nine vertices (9, 3) of a box, forces (3, 9, 3) on them, charges (n, 4) of the planes.
+
+    Then logarithms (3,) of the box's edges, and their derivatives (3, 3 n).
+    """
 
     points: FloatArray
     forces: FloatArray
     charges: FloatArray
+    logs: FloatArray
+    gradients: FloatArray
 
 
+@kept_in_thread
 def gradient_workspace(n: int) -> GradientWorkspace:
     """Memory for n planes."""
-    return GradientWorkspace(np.empty((9, 3)), np.empty((3, 9, 3)), np.empty((n, 4)))
+    return GradientWorkspace(
+        np.empty((9, 3)), np.empty((3, 9, 3)), np.empty((n, 4)), np.empty(3), np.empty((3, 3 * n))
+    )
 
 
 @kernel_noalloc
@@ -33,10 +41,8 @@ def fill_extent_gradients(
     tangents: FloatArray,
     scales: FloatArray,
     work: GradientWorkspace,
-    logs: FloatArray,
-    gradients: FloatArray,
 ) -> None:
-    """Fill the logarithms of the edges of a box at rest, and their derivatives with the planes' coordinates.
+    """Fill logarithms of the edges of a box at rest, and derivatives with the planes' coordinates, in `work`.
 
     Parameters
     ----------
@@ -44,11 +50,9 @@ def fill_extent_gradients(
         Axes (3, 3), and contacts as in :mod:`regolith_studio.coarsening.core.box_contacts`, (13,).
     tangents, scales
         As in :mod:`regolith_studio.coarsening.core.plane_coordinates`; pivots are the facets' centroids.
-    logs, gradients
-        Filled, shapes (3,) and (3, 3 n).
     """
     _, normals, _, vertices, triples, _, _, pivots, _, _ = polyhedron
-    points, forces, charges = work
+    points, forces, charges, logs, gradients = work
     fill_points(vertices, contact, points)
     extents = extent_forces(points, contact, frame, forces)
     for k in range(3):

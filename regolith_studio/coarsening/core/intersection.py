@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from regolith_studio.geometry.arrays import FloatArray, IntArray
-from regolith_studio.geometry.kernels import kernel_noalloc
+from regolith_studio.geometry.kernels import kept_in_thread, kernel_noalloc
 from regolith_studio.geometry.vectors import Vector, cross, dot, row
 
 REACH = 40.0
@@ -44,6 +44,7 @@ class IntersectionWorkspace(NamedTuple):
     lists: PlaceArray
 
 
+@kept_in_thread
 def workspace_for(n: int) -> IntersectionWorkspace:
     """Memory for n planes."""
     places = 4 * (n + 4) + 16

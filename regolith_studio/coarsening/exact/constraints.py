@@ -203,7 +203,6 @@ def _with_constraints(
         tracked, slack = select_boxes(boxes, near, polyhedron.triples), apart[1:close]
     scales, values = np.empty(n), np.zeros(5)
     rows, rival_rows = np.empty((5, 3 * n)), np.empty((max(close - 1, 0), 3 * n))
-    work, logs, change = gradient_workspace(n), np.empty(3), np.empty((3, 3 * n))
     boxes_near = tracked or _NOT_TRACKED
     _fill_constraints(
         polyhedron,
@@ -212,9 +211,7 @@ def _with_constraints(
         boxes_near.frames,
         boxes_near.contacts,
         close,
-        work,
-        logs,
-        change,
+        gradient_workspace(n),
         values,
         rows,
         rival_rows,
@@ -242,8 +239,6 @@ def _fill_constraints(
     contacts: IntArray,
     n_boxes: int,
     work: GradientWorkspace,
-    logs: FloatArray,
-    change: FloatArray,
     values: FloatArray,
     rows: FloatArray,
     rival_rows: FloatArray,
@@ -254,8 +249,6 @@ def _fill_constraints(
     ----------
     frames, contacts, n_boxes
         The wanted box first; without boxes only volume and sphericity are filled.
-    logs, change
-        Scratch, shapes (3,) and (3, 3 n).
     rival_rows
         Of the log volume of the other boxes over that of the wanted one, shape (n_boxes - 1, 3 n).
     """
@@ -271,7 +264,8 @@ def _fill_constraints(
     for j in range(3 * len(areas)):
         rows[SPHERICITY, j] = 2.0 / 3.0 * rows[VOLUME, j] - rows[SPHERICITY, j]
     for b in range(n_boxes):
-        fill_extent_gradients(polyhedron, frames[b], contacts[b], tangents, scales, work, logs, change)
+        fill_extent_gradients(polyhedron, frames[b], contacts[b], tangents, scales, work)
+        logs, change = work.logs, work.gradients
         low, high = 0, 0
         for k in range(1, 3):
             low = k if logs[k] < logs[low] else low

@@ -166,9 +166,9 @@ def test_that_the_edges_follow_the_planes_as_finite_differences_say(seed: int) -
     boxes = found_on(solid, 0.02)
     shape = measure_polyhedron(normals, offsets)
     tangents, scales, pivots = tangents_of(normals), np.full(n, 0.3), shape.centroids
-    logs, gradients = np.empty(3), np.empty((3, 3 * n))
-    box = boxes.frames[0], boxes.contacts[0]
-    fill_extent_gradients(shape, *box, tangents, scales, gradient_workspace(n), logs, gradients)
+    work = gradient_workspace(n)
+    logs, gradients = work.logs, work.gradients
+    fill_extent_gradients(shape, boxes.frames[0], boxes.contacts[0], tangents, scales, work)
     assert np.exp(logs) == pytest.approx(boxes.extents[0], rel=1e-12)
     step = 1e-6 * np.random.default_rng(seed).normal(size=3 * n)
 
