@@ -141,10 +141,10 @@ class DistributionComparison:
 
 
 def compare_distributions(sample: Sample | None, draws: Realizations) -> Steps:
-    """Measure both at the degree of the draws; returns :class:`DistributionComparison`. A job."""
+    """Measure both, the sample with all its degrees; returns :class:`DistributionComparison`. A job."""
     kinds = [draws.chosen(range(min(len(draws), MAX_COMPARED)))]
     if sample is not None:
-        rows = sample.truncated(min(draws.l_max, sample.l_max)).coefficients[:MAX_COMPARED]
+        rows = sample.coefficients[:MAX_COMPARED]
         kinds.append(Realizations(rows, "radius", "measured", draws.seed, sample.unit))
     total = sum(len(each) for each in kinds)
     yield Started(N_("Comparing distributions"), total)

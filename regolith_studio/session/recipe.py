@@ -53,7 +53,8 @@ class Population(Strict):
     seed
         Of the draws; that of the recipe where left out.
     level
-        Subdivisions of the icosahedron that their surfaces are drawn on; that of the recipe where left out.
+        Subdivisions of the icosahedron that their surfaces are drawn on; where left out that of the recipe,
+        and at least 5 above l_max = 10.
     name
         What they are called, and their group where the model has no parts; by default after the first source.
     """

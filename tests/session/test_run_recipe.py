@@ -239,7 +239,7 @@ def test_that_a_population_is_drawn_measured_coarsened_and_written(tmp_path: Pat
 
 def test_that_a_recipe_divides_radii_by_the_reference_that_it_names(tmp_path: Path, grains: Path) -> None:
     """Coefficients of the ratio to an ellipsoid are no lengths, so there is no spectrum of lengths."""
-    wish = recipe(grains, reference="ellipsoid")
+    wish = recipe(grains, reference="ellipsoid", target="fit")
     folder = done(wish, grains, tmp_path / "out").folder
     (first, *_) = json.loads((folder / "fit.json").read_text())["particles"]
     assert first["reference"]

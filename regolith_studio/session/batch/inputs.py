@@ -9,6 +9,7 @@ from typing import Any, Protocol, Self
 
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.particle import Particle
+from regolith_studio.harmonics.surface import level_for
 from regolith_studio.jobs.model_jobs import PAPER_DEGREE, drawn_names, groups_of
 from regolith_studio.readers.particles import (
     FileProblem,
@@ -209,10 +210,11 @@ def title_of(population: Population) -> str:
 
 
 def _drawn(recipe: Recipe, population: Population, model: Path | None, taken: set[str]) -> list[BatchInput]:
-    if model is None:
-        model_of(population, None)
+    fitted = model_of(population, model)
     seed = recipe.seed if population.seed is None else population.seed
-    level = recipe.level if population.level is None else population.level
+    level = population.level
+    if level is None:
+        level = recipe.level if fitted.l_max <= PAPER_DEGREE else max(recipe.level, level_for(fitted.l_max))
     return [
         VirtualInput(unique_name(name, "", taken), population, seed, index, level, model)
         for index, name in enumerate(drawn_names(title_of(population), population.n))
