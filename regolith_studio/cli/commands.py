@@ -12,6 +12,7 @@ from regolith_studio.cli import (
     describe,
     extract,
     fit,
+    forget,
     gallery,
     generate,
     recipe,
@@ -58,6 +59,7 @@ app.command("extract")(extract.extract)
 app.command("run")(recipe.run)
 app.command("demo")(demo.demo)
 app.command("check")(check.check)
+app.command("forget")(forget.forget)
 app.command("warm-up")(warm_up.warm_up)
 app.add_typer(study.app, name="study")
 app.add_typer(dataset.app, name="dataset")

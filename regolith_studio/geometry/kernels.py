@@ -44,6 +44,7 @@ _NO_COUNTING: dict[str, Any] = {"_nrt": False}
 _CONFIG: Any = numba.config
 _FUNCTION_CACHE: Any = FunctionCache  # numba has no types
 _PACKAGE = Path(__file__).resolve().parents[1]
+_CODE = "*-" + "[0-9a-f]" * 16  # folders of machine code; NUMBA_CACHE_DIR may hold those of other programs
 _MARKS = (b"@kernel", b"@inline_kernel")
 
 
@@ -162,18 +163,27 @@ def _cache_folder(package: Path | None) -> Path | None:
     return folder
 
 
+def compiled_code() -> list[Path]:
+    """Folders of machine code of all versions."""
+    return [found for folder in cache_folders() for found in sorted(folder.glob(_CODE))]
+
+
+def cache_folders() -> tuple[Path, Path]:
+    """Folder for machine code, and the temporary one that takes its place where it cannot be written."""
+    user = os.getuid() if hasattr(os, "getuid") else "kernels"
+    wanted = Path(_CONFIG.CACHE_DIR or user_cache_path("regolith-studio", appauthor=False) / "kernels")
+    return wanted, Path(tempfile.gettempdir(), f"regolith-studio-{user}")
+
+
 @cache
 def _cache_base() -> Path | None:
     """Folder that can be written for the machine code of all kernels; ``None`` if there is none.
 
     Other processes that this one starts use the same.
     """
-    wanted = Path(_CONFIG.CACHE_DIR or user_cache_path("regolith-studio", appauthor=False) / "kernels")
+    wanted, mine = cache_folders()
     if _is_writable(wanted):
         return wanted
-    mine = Path(
-        tempfile.gettempdir(), f"regolith-studio-{os.getuid() if hasattr(os, 'getuid') else 'kernels'}"
-    )
     if _is_private(mine) and _is_writable(mine):
         _report(f"The folder {wanted} cannot be written; compiled code is kept in {mine}.")
         os.environ["NUMBA_CACHE_DIR"] = str(mine)
@@ -209,7 +219,7 @@ def _delete_unused(new: Path) -> None:
     if new.exists() or not new.parent.is_dir():
         return
     limit = time.time() - UNUSED_DAYS * 86_400
-    for folder in new.parent.glob("*-" + "[0-9a-f]" * 16):
+    for folder in new.parent.glob(_CODE):
         with suppress(OSError):  # another process may have deleted it
             if folder.stat().st_mtime < limit:
                 shutil.rmtree(folder, ignore_errors=True)
