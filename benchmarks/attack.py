@@ -1,0 +1,360 @@
+"""Every command that writes, on a full disk, killed, with a second writer, and where nothing can be written.
+
+``python -m benchmarks.attack`` runs each command over an earlier result of the same command with other
+options, so that afterwards the place must hold the earlier result or the new one, byte for byte, and nothing
+else. It prints one line a command and kind of attack:
+
+runs
+    How many.
+sentences
+    How many failed with one sentence. Unclear ends have more lines or a traceback; a kill needs no sentence.
+lost
+    How many left neither result, or claimed to have succeeded without the new one.
+mixed
+    How many left parts of both, or of one.
+left
+    How many left hidden files or processes behind, after SIGKILL once the next run has ended.
+
+Linux only. Full and read-only disks are small file systems in memory, which needs root.
+``--share 0.1 --seed 1`` runs a sample, ``--only WORD`` the commands whose name contains one of the words.
+Ctrl+C ends it with the table of what ran.
+"""
+
+import argparse
+import hashlib
+import os
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import uuid
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from benchmarks.sample_inputs import write_inputs
+
+ROOT = Path(__file__).resolve().parents[1]
+DISK_MOMENTS, KILL_MOMENTS = 5, 10
+SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGKILL)
+NOT_COMPARED = {"times.json", "journal"}
+"""Durations differ, and a journal is there to be resumed."""
+PATIENCE = 300.0
+GRACE = 2.0
+"""Seconds after its end in which a command's processes must be gone."""
+
+COMMANDS = {
+    "fit": ("fit IN/meshes -o OUT/f.json --l-max 6", "--l-max 4"),
+    "fit surfaces": ("fit IN/meshes -o OUT/f.json --surfaces OUT/surfaces --l-max 6 --level 2", "--l-max 4"),
+    "generate": ("generate IN/fit.json -o OUT/g -n 6 --level 2 --jobs 2", "-n 4"),
+    "generate npz": ("generate IN/fit.json -o OUT/g -n 6 --format npz --save-model OUT/m.json", "-n 4"),
+    "coarsen": ("coarsen IN/meshes -o OUT/c --method quadric --facets 12 --jobs 2", "--facets 8"),
+    "extract": ("extract IN/labels.npy -o OUT/e --kind labels --voxel-size 2", "--voxel-size 3"),
+    "gallery": ("gallery IN/meshes -o OUT/p --degrees 1,2", "--degrees 1"),
+    "run": ("run IN/recipe.json -o OUT/r --jobs 2", "--seed 5"),
+    "study lmax": ("study lmax IN/meshes -o OUT/s --degrees 1-3 --level 2 --jobs 2", "--degrees 1-2"),
+    "study solids": (
+        "study solids IN/meshes -o OUT/s --method quadric --loss all --facets 12",
+        "--facets 8",
+    ),
+    "dataset build": (
+        "dataset build IN/meshes -o OUT/d --method quadric --facets 12 --overwrite --name d",
+        "--facets 8",
+    ),
+    "dataset sample": ("dataset sample IN/dataset -o OUT/d.csv -n 300000", "-n 200000"),
+    "dataset export": (
+        "dataset export IN/dataset -o OUT/x --to lammps,gltf --particles 40",
+        "--particles 30",
+    ),
+    "repose measure": ("repose measure IN/heap.csv -o OUT/m", "--base 0.0001"),
+    "repose run": ("repose run IN/dataset -o OUT/run -n 300 --spheres --overwrite", "--seed 1"),
+}
+"""What is run, and what its earlier run had instead."""
+
+Tree = dict[str, str]
+
+
+@dataclass(frozen=True)
+class Prepared:
+    """A command with both of its results, and how long it takes."""
+
+    name: str
+    words: tuple[str, ...]
+    earlier: Path
+    old: Tree
+    new: Tree
+    seconds: float
+    n_bytes: int
+
+
+@dataclass
+class Row:
+    """What came of the runs of one kind of attack."""
+
+    runs: int = 0
+    sentences: int = 0
+    unclear: int = 0
+    lost: int = 0
+    mixed: int = 0
+    left: int = 0
+
+
+Rows = dict[tuple[str, str], Row]
+"""By command and kind of attack."""
+
+
+@dataclass(frozen=True)
+class Ended:
+    """How a command ended."""
+
+    code: int
+    stderr: str
+    processes: int
+
+
+class Arena:
+    """A place for results that is emptied between runs, beside the inputs."""
+
+    def __init__(self, folder: Path) -> None:
+        self.inputs, self.place, self.temporary = folder / "in", folder / "out", folder / "tmp"
+        self.kept = folder / "kept"
+        for each in (self.inputs, self.place, self.temporary, self.kept):
+            each.mkdir()
+
+    def words(self, line: str) -> tuple[str, ...]:
+        """The arguments of a command."""
+        return tuple(
+            word.replace("IN/", f"{self.inputs}/").replace("OUT/", f"{self.place}/") for word in line.split()
+        )
+
+    def start(self, words: tuple[str, ...]) -> "Running":
+        """Start a command."""
+        return Running(words, self.temporary)
+
+    def reset(self, content: Path | None) -> None:
+        """Let the place hold a copy of `content`, or nothing."""
+        for folder in (self.place, self.temporary):
+            for each in folder.iterdir():
+                shutil.rmtree(each) if each.is_dir() and not each.is_symlink() else each.unlink()
+        if content is not None:
+            shutil.copytree(content, self.place, dirs_exist_ok=True)
+
+    def hidden(self) -> list[str]:
+        """What no result contains."""
+        found = [path for path in self.place.rglob(".*") if "journal" not in path.parts]
+        return [path.name for path in (*found, *self.temporary.iterdir())]
+
+
+class Running:
+    """A command in a process of its own, whose descendants are known by a variable of their environment."""
+
+    def __init__(self, words: tuple[str, ...], temporary: Path) -> None:
+        self._mark = f"REGOLITH_ATTACK={uuid.uuid4().hex}"
+        name, value = self._mark.split("=")
+        environment = {**os.environ, name: value, "TMPDIR": str(temporary), "PYTHONPATH": str(ROOT)}
+        command = [sys.executable, "-m", "regolith_studio", *words]
+        self.process = subprocess.Popen(
+            command,
+            env=environment,
+            cwd=temporary.parent,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.PIPE,
+            text=True,
+            start_new_session=True,
+        )
+
+    def end(self) -> Ended:
+        """Wait for its end, then up to `GRACE` seconds for that of its processes; kill those that stay."""
+        try:
+            stderr = self.process.communicate(timeout=PATIENCE)[1]
+        except subprocess.TimeoutExpired:
+            stderr = "no end"
+        limit = time.monotonic() + GRACE
+        while (alive := self._alive()) and time.monotonic() < limit:
+            time.sleep(0.05)
+        for number in alive:
+            with suppress(ProcessLookupError):
+                os.kill(number, signal.SIGKILL)
+        self.process.wait()
+        return Ended(self.process.returncode, stderr, len(alive))
+
+    def _alive(self) -> list[int]:
+        found = []
+        for entry in Path("/proc").iterdir():
+            with suppress(OSError):
+                if entry.name.isdigit() and self._mark.encode() in (entry / "environ").read_bytes():
+                    found.append(int(entry.name))
+        return found
+
+
+def tree(folder: Path) -> Tree:
+    """SHA-256 of the files below a folder, but for hidden ones and those that are not compared."""
+    found = {}
+    for path in sorted(folder.rglob("*")):
+        inside = path.relative_to(folder).parts
+        if path.is_file() and not NOT_COMPARED & {*inside} and not any(part[0] == "." for part in inside):
+            found["/".join(inside)] = hashlib.sha256(path.read_bytes()).hexdigest()
+    return {name: digest for name, digest in found.items() if not name.endswith(".sha256")}
+
+
+def prepared(arena: Arena, name: str) -> Prepared:
+    """Run a command undisturbed, with both sets of options."""
+    line, other = COMMANDS[name]
+    words = arena.words(line)
+    arena.reset(None)
+    for each in ((*words, *other.split()), words):
+        begun = time.monotonic()
+        ended = arena.start(each).end()
+        if ended.code:
+            raise SystemExit(f"{' '.join(each)}: {ended.stderr}")
+        if each != words:
+            earlier = arena.kept / name.replace(" ", "-")
+            shutil.copytree(arena.place, earlier)
+    new = tree(arena.place)
+    size = sum(path.stat().st_size for path in arena.place.rglob("*") if path.is_file())
+    return Prepared(name, words, earlier, tree(earlier), new, time.monotonic() - begun, size)
+
+
+def judge(arena: Arena, case: Prepared, ended: Ended, row: Row, signalled: bool = False) -> None:
+    """Count what a run has left."""
+    row.runs += 1
+    found = tree(arena.place)
+    if ended.code:
+        is_sentence = len(ended.stderr.strip().splitlines()) == 1 and "made a mistake" not in ended.stderr
+        row.sentences += is_sentence
+        if not is_sentence and not (signalled and not ended.stderr.strip()):
+            row.unclear += 1
+            print(f"  {case.name}: code {ended.code}, {ended.stderr.strip()[-300:]!r}", file=sys.stderr)
+    if found not in (case.old, case.new):
+        whole = set(found.items()) <= set(case.old.items()) | set(case.new.items())
+        row.lost += not found
+        row.mixed += bool(found)
+        names = sorted(set(found) ^ set(case.new))[:4] if whole else "other content"
+        print(f"  {case.name}: code {ended.code}, mixed: {names}", file=sys.stderr)
+    elif not ended.code and found != case.new:
+        row.lost += 1
+    if hidden := arena.hidden() + ["process"] * ended.processes:
+        row.left += 1
+        print(f"  {case.name}: code {ended.code}, left behind: {hidden[:4]}", file=sys.stderr)
+
+
+def kill(arena: Arena, case: Prepared, row: Row, number: signal.Signals, moment: int) -> None:
+    """A signal to the command at a share of its duration."""
+    arena.reset(case.earlier)
+    running = arena.start(case.words)
+    time.sleep(case.seconds * (moment + 0.5) / KILL_MOMENTS)
+    with suppress(ProcessLookupError):
+        running.process.send_signal(number)
+    ended = running.end()
+    if number is signal.SIGKILL:
+        killed = Row()
+        found = tree(arena.place)
+        if found not in (case.old, case.new):
+            killed.mixed += 1
+            print(f"  {case.name}: SIGKILL, mixed: {sorted(found)[:4]}", file=sys.stderr)
+        if ended.processes:
+            killed.left += 1
+            print(f"  {case.name}: SIGKILL, {ended.processes} processes", file=sys.stderr)
+        for each in arena.temporary.iterdir():  # the system's to clean
+            shutil.rmtree(each) if each.is_dir() else each.unlink()
+        judge(arena, case, arena.start(case.words).end(), row)
+        row.mixed += killed.mixed
+        row.left += killed.left
+    else:
+        judge(arena, case, ended, row, signalled=True)
+
+
+@contextmanager
+def small_disk(folder: Path, n_bytes: int) -> Iterator[None]:
+    """A file system of this size at `folder`."""
+    subprocess.run(
+        ["mount", "-t", "tmpfs", "-o", f"size={max(n_bytes, 65536)}", "tmpfs", str(folder)], check=True
+    )
+    try:
+        yield
+    finally:
+        subprocess.run(["umount", "--lazy", str(folder)], check=True)
+
+
+def fill_disk(arena: Arena, case: Prepared, row: Row, moment: int) -> None:
+    """The disk is full after a share of what the command writes."""
+    arena.reset(None)
+    stored = sum(path.stat().st_size + 4096 for path in case.earlier.rglob("*"))
+    with small_disk(arena.place, stored + case.n_bytes * (moment + 1) // (DISK_MOMENTS + 1)):
+        arena.reset(case.earlier)
+        judge(arena, case, arena.start(case.words).end(), row)
+
+
+def forbid(arena: Arena, case: Prepared, row: Row) -> None:
+    """Nothing can be written."""
+    arena.reset(None)
+    with small_disk(arena.place, 64 * 2**20):
+        arena.reset(case.earlier)
+        subprocess.run(["mount", "-o", "remount,ro", str(arena.place)], check=True)
+        judge(arena, case, arena.start(case.words).end(), row)
+
+
+def race(arena: Arena, case: Prepared, row: Row) -> None:
+    """The command twice at a time, with both sets of options."""
+    arena.reset(case.earlier)
+    other = (*case.words, *COMMANDS[case.name][1].split())
+    running = [arena.start(words) for words in (case.words, other)]
+    first, second = (each.end() for each in running)
+    if not second.code and (first.code or tree(arena.place) == case.old):  # the other one won
+        first, second, case = second, first, replace(case, old=case.new, new=case.old)
+    judge(arena, case, first, row)
+    row.sentences += bool(second.code) and len(second.stderr.strip().splitlines()) == 1
+
+
+def main() -> None:
+    """Run the attacks and print the table."""
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.attack")
+    parser.add_argument("--share", type=float, default=1.0)
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--only", nargs="*", default=[""], metavar="WORD")
+    options = parser.parse_args()
+    rows: Rows = {}
+    with tempfile.TemporaryDirectory() as folder, suppress(KeyboardInterrupt):
+        attack(Path(folder), options.only, options.share, options.seed, rows)
+    print(table(rows))
+    if any(each.lost or each.mixed or each.left or each.unclear for each in rows.values()):
+        raise SystemExit(1)
+
+
+def attack(folder: Path, only: Sequence[str], share: float, seed: int, rows: Rows) -> None:
+    """All attacks on the commands whose name contains a word of `only`, or a seeded share of them."""
+    arena, rng = Arena(folder), random.Random(seed)
+    write_inputs(arena.inputs)
+    is_root = os.geteuid() == 0
+    for name in [name for name in COMMANDS if any(word in name for word in only)]:
+        attacks = [("killed", kill, (number, k)) for number in SIGNALS for k in range(KILL_MOMENTS)]
+        attacks += [("full disk", fill_disk, (k,)) for k in range(DISK_MOMENTS)] if is_root else []
+        attacks += [("read-only", forbid, ())] if is_root else []
+        attacks += [("two writers", race, ())]
+        if chosen := [each for each in attacks if rng.random() < share]:
+            case = prepared(arena, name)
+            for kind, act, arguments in chosen:
+                act(arena, case, rows.setdefault((name, kind), Row()), *arguments)
+            print(f"{name}: {len(chosen)} runs", file=sys.stderr, flush=True)
+
+
+def table(rows: Rows) -> str:
+    """The rows in Markdown, with their sums."""
+    lines = [
+        "| command | attack | runs | sentences | unclear ends | lost | mixed | left behind |",
+        "| --- | --- | --- | --- | --- | --- | --- | --- |",
+    ]
+    total = [0] * 6
+    for (name, kind), row in rows.items():
+        numbers = [row.runs, row.sentences, row.unclear, row.lost, row.mixed, row.left]
+        total = [one + other for one, other in zip(total, numbers, strict=True)]
+        lines.append(f"| {name} | {kind} | {' | '.join(map(str, numbers))} |")
+    return "\n".join([*lines, f"| all | | {' | '.join(map(str, total))} |"])
+
+
+if __name__ == "__main__":
+    main()
