@@ -1,6 +1,7 @@
 """Runs jobs on a Dask cluster: one of this machine's own, or one at an address."""
 
 import contextlib
+import logging
 import socket
 import threading
 import time
@@ -305,6 +306,7 @@ def _local_cluster(workers: int) -> Any:
         host="127.0.0.1",
         dashboard_address="127.0.0.1:0",
         memory_limit=memory_limit(workers),
+        silence_logs=logging.ERROR,  # a worker that is started again is an event of the run
     )
 
 
