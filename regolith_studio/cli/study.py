@@ -138,11 +138,12 @@ def lmax(
 ) -> None:
     """RMSRE of the descriptors against l_max (Fig. 3)."""
     from regolith_studio.cli.inputs import exit_code
+    from regolith_studio.jobs.particle_jobs import FIT_DEGREE
     from regolith_studio.jobs.study_jobs import study_lmax
-    from regolith_studio.session.choices import L_MAX_LIMIT, Choices
+    from regolith_studio.session.choices import Choices
     from regolith_studio.studies.lmax import enough_degrees
 
-    wanted = whole_numbers(degrees, 0, L_MAX_LIMIT)
+    wanted = whole_numbers(degrees, 0, FIT_DEGREE)
     with usage_errors():
         Choices(seed=seed)
     loaded = reading.read(meshes)
@@ -200,7 +201,7 @@ def solids(
 ) -> None:
     """The polyhedra that each set of loss weights makes of each particle (Fig. 7)."""
     from regolith_studio.cli.inputs import exit_code
-    from regolith_studio.session.study_requests import study_gallery
+    from regolith_studio.jobs.study_jobs import study_gallery
 
     wish = how.choices(n_facets=facets, seed=seed)
     rows = _rows(loss, wish, bool(how.weight))

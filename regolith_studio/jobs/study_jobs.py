@@ -1,19 +1,26 @@
-"""Jobs for the studies of sections 3.1 and 3.2 over a whole sample."""
+"""Jobs for the studies of sections 3.1 and 3.2 over a whole sample, and for the gallery of Fig. 7."""
 
+import dataclasses
 from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
+from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
+from regolith_studio.errors import RegolithError
 from regolith_studio.geometry.particle import Particle
-from regolith_studio.jobs.coarsening_jobs import CoarseningRequest
+from regolith_studio.harmonics.fit import HarmonicFit
+from regolith_studio.jobs.coarsening_jobs import CoarsenedParticle, CoarseningRequest, coarsen_particle
 from regolith_studio.jobs.compile_kernels import compile_first, compile_first_for
 from regolith_studio.jobs.events import Job, Partial, Progress, Started, Step, Steps
 from regolith_studio.jobs.executor import Executor, call, open_executor, value_of
+from regolith_studio.jobs.particle_jobs import FIT_DEGREE
 from regolith_studio.jobs.study_checkpoint import Mapper, StudyCheckpoint, hash_of_particles, hash_of_rows
 from regolith_studio.messages import N_
 from regolith_studio.shape_models.sample import Sample
 from regolith_studio.studies.coarsening import TargetChoice, coarsening_study
 from regolith_studio.studies.lmax import lmax_study
+from regolith_studio.studies.loss_variants import LossVariant, paper_variants
+from regolith_studio.studies.polyhedron_gallery import GalleryPolyhedron, GalleryStudy
 from regolith_studio.studies.population import population_study
 from regolith_studio.studies.progress import StudyProgress
 
@@ -32,7 +39,7 @@ def study_lmax(
     workers
         Processes at a time; 0 for one a core.
     answers
-        Keeps what is known of each particle, so that the study can be taken up again.
+        Keeps the results of each particle, so that the study can be resumed.
     options
         Further ones of :func:`~regolith_studio.studies.lmax.lmax_study`: degrees, level, keys ...
     """
@@ -61,7 +68,7 @@ def study_population(
     workers
         Processes at a time; 0 for one a core.
     answers
-        Keeps what is known of particles and draws, so that the study can be taken up again.
+        Keeps the results of particles and draws, so that the study can be resumed.
     options
         Further ones of :func:`~regolith_studio.studies.population.population_study`.
     """
@@ -95,13 +102,13 @@ def study_coarsening(
     Parameters
     ----------
     request
-        Method, face count, settings, seed and target; its weights do not matter, the rows bring theirs.
+        Method, number of facets, settings, seed and target; weights are those of the rows.
     workers
         Processes at a time; 0 for one a core.
     answers
-        Keeps what is known of each particle, so that the study can be taken up again.
+        Keeps the results of each particle, so that the study can be resumed.
     title
-        In lists of tasks: studies of other rows have other names.
+        Title of the task.
     options
         Further ones of :func:`~regolith_studio.studies.coarsening.coarsening_study`: rows, box_metric.
     """
@@ -137,3 +144,154 @@ def as_job_steps(steps: Generator[StudyProgress, None, Any]) -> Generator[Step, 
         yield Progress(step.done, step.total, step.message)
         if step.partial is not None:
             yield Partial(step.partial)
+
+
+@dataclass(frozen=True)
+class GalleryCell:
+    """One picture of the gallery.
+
+    Parameters
+    ----------
+    row, column
+        Index of the loss and of the particle, from 0.
+    outcome
+        The polyhedron, or why there is none.
+    """
+
+    row: int
+    column: int
+    outcome: CoarsenedParticle
+
+
+def coarsen_gallery(
+    particles: Sequence[Particle], request: CoarseningRequest, rows: Sequence[LossVariant] | None = None
+) -> Steps:
+    """Coarsen each particle by the loss of each row; results, partial and final, are ``list[GalleryCell]``.
+
+    Parameters
+    ----------
+    request
+        Method, number of facets, settings, seed and target of all.
+    rows
+        Whose weights are taken; those of Fig. 8 by default.
+    """
+    variants = paper_variants() if rows is None else tuple(rows)
+    total = len(particles) * len(variants)
+    yield Started(N_("Coarsening for the gallery"), total)
+    cells: list[GalleryCell] = []
+    for column, particle in enumerate(particles):
+        fit = _fit_of(particle, request)
+        for row, variant in enumerate(variants):
+            now = Progress(len(cells), total)
+            outcome = yield from _outcome(particle, _with_loss(request, variant), column, fit, now)
+            cells.append(GalleryCell(row, column, outcome))
+            yield Partial(list(cells))
+            yield Progress(len(cells), total, particle.name)
+    return cells
+
+
+def study_gallery(
+    particles: Sequence[Particle],
+    request: CoarseningRequest,
+    rows: Sequence[LossVariant] | None = None,
+    workers: int | Executor = 1,
+    answers: StudyCheckpoint | None = None,
+) -> Steps:
+    """As :func:`coarsen_gallery`, particle by particle; the result is the study that can be written.
+
+    Parameters
+    ----------
+    workers
+        Processes at a time; 0 for one a core.
+    answers
+        Keeps the polyhedra of each particle, so that the study can be resumed.
+    """
+    variants = paper_variants() if rows is None else tuple(rows)
+    yield Started(N_("Coarsening for the gallery"), len(particles))
+    if answers is not None:
+        answers.open("solids", (request, variants), hash_of_particles(particles))
+    cells: dict[tuple[int, int], GalleryPolyhedron | str] = {}
+    with open_executor(workers) as executor:
+        mapper = _with_answers(executor.map, answers)
+        columns = mapper(partial(coarsen_column, request=request, rows=variants), list(enumerate(particles)))
+        for column, (particle, answer) in enumerate(zip(particles, columns, strict=True)):
+            for row, cell in enumerate(answer["rows"]):
+                cells[row, column] = cell if isinstance(cell, str) else GalleryPolyhedron.from_document(cell)
+            yield Progress(column + 1, len(particles), particle.name)
+    return GalleryStudy(tuple(row.label for row in variants), tuple(each.name for each in particles), cells)
+
+
+def coarsen_column(
+    numbered: tuple[int, Particle], request: CoarseningRequest, rows: Sequence[LossVariant]
+) -> dict[str, Any]:
+    """The polyhedra of one particle, by row, as a document; a sentence where there is none.
+
+    Pure and picklable: for process pools.
+    """
+    column, particle = numbered
+    fit = _fit_of(particle, request)
+    cells: list[dict[str, Any] | str] = []
+    for row in rows:
+        outcome = _result_of(_outcome(particle, _with_loss(request, row), column, fit, Progress(0, 0)))
+        coarsened = outcome.coarsened
+        cells.append(outcome.problem if coarsened is None else GalleryPolyhedron.of(coarsened).document())
+    return {"rows": cells}
+
+
+def study_of_cells(cells: Sequence[GalleryCell], labels: Sequence[str], names: Sequence[str]) -> GalleryStudy:
+    """The result of :func:`coarsen_gallery` as a study that can be written."""
+    polyhedra: dict[tuple[int, int], GalleryPolyhedron | str] = {}
+    for each in cells:
+        coarsened = each.outcome.coarsened
+        polyhedra[each.row, each.column] = (
+            each.outcome.problem if coarsened is None else GalleryPolyhedron.of(coarsened)
+        )
+    return GalleryStudy(tuple(labels), tuple(names), polyhedra)
+
+
+def _fit_of(particle: Particle, request: CoarseningRequest) -> HarmonicFit | str | None:
+    """The fit that is the target, where one is; the sentence of the error if there is none."""
+    if request.target != "fit":
+        return None
+    try:
+        return request.fit_options.fit(particle.mesh, FIT_DEGREE)
+    except RegolithError as error:
+        return str(error)
+
+
+def _with_loss(request: CoarseningRequest, row: LossVariant) -> CoarseningRequest:
+    weighted = dataclasses.replace(request, weights=row.weights, largest_error=None)
+    if row.weights.all_zero:  # the quadric start itself
+        return dataclasses.replace(weighted, method="quadric", settings=())
+    return weighted
+
+
+def _outcome(
+    particle: Particle,
+    request: CoarseningRequest,
+    index: int,
+    fit: HarmonicFit | str | None,
+    now: Progress,
+) -> Generator[Step, None, CoarsenedParticle]:
+    """Coarsen one particle; yields `now` in place of each of its steps, so that it can be stopped."""
+    if isinstance(fit, str):
+        return CoarsenedParticle(particle.name, index, None, fit)
+    steps = coarsen_particle(particle, request, index, fit)
+    try:
+        while True:
+            next(steps)
+            yield now
+    except StopIteration as end:
+        outcome: CoarsenedParticle = end.value
+        return outcome
+    except RegolithError as error:
+        return CoarsenedParticle(particle.name, index, None, str(error))
+
+
+def _result_of(steps: Generator[Step, None, CoarsenedParticle]) -> CoarsenedParticle:
+    while True:
+        try:
+            next(steps)
+        except StopIteration as end:
+            outcome: CoarsenedParticle = end.value
+            return outcome

@@ -13,13 +13,12 @@ from regolith_studio.descriptors.shape_cache import BOX_METRICS
 from regolith_studio.errors import InputError
 from regolith_studio.harmonics.fit_options import FitOptions
 from regolith_studio.jobs.coarsening_jobs import CoarseningRequest
+from regolith_studio.jobs.particle_jobs import FIT_DEGREE
 from regolith_studio.readers.units import unit_factor
 from regolith_studio.settings import setting
 
 Scalar = bool | int | float | str
 
-L_MAX_LIMIT = 30
-"""Highest degree that is fitted; every lower one is a truncation of that fit."""
 LEVEL_LIMITS = (0, 7)
 TARGETS = {"fit": "surface of the spherical-harmonics fit", "particle": "particle itself"}
 STOPS = {
@@ -57,7 +56,7 @@ class Choices(FitOptions):
         "Maximum degree",
         "Degree at which the series of Eq. 4 is cut: 0 is a sphere; the paper uses 10.",
         minimum=0,
-        maximum=L_MAX_LIMIT,
+        maximum=FIT_DEGREE,
     )
     level: int = setting(
         4,

@@ -10,8 +10,9 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, create_model
 
 from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.errors import FileError, InputError, format_validation_error
+from regolith_studio.jobs.particle_jobs import FIT_DEGREE
 from regolith_studio.readers.file_bytes import read_bytes
-from regolith_studio.session.choices import L_MAX_LIMIT, LEVEL_LIMITS, Choices, Scalar
+from regolith_studio.session.choices import LEVEL_LIMITS, Choices, Scalar
 from regolith_studio.settings import settings_of_kind
 
 FORMAT: Literal["regolith-studio recipe"] = "regolith-studio recipe"
@@ -63,7 +64,7 @@ class Population(Strict):
     model: str = ""
     settings: dict[str, Scalar] = Field(default_factory=dict)
     n: int = Field(ge=1, le=1_000_000)
-    l_max: int | None = Field(default=None, ge=1, le=L_MAX_LIMIT)
+    l_max: int | None = Field(default=None, ge=1, le=FIT_DEGREE)
     size_range: Pair | None = None
     seed: int | None = Field(default=None, ge=0, lt=2**63)
     level: int | None = Field(default=None, ge=LEVEL_LIMITS[0], le=LEVEL_LIMITS[1])

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from regolith_studio.session import study_requests
+from regolith_studio.jobs import study_jobs
 from regolith_studio.studies import coarsening, lmax, population
 
 STUDIES: dict[str, tuple[Any, str, tuple[object, ...]]] = {
@@ -18,7 +18,7 @@ STUDIES: dict[str, tuple[Any, str, tuple[object, ...]]] = {
         ("--method", "annealing", "--set", "iterations=5", "--weight", "volume=1", "--facets", 12),
     ),
     "solids": (
-        study_requests,
+        study_jobs,
         "coarsen_column",
         ("--method", "quadric", "--loss", "all", "--loss", "only_volume"),
     ),

@@ -9,8 +9,8 @@ from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QFormLayout, QVBoxLayout, QWidget
 
 from regolith_studio.harmonics.fit_options import FitOptions
+from regolith_studio.jobs.particle_jobs import FIT_DEGREE
 from regolith_studio.messages import N_
-from regolith_studio.session.choices import L_MAX_LIMIT
 from regolith_studio.ui.translation import tr, translate
 from regolith_studio.ui.widgets.collapsible import Collapsible
 from regolith_studio.ui.widgets.combo_box import ChoiceBox
@@ -22,7 +22,7 @@ L_MAX = NumberSpec(
     "l<sub>max</sub>",
     N_("Maximum degree"),
     0,
-    L_MAX_LIMIT,
+    FIT_DEGREE,
     tip=N_("Degree at which the series of Eq. 4 is cut: 0 is a sphere; the paper uses 10."),
 )
 LINES, MAX_LINES = 4, 7

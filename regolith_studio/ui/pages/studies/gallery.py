@@ -17,8 +17,8 @@ from PySide6.QtWidgets import (
 )
 
 from regolith_studio.descriptors.catalogue import CATALOGUE
+from regolith_studio.jobs.study_jobs import GalleryCell
 from regolith_studio.messages import N_
-from regolith_studio.session.study_requests import GalleryCell
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.heat_table import centred_remark

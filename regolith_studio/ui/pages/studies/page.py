@@ -10,11 +10,12 @@ from PySide6.QtWidgets import QTabWidget, QVBoxLayout, QWidget
 
 from regolith_studio.errors import RegolithError
 from regolith_studio.jobs.events import Job, Progress, Started, Steps
+from regolith_studio.jobs.study_jobs import coarsen_gallery, study_of_cells
 from regolith_studio.messages import N_
 from regolith_studio.session.choices import STUDIES as KINDS
 from regolith_studio.session.choices import Kind
 from regolith_studio.session.outputs.studies import STUDIES
-from regolith_studio.session.study_requests import chosen_rows, coarsen_gallery, solid_study
+from regolith_studio.session.study_requests import chosen_rows
 from regolith_studio.studies.sweeps import SWEEPS
 from regolith_studio.ui.dialogs.folder import FolderDialog
 from regolith_studio.ui.layout import side_by_side, stacked, tabs
@@ -135,7 +136,7 @@ class StudiesPage(PageWidget):
         found = {kind.value: getattr(self._session.results, kind.value) for kind in KINDS}
         found |= {f"{key}_study": study for key, study in self.sweeps.results.items() if study.names}
         if solids := self.gallery.value():
-            found["solids_study"] = solid_study(solids, *self._drawn)
+            found["solids_study"] = study_of_cells(solids, *self._drawn)
         done = tuple((kind, study) for kind, study in found.items() if study is not None)
         if not done:
             self._context.toast.problem(tr("Compute a study first."))
