@@ -1,4 +1,4 @@
-"""``check``: versions, OpenGL, display, engines, and what is missing."""
+"""``check``: versions, OpenGL, display, engines, and what is missing; ``warm-up``: compile in advance."""
 
 import json
 import os
@@ -13,11 +13,11 @@ import typer
 
 from regolith_studio import __version__
 from regolith_studio.cli.options import Json
+from regolith_studio.cli.terminal import print_json, run_with_progress
 
 
 def check(json: Json = False) -> None:
     """Print versions, OpenGL renderer, display, available DEM engines and missing requirements."""
-    from regolith_studio.cli.terminal import print_json
 
     report = examine_machine()
     code = 1 if unusable(report) else 0
@@ -209,3 +209,17 @@ def _ask_child(question: str) -> dict[str, Any]:
         return {"problem": f"{reason}."}
     answer: dict[str, Any] = json.loads(lines[-1])
     return answer
+
+
+def warm_up(json: Json = False) -> None:
+    """Compile fitting, measuring and coarsening ahead, so that the first use is as fast as the second."""
+    from regolith_studio.errors import RegolithError
+    from regolith_studio.jobs.compile_kernels import TASKS, compile_first, is_compiled
+
+    run_with_progress(compile_first(*TASKS))
+    if failed := [task for task in TASKS if not is_compiled(task)]:
+        raise RegolithError(f"Not compiled: {', '.join(failed)}. It is compiled when it is first used.")
+    if json:
+        print_json({"compiled": list(TASKS)})
+    else:
+        typer.echo(f"Compiled: {', '.join(TASKS)}.")

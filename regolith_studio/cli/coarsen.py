@@ -3,7 +3,7 @@
 import typer
 
 from regolith_studio.cli.dataclass_options import with_dataclass_options
-from regolith_studio.cli.inputs import ReadingOptions
+from regolith_studio.cli.inputs import ReadingOptions, exit_code
 from regolith_studio.cli.options import (
     CoarseningOptions,
     FinenessOptions,
@@ -14,6 +14,7 @@ from regolith_studio.cli.options import (
     Preset,
     Seed,
 )
+from regolith_studio.cli.terminal import print_errors, print_json, print_table, run_with_progress
 
 
 @with_dataclass_options
@@ -30,8 +31,6 @@ def coarsen(
     seed: Seed = 0,
 ) -> None:
     """Coarsen meshes to convex polyhedra that keep the chosen descriptors (section 2.4)."""
-    from regolith_studio.cli.inputs import exit_code
-    from regolith_studio.cli.terminal import print_errors, print_json, print_table, run_with_progress
     from regolith_studio.io.atomic import staged_folder
     from regolith_studio.jobs.coarsening_jobs import coarsen_sample
     from regolith_studio.session.outputs.coarsening import coarsening_document, error_table, write_coarsening

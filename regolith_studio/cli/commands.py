@@ -1,5 +1,6 @@
-"""All commands, each with its line of help."""
+"""All commands, each with its line of help; ``open`` is the window."""
 
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -18,10 +19,27 @@ from regolith_studio.cli import (
     recipe,
     repose,
     study,
-    warm_up,
-    window,
 )
-from regolith_studio.cli.command_group import CommandGroup
+from regolith_studio.cli.terminal import CommandGroup
+
+
+def open_files(
+    files: Annotated[list[Path], typer.Argument(metavar="FILE...", help="Meshes, folders or a recipe.")],
+    unit: Annotated[
+        str | None,
+        typer.Option("--unit", help="Length unit of files without one: um, mm, m, nm, cm or voxel:SIZE."),
+    ] = None,
+) -> None:
+    """Open files in the window."""
+    open_window(files, unit)
+
+
+def open_window(paths: list[Path], unit: str | None) -> None:
+    """Run the window until it is closed, and end with its exit code."""
+    from regolith_studio.ui.startup import run
+
+    raise typer.Exit(run(paths, unit) or 0)
+
 
 app = typer.Typer(
     cls=CommandGroup,
@@ -46,10 +64,10 @@ def _without_command(
         typer.echo(__version__)
         raise typer.Exit
     if context.invoked_subcommand is None:
-        window.open_window([], None)
+        open_window([], None)
 
 
-app.command("open")(window.open_files)
+app.command("open")(open_files)
 app.command("describe")(describe.describe)
 app.command("fit")(fit.fit)
 app.command("gallery")(gallery.gallery)
@@ -60,7 +78,7 @@ app.command("run")(recipe.run)
 app.command("demo")(demo.demo)
 app.command("check")(check.check)
 app.command("forget")(forget.forget)
-app.command("warm-up")(warm_up.warm_up)
+app.command("warm-up")(check.warm_up)
 app.add_typer(study.app, name="study")
 app.add_typer(dataset.app, name="dataset")
 app.add_typer(repose.app, name="repose")

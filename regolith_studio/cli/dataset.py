@@ -5,9 +5,8 @@ from typing import Annotated
 
 import typer
 
-from regolith_studio.cli.command_group import CommandGroup
 from regolith_studio.cli.dataclass_options import with_dataclass_options
-from regolith_studio.cli.inputs import ReadingOptions
+from regolith_studio.cli.inputs import ReadingOptions, exit_code
 from regolith_studio.cli.options import (
     CoarseningOptions,
     FinenessOptions,
@@ -22,6 +21,7 @@ from regolith_studio.cli.options import (
     usage_errors,
     values,
 )
+from regolith_studio.cli.terminal import CommandGroup, print_errors, print_json, run_with_progress
 
 DatasetFolder = Annotated[Path, typer.Argument(metavar="FOLDER", help="A dataset folder.")]
 
@@ -94,8 +94,6 @@ def build(
     seed: Seed = 0,
 ) -> None:
     """Coarsen the meshes, or N representatives of them, and write a dataset folder."""
-    from regolith_studio.cli.inputs import exit_code
-    from regolith_studio.cli.terminal import print_errors, print_json, run_with_progress
     from regolith_studio.dataset.quality import quality_table
     from regolith_studio.dataset.size_parsing import parse_sizes
     from regolith_studio.io.atomic import write_bytes
@@ -138,7 +136,6 @@ def validate(
     seed: Seed = 0,
 ) -> None:
     """Validate a dataset folder and print its problems, one per line."""
-    from regolith_studio.cli.terminal import print_json
     from regolith_studio.dataset.validation import validate_dataset
 
     del jobs, seed  # taken by every command
@@ -161,7 +158,6 @@ def list_(
     seed: Seed = 0,
 ) -> None:
     """List the datasets below a folder, with their exports and simulations."""
-    from regolith_studio.cli.terminal import print_json, run_with_progress
     from regolith_studio.dataset.catalog import provenance_tree
     from regolith_studio.jobs.dataset_jobs import list_library
 
@@ -204,7 +200,6 @@ def sample(
     seed: Seed = 0,
 ) -> None:
     """Draw particles of a dataset: class, equivalent diameter and orientation."""
-    from regolith_studio.cli.terminal import print_json
     from regolith_studio.dataset.folder_io import read_dataset
     from regolith_studio.dataset.sampling import drawn_csv, drawn_rows, sample_dataset
     from regolith_studio.io.atomic import write_bytes
@@ -225,7 +220,6 @@ def sample(
 @app.command("formats")
 def formats(json: Json = False, jobs: Jobs = 1, seed: Seed = 0) -> None:
     """List the export formats, with what each keeps and loses."""
-    from regolith_studio.cli.terminal import print_json
     from regolith_studio.dataset.exporters import EXPORTERS
 
     del jobs, seed  # taken by every command
@@ -285,7 +279,6 @@ def export(
     seed: Seed = 0,
 ) -> None:
     """Export a dataset for DEM programs, one folder per format, and report what a format loses."""
-    from regolith_studio.cli.terminal import print_errors, print_json, run_with_progress
     from regolith_studio.dataset.export import ExportOptions
     from regolith_studio.jobs.dataset_jobs import chosen_exporters, export_dataset_folder
 

@@ -5,7 +5,9 @@ from typing import TYPE_CHECKING
 
 import typer
 
+from regolith_studio.cli.offscreen_process import draw_three_views
 from regolith_studio.cli.options import Folder, Jobs, Json, Seed
+from regolith_studio.cli.terminal import print_errors, print_json, run_with_progress
 
 if TYPE_CHECKING:
     from regolith_studio.session.run_recipe import RecipeRun
@@ -20,7 +22,6 @@ def demo(
     seed: Seed = 0,
 ) -> None:
     """Run the whole chain on the shipped particles: dataset, picture, Fig. 3, Fig. 8, summary page."""
-    from regolith_studio.cli.terminal import print_errors, print_json, run_with_progress
     from regolith_studio.session.outputs.summary import write_summary
     from regolith_studio.session.recipe import Outputs, recipe_of
     from regolith_studio.session.run_recipe import run_recipe
@@ -39,8 +40,6 @@ def demo(
 
 def _pictures(done: "RecipeRun") -> tuple[tuple[str, str], ...]:
     """The three views of the first particle; where nothing can be drawn, a sentence in their place."""
-    from regolith_studio.cli.offscreen_process import draw_three_views
-    from regolith_studio.cli.terminal import run_with_progress
     from regolith_studio.errors import RegolithError
     from regolith_studio.jobs.coarsening_jobs import coarsen_particle
 

@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from regolith_studio.cli.dataclass_options import with_dataclass_options
-from regolith_studio.cli.inputs import ReadingOptions
+from regolith_studio.cli.inputs import ReadingOptions, exit_code
 from regolith_studio.cli.options import (
     Jobs,
     Json,
@@ -19,6 +19,7 @@ from regolith_studio.cli.options import (
     output_path,
     usage_errors,
 )
+from regolith_studio.cli.terminal import print_errors, print_json, run_with_progress
 from regolith_studio.harmonics.fit_options import FitOptions
 
 FitFile = Annotated[
@@ -60,8 +61,6 @@ def fit(
     seed: Seed = 0,
 ) -> None:
     """Fit spherical harmonics to meshes; write coefficients and spectrum."""
-    from regolith_studio.cli.inputs import exit_code
-    from regolith_studio.cli.terminal import print_errors, print_json, run_with_progress
     from regolith_studio.jobs.particle_jobs import FitRequest, fit_sample
     from regolith_studio.session.choices import Choices
     from regolith_studio.session.outputs.fits import FittedSample, fits_document, write_fits, write_surfaces

@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from regolith_studio.cli.dataclass_options import with_dataclass_options
-from regolith_studio.cli.inputs import ReadingOptions
+from regolith_studio.cli.inputs import ReadingOptions, exit_code
+from regolith_studio.cli.offscreen_process import draw_in_process
 from regolith_studio.cli.options import (
     Degrees,
     Folder,
@@ -15,6 +16,7 @@ from regolith_studio.cli.options import (
     usage_errors,
     whole_numbers,
 )
+from regolith_studio.cli.terminal import print_errors, print_json, run_with_progress
 from regolith_studio.harmonics.fit_options import FitOptions
 
 if TYPE_CHECKING:
@@ -41,9 +43,6 @@ def gallery(
     json: Json = False,
 ) -> None:
     """Draw each particle and its fits at several values of l_max (Fig. 2)."""
-    from regolith_studio.cli.inputs import exit_code
-    from regolith_studio.cli.offscreen_process import draw_in_process
-    from regolith_studio.cli.terminal import print_errors, print_json, run_with_progress
     from regolith_studio.harmonics.fit import HarmonicFit
     from regolith_studio.io.atomic import staged_folder
     from regolith_studio.jobs.particle_jobs import FIT_DEGREE, FitRequest, fit_sample

@@ -17,6 +17,7 @@ from regolith_studio.cli.options import (
     usage_errors,
     values,
 )
+from regolith_studio.cli.terminal import print_errors, print_json, run_with_progress
 
 if TYPE_CHECKING:
     from regolith_studio.jobs.model_jobs import GenerationRequest
@@ -123,7 +124,6 @@ def generate(
     seed: Seed = 0,
 ) -> None:
     """Draw virtual particles with the shapes and sizes of a sample (section 2.3)."""
-    from regolith_studio.cli.terminal import print_errors, print_json, run_with_progress
     from regolith_studio.harmonics.surface import DEFAULT_LEVEL, level_for
     from regolith_studio.io.atomic import staged_folder
     from regolith_studio.jobs.model_jobs import GenerationRequest, draw, fit_model, groups_of
@@ -169,7 +169,6 @@ def shape_source(
     FileError
         If nothing can be read.
     """
-    from regolith_studio.cli.terminal import run_with_progress
     from regolith_studio.jobs.model_jobs import fit_request_for, sample_of_meshes
     from regolith_studio.readers.shape_files import is_shape_source, read_shape_source
 
@@ -195,7 +194,6 @@ def _named(fitted: Any, names: str) -> Any:
 
 
 def _write(stage: Path, made: Any, format_: str, level: int, jobs: int) -> dict[str, Any]:
-    from regolith_studio.cli.terminal import run_with_progress
     from regolith_studio.jobs.model_jobs import write_meshes
     from regolith_studio.session.outputs import particles as outputs
 

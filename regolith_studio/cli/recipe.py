@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from regolith_studio.cli.options import MAX_SEED, Folder, Jobs, Json, usage_errors
+from regolith_studio.cli.terminal import print_errors, print_json, run_with_progress
 
 if TYPE_CHECKING:
     from regolith_studio.jobs.executor import Executor, ExecutorSettings
@@ -69,7 +70,6 @@ def run(
     ] = None,
 ) -> None:
     """Run a recipe: descriptors, fits, meshes, dataset, studies and summary."""
-    from regolith_studio.cli.terminal import print_errors, print_json, run_with_progress
     from regolith_studio.jobs.executor import ExecutorSettings
     from regolith_studio.session.recipe import read_recipe
     from regolith_studio.session.run_recipe import run_recipe
@@ -93,7 +93,6 @@ def run(
 
 def _open_executor(settings: "ExecutorSettings") -> "Executor":
     """Who is to work."""
-    from regolith_studio.cli.terminal import print_errors
 
     with usage_errors():
         executor = settings.open()

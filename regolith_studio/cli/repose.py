@@ -5,7 +5,6 @@ from typing import Annotated, Any
 
 import typer
 
-from regolith_studio.cli.command_group import CommandGroup
 from regolith_studio.cli.dataclass_options import with_dataclass_options
 from regolith_studio.cli.options import (
     Folder,
@@ -18,6 +17,13 @@ from regolith_studio.cli.options import (
     values,
 )
 from regolith_studio.cli.repose_options import CaseOptions, Particles, evaluation_settings
+from regolith_studio.cli.terminal import (
+    CommandGroup,
+    print_errors,
+    print_json,
+    print_table,
+    run_with_progress,
+)
 
 app = typer.Typer(
     cls=CommandGroup,
@@ -70,7 +76,6 @@ Diameter = Annotated[
 def engines(json: Json = False, jobs: Jobs = 1, seed: Seed = 0) -> None:
     """List the DEM engines: what each represents of the contact model, and its version if available."""
     del jobs, seed  # taken by every command
-    from regolith_studio.cli.terminal import print_json
     from regolith_studio.dem.engines import CAPABILITY_LABELS, engine_rows
 
     rows = engine_rows()
@@ -99,7 +104,6 @@ def measure(
     seed: Seed = 0,
 ) -> None:
     """Measure the angle of repose of a pile: both sections and both models of the paper."""
-    from regolith_studio.cli.terminal import print_errors, print_json
     from regolith_studio.dem.angle_of_repose import measure_repose, measurement_document
 
     del jobs, seed  # taken by every command
@@ -131,7 +135,6 @@ def positions_in(file: Path, unit: str, diameter: float) -> tuple[Any, Any]:
     FileError
         If the file holds no positions, or no diameters and none is given.
     """
-    from regolith_studio.cli.terminal import print_errors
     from regolith_studio.dem.run_io import read_final_state
     from regolith_studio.errors import FileError
     from regolith_studio.readers.positions import read_positions
@@ -191,7 +194,6 @@ def run(
     """Simulate the lifting cylinder with particles of a dataset and measure the pile (section 2.6)."""
     from dataclasses import replace
 
-    from regolith_studio.cli.terminal import print_errors, print_json, run_with_progress
     from regolith_studio.dataset.folder_io import dataset_hash, read_dataset
     from regolith_studio.dem.case import prepare
     from regolith_studio.dem.scaling_report import scaling_report
@@ -239,7 +241,6 @@ def study(
     seed: Seed = 0,
 ) -> None:
     """Measure the angle of repose against a parameter or for several datasets; resumes a stopped study."""
-    from regolith_studio.cli.terminal import print_json, print_table, run_with_progress
     from regolith_studio.jobs.repose_jobs import ReposeVariant, study_repose, with_value
     from regolith_studio.studies.figures.repose import write_repose_study
     from regolith_studio.studies.repose import repose_table

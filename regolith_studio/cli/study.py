@@ -1,14 +1,16 @@
 """``study``: tables and figures over a sample."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, Annotated
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from regolith_studio.cli.command_group import CommandGroup
 from regolith_studio.cli.dataclass_options import with_dataclass_options
-from regolith_studio.cli.inputs import ReadingOptions
+from regolith_studio.cli.generate import shape_source
+from regolith_studio.cli.inputs import ReadingOptions, exit_code
 from regolith_studio.cli.options import (
     FACETS,
     CoarseningOptions,
@@ -18,26 +20,29 @@ from regolith_studio.cli.options import (
     Jobs,
     Json,
     Meshes,
+    Preset,
     Resume,
     Seed,
     usage_errors,
     whole_numbers,
 )
+from regolith_studio.cli.terminal import (
+    CommandGroup,
+    print_errors,
+    print_json,
+    print_table,
+    run_with_progress,
+)
 from regolith_studio.harmonics.fit_options import FitOptions
 
 if TYPE_CHECKING:
+    from regolith_studio.jobs.events import Steps
     from regolith_studio.session.choices import Choices
     from regolith_studio.studies.loss_variants import LossVariant
-from collections.abc import Callable
-from dataclasses import dataclass
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
 
-from regolith_studio.cli.options import Preset
-
-if TYPE_CHECKING:
-    from regolith_studio.jobs.events import Steps
-
+app = typer.Typer(
+    cls=CommandGroup, help="Tables and figures over a sample.", no_args_is_help=True, rich_markup_mode=None
+)
 
 Below = Annotated[
     float,
@@ -115,170 +120,6 @@ DescriptorKeys = Annotated[
         show_default="r_eq, A, AR, S, V/CH",
     ),
 ]
-
-app = typer.Typer(
-    cls=CommandGroup, help="Tables and figures over a sample.", no_args_is_help=True, rich_markup_mode=None
-)
-
-
-@app.command("lmax")
-@with_dataclass_options
-def lmax(
-    *,
-    meshes: Meshes,
-    output: Folder,
-    degrees: Degrees = "1-20",
-    below: Below = 5.0,
-    radii: FitOptions,
-    reading: ReadingOptions,
-    json: Json = False,
-    jobs: Jobs = 1,
-    resume: Resume = False,
-    seed: Seed = 0,
-) -> None:
-    """RMSRE of the descriptors against l_max (Fig. 3)."""
-    from regolith_studio.cli.inputs import exit_code
-    from regolith_studio.jobs.particle_jobs import FIT_DEGREE
-    from regolith_studio.jobs.study_jobs import study_lmax
-    from regolith_studio.session.choices import Choices
-    from regolith_studio.studies.lmax import enough_degrees
-
-    wanted = whole_numbers(degrees, 0, FIT_DEGREE)
-    with usage_errors():
-        Choices(seed=seed)
-    loaded = reading.read(meshes)
-    study = partial(study_lmax, loaded.particles, jobs, seed, degrees=wanted)
-    steps = partial(study, fit_options=radii)
-    found = conclude("lmax_study", steps, output, json, resume)
-    if not json:
-        typer.echo(enough_degrees(found, below / 100))
-    raise typer.Exit(exit_code(meshes, loaded))
-
-
-@app.command("coarsening")
-@with_dataclass_options
-def coarsening(
-    *,
-    meshes: Meshes,
-    output: Folder,
-    facets: Facets = FACETS,
-    loss: Losses = None,
-    how: CoarseningOptions,
-    box: BoxMetric = "exact",
-    reading: ReadingOptions,
-    json: Json = False,
-    jobs: Jobs = 1,
-    resume: Resume = False,
-    seed: Seed = 0,
-) -> None:
-    """RMSRE of the descriptors for each set of loss weights (Fig. 8)."""
-    from regolith_studio.cli.inputs import exit_code
-    from regolith_studio.jobs.study_jobs import study_coarsening
-
-    check_box(box)
-    wish = how.choices(n_facets=facets, seed=seed)
-    rows = _rows(loss, wish, bool(how.weight))
-    loaded = reading.read(meshes)
-    study = partial(study_coarsening, loaded.particles, wish.order, jobs, rows=rows, box_metric=box)
-    conclude("coarsening_study", study, output, json, resume)
-    raise typer.Exit(exit_code(meshes, loaded))
-
-
-@app.command("solids")
-@with_dataclass_options
-def solids(
-    *,
-    meshes: Meshes,
-    output: Folder,
-    facets: Facets = FACETS,
-    loss: Losses = None,
-    how: CoarseningOptions,
-    reading: ReadingOptions,
-    json: Json = False,
-    jobs: Jobs = 1,
-    resume: Resume = False,
-    seed: Seed = 0,
-) -> None:
-    """The polyhedra that each set of loss weights makes of each particle (Fig. 7)."""
-    from regolith_studio.cli.inputs import exit_code
-    from regolith_studio.jobs.study_jobs import study_gallery
-
-    wish = how.choices(n_facets=facets, seed=seed)
-    rows = _rows(loss, wish, bool(how.weight))
-    loaded = reading.read(meshes)
-    study = partial(study_gallery, loaded.particles, wish.order, rows, jobs)
-    conclude("solids_study", study, output, json, resume)
-    raise typer.Exit(exit_code(meshes, loaded))
-
-
-@app.command("population")
-@with_dataclass_options
-def population(
-    *,
-    sources: SampleSources,
-    output: Folder,
-    models: Models = "",
-    l_max: DrawDegree = None,
-    draws: Draws = 0,
-    splits: Splits = 5,
-    repeats: Repeats = 5,
-    descriptors: DescriptorKeys = "",
-    reading: ReadingOptions,
-    json: Json = False,
-    jobs: Jobs = 1,
-    resume: Resume = False,
-    seed: Seed = 0,
-) -> None:
-    """Drawn against measured particles: models fitted to one half, judged on the other (Figs. 4-6)."""
-    from regolith_studio.cli.generate import shape_source
-    from regolith_studio.cli.terminal import print_errors, print_table
-    from regolith_studio.descriptors.catalogue import CATALOGUE
-    from regolith_studio.errors import InputError
-    from regolith_studio.jobs.model_jobs import GenerationRequest
-    from regolith_studio.jobs.study_jobs import study_population
-    from regolith_studio.shape_models.sample import Sample
-    from regolith_studio.studies.population import KEYS
-    from regolith_studio.studies.population_tables import target_table
-
-    with usage_errors():
-        order = GenerationRequest(l_max=l_max, seed=seed)
-    source = shape_source(sources, reading, order, jobs)
-    print_errors(source.notes)
-    if not isinstance(source.content, Sample):
-        raise InputError(
-            f"{source.name} holds no measured particles to judge models on; give a fit, or meshes."
-        )
-    steps = partial(
-        study_population,
-        source.content,
-        _words(models) or None,
-        jobs,
-        l_max=l_max,
-        n_draws=draws or None,
-        n_splits=splits,
-        n_repeats=repeats,
-        keys=tuple(CATALOGUE) if descriptors == "all" else _words(descriptors) or KEYS,
-        seed=seed,
-    )
-    study = conclude("population_study", steps, output, json, resume)
-    if not json:
-        typer.echo()
-        print_table(target_table(study))
-
-
-def _rows(names: Sequence[str] | None, wish: "Choices", weighted: bool) -> "tuple[LossVariant, ...]":
-    """The rows of a study by name; without names Fig. 8's, and those that the options weight."""
-    from regolith_studio.session.study_requests import CHOSEN, chosen_rows
-    from regolith_studio.studies.loss_variants import PAPER_LOSSES
-
-    with usage_errors():
-        return chosen_rows(tuple(names or (*PAPER_LOSSES, *((CHOSEN,) if weighted else ()))), wish)
-
-
-def _words(text: str) -> tuple[str, ...]:
-    return tuple(word.strip() for word in text.split(",") if word.strip())
-
-
 Counts = Annotated[str, typer.Option("--facets", help="Numbers of facets, such as 12,20,50.", metavar="LIST")]
 OverlapFactors = Annotated[
     str,
@@ -294,35 +135,201 @@ ChangeFactors = Annotated[
 
 
 @dataclass(frozen=True, kw_only=True)
-class VariedOptions:
-    """What the three studies take besides the values that vary."""
+class RunOptions:
+    """How the sample of a study is read, and how the study is run."""
 
-    preset: Preset = ""
-    how: CoarseningOptions
-    box: BoxMetric = "exact"
     reading: ReadingOptions
     json: Json = False
     jobs: Jobs = 1
     resume: Resume = False
     seed: Seed = 0
 
-    def run(
+    def finish(self, kind: str, study: Callable[..., "Steps"], folder: Path) -> Any:
+        """Run a study, write its files, print its table (or the list of files); returns its result.
+
+        Parameters
+        ----------
+        study
+            Makes the steps; takes the number of `workers` and the checkpoint of `answers`.
+        """
+        from regolith_studio.io.atomic import staged_folder
+        from regolith_studio.jobs.study_checkpoint import StudyCheckpoint
+        from regolith_studio.session.outputs.studies import STUDIES
+
+        with StudyCheckpoint(folder / "journal" / f"{kind}.sqlite", self.resume) as answers:
+            result = run_with_progress(study(workers=self.jobs, answers=answers))
+            with staged_folder(folder, kind) as stage:
+                files = [path.name for path in STUDIES[kind].write(result, stage)]
+        if self.json:
+            print_json({"folder": str(folder), "files": files})
+        else:
+            print_table(STUDIES[kind].table(result))
+        return result
+
+    def study(
+        self, kind: str, study: Callable[..., "Steps"], meshes: Sequence[Path], folder: Path, **options: Any
+    ) -> tuple[Any, int]:
+        """Run a study of the particles in files; returns its result and the exit code."""
+        loaded = self.reading.read(meshes)
+        result = self.finish(kind, partial(study, loaded.particles, **options), folder)
+        return result, exit_code(meshes, loaded)
+
+
+@app.command("lmax")
+@with_dataclass_options
+def lmax(
+    *,
+    meshes: Meshes,
+    output: Folder,
+    degrees: Degrees = "1-20",
+    below: Below = 5.0,
+    radii: FitOptions,
+    run: RunOptions,
+) -> None:
+    """RMSRE of the descriptors against l_max (Fig. 3)."""
+    from regolith_studio.jobs.particle_jobs import FIT_DEGREE
+    from regolith_studio.jobs.study_jobs import study_lmax
+    from regolith_studio.session.choices import Choices
+    from regolith_studio.studies.lmax import enough_degrees
+
+    chosen = whole_numbers(degrees, 0, FIT_DEGREE)
+    with usage_errors():
+        Choices(seed=run.seed)
+    options = {"seed": run.seed, "degrees": chosen, "fit_options": radii}
+    result, code = run.study("lmax_study", study_lmax, meshes, output, **options)
+    if not run.json:
+        typer.echo(enough_degrees(result, below / 100))
+    raise typer.Exit(code)
+
+
+@app.command("coarsening")
+@with_dataclass_options
+def coarsening(
+    *,
+    meshes: Meshes,
+    output: Folder,
+    facets: Facets = FACETS,
+    loss: Losses = None,
+    how: CoarseningOptions,
+    box: BoxMetric = "exact",
+    run: RunOptions,
+) -> None:
+    """RMSRE of the descriptors for each set of loss weights (Fig. 8)."""
+    from regolith_studio.jobs.study_jobs import study_coarsening
+
+    check_box(box)
+    choices = how.choices(n_facets=facets, seed=run.seed)
+    options = {"rows": _rows(loss, choices, bool(how.weight)), "box_metric": box}
+    _, code = run.study(
+        "coarsening_study", study_coarsening, meshes, output, request=choices.order, **options
+    )
+    raise typer.Exit(code)
+
+
+@app.command("solids")
+@with_dataclass_options
+def solids(
+    *,
+    meshes: Meshes,
+    output: Folder,
+    facets: Facets = FACETS,
+    loss: Losses = None,
+    how: CoarseningOptions,
+    run: RunOptions,
+) -> None:
+    """The polyhedra that each set of loss weights makes of each particle (Fig. 7)."""
+    from regolith_studio.jobs.study_jobs import study_gallery
+
+    choices = how.choices(n_facets=facets, seed=run.seed)
+    rows = _rows(loss, choices, bool(how.weight))
+    _, code = run.study("solids_study", study_gallery, meshes, output, request=choices.order, rows=rows)
+    raise typer.Exit(code)
+
+
+@app.command("population")
+@with_dataclass_options
+def population(
+    *,
+    sources: SampleSources,
+    output: Folder,
+    models: Models = "",
+    l_max: DrawDegree = None,
+    draws: Draws = 0,
+    splits: Splits = 5,
+    repeats: Repeats = 5,
+    descriptors: DescriptorKeys = "",
+    run: RunOptions,
+) -> None:
+    """Drawn against measured particles: models fitted to one half, judged on the other (Figs. 4-6)."""
+    from regolith_studio.descriptors.catalogue import CATALOGUE
+    from regolith_studio.errors import InputError
+    from regolith_studio.jobs.model_jobs import GenerationRequest
+    from regolith_studio.jobs.study_jobs import study_population
+    from regolith_studio.shape_models.sample import Sample
+    from regolith_studio.studies.population import KEYS
+    from regolith_studio.studies.population_tables import target_table
+
+    with usage_errors():
+        request = GenerationRequest(l_max=l_max, seed=run.seed)
+    source = shape_source(sources, run.reading, request, run.jobs)
+    print_errors(source.notes)
+    if not isinstance(source.content, Sample):
+        raise InputError(
+            f"{source.name} holds no measured particles to judge models on; give a fit, or meshes."
+        )
+    steps = partial(
+        study_population,
+        source.content,
+        _words(models) or None,
+        l_max=l_max,
+        n_draws=draws or None,
+        n_splits=splits,
+        n_repeats=repeats,
+        keys=tuple(CATALOGUE) if descriptors == "all" else _words(descriptors) or KEYS,
+        seed=run.seed,
+    )
+    study = run.finish("population_study", steps, output)
+    if not run.json:
+        typer.echo()
+        print_table(target_table(study))
+
+
+def _rows(names: Sequence[str] | None, choices: "Choices", weighted: bool) -> "tuple[LossVariant, ...]":
+    """The rows of a study by name; without names Fig. 8's, and those that the options weight."""
+    from regolith_studio.session.study_requests import CHOSEN, chosen_rows
+    from regolith_studio.studies.loss_variants import PAPER_LOSSES
+
+    with usage_errors():
+        return chosen_rows(tuple(names or (*PAPER_LOSSES, *((CHOSEN,) if weighted else ()))), choices)
+
+
+def _words(text: str) -> tuple[str, ...]:
+    return tuple(word.strip() for word in text.split(",") if word.strip())
+
+
+@dataclass(frozen=True, kw_only=True)
+class VariedOptions:
+    """What the three studies take besides the values that vary."""
+
+    preset: Preset = ""
+    how: CoarseningOptions
+    box: BoxMetric = "exact"
+    run: RunOptions
+
+    def study(
         self, key: str, values: str, meshes: Sequence[Path], output: Path, n_facets: int = FACETS
     ) -> None:
-        """Do the study of this key and leave the program with its exit code."""
-        from regolith_studio.cli.inputs import exit_code
+        """Run the study of this key and end the program with its exit code."""
         from regolith_studio.jobs.study_jobs import study_coarsening
         from regolith_studio.session.study_requests import varied_rows
 
         check_box(self.box)
-        wish = self.how.choices(self.preset, n_facets=n_facets, seed=self.seed)
+        choices = self.how.choices(self.preset, n_facets=n_facets, seed=self.run.seed)
         with usage_errors():
-            rows = varied_rows(key, wish, values)
-        loaded = self.reading.read(meshes)
-        order = wish.order
-        study = partial(study_coarsening, loaded.particles, order, self.jobs, rows=rows, box_metric=self.box)
-        conclude(f"{key}_study", study, output, self.json, self.resume)
-        raise typer.Exit(exit_code(meshes, loaded))
+            rows = varied_rows(key, choices, values)
+        options = {"request": choices.order, "rows": rows, "box_metric": self.box}
+        _, code = self.run.study(f"{key}_study", study_coarsening, meshes, output, **options)
+        raise typer.Exit(code)
 
 
 @app.command("facets")
@@ -331,7 +338,7 @@ def facet_counts(
     *, meshes: Meshes, output: Folder, facets: Counts = "8,12,16,20,30,50", varied: VariedOptions
 ) -> None:
     """RMSRE of the descriptors against the number of facets."""
-    varied.run("facets", facets, meshes, output)
+    varied.study("facets", facets, meshes, output)
 
 
 @app.command("tradeoff")
@@ -345,7 +352,7 @@ def tradeoff(
     varied: VariedOptions,
 ) -> None:
     """Trade-off between overlap and descriptor errors."""
-    varied.run("tradeoff", factors, meshes, output, facets)
+    varied.study("tradeoff", factors, meshes, output, facets)
 
 
 @app.command("sensitivity")
@@ -359,38 +366,12 @@ def sensitivity(
     varied: VariedOptions,
 ) -> None:
     """Sensitivity of each descriptor's error to each weight of the loss."""
-    varied.run("sensitivity", factors, meshes, output, facets)
+    varied.study("sensitivity", factors, meshes, output, facets)
 
 
 def check_box(box: str) -> None:
-    """Refuse a box metric that there is not."""
+    """Raise an error for an unknown box metric."""
     from regolith_studio.descriptors.shape_cache import BOX_METRICS
 
     if box not in BOX_METRICS:
         raise typer.BadParameter(f"The box must be one of {', '.join(BOX_METRICS)}, got {box!r}.")
-
-
-def conclude(kind: str, study: Callable[..., "Steps"], folder: Path, json: bool, resume: bool = False) -> Any:
-    """Follow a study to its end, write its files, print its table (or the list of files).
-
-    Parameters
-    ----------
-    study
-        Makes the steps; is given the `answers` that go to disk as they come.
-    resume
-        Whether to go on with those that are there.
-    """
-    from regolith_studio.cli.terminal import print_json, print_table, run_with_progress
-    from regolith_studio.io.atomic import staged_folder
-    from regolith_studio.jobs.study_checkpoint import StudyCheckpoint
-    from regolith_studio.session.outputs.studies import STUDIES
-
-    with StudyCheckpoint(folder / "journal" / f"{kind}.sqlite", resume) as answers:
-        found = run_with_progress(study(answers=answers))
-        with staged_folder(folder, kind) as stage:
-            files = [path.name for path in STUDIES[kind].write(found, stage)]
-    if json:
-        print_json({"folder": str(folder), "files": files})
-    else:
-        print_table(STUDIES[kind].table(found))
-    return found

@@ -1,5 +1,6 @@
-"""What a command says while it works (stderr, only to a person) and when it is done (stdout)."""
+"""Output of commands: help, progress (stderr, on a terminal only), tables, JSON and errors."""
 
+import inspect
 import json
 import math
 import sys
@@ -8,6 +9,7 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 import typer
+from typer.core import TyperGroup
 
 from regolith_studio.readers.error_messages import printable
 
@@ -97,3 +99,19 @@ def print_errors(sentences: Iterable[str]) -> None:
     """One line each on stderr."""
     for sentence in sentences:
         typer.echo(printable(sentence), err=True)
+
+
+class CommandGroup(TyperGroup):
+    """A group that shows the first paragraph of each command's help whole."""
+
+    def format_commands(self, ctx: Any, formatter: Any) -> None:
+        """Write name and help of every command."""
+        commands = {name: self.get_command(ctx, name) for name in self.list_commands(ctx)}
+        rows = [(name, _first_paragraph(command.help)) for name, command in commands.items() if command]
+        with formatter.section("Commands"):
+            formatter.write_dl(rows)
+
+
+def _first_paragraph(text: str | None) -> str:
+    paragraph = inspect.cleandoc(text or "").partition("\n\n")[0]
+    return " ".join(paragraph.split()).removesuffix(".")
