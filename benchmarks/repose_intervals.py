@@ -12,7 +12,7 @@ import numpy as np
 
 from benchmarks.heaps import KINDS, Array, heap
 from regolith_studio.dem.angle_of_repose import measure_repose
-from regolith_studio.dem.evaluation.errors import NotAPileError
+from regolith_studio.dem.evaluation.settings import NotAPileError
 
 ANGLES = (20, 27, 34, 40)
 GRAINS = (300, 1000, 5000)

@@ -18,7 +18,6 @@ from regolith_studio.cli.terminal import print_json, run_with_progress
 
 def check(json: Json = False) -> None:
     """Print versions, OpenGL renderer, display, available DEM engines and missing requirements."""
-
     report = examine_machine()
     code = 1 if unusable(report) else 0
     if json:

@@ -55,7 +55,6 @@ def describe(
     seed: Seed = 0,
 ) -> None:
     """Measure particles: volume, area, sphericity, diameters ..., and the health of their meshes."""
-
     if weighting not in ("number", "volume"):
         raise typer.BadParameter(f"Particles weigh by number or by volume, not by {weighting!r}.")
     start_reader()

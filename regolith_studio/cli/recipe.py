@@ -93,7 +93,6 @@ def run(
 
 def _open_executor(settings: "ExecutorSettings") -> "Executor":
     """Who is to work."""
-
     with usage_errors():
         executor = settings.open()
     print_errors(

@@ -8,10 +8,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.stats import t as student_t
 
-from regolith_studio.dem.evaluation.errors import HEAP_SHARE, MAX_CURVATURE, NotAPileError
 from regolith_studio.dem.evaluation.profile import Profile, base_level, project, surface_profile
 from regolith_studio.dem.evaluation.section import Section, evaluate_section
-from regolith_studio.dem.evaluation.settings import EvaluationSettings
+from regolith_studio.dem.evaluation.settings import (
+    HEAP_SHARE,
+    MAX_CURVATURE,
+    EvaluationSettings,
+    NotAPileError,
+)
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray
 

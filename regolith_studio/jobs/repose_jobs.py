@@ -14,8 +14,7 @@ from regolith_studio.dem.case import PreparedCase, ReposeCase, prepare
 from regolith_studio.dem.engine import Engine, SimulationResult
 from regolith_studio.dem.engine_process import EngineError, run_engine
 from regolith_studio.dem.engines import DEFAULT_ENGINE, engine_named
-from regolith_studio.dem.evaluation.errors import NotAPileError
-from regolith_studio.dem.evaluation.settings import EvaluationSettings
+from regolith_studio.dem.evaluation.settings import EvaluationSettings, NotAPileError
 from regolith_studio.dem.initial_packing import loose_column
 from regolith_studio.dem.run_io import (
     case_document,

@@ -14,9 +14,8 @@ from regolith_studio.dem.angle_of_repose import (
     measurement_document,
     standard_interval,
 )
-from regolith_studio.dem.evaluation.errors import NotAPileError
 from regolith_studio.dem.evaluation.profile import Discs, base_level, connected_tops, project
-from regolith_studio.dem.evaluation.settings import EvaluationSettings
+from regolith_studio.dem.evaluation.settings import EvaluationSettings, NotAPileError
 from regolith_studio.dem.evaluation.slope_fit import fit_asymmetric, fit_symmetric
 from regolith_studio.errors import InputError
 from tests.dem.packings import cone, packing

@@ -8,7 +8,7 @@ from scipy.spatial.transform import Rotation
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.parameters import LiftingCylinderTest
 from regolith_studio.dem.case import PreparedCase, ReposeCase, prepare
-from regolith_studio.dem.overlap_depth import overlap_depths
+from regolith_studio.dem.run_checks import overlap_depths
 from regolith_studio.dem.snapshot import ParticleState
 
 

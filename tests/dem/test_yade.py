@@ -17,9 +17,8 @@ from regolith_studio.dataset.parameters import ContactParameters, LiftingCylinde
 from regolith_studio.dem.case import ReposeCase, prepare
 from regolith_studio.dem.engine import SimulationResult
 from regolith_studio.dem.engines import engine_named
-from regolith_studio.dem.engines.yade import program
+from regolith_studio.dem.engines.yade import YadeSettings, find_yade
 from regolith_studio.dem.engines.yade.input_files import LENGTH, TIME, WEIGHT, input_document
-from regolith_studio.dem.engines.yade.settings import YadeSettings
 from regolith_studio.dem.initial_packing import loose_column
 from regolith_studio.dem.snapshot import Snapshot
 from regolith_studio.errors import InputError, RegolithError
@@ -131,7 +130,7 @@ def test_that_what_the_law_does_not_know_is_refused(boxes: Dataset, case: Repose
 
 def test_that_a_missing_program_is_one_sentence(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("PATH", "/nowhere")
-    assert "not installed" in program.find_yade().problem
+    assert "not installed" in find_yade().problem
 
 
 needs_yade = pytest.mark.skipif(shutil.which("yade") is None, reason="YADE is not installed")

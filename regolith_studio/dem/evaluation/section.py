@@ -4,9 +4,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from regolith_studio.dem.evaluation.errors import MAX_ANGLE, MIN_R_SQUARED, NotAPileError
 from regolith_studio.dem.evaluation.profile import Profile
-from regolith_studio.dem.evaluation.settings import EvaluationSettings
+from regolith_studio.dem.evaluation.settings import (
+    MAX_ANGLE,
+    MIN_R_SQUARED,
+    EvaluationSettings,
+    NotAPileError,
+)
 from regolith_studio.dem.evaluation.slope_fit import (
     AsymmetricFit,
     SymmetricFit,

@@ -13,8 +13,8 @@ from scipy.spatial.transform import Rotation
 
 from regolith_studio.dem.case import PreparedCase
 from regolith_studio.dem.engine import RunChecks, SimulationResult
+from regolith_studio.dem.engines.lammps import LammpsSettings, command
 from regolith_studio.dem.engines.lammps.clumps import Clumps, clumps_of
-from regolith_studio.dem.engines.lammps.program import command
 from regolith_studio.dem.engines.lammps.script import (
     Schedule,
     bodies_file,
@@ -23,7 +23,6 @@ from regolith_studio.dem.engines.lammps.script import (
     script,
     stiffness,
 )
-from regolith_studio.dem.engines.lammps.settings import LammpsSettings
 from regolith_studio.dem.initial_packing import enclosing_radii
 from regolith_studio.dem.run_checks import check_run, measure_filling
 from regolith_studio.dem.snapshot import ParticleState, Snapshot

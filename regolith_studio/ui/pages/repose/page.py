@@ -12,7 +12,7 @@ from regolith_studio.dataset.parameters import LiftingCylinderTest
 from regolith_studio.dem.angle_of_repose import ReposeMeasurement
 from regolith_studio.dem.case import PreparedCase
 from regolith_studio.dem.engines import engine_named
-from regolith_studio.dem.evaluation.errors import NotAPileError
+from regolith_studio.dem.evaluation.settings import NotAPileError
 from regolith_studio.dem.run_io import (
     FINAL,
     RunSummary,
