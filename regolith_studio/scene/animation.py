@@ -9,9 +9,8 @@ from PIL import Image
 
 from regolith_studio.errors import InputError
 from regolith_studio.scene import annotations, cameras, palette, plotter_setup, surfaces
-from regolith_studio.scene.cameras import CameraPose
+from regolith_studio.scene.cameras import TURN, CameraPose, orbited
 from regolith_studio.scene.figure import Picture
-from regolith_studio.scene.motions import TURN, orbited
 from regolith_studio.scene.shapes import LABELS, SceneShape, show_shape
 
 KINDS = (".gif", ".webp", ".png")

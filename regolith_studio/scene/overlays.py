@@ -1,8 +1,9 @@
-"""What may be drawn about a surface: its bounding box, its star point, the faces that it cannot see.
+"""Overlays of a surface: its bounding box, star point, faces hidden from it, and faults of the mesh.
 
-Like the surfaces, each may be drawn again and again on one plotter; ``None`` takes it away.
+Each may be drawn again on the same plotter; ``None`` hides it.
 """
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -114,3 +115,35 @@ def hide_named(plotter: Any, name: str) -> None:
     """Take something away, if it is there."""
     if name in plotter.actors:
         plotter.actors[name].SetVisibility(False)
+
+
+FAULT_COLOURS = {
+    "filled": "#0072b2",
+    "open": "#d55e00",
+    "crossing": "#cc79a7",
+    "turned": "#e69f00",
+    "small bodies": "#56b4e9",
+    "non-manifold": "#009e73",
+    "double": "#b5a900",
+    "degenerate": "#7b3fa0",
+    "hidden": "#7d8a99",
+}
+"""Colour of each kind of ``defect_triangles`` and of hidden faces; later ones are drawn on top."""
+
+FAULTS_WITH_EDGES = ("open", "crossing", "turned", "non-manifold", "double", "degenerate")
+"""Kinds whose triangles may be slivers, so that their edges are drawn too."""
+
+
+def show_faults(plotter: Any, faults: Mapping[str, FloatArray]) -> None:
+    """Draw triangles (k, 3, 3) of each kind; kinds that are not among `faults` vanish."""
+    for kind, colour in FAULT_COLOURS.items():
+        triangles = faults.get(kind)
+        if triangles is None or not len(triangles):
+            hide_named(plotter, f"fault {kind}")
+            continue
+        cells = np.column_stack([np.full(len(triangles), 3), np.arange(3 * len(triangles)).reshape(-1, 3)])
+        data = pv.PolyData(np.array(triangles).reshape(-1, 3), faces=cells.ravel())
+        actor = show_named(plotter, f"fault {kind}", data, colour, 1.0, line_width=2.5)
+        bring_forward(actor)
+        actor.prop.show_edges, actor.prop.edge_color = kind in FAULTS_WITH_EDGES, colour
+        actor.prop.ambient = 0.45 if kind in FAULTS_WITH_EDGES else 0.24

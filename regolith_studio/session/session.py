@@ -15,7 +15,7 @@ from regolith_studio.jobs.particle_jobs import (
     load_sample,
     measure_particles,
 )
-from regolith_studio.jobs.runners.protocol import Runner
+from regolith_studio.jobs.runners import Runner
 from regolith_studio.messages import N_
 from regolith_studio.readers.particles import FileProblem, LoadedParticles, unique_names
 from regolith_studio.session.choices import STUDIES, Choices, Kind, depends

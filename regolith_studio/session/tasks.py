@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from regolith_studio.jobs.events import Event, Failed, Finished, Job, Partial, Progress, Started, Stopped
-from regolith_studio.jobs.runners.protocol import Handle, Pausable, Runner
+from regolith_studio.jobs.runners import Handle, Pausable, Runner
 
 
 @dataclass(frozen=True)

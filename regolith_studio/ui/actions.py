@@ -8,10 +8,9 @@ from PySide6.QtGui import QAction, QKeySequence
 from PySide6.QtWidgets import QMainWindow, QMenu, QToolBar, QToolButton
 
 from regolith_studio.messages import N_
-from regolith_studio.ui.action_spec import BREAK, PAGE_MENU, ActionSpec
 from regolith_studio.ui.dialogs.command_palette import Command
 from regolith_studio.ui.icons import icon
-from regolith_studio.ui.page import Page
+from regolith_studio.ui.page import BREAK, PAGE_MENU, ActionSpec, Page
 from regolith_studio.ui.shortcuts import plain, shown_keys, with_keys
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import tr

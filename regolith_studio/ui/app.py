@@ -1,4 +1,4 @@
-"""Make the main window with its session, and report uncaught errors in it."""
+"""Make the main window with its session; bring events of worker threads and uncaught errors into it."""
 
 import sys
 import traceback
@@ -8,7 +8,7 @@ from types import TracebackType
 from typing import Any
 
 from psygnal import EmitLoopError
-from PySide6.QtCore import QTimer
+from PySide6.QtCore import QObject, Qt, QTimer, Signal
 from PySide6.QtWidgets import QApplication
 
 from regolith_studio.errors import RegolithError
@@ -17,7 +17,6 @@ from regolith_studio.jobs.events import Job
 from regolith_studio.jobs.runners.thread import ThreadRunner
 from regolith_studio.session.preferences import Preferences
 from regolith_studio.session.session import Session
-from regolith_studio.ui.main_thread import MainThreadInvoker
 from regolith_studio.ui.main_window import MainWindow
 from regolith_studio.ui.tour import TOUR_SEEN
 from regolith_studio.ui.translation import tr
@@ -88,3 +87,30 @@ def make_excepthook(report: Callable[[str, str], None]) -> Hook:
             report(tr("Something went wrong in the program ({name}); the work goes on.", name=name), details)
 
     return hook
+
+
+Call = Callable[[], None]
+
+
+class MainThreadInvoker(QObject):
+    """``post`` may be called from any thread; the function runs soon, in order, where this object lives."""
+
+    _posted = Signal(object)
+
+    def __init__(self, parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self._open = True
+        self._posted.connect(self._run, Qt.ConnectionType.QueuedConnection)
+
+    def post(self, call: Call) -> None:
+        """Run `call` in the thread of the window; dropped when the window has closed."""
+        if self._open:
+            self._posted.emit(call)
+
+    def close(self) -> None:
+        """Run nothing any more."""
+        self._open = False
+
+    def _run(self, call: Call) -> None:
+        if self._open:
+            call()

@@ -27,12 +27,11 @@ from regolith_studio.ui.page_stack import PageStack
 from regolith_studio.ui.pages import PAGES
 from regolith_studio.ui.panels.tasks import TasksPanel
 from regolith_studio.ui.project_files import ProjectFiles
-from regolith_studio.ui.refusals import report_refusals
 from regolith_studio.ui.shortcuts import Shortcuts
 from regolith_studio.ui.theme import THEMES, apply_theme, current_theme
 from regolith_studio.ui.tour import start_tour
 from regolith_studio.ui.translation import tr
-from regolith_studio.ui.widgets.toast import Toast
+from regolith_studio.ui.widgets.toast import Toast, report_file_problems
 from regolith_studio.ui.window_state import WindowState
 
 
@@ -138,7 +137,7 @@ class MainWindow(QMainWindow):
         bindings.listen("choices", self._show_choices)
         self._show_choices()
         bindings.listen("failed", lambda failure: self.toast.problem(failure.sentence, failure.details))
-        bindings.listen("problems", lambda problems: report_refusals(self.toast, problems))
+        bindings.listen("problems", lambda problems: report_file_problems(self.toast, problems))
         bindings.listen("exported", self.commands.tell_exported)
         self.tasks.cancelRequested.connect(self.commands.stop)
         QGuiApplication.styleHints().colorSchemeChanged.connect(self._apply_theme)
@@ -169,7 +168,7 @@ class MainWindow(QMainWindow):
 
     def _apply_theme(self) -> None:
         theme = current_theme()
-        apply_theme(cast(QApplication, QApplication.instance()), theme, self, self.pages.rooms)
+        apply_theme(cast(QApplication, QApplication.instance()), theme, self, self.pages.scroll_areas)
         for part in (self.menus, self.pages, self.tasks):
             part.set_theme(theme)
 

@@ -1,4 +1,4 @@
-"""What a page of the window is, and what it is given; see :mod:`regolith_studio.ui.pages`."""
+"""A page of the window: its protocol, its actions and its context; see :mod:`regolith_studio.ui.pages`."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -8,14 +8,53 @@ from typing import Any
 from PySide6.QtWidgets import QWidget
 
 from regolith_studio.jobs.events import Failed, Job
+from regolith_studio.messages import N_
 from regolith_studio.session.file_kinds import FileKind
 from regolith_studio.session.preferences import Preferences
 from regolith_studio.session.session import Session
-from regolith_studio.ui.action_spec import ActionSpec
 from regolith_studio.ui.bindings import Bindings
 from regolith_studio.ui.commands import Commands
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.widgets.toast import Toast
+
+
+@dataclass(frozen=True)
+class ActionSpec:
+    """One row.
+
+    Parameters
+    ----------
+    menu
+        Title of its menu; those of :data:`regolith_studio.ui.actions.WITHIN_VIEW` are menus within View.
+    name
+        Of the command that it runs, and its object name.
+    text
+        In the menu; "&" marks the letter.
+    icon
+        File in ``resources/icons``; empty for none.
+    shortcut
+        Empty for none.
+    tip
+        In the tool bar; the text if empty.
+    checked
+        ``True`` or ``False`` for a switch, ``None`` for a command.
+    bar
+        Its place in the tool bar: ``words`` with its text, ``icon`` without, empty for none.
+    """
+
+    menu: str
+    name: str
+    text: str
+    icon: str = ""
+    shortcut: str = ""
+    tip: str = ""
+    checked: bool | None = None
+    bar: str = ""
+
+
+BREAK = "-"
+PAGE_MENU = N_("&Page")
+"""Menu of the commands of the page that is seen."""
 
 
 class PageWidget(QWidget):

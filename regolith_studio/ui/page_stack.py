@@ -2,13 +2,30 @@
 
 from collections.abc import Callable
 
-from PySide6.QtCore import Signal
-from PySide6.QtWidgets import QAbstractItemView, QHBoxLayout, QStackedWidget, QWidget
+from PySide6.QtCore import QSize, Qt, Signal
+from PySide6.QtWidgets import QAbstractItemView, QFrame, QHBoxLayout, QScrollArea, QStackedWidget, QWidget
 
 from regolith_studio.ui.page import Page, PageContext, PageWidget
-from regolith_studio.ui.scrollable_page import ScrollablePage
 from regolith_studio.ui.sidebar import Sidebar
 from regolith_studio.ui.theme import Theme, current_theme, ensure_polished, restyle
+
+MIN_SIZE = QSize(240, 160)
+"""Minimum size of a page in pixels: a small screen must hold the whole window."""
+
+
+class ScrollablePage(QScrollArea):
+    """A page with scroll bars where it needs more room than there is."""
+
+    def __init__(self, page: QWidget) -> None:
+        super().__init__()
+        self.setObjectName("scroll_area")
+        self.setFrameShape(QFrame.Shape.NoFrame)
+        self.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        self.setWidgetResizable(True)
+        self.setWidget(page)
+
+    def minimumSizeHint(self) -> QSize:
+        return MIN_SIZE
 
 
 class PageStack(QWidget):
@@ -34,7 +51,7 @@ class PageStack(QWidget):
         self._current = ""
         self._unthemed: set[str] = set()
         self._stack = QStackedWidget()
-        self._rooms: dict[str, ScrollablePage] = {}
+        self._scroll_areas: dict[str, ScrollablePage] = {}
         self._bar = Sidebar(self.pages)
         self.buttons = self._bar.buttons
         self._bar.chosen.connect(self.go)
@@ -54,7 +71,7 @@ class PageStack(QWidget):
             self._hide_current()
             self._apply_theme(key)
             self._current = key
-            self._stack.setCurrentWidget(self._rooms[key])
+            self._stack.setCurrentWidget(self._scroll_areas[key])
             self.buttons[key].setChecked(True)
             self._contexts[key].bindings.resume()
             widget.on_show()
@@ -82,9 +99,9 @@ class PageStack(QWidget):
             self._apply_theme(self._current)
 
     @property
-    def rooms(self) -> tuple[ScrollablePage, ...]:
-        """With a page in each; they take another theme by :meth:`set_theme`."""
-        return tuple(self._rooms.values())
+    def scroll_areas(self) -> tuple[ScrollablePage, ...]:
+        """One for each page; they take another theme by :meth:`set_theme`."""
+        return tuple(self._scroll_areas.values())
 
     def refresh_hidden(self) -> None:
         """Let hidden pages forget particles that have been closed."""
@@ -103,8 +120,8 @@ class PageStack(QWidget):
         context.bindings.pause()
         for view in widget.findChildren(QAbstractItemView):
             view.setTabKeyNavigation(False)  # Tab leaves a table; arrows move in it
-        self._rooms[key] = ScrollablePage(widget)
-        self._stack.addWidget(self._rooms[key])
+        self._scroll_areas[key] = ScrollablePage(widget)
+        self._stack.addWidget(self._scroll_areas[key])
         ensure_polished(widget)
         widget.set_theme(current_theme())
         self.widgets[key] = widget
@@ -113,7 +130,7 @@ class PageStack(QWidget):
     def _apply_theme(self, key: str) -> None:
         if key in self._unthemed:
             self._unthemed.remove(key)
-            restyle(self._rooms[key])
+            restyle(self._scroll_areas[key])
             self.widgets[key].set_theme(current_theme())
 
     def _hide_current(self) -> None:

@@ -11,8 +11,9 @@ from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.parameters import ContactParameters, LiftingCylinderTest
 from regolith_studio.dem.case import CohesionKind, ReposeCase, ShapeKind, prepare
 from regolith_studio.dem.engine import SimulationResult
-from regolith_studio.dem.engines.lammps import ENGINE, LammpsSettings
+from regolith_studio.dem.engines.lammps import ENGINE
 from regolith_studio.dem.engines.lammps.clumps import clump_shape, clumps_of
+from regolith_studio.dem.engines.lammps.program import LammpsSettings
 from regolith_studio.dem.engines.lammps.script import schedule, script, stiffness, viscosity
 from regolith_studio.dem.engines.lammps.simulation import kinetic_energies, last_words, read_bodies
 from regolith_studio.errors import InputError, RegolithError

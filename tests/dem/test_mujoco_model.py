@@ -8,7 +8,6 @@ from scipy.spatial.distance import pdist, squareform
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.parameters import ContactParameters
 from regolith_studio.dem.case import ReposeCase, prepare
-from regolith_studio.dem.engines.mujoco import MujocoSettings
 from regolith_studio.dem.engines.mujoco.model import (
     ADHESION_GAP,
     N_WALLS,
@@ -18,6 +17,7 @@ from regolith_studio.dem.engines.mujoco.model import (
     adhesion,
     build_model,
 )
+from regolith_studio.dem.engines.mujoco.settings import MujocoSettings
 from regolith_studio.dem.initial_packing import start_places
 from regolith_studio.errors import InputError
 

@@ -8,7 +8,7 @@ import pytest
 
 from regolith_studio.jobs.events import Event, Finished, Job, Progress, Steps, Stopped
 from regolith_studio.jobs.executor import Executor
-from regolith_studio.jobs.runners.protocol import Pausable
+from regolith_studio.jobs.runners import Pausable
 from regolith_studio.jobs.runners.thread import PauseToken, ThreadRunner
 from regolith_studio.session.tasks import Reactions, TaskBoard
 

@@ -9,11 +9,14 @@ from regolith_studio.scene.cameras import (
     CameraPose,
     apply_pose,
     framing_pose,
+    orbited,
+    panned,
     pose_of,
     refitted,
+    rolled,
     turned,
+    zoomed,
 )
-from regolith_studio.scene.motions import orbited, panned, rolled, zoomed
 
 POSE = CameraPose((0.0, -4.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 1.0), 2.0)
 

@@ -16,7 +16,7 @@ from regolith_studio.imaging.segmentation.splitting import SplittingSettings
 from regolith_studio.io.stl import stl_bytes
 from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput
 from regolith_studio.jobs.model_jobs import GenerationRequest, draw_shapes, fit_shapes, make_particles
-from regolith_studio.jobs.runners.inline import InlineRunner
+from regolith_studio.jobs.runners.run_job import InlineRunner
 from regolith_studio.jobs.volume_jobs import (
     ExtractionSettings,
     extract_file,

@@ -15,7 +15,7 @@ from regolith_studio.scene.projection import Projection
 from regolith_studio.scene.surfaces import OUTLINE, SURFACE
 from regolith_studio.ui.app import open_window
 from regolith_studio.ui.theme import DARK, LIGHT
-from regolith_studio.ui.widgets.number_text import grouped_number
+from regolith_studio.ui.widgets.labels import grouped_number
 
 SECONDS = 120.0
 

@@ -14,7 +14,7 @@ from PySide6.QtWidgets import (
     QSlider,
 )
 
-from regolith_studio.jobs.runners.inline import InlineRunner
+from regolith_studio.jobs.runners.run_job import InlineRunner
 from regolith_studio.session.choices import Choices, Kind
 from regolith_studio.session.session import Session
 from regolith_studio.ui.layout import scrolled_column

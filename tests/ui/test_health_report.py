@@ -13,7 +13,7 @@ from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.repair import repair
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.jobs.particle_jobs import find_faults, measure_particle
-from regolith_studio.scene.faults import COLOURS, show_faults
+from regolith_studio.scene.overlays import FAULT_COLOURS, show_faults
 from regolith_studio.session.results import ParticleEntry
 from regolith_studio.ui.pages.sample.health import KINDS, HealthPanel
 
@@ -111,7 +111,7 @@ def test_that_the_health_is_told_in_german(panel, speaking):
 
 
 def test_that_every_kind_of_fault_has_a_name_and_a_colour():
-    assert set(KINDS) == set(COLOURS)
+    assert set(KINDS) == set(FAULT_COLOURS)
 
 
 def test_that_faults_are_drawn_and_vanish_again():

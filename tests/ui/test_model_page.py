@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QFileDialog, QWidget
 from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.descriptors.distributions import Distribution
 from regolith_studio.harmonics.coefficients import degrees
-from regolith_studio.jobs.runners.inline import InlineRunner
+from regolith_studio.jobs.runners.run_job import InlineRunner
 from regolith_studio.messages import Message
 from regolith_studio.readers.shape_files import ShapeSource, read_shape_source
 from regolith_studio.session.session import Session

@@ -7,7 +7,7 @@ import pytest
 from regolith_studio.descriptors.describe import describe
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.ui.panels.descriptor_table import DescriptorTablePanel
-from regolith_studio.ui.widgets.number_text import grouped_number, short_number
+from regolith_studio.ui.widgets.labels import grouped_number, short_number
 
 
 @pytest.mark.parametrize(

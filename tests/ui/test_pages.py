@@ -10,13 +10,12 @@ from PySide6.QtWidgets import QLabel, QVBoxLayout, QWidget
 
 from regolith_studio.jobs.events import Job, Partial, Progress, Started
 from regolith_studio.jobs.particle_jobs import load_sample
-from regolith_studio.jobs.runners.inline import InlineRunner
+from regolith_studio.jobs.runners.run_job import InlineRunner
 from regolith_studio.resources import resource
 from regolith_studio.session.session import Session
-from regolith_studio.ui.action_spec import PAGE_MENU, ActionSpec
 from regolith_studio.ui.bindings import Bindings
 from regolith_studio.ui.commands import Commands
-from regolith_studio.ui.page import Page, PageContext, PageWidget
+from regolith_studio.ui.page import PAGE_MENU, ActionSpec, Page, PageContext, PageWidget
 from regolith_studio.ui.page_stack import PageStack
 from regolith_studio.ui.pages import PAGES
 from regolith_studio.ui.theme import DARK

@@ -16,7 +16,7 @@ from regolith_studio.dem.snapshot import ParticleState, particle_state_bytes
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
-from regolith_studio.jobs.runners.inline import InlineRunner
+from regolith_studio.jobs.runners.run_job import InlineRunner
 from regolith_studio.session.session import Session
 from regolith_studio.studies.repose import runs_from
 from regolith_studio.ui.bindings import Bindings

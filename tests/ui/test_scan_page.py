@@ -16,9 +16,9 @@ from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput,
 from regolith_studio.jobs.runners.thread import ThreadRunner
 from regolith_studio.readers.volumes.header import RawLayout
 from regolith_studio.session.session import Session
+from regolith_studio.ui.app import MainThreadInvoker
 from regolith_studio.ui.bindings import Bindings
 from regolith_studio.ui.commands import Commands
-from regolith_studio.ui.main_thread import MainThreadInvoker
 from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.pages.scan import PAGE
 from regolith_studio.ui.pages.scan.volume_dialog import VolumeDialog

@@ -14,10 +14,10 @@ from regolith_studio.jobs.events import Job, Progress
 from regolith_studio.session.preferences import Preferences
 from regolith_studio.session.project import Project
 from regolith_studio.session.tasks import Task
+from regolith_studio.ui.activity import TaskListPanel, time_left
 from regolith_studio.ui.app import open_window
 from regolith_studio.ui.dialogs.closing import worth_asking
 from regolith_studio.ui.dialogs.command_palette import CommandPalette
-from regolith_studio.ui.panels.task_list import TaskListPanel, time_left
 from regolith_studio.ui.project_files import autosave_path, stale_autosaves
 from regolith_studio.ui.shortcuts import plain
 from regolith_studio.ui.tour import TOUR_SEEN, Tour, start_tour, steps

@@ -1,7 +1,8 @@
-"""Runs one job to its result; the only place that catches every exception."""
+"""Runs one job to its result in this thread; the only place that catches every exception."""
 
 import traceback
 from collections.abc import Callable, Generator
+from dataclasses import dataclass
 
 from regolith_studio.errors import JobCancelled, RegolithError, format_os_error
 from regolith_studio.jobs.events import Failed, Finished, Job, JobResult, Listener, Step, Stopped
@@ -50,3 +51,26 @@ def failure(error: BaseException) -> Failed:
     if isinstance(error, OSError) and error.errno is not None:
         return Failed(format_os_error(error), details)
     return Failed(f"The program made a mistake ({type(error).__name__}: {error}).", details)
+
+
+@dataclass
+class _InlineHandle:
+    cancelled: bool = False
+    done: bool = False
+
+    def cancel(self) -> None:
+        self.cancelled = True
+
+
+class InlineRunner:
+    """Submitting returns when the job has ended."""
+
+    def submit(self, job: Job, listener: Listener, lane: str = "") -> _InlineHandle:  # noqa: ARG002
+        handle = _InlineHandle()
+        result = run_job(job, listener, lambda: handle.cancelled)
+        handle.done = True
+        listener(result)
+        return handle
+
+    def close(self) -> None:
+        """Nothing to do: no job outlives its submission."""

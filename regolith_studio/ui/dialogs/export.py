@@ -25,7 +25,6 @@ from regolith_studio.jobs.dataset_jobs import DatasetOptions
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.tasks import Task
 from regolith_studio.ui.dialogs.folder import FolderDialog
-from regolith_studio.ui.fineness import fineness_words
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.labels import remark, rich_symbol
 
@@ -60,7 +59,7 @@ def summary(count: int, choices: Choices) -> list[tuple[str, str]]:
     method = tr("{method}, seed {seed}", method=tr(METHODS[choices.method].label), seed=choices.seed)
     return [
         (tr("Particles"), files),
-        (tr("Each with"), fineness_words(choices)),
+        (tr("Each with"), facet_limit_text(choices)),
         (tr("Imitating"), target),
         (tr("Method"), method),
         (tr("Weights"), (weights or tr("none")) + f" ({preset})"),
@@ -177,3 +176,12 @@ class ExportDialog(QDialog):
         self.bar.show()
         self.state.setText(tr("Starting …"))
         self.started.emit(self.value())
+
+
+def facet_limit_text(choices: Choices) -> str:
+    """What each polyhedron will have, to be put behind a heading."""
+    if choices.stop_at == "error":
+        limit = f"{100 * choices.largest_error:g}"
+        return tr("the fewest facets with all errors below {limit} %", limit=limit)
+    faces = choices.facet_count
+    return tr("at most {faces} facets, {triangles} triangles", faces=faces, triangles=4 * faces - 12)

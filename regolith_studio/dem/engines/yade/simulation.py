@@ -13,8 +13,8 @@ import numpy as np
 
 from regolith_studio.dem.case import PreparedCase
 from regolith_studio.dem.engine import RunChecks, SimulationResult
-from regolith_studio.dem.engines.yade import YadeSettings, command, expected_duration
 from regolith_studio.dem.engines.yade.input_files import LENGTH, YadeState, input_document, read_yade_state
+from regolith_studio.dem.engines.yade.program import YadeSettings, command, expected_duration
 from regolith_studio.dem.run_checks import check_run, measure_filling, overlap_depths
 from regolith_studio.dem.snapshot import ParticleState, Snapshot
 from regolith_studio.errors import RegolithError

@@ -8,7 +8,7 @@ from regolith_studio.geometry.particle import Particle
 from regolith_studio.jobs.representatives_jobs import ChosenParticles
 from regolith_studio.messages import N_
 from regolith_studio.session.choices import Choices
-from regolith_studio.ui.fineness import fineness_words
+from regolith_studio.ui.dialogs.export import facet_limit_text
 from regolith_studio.ui.pages.dataset.gallery import GalleryItem
 from regolith_studio.ui.translation import tr, tr_count
 
@@ -66,7 +66,7 @@ def coarsening_text(choices: Choices) -> str:
     known = METHODS.get(choices.method)
     return tr(
         "Each with {fineness}; method: {method}; chosen on the page Explore.",
-        fineness=fineness_words(choices),
+        fineness=facet_limit_text(choices),
         method=tr(known.label) if known else choices.method,
     )
 

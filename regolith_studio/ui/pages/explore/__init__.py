@@ -2,8 +2,7 @@
 
 from regolith_studio.messages import N_
 from regolith_studio.scene.cameras import DIRECTIONS
-from regolith_studio.ui.action_spec import BREAK, PAGE_MENU, ActionSpec
-from regolith_studio.ui.page import Page, PageContext, PageWidget
+from regolith_studio.ui.page import BREAK, PAGE_MENU, ActionSpec, Page, PageContext, PageWidget
 
 _DIRECTION_KEYS = {"isometric": "Ctrl+0", "front": "Ctrl+1", "right": "Ctrl+3", "top": "Ctrl+7"}
 

@@ -10,8 +10,8 @@ from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.views.three_views import ThreeViews
 from regolith_studio.ui.widgets.combo_box import ChoiceBox
+from regolith_studio.ui.widgets.labels import grouped_number
 from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec
-from regolith_studio.ui.widgets.number_text import grouped_number
 from regolith_studio.ui.widgets.plots.curves import CurvePlot, PlotCurve
 
 AXES = {"x": ("y", "z"), "y": ("x", "z"), "z": ("x", "y")}

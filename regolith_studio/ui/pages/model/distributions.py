@@ -11,8 +11,7 @@ from regolith_studio.studies.population import KEYS
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.combo_box import ChoiceBox
-from regolith_studio.ui.widgets.labels import ElidedLabel, rich_symbol
-from regolith_studio.ui.widgets.number_text import short_number
+from regolith_studio.ui.widgets.labels import ElidedLabel, rich_symbol, short_number
 from regolith_studio.ui.widgets.plots.curves import CurvePlot, PlotCurve
 
 WEIGHTINGS = {

@@ -1,8 +1,7 @@
 """Page "Angle of repose": set up the lifting cylinder, watch it, measure the pile, compare runs."""
 
 from regolith_studio.messages import N_
-from regolith_studio.ui.action_spec import BREAK, PAGE_MENU, ActionSpec
-from regolith_studio.ui.page import Page, PageContext, PageWidget
+from regolith_studio.ui.page import BREAK, PAGE_MENU, ActionSpec, Page, PageContext, PageWidget
 
 
 def build(context: PageContext) -> PageWidget:

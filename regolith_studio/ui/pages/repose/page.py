@@ -30,15 +30,13 @@ from regolith_studio.jobs.repose_jobs import ReposeRun, preview_repose, remeasur
 from regolith_studio.ui.dialogs.folder import FolderDialog
 from regolith_studio.ui.layout import padded, scrolled_column, side_by_side, stacked, tabs
 from regolith_studio.ui.page import PageContext, PageWidget
-from regolith_studio.ui.pages.repose.engine_panel import EnginePanel
 from regolith_studio.ui.pages.repose.export import export_measurement, read_other
 from regolith_studio.ui.pages.repose.player import RunPlayer
-from regolith_studio.ui.pages.repose.runs import RunsPanel
+from regolith_studio.ui.pages.repose.runs import RunsPanel, angle_text, checks_text, duration_text
 from regolith_studio.ui.pages.repose.section_plot import SectionPlot
-from regolith_studio.ui.pages.repose.setup import SetupPanel
+from regolith_studio.ui.pages.repose.setup import EnginePanel, SetupPanel
 from regolith_studio.ui.pages.repose.study import StudyPanel
 from regolith_studio.ui.pages.repose.study_controller import ReposeStudyController
-from regolith_studio.ui.pages.repose.texts import angle_text, checks_text, duration_text
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.labels import remark

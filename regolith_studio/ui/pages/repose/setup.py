@@ -1,23 +1,27 @@
-"""Set-up of a simulation: dataset, number of particles, Tables 1 and 2, engine, evaluation."""
+"""Set-up of a simulation: dataset, number of particles, Tables 1 and 2, engines, evaluation."""
 
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from PySide6.QtCore import QSignalBlocker, Signal
+from PySide6.QtCore import QSignalBlocker, Qt, Signal
 from PySide6.QtWidgets import (
+    QAbstractItemView,
     QComboBox,
     QFormLayout,
     QHBoxLayout,
+    QHeaderView,
     QPushButton,
     QSpinBox,
+    QTableWidget,
+    QTableWidgetItem,
     QVBoxLayout,
     QWidget,
 )
 
 from regolith_studio.dataset.parameters import GRAVITIES, ContactParameters, LiftingCylinderTest
 from regolith_studio.dem.case import ReposeCase
-from regolith_studio.dem.engines import ENGINES, engine_named
+from regolith_studio.dem.engines import CAPABILITY_LABELS, ENGINES, engine_named, engine_rows
 from regolith_studio.dem.evaluation.settings import EvaluationSettings
 from regolith_studio.errors import InputError
 from regolith_studio.jobs.repose_jobs import ReposeRequest
@@ -284,3 +288,28 @@ def _row(*widgets: QWidget) -> QHBoxLayout:
     for widget in widgets:
         row.addWidget(widget)
     return row
+
+
+class EnginePanel(QTableWidget):
+    """A column per engine, a row per property."""
+
+    def __init__(self) -> None:
+        rows = engine_rows()
+        super().__init__(len(CAPABILITY_LABELS) + 1, len(rows))
+        self.setObjectName("repose_engines")
+        self.setAccessibleName(tr("Engines"))
+        self.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
+        self.setSelectionMode(QAbstractItemView.SelectionMode.NoSelection)
+        self.setShowGrid(False)
+        self.setHorizontalHeaderLabels([row["label"] for row in rows])
+        self.setVerticalHeaderLabels([tr("Found"), *map(tr, CAPABILITY_LABELS.values())])
+        for column, row in enumerate(rows):
+            texts = [row["version"] or row["problem"], *(tr(row[key]) for key in CAPABILITY_LABELS)]
+            for at, text in enumerate(texts):
+                item = QTableWidgetItem(text)
+                item.setTextAlignment(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignTop)
+                item.setToolTip(text)
+                self.setItem(at, column, item)
+        self.horizontalHeader().setSectionResizeMode(QHeaderView.ResizeMode.Stretch)
+        self.verticalHeader().setSectionResizeMode(QHeaderView.ResizeMode.ResizeToContents)
+        self.setWordWrap(True)

@@ -21,12 +21,11 @@ from PySide6.QtWidgets import (
 
 from regolith_studio.geometry.mesh_health import MeshHealth
 from regolith_studio.messages import N_
-from regolith_studio.scene.faults import COLOURS
+from regolith_studio.scene.overlays import FAULT_COLOURS
 from regolith_studio.session.results import ParticleEntry
 from regolith_studio.session.sample_table import health_sentences
 from regolith_studio.ui.translation import tr, translate
-from regolith_studio.ui.widgets.labels import WrappedLabel
-from regolith_studio.ui.widgets.number_text import short_number
+from regolith_studio.ui.widgets.labels import WrappedLabel, short_number
 from regolith_studio.ui.widgets.table import FontRowHeight
 
 FINDINGS = (
@@ -52,7 +51,7 @@ KINDS = {
     "degenerate": N_("faces without area"),
     "hidden": N_("hidden from the star point"),
 }
-"""Labels of the faults, in the order of :data:`COLOURS`."""
+"""Labels of the faults, in the order of :data:`FAULT_COLOURS`."""
 DASH = "–"
 
 
@@ -105,10 +104,10 @@ class HealthPanel(QWidget):
 
     def show_legend(self, counts: Mapping[str, int]) -> None:
         """Show the legend of the faults with their numbers of triangles."""
-        found = [(kind, counts[kind]) for kind in COLOURS if counts.get(kind)]
+        found = [(kind, counts[kind]) for kind in FAULT_COLOURS if counts.get(kind)]
         self.legend.setText(
             "&nbsp; ".join(
-                f'<span style="color:{COLOURS[kind]}">&#9632;</span>&nbsp;'
+                f'<span style="color:{FAULT_COLOURS[kind]}">&#9632;</span>&nbsp;'
                 + html.escape(f"{tr(KINDS[kind])} ({count:,})")
                 for kind, count in found
             )

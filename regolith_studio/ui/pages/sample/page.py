@@ -14,7 +14,7 @@ from regolith_studio.io.atomic import write_bytes
 from regolith_studio.io.tables import csv_text
 from regolith_studio.jobs.events import Job
 from regolith_studio.jobs.particle_jobs import find_faults
-from regolith_studio.scene import faults, surfaces
+from regolith_studio.scene import overlays, surfaces
 from regolith_studio.session.results import ParticleEntry
 from regolith_studio.session.sample_table import filter_of, sample_table
 from regolith_studio.ui.layout import equal_parts, side_by_side, stacked, tabs
@@ -214,7 +214,7 @@ class SamplePage(PageWidget):
     def _draw_particle(self, plotter: Any) -> None:
         if self._shown is not None:
             surfaces.show_particle(plotter, self._shown)
-        faults.show_faults(plotter, self._faults if self.health.where.isChecked() else {})
+        overlays.show_faults(plotter, self._faults if self.health.where.isChecked() else {})
 
     def _select(self, name: str) -> None:
         if any(entry.id == name for entry in self._session.particles):

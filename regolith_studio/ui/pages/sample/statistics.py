@@ -23,7 +23,7 @@ from regolith_studio.messages import N_
 from regolith_studio.session.results import ParticleEntry
 from regolith_studio.session.sample_table import UNITS, has_weights, statistics_table
 from regolith_studio.ui.translation import tr
-from regolith_studio.ui.widgets.number_text import short_number
+from regolith_studio.ui.widgets.labels import short_number
 from regolith_studio.ui.widgets.table import FontRowHeight
 
 _WEIGHTING_LABELS = {"number": N_("each counts once"), "volume": N_("weighted by volume")}

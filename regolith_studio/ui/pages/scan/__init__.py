@@ -2,8 +2,7 @@
 
 from regolith_studio.messages import N_
 from regolith_studio.session.file_kinds import FileKind
-from regolith_studio.ui.action_spec import BREAK, PAGE_MENU, ActionSpec
-from regolith_studio.ui.page import Page, PageContext, PageWidget
+from regolith_studio.ui.page import BREAK, PAGE_MENU, ActionSpec, Page, PageContext, PageWidget
 
 
 def build(context: PageContext) -> PageWidget:

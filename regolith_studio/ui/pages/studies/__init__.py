@@ -1,8 +1,7 @@
 """Page "Studies": the paper's figures 3, 7 and 8 for the particles that are open."""
 
 from regolith_studio.messages import N_
-from regolith_studio.ui.action_spec import PAGE_MENU, ActionSpec
-from regolith_studio.ui.page import Page, PageContext, PageWidget
+from regolith_studio.ui.page import PAGE_MENU, ActionSpec, Page, PageContext, PageWidget
 
 
 def build(context: PageContext) -> PageWidget:
