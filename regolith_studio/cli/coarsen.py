@@ -35,16 +35,16 @@ def coarsen(
     from regolith_studio.jobs.coarsening_jobs import coarsen_sample
     from regolith_studio.session.outputs.coarsening import coarsening_document, error_table, write_coarsening
 
-    wish = how.choices(preset, seed=seed, **fineness.changes)
-    order = wish.order
+    choices = how.choices(preset, seed=seed, **fineness.changes)
+    request = choices.coarsening_request
     loaded = reading.read(meshes)
-    done = run_with_progress(coarsen_sample(loaded.particles, order, jobs))
+    done = run_with_progress(coarsen_sample(loaded.particles, request, jobs))
     with staged_folder(output, "coarsen") as stage:
-        write_coarsening(stage, order, done)
+        write_coarsening(stage, request, done)
     failed = [each for each in done if each.coarsened is None]
     print_errors(f"{each.name}: {each.problem}" for each in failed)
     if json:
-        print_json(coarsening_document(order, done))
+        print_json(coarsening_document(request, done))
     else:
         if len(done) > len(failed):
             print_table(error_table(done))

@@ -106,7 +106,7 @@ def build(
     )
     from regolith_studio.session.outputs.coarsening import coarsening_document
 
-    wish = how.choices(preset, seed=seed, **fineness.changes)
+    choices = how.choices(preset, seed=seed, **fineness.changes)
     with usage_errors():
         parse_sizes(sizes)
         chosen = RepresentativesRequest.of(representatives or 10, weighting, size_importance, seed)
@@ -116,13 +116,15 @@ def build(
         population = run_with_progress(measure_population(loaded.particles, jobs))
         curve = run_with_progress(measure_quality(population, chosen))
         write_bytes(quality_curve, csv_text(quality_table(curve)).encode("utf-8"))
-    known = None if wish.preset_modified else wish.preset
+    known = None if choices.preset_modified else choices.preset
     options = DatasetOptions(name, known, overwrite, jobs, chosen if representatives else None, sizes)
-    built = run_with_progress(build_dataset_folder(loaded.particles, wish.order, output, options))
+    built = run_with_progress(
+        build_dataset_folder(loaded.particles, choices.coarsening_request, output, options)
+    )
     failed = [each for each in built.outcomes if each.coarsened is None]
     print_errors(f"{each.name}: {each.problem}" for each in failed)
     if json:
-        print_json({"folder": str(output)} | coarsening_document(wish.order, built.outcomes))
+        print_json({"folder": str(output)} | coarsening_document(choices.coarsening_request, built.outcomes))
     else:
         typer.echo(f"{len(built.dataset)} of {len(loaded.particles)} particles in the dataset {output}")
     raise typer.Exit(exit_code(meshes, loaded, len(failed)))

@@ -47,7 +47,7 @@ def _pictures(done: "RecipeRun") -> tuple[tuple[str, str], ...]:
     if index is None:
         return ()
     particle = done.items.members[index].particle()
-    first = run_with_progress(coarsen_particle(particle, done.choices.order, index))
+    first = run_with_progress(coarsen_particle(particle, done.choices.coarsening_request, index))
     try:
         draw_three_views(particle, first, done.choices, done.folder / PICTURE)
     except RegolithError as error:

@@ -67,9 +67,9 @@ def fit(
 
     with usage_errors():
         Choices(l_max=l_max, seed=seed, level=level)
-        order = FitRequest(l_max, radii)
+        request = FitRequest(l_max, radii)
     loaded = reading.read(meshes)
-    sample = FittedSample.of(loaded.particles, run_with_progress(fit_sample(loaded.particles, order, jobs)))
+    sample = FittedSample.of(loaded.particles, run_with_progress(fit_sample(loaded.particles, request, jobs)))
     print_errors(f"{name}: {sentence}" for name, sentence in sample.failed)
     holes: dict[str, str] = {}
     if sample.fits:

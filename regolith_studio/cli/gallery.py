@@ -49,9 +49,9 @@ def gallery(
 
     wanted = whole_numbers(degrees, 0, FIT_DEGREE)
     with usage_errors():
-        order = FitRequest(max(wanted), radii)
+        request = FitRequest(max(wanted), radii)
     loaded = reading.read(meshes)
-    fits = run_with_progress(fit_sample(loaded.particles, order))
+    fits = run_with_progress(fit_sample(loaded.particles, request))
     drawn: list[str] = []
     failed = 0
     with staged_folder(output, "gallery") as stage:
@@ -65,7 +65,7 @@ def gallery(
             if animation:
                 names.append(f"{particle.name}_degrees.gif")
                 draw_in_process(
-                    _draw_animation, (particle.mesh, fit, range(order.l_max + 1)), stage / names[1]
+                    _draw_animation, (particle.mesh, fit, range(request.l_max + 1)), stage / names[1]
                 )
             drawn += names
     if json:

@@ -128,18 +128,18 @@ def generate(
     from regolith_studio.io.atomic import staged_folder
     from regolith_studio.jobs.model_jobs import GenerationRequest, draw, fit_model, groups_of
     from regolith_studio.session.choices import Choices
-    from regolith_studio.session.outputs.particles import Generated, write_document
+    from regolith_studio.session.outputs.particles import GeneratedParticles, write_document
 
     with usage_errors():
         Choices(level=level or DEFAULT_LEVEL)
-        order = GenerationRequest(model, tuple(values(set_, "setting").items()), l_max, n, seed, size_range)
+        request = GenerationRequest(model, tuple(values(set_, "setting").items()), l_max, n, seed, size_range)
         if format_ not in ("stl", "npz"):
             raise typer.BadParameter(f"The format must be stl or npz, got {format_!r}.")
-    source = shape_source(sources, reading, order, jobs)
+    source = shape_source(sources, reading, request, jobs)
     print_errors(source.notes)
-    fitted = _named(run_with_progress(fit_model(source, order)), names)
-    draws = run_with_progress(draw(fitted, order))
-    made = Generated(source, order, fitted, draws, groups_of(draws, fitted))
+    fitted = _named(run_with_progress(fit_model(source, request)), names)
+    draws = run_with_progress(draw(fitted, request))
+    made = GeneratedParticles(source, request, fitted, draws, groups_of(draws, fitted))
     with staged_folder(output, "generate") as stage:
         extra = _write(stage, made, format_, level_for(draws.l_max) if level is None else level, jobs)
         document = write_document(stage, made, extra)
@@ -159,7 +159,7 @@ def generate(
 def shape_source(
     sources: list[str],
     reading: ReadingOptions,
-    order: "GenerationRequest | None" = None,
+    request: "GenerationRequest | None" = None,
     jobs: int = 1,
 ) -> "ShapeSource":
     """What the arguments of a command name: one fit, card or model, or meshes, which are expanded.
@@ -178,7 +178,7 @@ def shape_source(
     if named:
         return read_shape_source(named[0])
     loaded = reading.read([Path(source) for source in sources])
-    found: ShapeSource = run_with_progress(sample_of_meshes(loaded.particles, fit_request_for(order), jobs))
+    found: ShapeSource = run_with_progress(sample_of_meshes(loaded.particles, fit_request_for(request), jobs))
     return found
 
 

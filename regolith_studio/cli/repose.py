@@ -200,16 +200,16 @@ def run(
     from regolith_studio.jobs.repose_jobs import simulate_prepared
 
     del jobs  # a run is one process
-    order = how.order(
+    request = how.request(
         n_particles=particles,
         coarse_graining=coarse_graining,
         shapes="spheres" if spheres else "polyhedra",
         cohesion=cohesion,
         seed=seed,
     )
-    prepared = prepare(read_dataset(dataset), order.case, dataset_hash(dataset))
+    prepared = prepare(read_dataset(dataset), request.case, dataset_hash(dataset))
     print_errors(scaling_report(prepared).sentences)
-    done = run_with_progress(simulate_prepared(prepared, output, replace(order, overwrite=overwrite)))
+    done = run_with_progress(simulate_prepared(prepared, output, replace(request, overwrite=overwrite)))
     print_errors(run_remarks(done.document))
     if json:
         print_json(done.document)
@@ -247,14 +247,14 @@ def study(
 
     del jobs  # one run after the other, so that what is there already is known
     key, points = _varied(vary)
-    order = how.order(n_particles=particles, seed=seed)
+    request = how.request(n_particles=particles, seed=seed)
     rows = []
     for folder in datasets:
         name = (key if len(datasets) == 1 else f"{key} {folder.name}") if points else "dataset"
         with usage_errors():
-            rows += [ReposeVariant(name, point, folder, with_value(order, key, point)) for point in points]
+            rows += [ReposeVariant(name, point, folder, with_value(request, key, point)) for point in points]
         if not points:
-            rows.append(ReposeVariant(name, folder.name, folder, order))
+            rows.append(ReposeVariant(name, folder.name, folder, request))
     done = run_with_progress(study_repose(rows, output, repeats))
     files = [path.name for path in write_repose_study(done, output)]
     if json:

@@ -56,7 +56,7 @@ class CaseOptions:
     set_: EngineSettings = None
     measure: Measure = None
 
-    def order(self, **case: Any) -> "ReposeRequest":
+    def request(self, **case: Any) -> "ReposeRequest":
         """The order that the options stand for; a wrong one is bad use. `case`: fields of ``ReposeCase``."""
         from regolith_studio.dataset.parameters import ContactParameters, LiftingCylinderTest
         from regolith_studio.dem.case import ReposeCase

@@ -221,7 +221,7 @@ def coarsening(
     choices = how.choices(n_facets=facets, seed=run.seed)
     options = {"rows": _rows(loss, choices, bool(how.weight)), "box_metric": box}
     _, code = run.study(
-        "coarsening_study", study_coarsening, meshes, output, request=choices.order, **options
+        "coarsening_study", study_coarsening, meshes, output, request=choices.coarsening_request, **options
     )
     raise typer.Exit(code)
 
@@ -242,7 +242,9 @@ def solids(
 
     choices = how.choices(n_facets=facets, seed=run.seed)
     rows = _rows(loss, choices, bool(how.weight))
-    _, code = run.study("solids_study", study_gallery, meshes, output, request=choices.order, rows=rows)
+    _, code = run.study(
+        "solids_study", study_gallery, meshes, output, request=choices.coarsening_request, rows=rows
+    )
     raise typer.Exit(code)
 
 
@@ -327,7 +329,7 @@ class VariedOptions:
         choices = self.how.choices(self.preset, n_facets=n_facets, seed=self.run.seed)
         with usage_errors():
             rows = varied_rows(key, choices, values)
-        options = {"request": choices.order, "rows": rows, "box_metric": self.box}
+        options = {"request": choices.coarsening_request, "rows": rows, "box_metric": self.box}
         _, code = self.run.study(f"{key}_study", study_coarsening, meshes, output, **options)
         raise typer.Exit(code)
 

@@ -150,8 +150,8 @@ class Choices(FitOptions):
         return (0, self.largest_error) if self.stop_at == "error" else (self.facet_count, None)
 
     @property
-    def order(self) -> CoarseningRequest:
-        """What is asked of a coarsening."""
+    def coarsening_request(self) -> CoarseningRequest:
+        """The settings of a coarsening."""
         return CoarseningRequest(
             weights=self.weights,
             n_facets=self.facet_count,
@@ -172,7 +172,7 @@ class Choices(FitOptions):
 
 
 class Kind(StrEnum):
-    """What can be asked for; each is a lane of its own, in which the newest request wins."""
+    """Kinds of results; each is a lane of its own, in which the newest request wins."""
 
     FIT = "fit"
     SURFACE = "surface"
@@ -183,9 +183,9 @@ class Kind(StrEnum):
 
 
 LIVE = (Kind.FIT, Kind.SURFACE, Kind.DESCRIPTORS, Kind.COARSENING)
-"""Kinds that follow every change of a choice by themselves."""
+"""Kinds that are recomputed after every change of a choice."""
 STUDIES = (Kind.LMAX_STUDY, Kind.COARSENING_STUDY)
-"""Kinds that wait until they are asked for."""
+"""Kinds that are computed on demand."""
 
 _FIT_OPTIONS = tuple(each.name for each in fields(FitOptions))
 DEPENDS_ON: Mapping[Kind, tuple[str, ...]] = {
@@ -196,7 +196,7 @@ DEPENDS_ON: Mapping[Kind, tuple[str, ...]] = {
     Kind.LMAX_STUDY: (*_FIT_OPTIONS, "level"),
     Kind.COARSENING_STUDY: ("target", "facet_count", "method", "settings", "seed"),
 }
-"""The choices, and what follows from them, that each kind of result depends on."""
+"""The choices, and properties of them, that each kind of result depends on."""
 _COARSENING_OF_FIT = (*_FIT_OPTIONS, "l_max", "level")
 
 _UPSTREAM: Mapping[Kind, tuple[Kind, ...]] = {
@@ -208,7 +208,7 @@ _UPSTREAM: Mapping[Kind, tuple[Kind, ...]] = {
 
 @dataclass(frozen=True)
 class ComputationRequest:
-    """One piece of work, and the kinds whose present results it is made from."""
+    """A kind of result to compute, and the kinds that it is computed from."""
 
     kind: Kind
     needs: tuple[Kind, ...] = ()
@@ -217,15 +217,14 @@ class ComputationRequest:
 def plan(
     before: Choices | None, after: Choices, fitted: Collection[str] = ()
 ) -> tuple[ComputationRequest, ...]:
-    """The work that turning `before` into `after` makes necessary, in the order of dependence.
+    """The results to compute after a change from `before` to `after`, in the order of dependence.
 
     Parameters
     ----------
     before
         ``None`` when nothing has been computed yet.
     fitted
-        Ids of particles whose coefficients by the fit options of `after`, up to degree 30, are at hand;
-        they are not fitted again.
+        Ids of particles whose fit with the options of `after` is cached; they are not fitted again.
     """
     if not after.selected:
         return ()
@@ -244,7 +243,7 @@ def depends(kind: Kind, before: Choices, after: Choices) -> bool:
 
 
 def needs(kind: Kind, choices: Choices) -> tuple[Kind, ...]:
-    """The kinds that a result of `kind` is made from."""
+    """The kinds that a result of `kind` is computed from."""
     if kind is Kind.COARSENING and choices.target == "particle":
         return ()
     return _UPSTREAM.get(kind, ())

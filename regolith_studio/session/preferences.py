@@ -32,18 +32,18 @@ class Preferences(BaseModel):
     units: dict[str, str] = Field(default_factory=dict)
     window: dict[str, Any] = Field(default_factory=dict)
 
-    _known: dict[str, Any] = PrivateAttr(default_factory=dict)
+    _on_disk: dict[str, Any] = PrivateAttr(default_factory=dict)
     """As the file was when it was last read or written."""
 
     @classmethod
     def load(cls, path: Path | None = None) -> Self:
         """Read them; the defaults if there is no file or it is damaged."""
         try:
-            found = cls.model_validate_json((path or preferences_path()).read_bytes())
+            preferences = cls.model_validate_json((path or preferences_path()).read_bytes())
         except (OSError, ValidationError, RecursionError):
             return cls()
-        found._known = found.model_dump(mode="json")
-        return found
+        preferences._on_disk = preferences.model_dump(mode="json")
+        return preferences
 
     def save(self, path: Path | None = None) -> bool:
         """Write what has changed here into the file, which other windows share; whether that was possible."""
@@ -51,17 +51,17 @@ class Preferences(BaseModel):
         try:
             with _locked(target):
                 there = type(self).load(target).model_dump(mode="json")
-                merged = _merged(there, self.model_dump(mode="json"), self._known)
+                merged = _merged(there, self.model_dump(mode="json"), self._on_disk)
                 merged["recent"] = merged["recent"][:RECENT_LIMIT]
                 write_bytes(target, json.dumps(merged, indent=1, sort_keys=True).encode("utf-8"))
         except (OSError, FileError):
             return False
-        self._known = merged
+        self._on_disk = merged
         for name, value in merged.items():
             setattr(self, name, value)
         return True
 
-    def remember_opened(self, path: Path, unit: str) -> None:
+    def add_recent(self, path: Path, unit: str) -> None:
         """Put `path` first among the recent files and `unit` down for its folder."""
         full = os.path.realpath(path)  # Path.resolve() fails on links that go round in circles
         self.recent = (full, *(old for old in self.recent if old != full))[:RECENT_LIMIT]
@@ -87,27 +87,27 @@ def _locked(target: Path) -> Iterator[None]:
     raise FileError(f"Another process is writing to {target}.")
 
 
-def _merged(theirs: Any, ours: Any, known: Any) -> Any:
-    """What `theirs` becomes by the changes that lead from `known` to `ours`."""
+def _merged(theirs: Any, ours: Any, base: Any) -> Any:
+    """What `theirs` becomes by the changes that lead from `base` to `ours`."""
     if isinstance(theirs, dict) and isinstance(ours, dict):
-        before = known if isinstance(known, dict) else {}
+        common = base if isinstance(base, dict) else {}
         return {
-            key: _merged(theirs.get(key, ours.get(key)), ours.get(key, theirs.get(key)), before.get(key))
+            key: _merged(theirs.get(key, ours.get(key)), ours.get(key, theirs.get(key)), common.get(key))
             for key in {**theirs, **ours}
-            if (key in theirs or ours[key] != before.get(key)) and (key in ours or key not in before)
+            if (key in theirs or ours[key] != common.get(key)) and (key in ours or key not in common)
         }
-    if ours == known:
+    if ours == base:
         return theirs
     if isinstance(theirs, list) and isinstance(ours, list):  # recent files
-        opened = _opened_since(known or [], ours)
+        opened = _opened_since(base or [], ours)
         return [*opened, *(each for each in theirs if each not in opened)]
     return ours
 
 
-def _opened_since(known: list[Any], ours: list[Any]) -> list[Any]:
-    """The first of `ours`, behind which the others stand as they did in `known`."""
+def _opened_since(base: list[Any], ours: list[Any]) -> list[Any]:
+    """The first of `ours`, behind which the others stand as they did in `base`."""
     for count in range(len(ours)):
-        rest = [each for each in known if each not in ours[:count]]
+        rest = [each for each in base if each not in ours[:count]]
         if ours[count:] == rest[: len(ours) - count]:
             return ours[:count]
     return ours
@@ -125,15 +125,15 @@ def _folder(path: Path) -> str:
     return str(full if full.is_dir() else full.parent)
 
 
-LONGEST_NAME = 40
-MOST = 200
+MAX_NAME_LENGTH = 40
+MAX_PRESETS = 200
 
 
 class _File(BaseModel):
     presets: dict[str, dict[str, Any]] = Field(default_factory=dict)
 
 
-class OwnPresets:
+class UserPresets:
     """Those of one kind.
 
     A damaged file counts as none, and is replaced at the next saving.
@@ -171,12 +171,12 @@ class OwnPresets:
         FileError
             If the file cannot be written.
         """
-        known = self.all()
-        if not name or len(name) > LONGEST_NAME or not name.isprintable():
-            raise InputError(f"A preset needs a name of 1 to {LONGEST_NAME} characters.")
-        if len(known) >= MOST and name not in known:
-            raise InputError(f"There are {MOST} own presets already; delete one first.")
-        self._write(known | {name: values})
+        presets = self.all()
+        if not name or len(name) > MAX_NAME_LENGTH or not name.isprintable():
+            raise InputError(f"A preset needs a name of 1 to {MAX_NAME_LENGTH} characters.")
+        if len(presets) >= MAX_PRESETS and name not in presets:
+            raise InputError(f"There are {MAX_PRESETS} own presets already; delete one first.")
+        self._write(presets | {name: values})
 
     def remove(self, name: str) -> None:
         """Forget one; harmless if there is none of this name.

@@ -38,21 +38,21 @@ from regolith_studio.shape_models.protocol import FittedModel
 
 @dataclass(frozen=True)
 class SessionRecipe:
-    """A recipe, and what it cannot hold by itself.
+    """The recipe of a session, its model, and the particles that it cannot restore.
 
     Parameters
     ----------
     recipe
-        Of all particles that have an origin; with models beside it, it must be written by :meth:`beside`.
+        Of all particles that have an origin; with models beside it, it must be written by :meth:`recipe_for`.
     model
-        What its population is drawn from, if no shipped card is.
-    lost
-        Ids of the particles that it cannot bring back.
+        Model of its population, if that is not a shipped card.
+    without_source
+        Ids of the particles that it cannot restore.
     """
 
     recipe: Recipe
     model: FittedModel | None = field(default=None, repr=False)
-    lost: tuple[str, ...] = ()
+    without_source: tuple[str, ...] = ()
 
     @classmethod
     def of(
@@ -60,16 +60,18 @@ class SessionRecipe:
         entries: Sequence[ParticleEntry],
         choices: Choices,
         outputs: Outputs | None = None,
-        standing: DatasetRequest | None = None,
+        dataset_request: DatasetRequest | None = None,
     ) -> "SessionRecipe":
-        """Of particles and choices, and of the wish for a dataset; without any particle, of the sample."""
-        wish = standing if standing and (outputs is None or outputs.dataset) else DatasetRequest()
-        placed = [(entry.id, entry.place) for entry in entries]
-        origins = _in_order([place.origin for _, place in placed if place is not None])
+        """Of particles, choices and the dataset asked for; of the sample if there is no particle."""
+        request = (
+            dataset_request if dataset_request and (outputs is None or outputs.dataset) else DatasetRequest()
+        )
+        refs = [(entry.id, entry.ref) for entry in entries]
+        origins = _in_recipe_order([ref.origin for _, ref in refs if ref is not None])
         named = dict(_names(origins))
-        pairs = [(named.get(place), name) for name, place in placed]
+        pairs = [(named.get(ref), name) for name, ref in refs]
         files = [each for each in origins if isinstance(each, FileSource)]
-        drawn = next((each for each in origins if isinstance(each, VirtualSource)), None)
+        virtual = next((each for each in origins if isinstance(each, VirtualSource)), None)
         first = files[0] if files else None
         recipe = Recipe.from_choices(
             choices,
@@ -78,21 +80,21 @@ class SessionRecipe:
             unit=first.unit if first else choices.unit,
             repair=first.repair if first else choices.repair,
             volumes=[each.volume for each in origins if isinstance(each, VolumeSource)],
-            population=drawn.population if drawn else None,
+            population=virtual.population if virtual else None,
             particles=_selection(pairs, list(named.values())),
-            representatives=wish.representatives,
-            exports=wish.exports,
+            representatives=request.representatives,
+            exports=request.exports,
         )
-        lost = tuple(name for known, name in pairs if known is None)
-        return cls(recipe, drawn.model if drawn else None, lost)
+        without_source = tuple(name for run_name, name in pairs if run_name is None)
+        return cls(recipe, virtual.model if virtual else None, without_source)
 
-    def beside(self, path: Path, whole_path: bool = False) -> Recipe:
-        """The recipe as it can be written to `path`; a model is written beside it.
+    def recipe_for(self, path: Path, absolute_path: bool = False) -> Recipe:
+        """The recipe to write to `path`; its model is written beside it.
 
         Parameters
         ----------
-        whole_path
-            Name the model by its whole path: the recipe will lie elsewhere.
+        absolute_path
+            Give the model by its absolute path, because the recipe is written elsewhere.
 
         Raises
         ------
@@ -104,16 +106,16 @@ class SessionRecipe:
             return self.recipe
         model = path.with_name(f"{path.stem}-model.json")
         write_model(model, self.model, {"source": population.name, "notes": []})
-        told = population.model_copy(update={"sources": [str(model) if whole_path else model.name]})
-        return self.recipe.model_copy(update={"population": told})
+        named = population.model_copy(update={"sources": [str(model) if absolute_path else model.name]})
+        return self.recipe.model_copy(update={"population": named})
 
 
-def _in_order(origins: Sequence[ParticleSource]) -> list[ParticleSource]:
-    """As a recipe takes them: the sample, files, volumes, one population."""
+def _in_recipe_order(origins: Sequence[ParticleSource]) -> list[ParticleSource]:
+    """In the order of a recipe: the sample, files, volumes, one population."""
     kinds = (SampleSource, FileSource, VolumeSource, VirtualSource)
-    found = [each for kind in kinds for each in dict.fromkeys(o for o in origins if isinstance(o, kind))]
-    populations = [each for each in found if isinstance(each, VirtualSource)]
-    return [each for each in found if each not in populations[1:]]
+    ordered = [each for kind in kinds for each in dict.fromkeys(o for o in origins if isinstance(o, kind))]
+    populations = [each for each in ordered if isinstance(each, VirtualSource)]
+    return [each for each in ordered if each not in populations[1:]]
 
 
 def _inputs(origins: Sequence[ParticleSource]) -> list[str | FilesEntry]:
@@ -129,10 +131,12 @@ def _selection(
     pairs: Sequence[tuple[str | None, str]], all_names: Sequence[str]
 ) -> list[str | NamedParticle] | None:
     """Names of the particles among all that a run finds; ``None`` where it is all of them in their order."""
-    found = [(known, name) for known, name in pairs if known is not None]
-    if not found or found == [(name, name) for name in all_names]:
+    kept = [(run_name, name) for run_name, name in pairs if run_name is not None]
+    if not kept or kept == [(name, name) for name in all_names]:
         return None
-    return [known if known == name else NamedParticle(name=known, called=name) for known, name in found]
+    return [
+        run_name if run_name == name else NamedParticle(name=run_name, called=name) for run_name, name in kept
+    ]
 
 
 def _names(origins: Sequence[ParticleSource]) -> Iterator[tuple[ParticleRef | None, str]]:
@@ -149,7 +153,7 @@ SUFFIX = ".regolith"
 
 
 class Project(BaseModel):
-    """The recipe that repeats the work, and what a sitting adds to it.
+    """The recipe of a session, and the state of the window.
 
     Parameters
     ----------
@@ -158,9 +162,9 @@ class Project(BaseModel):
     selected
         Id of the particle on screen.
     page
-        Key of the page that was seen.
+        Key of the current page.
     pages
-        What each page keeps, by its key.
+        State of each page, by its key.
     """
 
     model_config = ConfigDict(extra="ignore", frozen=True)
@@ -191,22 +195,22 @@ class Project(BaseModel):
         FileError
             If the file cannot be written.
         """
-        recipe = SessionRecipe(self.recipe, model).beside(path)
+        recipe = SessionRecipe(self.recipe, model).recipe_for(path)
         whole = self.model_copy(update={"recipe": recipe})
         write_bytes(path, whole.model_dump_json(indent=2).encode("utf-8") + b"\n")
 
-    def open_in(self, session: Session, beside: Path) -> int:
-        """Choose what was chosen and read what was open; returns the task's id.
+    def open_in(self, session: Session, base: Path) -> int:
+        """Restore the choices and particles in a session; returns the task's id.
 
         Parameters
         ----------
-        beside
+        base
             Folder that relative inputs are looked up in.
         """
         chosen = self.recipe.choices()
         names = {each.name for each in dataclasses.fields(chosen)} - {"selected"}
         session.choose(**{name: getattr(chosen, name) for name in names})
-        return session.open_recipe(self.recipe, beside)
+        return session.open_recipe(self.recipe, base)
 
 
 def read_project(path: Path) -> Project:
@@ -238,5 +242,5 @@ def input_shown(session: Session) -> str:
 
 
 def without_file(session: Session) -> Sequence[str]:
-    """Ids of open particles that neither a recipe nor a project can bring back."""
-    return list(SessionRecipe.of(session.particles, session.choices).lost)
+    """Ids of open particles that neither a recipe nor a project can restore."""
+    return list(SessionRecipe.of(session.particles, session.choices).without_source)

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 Member = tuple[str, str, str]
-"""A particle that an origin gives: what tells it from the others there, its name and its group."""
+"""A particle of an origin: its key there, its name and its group."""
 
 
 @dataclass(frozen=True)
@@ -32,7 +32,7 @@ class SampleSource:
     """The particles that ship with the program."""
 
     def members(self) -> tuple[Member, ...]:
-        """All that it gives, in order."""
+        """All its particles, in order."""
         return tuple((each.name, each.name, each.group) for each in sample_particles())
 
 
@@ -47,7 +47,7 @@ class FileSource:
     unit
         Of those without one.
     repair
-        Whether what was wrong with meshes was mended.
+        Whether meshes were repaired.
     """
 
     paths: tuple[str, ...]
@@ -56,8 +56,8 @@ class FileSource:
 
     def members(self) -> tuple[Member, ...]:
         """All files that are there now, in order; also those that cannot be read."""
-        found = find_files([Path(path) for path in self.paths], [])
-        return tuple((str(file.path), file.path.stem, file.group) for file in found)
+        files = find_files([Path(path) for path in self.paths], [])
+        return tuple((str(file.path), file.path.stem, file.group) for file in files)
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,12 +68,12 @@ class VolumeSource:
     ----------
     volume
         The file, and all settings.
-    known
+    grains
         Every grain that became a particle, in order.
     """
 
     volume: VolumeEntry
-    known: tuple[Member, ...] = field(repr=False)
+    grains: tuple[Member, ...] = field(repr=False)
 
     @classmethod
     def of(cls, volume: VolumeEntry, particles: Sequence[Particle]) -> "VolumeSource":
@@ -81,8 +81,8 @@ class VolumeSource:
         return cls(volume, tuple((each.name, each.name, each.group) for each in particles))
 
     def members(self) -> tuple[Member, ...]:
-        """All that it gives, in order."""
-        return self.known
+        """All its particles, in order."""
+        return self.grains
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,14 +94,14 @@ class VirtualSource:
     population
         With a name and a seed; its source is a shipped card, or is to be the file of `model`.
     model
-        What they were drawn from, where no card says it.
+        Model that they were drawn from, if it is not a shipped card.
     """
 
     population: Population
     model: "FittedModel | None" = field(default=None, repr=False)
 
     @classmethod
-    def of(cls, drawn: "GenerationResult", fitted: "ModelFitResult", level: int) -> "VirtualSource":
+    def of(cls, generated: "GenerationResult", fitted: "ModelFitResult", level: int) -> "VirtualSource":
         """The origin of particles that were drawn from `fitted`, or from what was edited in it.
 
         Parameters
@@ -111,28 +111,28 @@ class VirtualSource:
         """
         from regolith_studio.shape_models.materials import materials
 
-        name, wish = fitted.source.name, drawn.request
-        shipped = drawn.model is fitted.model and fitted.source.content == materials().get(name)
+        name, request = fitted.source.name, generated.request
+        shipped = generated.model is fitted.model and fitted.source.content == materials().get(name)
         population = Population(
             sources=[name],
-            n=len(drawn.draws),
-            l_max=drawn.model.l_max if shipped else None,
-            size_range=None if wish.size_range is None else list(wish.size_range),
-            seed=wish.seed,
+            n=len(generated.draws),
+            l_max=generated.model.l_max if shipped else None,
+            size_range=None if request.size_range is None else list(request.size_range),
+            seed=request.seed,
             level=level,
-            name=name if shipped else _title(name),
+            name=name if shipped else _file_safe_name(name),
         )
-        return cls(population, None if shipped else drawn.model)
+        return cls(population, None if shipped else generated.model)
 
     def members(self) -> tuple[Member, ...]:
-        """All that it gives, in order."""
+        """All its particles, in order."""
         from regolith_studio.jobs.model_jobs import drawn_names
 
         names = drawn_names(self.population.name, self.population.n)
         return tuple((name, name, "") for name in names)
 
 
-def _title(name: str) -> str:
+def _file_safe_name(name: str) -> str:
     """A name for drawn particles that can stand in the names of files."""
     return re.sub(r"[^\w.+-]+", "_", name).strip("_.")[:40] or "virtual"
 
@@ -142,14 +142,14 @@ ParticleSource = SampleSource | FileSource | VolumeSource | VirtualSource
 
 @dataclass(frozen=True)
 class ParticleRef:
-    """Which particle of an origin one is."""
+    """Reference to one particle of an origin."""
 
     origin: ParticleSource
     key: str
 
 
-def places_of(particles: Sequence[Particle], origin: ParticleSource) -> tuple[ParticleRef, ...]:
-    """Where each of the particles stands that an origin has just given.
+def refs_of(particles: Sequence[Particle], origin: ParticleSource) -> tuple[ParticleRef, ...]:
+    """References of particles that an origin has just given.
 
     Files are told apart by their paths, all others by their names before these were made unique.
     """
@@ -158,8 +158,8 @@ def places_of(particles: Sequence[Particle], origin: ParticleSource) -> tuple[Pa
     return tuple(ParticleRef(origin, each.name) for each in particles)
 
 
-def place_by_source(particle: Particle) -> ParticleRef | None:
-    """Where a particle stands of which only its file is known."""
+def ref_by_source(particle: Particle) -> ParticleRef | None:
+    """Reference of a particle by its file; ``None`` if it has none that can be read again."""
     source = particle.source
     if source is None:
         return None
@@ -171,24 +171,24 @@ def place_by_source(particle: Particle) -> ParticleRef | None:
     return ParticleRef(FileSource((source.path,), source.unit, source.repaired), source.path)
 
 
-MOST = 2000
-"""Virtual particles that are opened at most: each becomes a mesh in memory."""
+MAX_RESTORED = 2000
+"""Maximum number of virtual particles that are opened: each becomes a mesh in memory."""
 
 
 @dataclass(frozen=True)
 class RestoredParticles:
-    """Particles with what a recipe names them by, one place a particle."""
+    """Particles of a recipe, each with its reference."""
 
     loaded: LoadedParticles
-    places: tuple[ParticleRef, ...]
+    refs: tuple[ParticleRef, ...]
 
 
-def restore_particles(recipe: Recipe, beside: Path) -> Steps:
+def restore_particles(recipe: Recipe, base: Path) -> Steps:
     """Read, extract and draw what `recipe` names; returns :class:`RestoredParticles`.
 
     Parameters
     ----------
-    beside
+    base
         Folder that relative files are looked up in.
 
     Raises
@@ -202,37 +202,39 @@ def restore_particles(recipe: Recipe, beside: Path) -> Steps:
     from regolith_studio.session.batch.inputs import BatchInputs
     from regolith_studio.session.batch.preprocessing import prepare_inputs
 
-    if recipe.population is not None and recipe.population.n > MOST:
+    if recipe.population is not None and recipe.population.n > MAX_RESTORED:
         raise InputError(
-            f"{recipe.population.n:,} virtual particles are too many to open; at most {MOST:,}. "
+            f"{recipe.population.n:,} virtual particles are too many to open; at most {MAX_RESTORED:,}. "
             "Run the recipe as a batch."
         )
     with tempfile.TemporaryDirectory(prefix="regolith-") as scratch:
         prepared: PreparedInputs = yield from prepare_inputs(
-            recipe, beside.absolute(), Path(scratch) / "work" / "prepared", Executor(1)
+            recipe, base.absolute(), Path(scratch) / "work" / "prepared", Executor(1)
         )
-        items = BatchInputs.of(recipe, beside.absolute(), prepared)
-        places = _References(recipe, beside.absolute(), prepared)
-        return (yield from _read(items.members, list(items.problems), places))
+        items = BatchInputs.of(recipe, base.absolute(), prepared)
+        refs = _References(recipe, base.absolute(), prepared)
+        return (yield from _read_particles(items.members, list(items.problems), refs))
 
 
-def _read(members: Sequence["BatchInput"], problems: list[FileProblem], places: "_References") -> Steps:
+def _read_particles(
+    members: Sequence["BatchInput"], problems: list[FileProblem], refs: "_References"
+) -> Steps:
     yield Started(N_("Bringing particles back"), len(members))
-    found: list[tuple[Particle, ParticleRef]] = []
+    restored: list[tuple[Particle, ParticleRef]] = []
     for number, item in enumerate(members, start=1):
         try:
-            found.append((item.particle(), places.of(item)))
+            restored.append((item.particle(), refs.of(item)))
         except RegolithError as error:
             problems.append(FileProblem(item.name, str(error)))
         yield Progress(number, len(members), item.name)
-    if not found:
+    if not restored:
         raise FileError(problems[0].sentence if problems else "There is no particle in the recipe.")
-    particles, known = zip(*found, strict=True)
-    return RestoredParticles(LoadedParticles(particles, tuple(problems)), known)
+    particles, found_refs = zip(*restored, strict=True)
+    return RestoredParticles(LoadedParticles(particles, tuple(problems)), found_refs)
 
 
 class _References:
-    """Tells of each item which particle of which origin it is."""
+    """The :class:`ParticleRef` of each input of a recipe."""
 
     def __init__(self, recipe: Recipe, base: Path, prepared: "PreparedInputs") -> None:
         from regolith_studio.session.batch.preprocessing import read_index, resolved
@@ -248,10 +250,10 @@ class _References:
             )
             for entry, folder in zip(recipe.volumes, prepared.volumes, strict=True)
         }
-        self._drawn = _drawn(recipe, prepared)
+        self._virtual = _virtual_source(recipe, prepared)
 
     def of(self, item: "BatchInput") -> ParticleRef:
-        """The place of an item."""
+        """The reference of an input."""
         from regolith_studio.session.batch.inputs import FileInput, GrainInput, SampleInput, VirtualInput
 
         match item:
@@ -259,20 +261,20 @@ class _References:
                 return ParticleRef(self._files[str(file.path)], str(file.path))
             case GrainInput(folder=folder, entry=entry):
                 return ParticleRef(self._volumes[folder], str(entry["name"]))
-            case VirtualInput(index=index) if self._drawn is not None:
-                return ParticleRef(self._drawn, self._drawn.members()[index][0])
+            case VirtualInput(index=index) if self._virtual is not None:
+                return ParticleRef(self._virtual, self._virtual.members()[index][0])
             case SampleInput(original=original):
                 return ParticleRef(SampleSource(), original)
         raise ValueError(f"{item!r} is no item of a recipe")
 
 
-def _drawn(recipe: Recipe, prepared: "PreparedInputs") -> VirtualSource | None:
+def _virtual_source(recipe: Recipe, prepared: "PreparedInputs") -> VirtualSource | None:
     from regolith_studio.session.batch.inputs import model_of, title_of
 
     population = recipe.population
     if population is None:
         return None
-    told = population.model_copy(
+    named = population.model_copy(
         update={
             "name": title_of(population),
             "seed": recipe.seed if population.seed is None else population.seed,
@@ -280,6 +282,6 @@ def _drawn(recipe: Recipe, prepared: "PreparedInputs") -> VirtualSource | None:
         }
     )
     if prepared.model is None:
-        return VirtualSource(told)
-    fitted = told.model_copy(update={"model": "", "settings": {}, "l_max": None})
+        return VirtualSource(named)
+    fitted = named.model_copy(update={"model": "", "settings": {}, "l_max": None})
     return VirtualSource(fitted, model_of(population, prepared.model))

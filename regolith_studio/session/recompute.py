@@ -32,13 +32,13 @@ _EMPTY: Mapping[Kind, Mapping[str, Any]] = {
     Kind.DESCRIPTORS: {"particle_descriptors": None, "fit_descriptors": None, "fit_errors": {}},
     Kind.COARSENING: {"best": None, "coarsening_progress": None, "coarsened": None, "loss_history": ()},
 }
-"""What the results hold of each kind while there is nothing to show."""
-FITS_KEPT = 256
-"""Fits that are at hand when their particle is selected again; 10 kB each."""
+"""Fields of the results of each kind while there is none."""
+MAX_CACHED_FITS = 256
+"""Number of fits that are cached for particles selected again; 10 kB each."""
 
 
-class Owner(Protocol):
-    """What the live results need of their session."""
+class SessionState(Protocol):
+    """The part of :class:`~regolith_studio.session.session.Session` that live results use."""
 
     results: Results
     particles: tuple[ParticleEntry, ...]
@@ -48,70 +48,72 @@ class Owner(Protocol):
     @property
     def selected(self) -> ParticleEntry | None: ...
     def update(self, *events: str, **changes: Any) -> None: ...
-    def tell_failure(self, title: str) -> Callable[[Failed], None]: ...
+    def failure_reporter(self, title: str) -> Callable[[Failed], None]: ...
 
 
 class LiveResults:
-    """Starts each kind of work when it is due and what it needs is there."""
+    """Starts the job of each kind of result when it is due and its inputs are there."""
 
-    def __init__(self, owner: Owner, board: TaskBoard) -> None:
-        self._owner, self._board = owner, board
+    def __init__(self, session: SessionState, board: TaskBoard) -> None:
+        self._session, self._board = session, board
         self._due: set[Kind] = set()
         self._fits: dict[tuple[str, FitOptions], HarmonicFit] = {}
-        self._measured: dict[tuple[str, str], Descriptors] = {}
+        self._particle_descriptors: dict[tuple[str, str], Descriptors] = {}
         self._losses: list[tuple[int, float]] = []
         self._has_shown = False
 
-    def forget(self) -> None:
-        """Drop what is kept of each particle, because ids have got another meaning."""
+    def clear_cache(self) -> None:
+        """Drop cached results, because ids refer to other particles now."""
         self._fits.clear()
-        self._measured.clear()
+        self._particle_descriptors.clear()
 
     def follow(self, before: Choices | None, after: Choices) -> None:
-        """Start, or start anew, what the change makes necessary."""
+        """Start the jobs that a change of choices makes necessary."""
         requests = plan(before, after, {id for id, way in self._fits if way == after.fit_options})
         if before is None or before.selected != after.selected:
-            self._show_nothing(*LIVE)
-        self._take_fit_at_hand(after)
+            self._clear(*LIVE)
+        self._use_cached_fit(after)
         same = before is not None and before.selected == after.selected
         for request in requests:
             if not (same and self._may_finish(request.kind)):
                 self._board.stop_lane(request.kind)
         self._due = {request.kind for request in requests} | (self._due if after.selected else set())
-        results = self._owner.results
+        results = self._session.results
         for kind, made in ((Kind.FIT, results.fit), (Kind.SURFACE, results.surface)):
-            if made is None and not self._is_open(kind):
+            if made is None and not self._is_pending(kind):
                 self._drop_dependents(kind)
         self._advance()
 
-    def _take_fit_at_hand(self, choices: Choices) -> None:
+    def _use_cached_fit(self, choices: Choices) -> None:
         fit = self._fits.get((choices.selected, choices.fit_options))
         if fit is None:
             return
         self._board.stop_lane(Kind.FIT)
         self._due.discard(Kind.FIT)
-        if fit is not self._owner.results.fit:
-            self._owner.update("fit", fit=fit)
+        if fit is not self._session.results.fit:
+            self._session.update("fit", fit=fit)
 
     def _may_finish(self, kind: Kind) -> bool:
-        """Whether older work shall still be shown: else nothing would be seen while a slider is dragged."""
+        """Whether an outdated job may finish and be shown: else nothing would be seen during a drag."""
         return self._board.is_running(kind) and (
             kind is Kind.SURFACE or (kind is Kind.COARSENING and not self._has_shown)
         )
 
-    def _show_nothing(self, *kinds: Kind) -> None:
+    def _clear(self, *kinds: Kind) -> None:
         for kind in kinds:
             self._board.stop_lane(kind)
-            self._owner.update(kind.value, **_EMPTY[kind])
+            self._session.update(kind.value, **_EMPTY[kind])
 
     def _advance(self) -> None:
         for kind in LIVE:
-            waits = self._board.is_running(kind) or any(map(self._is_open, needs(kind, self._owner.choices)))
+            waits = self._board.is_running(kind) or any(
+                map(self._is_pending, needs(kind, self._session.choices))
+            )
             if kind in self._due and not waits:
                 self._due.discard(kind)
                 self._start(kind)
 
-    def _is_open(self, kind: Kind) -> bool:
+    def _is_pending(self, kind: Kind) -> bool:
         return kind in self._due or self._board.is_running(kind)
 
     def _start(self, kind: Kind) -> None:
@@ -122,79 +124,81 @@ class LiveResults:
             self._advance()
 
         def failed(failure: Failed) -> None:
-            if kind in self._due:  # what was asked for meanwhile may well succeed
+            if kind in self._due:  # a newer request may succeed
                 self._advance()
                 return
             self._drop_dependents(kind)
-            self._show_nothing(kind)
-            self._owner.tell_failure(TITLES[kind])(failure)
+            self._clear(kind)
+            self._session.failure_reporter(TITLES[kind])(failure)
 
         reactions = Reactions(finished, partial, failed, lambda: self._drop_dependents(kind))
         self._board.start(kind, TITLES[kind], job, reactions)
 
     def _drop_dependents(self, kind: Kind) -> None:
-        """Give up what is made from `kind`, and show nothing rather than something old."""
+        """Cancel the results that depend on `kind`, and clear them."""
         for other in LIVE:
-            if kind in needs(other, self._owner.choices) and other in self._due:
+            if kind in needs(other, self._session.choices) and other in self._due:
                 self._due.discard(other)
-                self._show_nothing(other)
+                self._clear(other)
                 self._drop_dependents(other)
 
     def _entry(self) -> ParticleEntry:
-        entry = self._owner.selected
+        entry = self._session.selected
         assert entry is not None, "nothing is planned without a selected particle"
         return entry
 
-    def _fit(self) -> "_Work":
-        entry, fit_options = self._entry(), self._owner.choices.fit_options
+    def _fit(self) -> "_JobWithReactions":
+        entry, fit_options = self._entry(), self._session.choices.fit_options
 
         def keep(fit: "HarmonicFit") -> None:
             self._fits[entry.id, fit_options] = fit
-            if len(self._fits) > FITS_KEPT:
+            if len(self._fits) > MAX_CACHED_FITS:
                 del self._fits[next(iter(self._fits))]
-            self._owner.update("fit", fit=fit)
+            self._session.update("fit", fit=fit)
 
         return Job(fit_one, (entry.particle.mesh, FitRequest(fit_options=fit_options))), keep, _ignore
 
-    def _surface(self) -> "_Work":
-        choices = self._owner.choices
-        job = Job(draw_surface, (self._owner.results.fit, choices.l_max, choices.level))
+    def _surface(self) -> "_JobWithReactions":
+        choices = self._session.choices
+        job = Job(draw_surface, (self._session.results.fit, choices.l_max, choices.level))
 
         def keep(mesh: "Mesh") -> None:
-            self._owner.update("surface", surface=mesh, surface_l_max=choices.l_max)
+            self._session.update("surface", surface=mesh, surface_l_max=choices.l_max)
 
         return job, keep, _ignore
 
-    def _descriptors(self) -> "_Work":
-        entry, metric = self._entry(), self._owner.choices.box_metric
-        meshes = {"fit": self._owner.results.surface}
-        if (entry.id, metric) not in self._measured:
+    def _descriptors(self) -> "_JobWithReactions":
+        entry, metric = self._entry(), self._session.choices.box_metric
+        meshes = {"fit": self._session.results.surface}
+        if (entry.id, metric) not in self._particle_descriptors:
             meshes["particle"] = entry.particle.mesh
 
         def keep(described: "dict[str, Descriptors]") -> None:
             fit = described["fit"]
-            particle = self._measured.setdefault((entry.id, metric), described.get("particle", fit))
+            particle = self._particle_descriptors.setdefault(
+                (entry.id, metric), described.get("particle", fit)
+            )
             errors = relative_errors(particle, fit)
-            self._owner.update(
+            self._session.update(
                 "descriptors", particle_descriptors=particle, fit_descriptors=fit, fit_errors=errors
             )
 
         return Job(describe_meshes, (meshes, metric)), keep, _ignore
 
-    def _coarsening(self) -> "_Work":
-        choices, entry = self._owner.choices, self._entry()
-        target = self._owner.results.surface if choices.target == "fit" else entry.particle.mesh
+    def _coarsening(self) -> "_JobWithReactions":
+        choices, entry = self._session.choices, self._entry()
+        target = self._session.results.surface if choices.target == "fit" else entry.particle.mesh
         self._has_shown = False
         self._losses = []
-        self._owner.update("coarsening", coarsened=None, coarsening_progress=None, loss_history=())
-        job = Job(coarsen_one, (target, choices.order, self._owner.particles.index(entry)))
+        self._session.update("coarsening", coarsened=None, coarsening_progress=None, loss_history=())
+        job = Job(coarsen_one, (target, choices.coarsening_request, self._session.particles.index(entry)))
         return job, self._keep_coarsened, self._keep_progress
 
     def _keep_progress(self, step: "CoarseningProgress") -> None:
         self._losses.append((step.step, step.loss))
-        best = step if step.polyhedron else self._owner.results.best
+        best = step if step.polyhedron else self._session.results.best
         history = tuple(self._losses)
-        self._owner.update("coarsening", coarsening_progress=step, best=best, loss_history=history)
+        self._session.update("coarsening", coarsening_progress=step, best=best, loss_history=history)
         self._has_shown = self._has_shown or step.polyhedron is not None
         if self._has_shown and Kind.COARSENING in self._due:
             self._board.stop_lane(Kind.COARSENING)
@@ -202,11 +206,11 @@ class LiveResults:
 
     def _keep_coarsened(self, done: "CoarseningResult") -> None:
         history = tuple(enumerate(done.loss_history))
-        self._owner.update("coarsening", coarsened=done, best=done, loss_history=history)
+        self._session.update("coarsening", coarsened=done, best=done, loss_history=history)
 
 
-_Work = tuple[Job, Callable[[Any], None], Callable[[Any], None]]
+_JobWithReactions = tuple[Job, Callable[[Any], None], Callable[[Any], None]]
 
 
 def _ignore(_value: Any) -> None:
-    """Partial results of work that is over in a moment."""
+    """Listener of partial results of short jobs."""

@@ -28,7 +28,7 @@ class ParticleEntry:
 
     Parameters
     ----------
-    place
+    ref
         Where a recipe finds it again; ``None`` if nowhere.
     visibility
         What its star point cannot see; follows with the health, ``None`` where the mesh has no inside.
@@ -38,7 +38,7 @@ class ParticleEntry:
     particle: Particle
     health: "MeshHealth | None" = None
     descriptors: "Descriptors | None" = None
-    place: "ParticleRef | None" = None
+    ref: "ParticleRef | None" = None
     visibility: "StarPointVisibility | None" = None
 
 

@@ -63,20 +63,20 @@ ENDED = "ended"
 
 @dataclass
 class RecipeRun:
-    """What a recipe has led to.
+    """A recipe while it runs, and its results.
 
     Parameters
     ----------
     folder
-        Where everything is.
+        Folder of the results.
     tally
-        What is known of all particles together.
+        Sums over all particles.
     summary
-        What its page tells.
+        Content of the summary page.
     problems
         One sentence for each file or particle that failed.
     resume
-        Whether studies go on with the answers that are there.
+        Whether studies continue from their checkpoints.
     """
 
     folder: Path
@@ -92,8 +92,8 @@ class RecipeRun:
     @property
     def files(self) -> list[str]:
         """Paths of all results below the folder, relative to it; the journal is none."""
-        found = (path.relative_to(self.folder) for path in self.folder.rglob("*") if path.is_file())
-        return sorted(path.as_posix() for path in found if path.parts[0] != JOURNAL_FOLDER)
+        result = (path.relative_to(self.folder) for path in self.folder.rglob("*") if path.is_file())
+        return sorted(path.as_posix() for path in result if path.parts[0] != JOURNAL_FOLDER)
 
 
 def run_recipe(
@@ -104,10 +104,10 @@ def run_recipe(
     resume: bool = False,
     chunk: int | None = None,
 ) -> Steps:
-    """Do all that `recipe` asks for; returns :class:`RecipeRun`.
+    """Compute and write all outputs of `recipe`; returns :class:`RecipeRun`.
 
-    Particles that fail are told and do not stop the others. Each part of the output appears whole or
-    not at all.
+    Particles that fail are listed in ``problems`` and do not stop the others. Each part of the output is
+    written completely or not at all.
 
     Parameters
     ----------
@@ -118,7 +118,7 @@ def run_recipe(
     workers
         Processes at a time; 0 for one a core. The results do not depend on it.
     resume
-        Whether to go on with a run of the same recipe into the same folder that has not ended.
+        Whether to continue an unfinished run of the same recipe into the same folder.
     chunk
         Particles that are done, written and lost together; by default 1 in small batches and 25 to 200
         in those of 200 or more. The results do not depend on it.
@@ -131,230 +131,235 @@ def run_recipe(
         If no input can be read, the folder cannot be written, or holds an unfinished run that is not to
         be resumed or is of another recipe.
     """
-    choices, place = recipe.choices(), folder / JOURNAL_FOLDER
+    choices, journal = recipe.choices(), folder / JOURNAL_FOLDER
     if folder.exists() and not folder.is_dir():
         raise FileError(f"{folder} is a file; name a folder for the results.")
-    checkpoint = place / CHECKPOINT
-    over = checkpoint.exists() and read_note(checkpoint, ENDED) is not None
-    if checkpoint.exists() and not (over or resume):
+    checkpoint = journal / CHECKPOINT
+    finished = checkpoint.exists() and read_note(checkpoint, ENDED) is not None
+    if checkpoint.exists() and not (finished or resume):
         raise FileError(
-            f"{folder} holds a run that has not ended; go on with --resume, or remove {place} to begin anew."
+            f"{folder} holds a run that has not ended; go on with --resume, or remove {journal} "
+            "to begin anew."
         )
     if recipe.population is not None:
         _check_size(recipe, recipe.population.n)
     with open_executor(workers) as executor:
         prepared: PreparedInputs = yield from prepare_inputs(
-            recipe, base, place / PREPARED_FOLDER, executor, over=over and resume
+            recipe, base, journal / PREPARED_FOLDER, executor, finished=finished and resume
         )
-        done = RecipeRun(folder, recipe, choices, BatchInputs.of(recipe, base, prepared), resume=resume)
-        _check(done)
-        batch = _opened(done, resume, chunk)
+        run = RecipeRun(folder, recipe, choices, BatchInputs.of(recipe, base, prepared), resume=resume)
+        _check_inputs(run)
+        batch = _open_batch(run, resume, chunk)
         with batch.checkpoint:
             if (ended := batch.checkpoint.note(ENDED)) is not None:
-                done.problems = ended
-                return done
-            yield from _worked(done, batch, executor)
-            yield from _assembled(done, batch)
-            _tell_of_volumes(done, prepared)
-            yield from _whole(done, executor)
+                run.problems = ended
+                return run
+            yield from _process_particles(run, batch, executor)
+            yield from _write_results(run, batch)
+            _write_volume_documents(run, prepared)
+            yield from _process_sample(run, executor)
             if recipe.outputs.summary:
-                write_summary(folder, done.recipe, done.summary, done.studies, done.problems)
+                write_summary(folder, run.recipe, run.summary, run.studies, run.problems)
             write_bytes(folder / "recipe.json", recipe.to_json().encode("utf-8"))
-            batch.checkpoint.remove_records(**{ENDED: done.problems})
+            batch.checkpoint.remove_records(**{ENDED: run.problems})
             clear_prepared_inputs(prepared)
-    return done
+    return run
 
 
-def _check(done: RecipeRun) -> None:
-    """Refuse before the work what could not be done after it."""
-    if not done.items.members:
-        sentences = [problem.sentence for problem in done.items.problems]
+def _check_inputs(run: RecipeRun) -> None:
+    """Check before the work what would fail after it."""
+    if not run.items.members:
+        sentences = [problem.sentence for problem in run.items.problems]
         raise FileError(sentences[0] if sentences else "There is no file to read.")
-    _check_size(done.recipe, len(done.items.members))
-    check_dataset_request(done.recipe, len(done.items.members))
+    _check_size(run.recipe, len(run.items.members))
+    check_dataset_request(run.recipe, len(run.items.members))
 
 
 def _check_size(recipe: Recipe, n_particles: int) -> None:
-    """Refuse a dataset that could not be read again."""
+    """Raise an error for a dataset that would be too large to be read."""
     if recipe.outputs.dataset:
-        wish = recipe.representatives
-        check_count(wish.count if wish and wish.count else n_particles, recipe.choices().order.max_facets)
+        count = recipe.representatives.count if recipe.representatives else 0
+        check_count(count or n_particles, recipe.choices().coarsening_request.max_facets)
 
 
-def _opened(done: RecipeRun, resume: bool, chunk: int | None) -> Batch:
-    """The batch of the recipe, begun or taken up again."""
-    items, place = done.items, done.folder / JOURNAL_FOLDER / CHECKPOINT
+def _open_batch(run: RecipeRun, resume: bool, chunk: int | None) -> Batch:
+    """The batch of the recipe, new or resumed."""
+    items, journal = run.items, run.folder / JOURNAL_FOLDER / CHECKPOINT
     inputs = "\n".join(items.fingerprints()).encode("utf-8", "surrogateescape")
     subject = {
-        "recipe": done.recipe.model_dump(mode="json"),
+        "recipe": run.recipe.model_dump(mode="json"),
         "set of input files": hashlib.sha256(inputs).hexdigest(),
         "set of program versions": software_versions(),
     }
-    if resume and place.exists():
-        return Batch.resume(place, len(items.members), subject)
-    return Batch.create(place, len(items.members), subject, chunk)
+    if resume and journal.exists():
+        return Batch.resume(journal, len(items.members), subject)
+    return Batch.create(journal, len(items.members), subject, chunk)
 
 
-def _worked(done: RecipeRun, batch: Batch, executor: Executor) -> Part:
-    wish = done.recipe.outputs
-    shapes = wish.dataset and done.recipe.representatives is None
-    coarse = wish.meshes or shapes or wish.summary
-    asked = ParticleTask(
-        measure=wish.descriptors or wish.summary,
-        fit=wish.fits,
-        order=done.choices.order if coarse else None,
+def _process_particles(run: RecipeRun, batch: Batch, executor: Executor) -> Part:
+    outputs = run.recipe.outputs
+    shapes = outputs.dataset and run.recipe.representatives is None
+    needs_polyhedra = outputs.meshes or shapes or outputs.summary
+    task = ParticleTask(
+        measure=outputs.descriptors or outputs.summary,
+        fit=outputs.fits,
+        coarsening=run.choices.coarsening_request if needs_polyhedra else None,
         shapes=shapes,
-        box_metric=done.choices.box_metric,
-        fit_options=done.choices.fit_options,
+        box_metric=run.choices.box_metric,
+        fit_options=run.choices.fit_options,
     )
-    members = done.items.members
-    yield from compile_first_for(done.choices.method if coarse else "")
+    members = run.items.members
+    yield from compile_first_for(run.choices.method if needs_polyhedra else "")
     yield Started(N_("Working on particles"), len(members))
     yield from run_batch(
         batch,
-        lambda chunk: Job(process_particles, (tuple((i, members[i]) for i in chunk), asked)),
+        lambda chunk: Job(process_particles, (tuple((i, members[i]) for i in chunk), task)),
         executor,
         n_failures,
     )
 
 
-def _assembled(done: RecipeRun, batch: Batch) -> Part:
-    """Turn what is on disk into the files that were asked for."""
-    wish = done.recipe.outputs
+def _write_results(run: RecipeRun, batch: Batch) -> Part:
+    """Write the output files from the checkpoint."""
+    outputs = run.recipe.outputs
     yield Started(N_("Writing the results"), batch.n_items)
-    _tally(done, batch)
+    _count_results(run, batch)
     with contextlib.ExitStack() as stack:
-        sinks: list[ResultWriter] = [
-            done.summary,
-            stack.enter_context(failure_writer(done.folder)),
-            stack.enter_context(time_writer(done.folder / JOURNAL_FOLDER / "times.csv")),
+        writers: list[ResultWriter] = [
+            run.summary,
+            stack.enter_context(failure_writer(run.folder)),
+            stack.enter_context(time_writer(run.folder / JOURNAL_FOLDER / "times.csv")),
         ]
-        if wish.descriptors:
-            sinks.append(stack.enter_context(descriptor_writer(done.folder)))
-        if wish.meshes:
-            sinks.append(stack.enter_context(mesh_writer(done.folder / "meshes", done.choices.order)))
-        if wish.fits:
-            sinks.append(stack.enter_context(fit_writer(done.folder / "fit.json")))
-        for record in _records(done, batch):
-            for sink in sinks:
-                sink.add(record)
+        if outputs.descriptors:
+            writers.append(stack.enter_context(descriptor_writer(run.folder)))
+        if outputs.meshes:
+            writers.append(
+                stack.enter_context(mesh_writer(run.folder / "meshes", run.choices.coarsening_request))
+            )
+        if outputs.fits:
+            writers.append(stack.enter_context(fit_writer(run.folder / "fit.json")))
+        for record in _records(run, batch):
+            for writer in writers:
+                writer.add(record)
             yield Progress(record.index + 1, batch.n_items, record.values["name"])
-    if wish.dataset and done.recipe.representatives is None:
-        _write_dataset(done, batch)
+    if outputs.dataset and run.recipe.representatives is None:
+        _write_dataset(run, batch)
 
 
-def _tally(done: RecipeRun, batch: Batch) -> None:
-    for record in _records(done, batch):
-        done.tally.add(record)
-    done.problems += [problem.with_path for problem in done.items.problems]
-    done.problems += done.tally.unread + done.tally.problems
-    if not done.tally.n_read:
+def _count_results(run: RecipeRun, batch: Batch) -> None:
+    for record in _records(run, batch):
+        run.tally.add(record)
+    run.problems += [problem.with_path for problem in run.items.problems]
+    run.problems += run.tally.unread + run.tally.problems
+    if not run.tally.n_read:
         batch.checkpoint.close()
-        shutil.rmtree(done.folder / JOURNAL_FOLDER, ignore_errors=True)
+        shutil.rmtree(run.folder / JOURNAL_FOLDER, ignore_errors=True)
         with contextlib.suppress(OSError):
-            done.folder.rmdir()
-        raise FileError(done.tally.unread[0])
+            run.folder.rmdir()
+        raise FileError(run.tally.unread[0])
 
 
-def _records(done: RecipeRun, batch: Batch) -> Iterator[CheckpointRecord]:
-    """What is known of each particle; those that ended their process get a name."""
+def _records(run: RecipeRun, batch: Batch) -> Iterator[CheckpointRecord]:
+    """The record of each particle; those whose process died get a name and a failure."""
     for record in batch.checkpoint.records():
         if LOST in record.values:
             failures = [{"stage": LOST, "reason": record.values[LOST]}]
-            name = done.items.members[record.index].name
+            name = run.items.members[record.index].name
             record = dataclasses.replace(record, values={"name": name, "group": "", "failures": failures})
         yield record
 
 
-def _tell_of_volumes(done: RecipeRun, prepared: PreparedInputs) -> None:
-    """Write beside the results how the grains of each volume were found, and which were left out."""
+def _write_volume_documents(run: RecipeRun, prepared: PreparedInputs) -> None:
+    """Write how the grains of each volume were extracted, and which were left out."""
     taken: set[str] = set()
-    if done.recipe.volumes:
-        (done.folder / "volumes").mkdir(exist_ok=True)
-    for entry, source in zip(done.recipe.volumes, prepared.volumes, strict=True):
+    if run.recipe.volumes:
+        (run.folder / "volumes").mkdir(exist_ok=True)
+    for entry, source in zip(run.recipe.volumes, prepared.volumes, strict=True):
         name = unique_name(Path(entry.file).stem, "", taken)
-        write_bytes(done.folder / "volumes" / f"{name}.json", (source / EXTRACTION).read_bytes())
+        write_bytes(run.folder / "volumes" / f"{name}.json", (source / EXTRACTION).read_bytes())
 
 
-def _write_dataset(done: RecipeRun, batch: Batch) -> None:
+def _write_dataset(run: RecipeRun, batch: Batch) -> None:
     try:
         write_stored(
-            done.folder / "dataset",
+            run.folder / "dataset",
             lambda: shapes_of(batch),
-            done.tally.n_coarse,
-            name=done.folder.resolve().name,
-            provenance=dataset_provenance(done.tally.fitted, done.choices.order, _preset(done)),
+            run.tally.n_coarse,
+            name=run.folder.resolve().name,
+            provenance=dataset_provenance(run.tally.fitted, run.choices.coarsening_request, _preset(run)),
         )
     except RegolithError as error:
-        if done.tally.n_coarse:
+        if run.tally.n_coarse:
             raise
-        done.problems.append(f"There is no dataset, because no particle could be coarsened. ({error})")
+        run.problems.append(f"There is no dataset, because no particle could be coarsened. ({error})")
 
 
-def _preset(done: RecipeRun) -> str | None:
-    return None if done.choices.preset_modified else done.choices.preset
+def _preset(run: RecipeRun) -> str | None:
+    return None if run.choices.preset_modified else run.choices.preset
 
 
-def _whole(done: RecipeRun, executor: Executor) -> Part:
-    """What needs all particles at the same time: representatives and studies; then the exports."""
-    recipe, wish, there = done.recipe, done.recipe.outputs, done.tally.n_coarse > 0
-    if recipe.representatives or wish.lmax_study or wish.coarsening_study:
-        particles = yield from _read(done)
+def _process_sample(run: RecipeRun, executor: Executor) -> Part:
+    """The steps that need all particles at the same time: representatives and studies; then the exports."""
+    recipe, outputs, has_dataset = run.recipe, run.recipe.outputs, run.tally.n_coarse > 0
+    if recipe.representatives or outputs.lmax_study or outputs.coarsening_study:
+        particles = yield from _read_particles(run)
         if recipe.representatives is not None:
-            there = yield from _represented(done, recipe.representatives, particles, executor)
-        yield from _studied(done, particles, executor)
-    if recipe.exports is not None and there:
+            has_dataset = yield from _build_dataset(run, recipe.representatives, particles, executor)
+        yield from _run_studies(run, particles, executor)
+    if recipe.exports is not None and has_dataset:
         try:
-            yield from export_dataset_step(recipe.exports, recipe.seed, done.folder)
+            yield from export_dataset_step(recipe.exports, recipe.seed, run.folder)
         except RegolithError as error:
-            done.problems.append(str(error))
+            run.problems.append(str(error))
 
 
-def _represented(
-    done: RecipeRun, wish: Representatives, particles: list[Particle], executor: Executor
+def _build_dataset(
+    run: RecipeRun, outputs: Representatives, particles: list[Particle], executor: Executor
 ) -> Generator[Step, None, bool]:
-    """Write the dataset of those that stand for all; whether that was possible."""
+    """Write the dataset of the representatives; returns whether that was possible."""
     try:
         built = yield from build_dataset_step(
-            done.recipe, wish, particles, done.choices.order, _preset(done), done.folder, executor
+            run.recipe, outputs, particles, run.choices.coarsening_request, _preset(run), run.folder, executor
         )
     except RegolithError as error:
-        done.problems.append(f"There is no dataset. ({error})")
+        run.problems.append(f"There is no dataset. ({error})")
         return False
     failed = [f"{each.name}: {each.problem}" for each in built.outcomes if each.coarsened is None]
-    done.problems += [sentence for sentence in failed if sentence not in done.problems]
+    run.problems += [sentence for sentence in failed if sentence not in run.problems]
     return True
 
 
-def _studied(done: RecipeRun, particles: list[Particle], executor: Executor) -> Part:
-    wish, choices = done.recipe.outputs, done.choices
-    if wish.lmax_study:
+def _run_studies(run: RecipeRun, particles: list[Particle], executor: Executor) -> Part:
+    outputs, choices = run.recipe.outputs, run.choices
+    if outputs.lmax_study:
         lmax = partial(study_lmax, particles, executor, choices.seed, fit_options=choices.fit_options)
-        yield from _study(done, "lmax_study", lmax)
-    if wish.coarsening_study:
-        yield from _study(
-            done, "coarsening_study", partial(study_coarsening, particles, choices.order, executor)
+        yield from _run_study(run, "lmax_study", lmax)
+    if outputs.coarsening_study:
+        yield from _run_study(
+            run,
+            "coarsening_study",
+            partial(study_coarsening, particles, choices.coarsening_request, executor),
         )
 
 
-def _read(done: RecipeRun) -> Generator[Step, None, list[Particle]]:
+def _read_particles(run: RecipeRun) -> Generator[Step, None, list[Particle]]:
     """All particles that can be read, which a study needs at the same time."""
-    yield Started(N_("Reading particles"), len(done.items.members))
-    found: list[Particle] = []
-    for number, item in enumerate(done.items.members, start=1):
+    yield Started(N_("Reading particles"), len(run.items.members))
+    result: list[Particle] = []
+    for number, item in enumerate(run.items.members, start=1):
         with contextlib.suppress(RegolithError):
-            found.append(item.particle())
-        yield Progress(number, len(done.items.members), item.name)
-    return found
+            result.append(item.particle())
+        yield Progress(number, len(run.items.members), item.name)
+    return result
 
 
-def _study(done: RecipeRun, name: str, study: Callable[..., Steps]) -> Part:
-    with StudyCheckpoint(done.folder / JOURNAL_FOLDER / f"{name}.sqlite", done.resume) as answers:
+def _run_study(run: RecipeRun, name: str, study: Callable[..., Steps]) -> Part:
+    with StudyCheckpoint(run.folder / JOURNAL_FOLDER / f"{name}.sqlite", run.resume) as answers:
         try:
-            found = yield from study(answers=answers)
+            result = yield from study(answers=answers)
         except RegolithError as error:
-            done.problems.append(str(error))
+            run.problems.append(str(error))
             return
-        done.studies.append(name)
-        with staged_folder(done.folder / "studies", name) as stage:
-            STUDIES[name].write(found, stage)
+        run.studies.append(name)
+        with staged_folder(run.folder / "studies", name) as stage:
+            STUDIES[name].write(result, stage)

@@ -26,8 +26,8 @@ from regolith_studio.session.provenance import (
     ParticleSource,
     RestoredParticles,
     SampleSource,
-    place_by_source,
-    places_of,
+    ref_by_source,
+    refs_of,
     restore_particles,
 )
 from regolith_studio.session.recipe import SAMPLE, DatasetRequest, Recipe
@@ -38,7 +38,7 @@ from regolith_studio.session.tasks import Reactions, Task, TaskBoard
 
 
 class Session:
-    """One sitting of one user; belongs to the thread that made it.
+    """Particles, choices and results of one user; belongs to the thread that made it.
 
     Parameters
     ----------
@@ -50,13 +50,13 @@ class Session:
     Attributes
     ----------
     events
-        What can be listened to.
+        Signals of the session.
     particles, results
         All that is open, and what has been computed of the selected particle.
     runs_folder
-        Where simulations are kept.
+        Folder of the simulations.
     dataset_request
-        What a recipe of this session says of its dataset; ``None`` before representatives are chosen.
+        Dataset settings of a recipe of this session; ``None`` before representatives are chosen.
     """
 
     def __init__(self, runner: Runner, choices: Choices | None = None) -> None:
@@ -78,7 +78,7 @@ class Session:
 
     @property
     def choices(self) -> Choices:
-        """What the user wants at present."""
+        """The present choices."""
         return self._history.value
 
     @property
@@ -139,7 +139,7 @@ class Session:
         add
             Keep the particles that are open already.
         repair
-            Whether what is wrong with meshes is mended; as chosen if left out.
+            Whether meshes are repaired; as chosen if left out.
         """
         unit = unit or self.choices.unit
         repair = self.choices.repair if repair is None else repair
@@ -151,26 +151,26 @@ class Session:
         """Load the particles that ship with the program; returns the task's id."""
         return self._load(N_("Reading the sample"), Job(load_sample), SampleSource())
 
-    def open_recipe(self, recipe: Recipe, beside: Path) -> int:
-        """Bring the particles of a recipe into the session, read, extracted or drawn; returns the task's id.
+    def open_recipe(self, recipe: Recipe, base: Path) -> int:
+        """Restore the particles of a recipe: read, extract or draw them; returns the task's id.
 
         Parameters
         ----------
-        beside
+        base
             Folder that relative files are looked up in.
         """
         if recipe.only_files and recipe.inputs == [SAMPLE]:
             return self.open_sample()
         if recipe.only_files and len(recipe.openings) == 1 and SAMPLE not in recipe.inputs:
             ((files, unit, repair),) = recipe.openings
-            return self.open([beside / file for file in files], unit, repair=repair)
+            return self.open([base / file for file in files], unit, repair=repair)
 
-        def take(brought: RestoredParticles) -> None:
-            self._replace_particles(brought.loaded, brought.places)
+        def take(restored: RestoredParticles) -> None:
+            self._replace_particles(restored.loaded, restored.refs)
 
         title = N_("Bringing particles back")
-        job = Job(restore_particles, (recipe, beside))
-        return self._board.start("load", title, job, Reactions(take, failed=self.tell_failure(title)))
+        job = Job(restore_particles, (recipe, base))
+        return self._board.start("load", title, job, Reactions(take, failed=self.failure_reporter(title)))
 
     def keep(self, ids: Collection[str]) -> None:
         """Close all particles but these.
@@ -184,17 +184,17 @@ class Session:
         if not kept:
             raise InputError("There are no particles to keep.")
         loaded = LoadedParticles(tuple(entry.particle for entry in kept))
-        self._replace_particles(loaded, tuple(entry.place for entry in kept))
+        self._replace_particles(loaded, tuple(entry.ref for entry in kept))
 
     def adopt(
         self, particles: Sequence[Particle], add: bool = False, origin: ParticleSource | None = None
     ) -> None:
-        """Take particles that have been made elsewhere, as if they had been read.
+        """Open particles that were made elsewhere, as if they had been read.
 
         Parameters
         ----------
         origin
-            How a recipe makes these again.
+            How a recipe restores them.
         add
             Keep the particles that are open already.
 
@@ -205,8 +205,8 @@ class Session:
         """
         if not particles:
             raise InputError("There are no particles to open.")
-        places = places_of(particles, origin) if origin else ()
-        self._replace_particles(LoadedParticles(tuple(particles)), places, add)
+        refs = refs_of(particles, origin) if origin else ()
+        self._replace_particles(LoadedParticles(tuple(particles)), refs, add)
 
     def select(self, id: str) -> None:
         """Put another particle on screen."""
@@ -235,22 +235,22 @@ class Session:
         self._follow(before)
 
     def end_step(self) -> None:
-        """Say that a slider was let go."""
+        """End the undo step of a drag: a slider was released."""
         self._history.end_step()
 
     def undo(self) -> None:
-        """Take the last step back."""
+        """Undo the last step."""
         before = self.choices
         self._history.undo()
         self._follow(before)
 
     def redo(self) -> None:
-        """Take it again."""
+        """Redo the last step that was undone."""
         before = self.choices
         self._history.redo()
         self._follow(before)
 
-    # --- work that is asked for ----------------------------------------------------------------
+    # --- studies, exports and other jobs ----------------------------------------------------------------
 
     def start_study(self, kind: Kind | str, **options: Any) -> int:
         """Run ``lmax_study`` or ``coarsening_study`` over all open particles; returns the task's id.
@@ -269,28 +269,31 @@ class Session:
             self.update(kind.value, **{kind.value: value})
             self._mark_outdated()
 
-        reactions = Reactions(show, partial=show, failed=self.tell_failure(job.title))
+        reactions = Reactions(show, partial=show, failed=self.failure_reporter(job.title))
         return self._board.start(kind, job.title, job.job, reactions)
 
     def export_dataset(self, folder: Path | str, options: DatasetOptions | None = None) -> int:
         """Coarsen every open particle with the present choices and write the dataset folder.
 
-        Returns the task's id; ``events.exported`` tells when it is done, ``events.problems`` which
-        particles are not in it.
+        Returns the task's id; ``events.exported`` is emitted when it is done, ``events.problems``
+        with the particles that are not in it.
         """
-        wish = options or DatasetOptions()
-        if wish.preset is None and not self.choices.preset_modified:
-            wish = dataclasses.replace(wish, preset=self.choices.preset)
-        job = Job(build_dataset_folder, (self._open_particles(), self.choices.order, Path(folder), wish))
+        options = options or DatasetOptions()
+        if options.preset is None and not self.choices.preset_modified:
+            options = dataclasses.replace(options, preset=self.choices.preset)
+        job = Job(
+            build_dataset_folder,
+            (self._open_particles(), self.choices.coarsening_request, Path(folder), options),
+        )
 
-        def tell(built: DatasetBuildResult) -> None:
+        def report(built: DatasetBuildResult) -> None:
             failed = tuple(FileProblem(o.name, o.problem) for o in built.outcomes if not o.coarsened)
             if failed:
                 self.events.problems.emit(failed)
             self.events.exported.emit(built.folder)
 
         title = N_("Building the dataset")
-        return self._board.start("export", title, job, Reactions(tell, failed=self.tell_failure(title)))
+        return self._board.start("export", title, job, Reactions(report, failed=self.failure_reporter(title)))
 
     def run(
         self,
@@ -307,13 +310,13 @@ class Session:
         Parameters
         ----------
         finished, partial, failed, stopped
-            Called in this thread while no newer job has taken the lane; a failure that nobody takes
-            care of is emitted as ``events.failed``.
+            Called in this thread while no newer job has taken the lane; without `failed`, a failure
+            is emitted as ``events.failed``.
         """
         reactions = Reactions(
             finished,
             partial or (lambda _value: None),
-            failed or self.tell_failure(title),
+            failed or self.failure_reporter(title),
             stopped or (lambda: None),
         )
         return self._board.start(lane, title, job, reactions)
@@ -326,9 +329,9 @@ class Session:
         """Stop one task; harmless if it has ended."""
         self._board.cancel(task_id)
 
-    def pause(self, task_id: int, held: bool = True) -> None:
-        """Hold one task back between two of its steps, or let it go on; harmless if that cannot be done."""
-        (self._board.pause if held else self._board.resume)(task_id)
+    def pause(self, task_id: int, paused: bool = True) -> None:
+        """Pause one task between two of its steps, or resume it; no effect if that is impossible."""
+        (self._board.pause if paused else self._board.resume)(task_id)
 
     def close(self) -> None:
         """Stop everything and wait for it."""
@@ -344,13 +347,13 @@ class Session:
         for name in events:
             getattr(self.events, name).emit()
 
-    def tell_failure(self, title: str) -> Any:
-        """A reaction that tells a failure of the work called `title`."""
+    def failure_reporter(self, title: str) -> Any:
+        """A reaction that emits a failure of the work called `title`."""
 
-        def tell(failure: Failed) -> None:
+        def report(failure: Failed) -> None:
             self.events.failed.emit(Failure(title, failure.sentence, failure.details))
 
-        return tell
+        return report
 
     def _open_particles(self) -> tuple[Particle, ...]:
         if not self.particles:
@@ -374,24 +377,24 @@ class Session:
 
     def _load(self, title: str, job: Job, origin: ParticleSource, add: bool = False) -> int:
         def take(loaded: LoadedParticles) -> None:
-            self._replace_particles(loaded, places_of(loaded.particles, origin), add)
+            self._replace_particles(loaded, refs_of(loaded.particles, origin), add)
 
-        return self._board.start("load", title, job, Reactions(take, failed=self.tell_failure(title)))
+        return self._board.start("load", title, job, Reactions(take, failed=self.failure_reporter(title)))
 
     def _replace_particles(
-        self, loaded: LoadedParticles, places: Sequence[ParticleRef | None] = (), add: bool = False
+        self, loaded: LoadedParticles, refs: Sequence[ParticleRef | None] = (), add: bool = False
     ) -> None:
         if loaded.problems:
             self.events.problems.emit(loaded.problems)
         kept = self.particles if add else ()
         fresh = unique_names(loaded.particles, [entry.id for entry in kept])
-        known = places or [place_by_source(particle) for particle in loaded.particles]
+        found_refs = refs or [ref_by_source(particle) for particle in loaded.particles]
         self.particles = kept + tuple(
-            ParticleEntry(particle.name, particle, place=place)
-            for particle, place in zip(fresh, known, strict=True)
+            ParticleEntry(particle.name, particle, ref=ref)
+            for particle, ref in zip(fresh, found_refs, strict=True)
         )
         first = self.particles[len(kept)].id
-        self._live.forget()
+        self._live.clear_cache()
         self._studied.clear()
         self._history.restart(self.choices.replaced(selected=first))
         self.update(
@@ -418,5 +421,5 @@ class Session:
 
         job = Job(measure_particles, (self._open_particles(),))
         title = N_("Measuring particles")
-        reactions = Reactions(note, partial=note, failed=self.tell_failure(title))
+        reactions = Reactions(note, partial=note, failed=self.failure_reporter(title))
         self._board.start("inspect", title, job, reactions)

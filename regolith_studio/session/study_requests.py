@@ -88,7 +88,7 @@ def study_job(
                 ),
             )
         case Kind.COARSENING_STUDY:
-            job = Job(study_coarsening, (tuple(particles), choices.order), options)
+            job = Job(study_coarsening, (tuple(particles), choices.coarsening_request), options)
             return StudyJob(N_("RMSRE against loss weights"), job)
         case _:
             raise InputError(f"There is no study called {kind}.")

@@ -1,4 +1,4 @@
-"""The work that is under way: numbered, listed, cancellable, the newest of each lane."""
+"""The running tasks: numbered, listed, cancellable; each lane holds the newest one."""
 
 import dataclasses
 from collections.abc import Callable
@@ -11,9 +11,9 @@ from regolith_studio.jobs.runners import Handle, Pausable, Runner
 
 @dataclass(frozen=True)
 class Task:
-    """One request under way; `total` is 0 while its length is not known.
+    """One running job; `total` is 0 while its length is unknown.
 
-    `pausable` says whether it can be held back between two of its steps, `paused` whether it is.
+    `pausable` says whether it can be paused between two of its steps, `paused` whether it is.
     """
 
     id: int
@@ -28,7 +28,7 @@ class Task:
 
 @dataclass(frozen=True)
 class Reactions:
-    """What to do with what a task says; called only while it is the newest of its lane."""
+    """Callbacks for the events of a task; called only while it is the newest of its lane."""
 
     finished: Callable[[Any], None]
     partial: Callable[[Any], None] = lambda _value: None
@@ -37,7 +37,7 @@ class Reactions:
 
 
 class TaskBoard:
-    """Hands jobs to a runner and drops what comes from requests that a newer one has replaced.
+    """Submits jobs to a runner and drops the events of jobs that a newer one has replaced.
 
     Parameters
     ----------
@@ -62,13 +62,13 @@ class TaskBoard:
         return self._newest.get(lane, 0) in self._tasks
 
     def start(self, lane: str, title: str, job: Job, reactions: Reactions) -> int:
-        """Run `job`; whatever ran in `lane` before is cancelled and no longer heard. Returns its id."""
+        """Run `job`; the previous job of `lane` is cancelled and its events dropped. Returns its id."""
         self.stop_lane(lane)
         self._number += 1
         number = self._newest[lane] = self._number
         self._tasks[number] = Task(number, lane, title)
         self._changed()
-        handle = self._runner.submit(job, lambda event: self._hear(number, event, reactions), lane)
+        handle = self._runner.submit(job, lambda event: self._on_event(number, event, reactions), lane)
         if number in self._tasks:
             self._handles[number] = handle
             if isinstance(handle, Pausable):
@@ -76,11 +76,11 @@ class TaskBoard:
         return number
 
     def stop_lane(self, lane: str) -> None:
-        """Cancel what runs in `lane`, silently: its reactions are not called any more."""
+        """Cancel the job of `lane` silently: its reactions are not called any more."""
         number = self._newest.pop(lane, 0)
         if handle := self._handles.get(number):
             handle.cancel()
-        if self._forget(number):
+        if self._remove(number):
             self._changed()
 
     def cancel(self, number: int) -> None:
@@ -89,24 +89,24 @@ class TaskBoard:
             handle.cancel()
 
     def pause(self, number: int) -> None:
-        """Hold one task back after the step that it is at, where its runner can do that."""
+        """Pause one task after its current step, where its runner can do that."""
         handle = self._handles.get(number)
         if isinstance(handle, Pausable) and not self._tasks[number].paused:
             handle.pause()
             self._update(number, paused=True)
 
     def resume(self, number: int) -> None:
-        """Let a task that was held back go on."""
+        """Resume a paused task."""
         handle = self._handles.get(number)
         if isinstance(handle, Pausable) and self._tasks[number].paused:
             handle.resume()
             self._update(number, paused=False)
 
-    def _forget(self, number: int) -> bool:
+    def _remove(self, number: int) -> bool:
         self._handles.pop(number, None)
         return self._tasks.pop(number, None) is not None
 
-    def _hear(self, number: int, event: Event, reactions: Reactions) -> None:
+    def _on_event(self, number: int, event: Event, reactions: Reactions) -> None:
         if number not in self._tasks:
             return
         match event:
@@ -124,7 +124,7 @@ class TaskBoard:
         self._changed()
 
     def _end(self, number: int, event: Finished | Failed | Stopped, reactions: Reactions) -> None:
-        self._forget(number)
+        self._remove(number)
         match event:
             case Finished(value):
                 reactions.finished(value)

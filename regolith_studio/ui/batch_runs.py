@@ -88,9 +88,11 @@ class BatchRuns(QObject):
     def _recipe(self, order: BatchOrder) -> Recipe:
         if order.recipe:
             return read_recipe(order.recipe)
-        standing = self._session.dataset_request
-        portrait = SessionRecipe.of(self._session.particles, self._session.choices, order.outputs, standing)
-        return portrait.beside((order.folder / "drawn.json").absolute(), whole_path=True)
+        dataset_request = self._session.dataset_request
+        session_recipe = SessionRecipe.of(
+            self._session.particles, self._session.choices, order.outputs, dataset_request
+        )
+        return session_recipe.recipe_for((order.folder / "drawn.json").absolute(), absolute_path=True)
 
     def _hired(self, value: object) -> None:
         if isinstance(value, ExecutorReady) and self._dialog is not None:

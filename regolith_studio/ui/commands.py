@@ -17,7 +17,7 @@ from regolith_studio.session.code_export import as_command, as_python
 from regolith_studio.session.file_kinds import FileKind, kind_of_all
 from regolith_studio.session.preferences import Preferences
 from regolith_studio.session.project import SessionRecipe, input_shown, inputs_of
-from regolith_studio.session.provenance import MOST
+from regolith_studio.session.provenance import MAX_RESTORED
 from regolith_studio.session.recipe import DatasetRequest, read_recipe
 from regolith_studio.session.session import Session
 from regolith_studio.ui.dialogs.export import ExportDialog, ExportOrder
@@ -35,15 +35,17 @@ MESH_FILTERS = (
 T = TypeVar("T")
 
 
-def without(portrait: SessionRecipe) -> tuple[str, ...]:
+def without(session_recipe: SessionRecipe) -> tuple[str, ...]:
     """What a recipe or project lacks, as one sentence; none where it is nothing."""
-    if not portrait.lost:
+    if not session_recipe.without_source:
         return ()
-    names = ", ".join(portrait.lost[:3]) + (" …" if len(portrait.lost) > 3 else "")
+    names = ", ".join(session_recipe.without_source[:3]) + (
+        " …" if len(session_recipe.without_source) > 3 else ""
+    )
     return (
         tr(
             "{count} particles came from no file and are not in it ({names}); export them.",
-            count=len(portrait.lost),
+            count=len(session_recipe.without_source),
             names=names,
         ),
     )
@@ -94,13 +96,13 @@ class Commands(QObject):
         opener = self.openers.get(kind)
         if opener is not None:
             self._try(lambda: opener(paths[0]))
-            self._preferences.remember_opened(paths[0], unit or self._session.choices.unit)
+            self._preferences.add_recent(paths[0], unit or self._session.choices.unit)
             return
         unit = unit or self._ask_unit(list(paths))
         if unit is None:
             return
         for path in paths:
-            self._preferences.remember_opened(path, unit)
+            self._preferences.add_recent(path, unit)
         self._preferences.save()
         self._try(lambda: self._session.open(paths, unit))
 
@@ -111,16 +113,18 @@ class Commands(QObject):
         name, _ = QFileDialog.getSaveFileName(self._window, tr("Save recipe"), start, kinds)
         if not name:
             return
-        standing = self._session.dataset_request
-        portrait = SessionRecipe.of(self._session.particles, self._session.choices, standing=standing)
+        dataset_request = self._session.dataset_request
+        session_recipe = SessionRecipe.of(
+            self._session.particles, self._session.choices, dataset_request=dataset_request
+        )
         try:
-            write_bytes(Path(name), portrait.beside(Path(name)).to_json().encode("utf-8"))
+            write_bytes(Path(name), session_recipe.recipe_for(Path(name)).to_json().encode("utf-8"))
         except RegolithError as error:
             self._toast.problem(str(error))
             return
         command = f"regolith-studio run {Path(name).name}"
         note = tr("Saved {name}; run it with: {command}", name=name, command=command)
-        self._toast.note(" ".join((note, *without(portrait))))
+        self._toast.note(" ".join((note, *without(session_recipe))))
 
     def copy_command(self) -> None:
         """Put the command line that does the same onto the clipboard."""
@@ -182,7 +186,7 @@ class Commands(QObject):
         self._session.choose(**{name: getattr(recipe.choices(), name) for name in names})
         if recipe.representatives or recipe.exports:
             self._session.opened_request = DatasetRequest(recipe.representatives, recipe.exports)
-        if recipe.population is not None and recipe.population.n > MOST:
+        if recipe.population is not None and recipe.population.n > MAX_RESTORED:
             self._toast.note(tr("Its choices are taken; it is too large to be opened: use Run as a batch."))
             return None
         return self._session.open_recipe(recipe, path.parent)

@@ -135,18 +135,18 @@ class ProjectFiles(QObject):
         pages = {key: state for key, widget in self._pages.widgets.items() if (state := widget.state())}
         return Project.of(self._session, self._pages.current, pages)
 
-    def _portrait(self) -> SessionRecipe:
+    def _session_recipe(self) -> SessionRecipe:
         return SessionRecipe.of(self._session.particles, self._session.choices)
 
     def _write(self, path: Path) -> bool:
-        state, portrait = self._state(), self._portrait()
+        state, session_recipe = self._state(), self._session_recipe()
         try:
-            state.save(path, portrait.model)
+            state.save(path, session_recipe.model)
         except RegolithError as error:
             self._toast.problem(str(error))
             return False
         self.path, self._saved = path, state
-        self._toast.note(" ".join((tr("Saved {path}.", path=path), *without(portrait))))
+        self._toast.note(" ".join((tr("Saved {path}.", path=path), *without(session_recipe))))
         self.changed.emit()
         return True
 
@@ -193,7 +193,7 @@ class ProjectFiles(QObject):
             path.parent.mkdir(parents=True, exist_ok=True)
         self._lock.tryLock(0)  # first: a file without a lock is one that a crash has left
         try:
-            self._state().save(path, self._portrait().model)
+            self._state().save(path, self._session_recipe().model)
         except RegolithError as error:
             self._toast.problem(str(error))
             return

@@ -18,7 +18,7 @@ from regolith_studio.studies.polyhedron_gallery import gallery_table
 
 @pytest.fixture(scope="module")
 def coarsening_request() -> CoarseningRequest:
-    return Choices(method="quadric", n_facets=12, l_max=4, level=2, target="particle").order
+    return Choices(method="quadric", n_facets=12, l_max=4, level=2, target="particle").coarsening_request
 
 
 def test_that_each_particle_is_coarsened_once_for_each_row(coarsening_request: CoarseningRequest) -> None:
@@ -80,7 +80,7 @@ def test_that_the_study_has_the_polyhedra_of_the_gallery(
 
 
 def test_that_a_particle_without_a_fit_is_reported_in_each_row() -> None:
-    fitted = Choices(method="quadric", n_facets=12, l_max=4, level=2, target="fit").order
+    fitted = Choices(method="quadric", n_facets=12, l_max=4, level=2, target="fit").coarsening_request
     flat = Mesh(icosphere(2).vertices * [1, 1, 0], icosphere(2).faces)
     cells = result_of(coarsen_gallery([Particle("flat", flat)], fitted, paper_variants()[:2]))
     assert [bool(each.outcome.problem) for each in cells] == [True, True]

@@ -109,7 +109,7 @@ def test_that_links_in_circles_can_be_remembered_and_checked(tmp_path: Path) -> 
     link = tmp_path / "circle"
     link.symlink_to("circle")
     known = Preferences()
-    known.remember_opened(link / "a.stl", "mm")
+    known.add_recent(link / "a.stl", "mm")
     assert known.unit_for(link / "a.stl") == "mm"
     (problem,) = validate_dataset(link)
     assert problem.endswith("cannot be read: its links go round in circles.")

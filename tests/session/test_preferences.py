@@ -14,9 +14,9 @@ def test_that_two_windows_keep_what_each_of_them_has_changed(tmp_path: Path) -> 
         path
     )
     one, two = Preferences.load(path), Preferences.load(path)
-    one.remember_opened(tmp_path / "a" / "a.stl", "mm")
+    one.add_recent(tmp_path / "a" / "a.stl", "mm")
     one.window = {"theme": "light", "page.scan": {"zoom": 2, "tool": "pen"}}
-    two.remember_opened(tmp_path / "b" / "b.stl", "um")
+    two.add_recent(tmp_path / "b" / "b.stl", "um")
     two.window = {"theme": "dark", "page.scan": {"zoom": 1, "tool": "brush"}, "tour": True}
     assert one.save(path)
     assert two.save(path)
@@ -29,7 +29,7 @@ def test_that_two_windows_keep_what_each_of_them_has_changed(tmp_path: Path) -> 
 
 def test_that_preferences_read_back(tmp_path: Path) -> None:
     before = Preferences()
-    before.remember_opened(tmp_path / "grains" / "a.stl", "mm")
+    before.add_recent(tmp_path / "grains" / "a.stl", "mm")
     before.window = {"theme": "dark", "splitter": [3, 4]}
     assert before.save(tmp_path / "p.json")
     after = Preferences.load(tmp_path / "p.json")
@@ -59,7 +59,7 @@ def test_that_entries_of_a_newer_version_are_kept(tmp_path: Path) -> None:
 def test_that_recent_files_are_few_and_each_stands_once(tmp_path: Path) -> None:
     preferences = Preferences()
     for number in [*range(20), 19]:
-        preferences.remember_opened(tmp_path / f"{number}.stl", "um")
+        preferences.add_recent(tmp_path / f"{number}.stl", "um")
     assert len(preferences.recent) == RECENT_LIMIT
     assert [Path(name).name for name in preferences.recent[:2]] == ["19.stl", "18.stl"]
 

@@ -61,13 +61,13 @@ def assert_that_a_run_gives_the_dataset_of(session: Session, place: Path) -> Ses
     session.events.exported.connect(exported.append)
     session.export_dataset(place / "window" / "grains")
     assert exported
-    portrait = SessionRecipe.of(session.particles, session.choices, ONLY_DATASET)
+    session_recipe = SessionRecipe.of(session.particles, session.choices, ONLY_DATASET)
     saved = place / "recipe.json"
-    saved.write_text(portrait.beside(saved).to_json())
+    saved.write_text(session_recipe.recipe_for(saved).to_json())
     done = ended(run_recipe(read_recipe(saved), saved.parent, place / "run" / "grains"))
     assert not done.problems
     assert files(place / "run" / "grains" / "dataset") == files(place / "window" / "grains")
-    return portrait
+    return session_recipe
 
 
 def write_grains(folder: Path, *names: str, size: float = 12.0) -> Path:
@@ -93,10 +93,10 @@ def test_that_meshes_of_folders_in_two_units_with_broken_files_are_the_same_in_a
     session.open([tmp_path / "scans"], "um")
     session.open([write_grains(tmp_path / "more", "a.stl", size=0.01)], "mm", add=True)
     assert [entry.id for entry in session.particles] == ["a", "b", "fine_a", "c", "more_a"]
-    portrait = assert_that_a_run_gives_the_dataset_of(session, tmp_path)
-    assert portrait.lost == ()
-    assert portrait.recipe.unit == "um"
-    assert portrait.recipe.openings[1][1] == "mm"
+    session_recipe = assert_that_a_run_gives_the_dataset_of(session, tmp_path)
+    assert session_recipe.without_source == ()
+    assert session_recipe.recipe.unit == "um"
+    assert session_recipe.recipe.openings[1][1] == "mm"
 
 
 def test_that_meshes_mended_and_left_as_they_are_are_the_same_in_a_run(
@@ -111,8 +111,8 @@ def test_that_meshes_mended_and_left_as_they_are_are_the_same_in_a_run(
     session.open([path], add=True)
     mended, as_it_is = [entry.particle.mesh.volume for entry in session.particles]
     assert as_it_is == pytest.approx(1.008 * mended, rel=1e-4)  # the second ball has a fifth of the size
-    portrait = assert_that_a_run_gives_the_dataset_of(session, tmp_path)
-    assert [repair for _, _, repair in portrait.recipe.openings] == [True, False]
+    session_recipe = assert_that_a_run_gives_the_dataset_of(session, tmp_path)
+    assert [repair for _, _, repair in session_recipe.recipe.openings] == [True, False]
 
 
 def test_that_the_sample_and_a_file_beside_it_are_the_same_in_a_run(session: Session, tmp_path: Path) -> None:
@@ -129,8 +129,8 @@ def test_that_a_closed_particle_gives_its_name_free_and_the_run_knows(
     session.keep({"b"})
     session.open([write_grains(tmp_path / "two", "a.stl")], add=True)
     assert [entry.id for entry in session.particles] == ["b", "a"]
-    portrait = assert_that_a_run_gives_the_dataset_of(session, tmp_path)
-    told = portrait.recipe.particles
+    session_recipe = assert_that_a_run_gives_the_dataset_of(session, tmp_path)
+    told = session_recipe.recipe.particles
     assert told is not None
     assert told[0] == "b"
 
@@ -179,8 +179,8 @@ def test_that_chosen_grains_and_a_mesh_beside_them_are_the_same_in_a_run(
     extracted(session, VolumeInput(labels, (2.0, 2.0, 2.5), "um"), GrainSettings())
     session.keep({entry.id for entry in session.particles[1:]})
     session.open([write_grains(tmp_path / "more", "a.stl")], add=True)
-    portrait = assert_that_a_run_gives_the_dataset_of(session, tmp_path)
-    assert len(portrait.recipe.particles or ()) == 3
+    session_recipe = assert_that_a_run_gives_the_dataset_of(session, tmp_path)
+    assert len(session_recipe.recipe.particles or ()) == 3
 
 
 @pytest.mark.slow
@@ -190,8 +190,8 @@ def test_that_grains_of_the_shipped_scan_are_the_same_in_a_run(session: Session,
     settings = GrainSettings(SegmentationSettings(splitting=SplittingSettings(h_maxima=1.0)))
     extracted(session, VolumeInput(sample_file("grey")), settings)
     session.keep({entry.id for entry in session.particles[:6]})
-    portrait = assert_that_a_run_gives_the_dataset_of(session, tmp_path)
-    assert portrait.recipe.volumes[0].file == "sample:grey"
+    session_recipe = assert_that_a_run_gives_the_dataset_of(session, tmp_path)
+    assert session_recipe.recipe.volumes[0].file == "sample:grey"
     found = ended(extract_file(VolumeInput(sample_file("grey")), settings)).extraction.particles
     assert [entry.id for entry in session.particles] == [each.name for each in found[:6]]
 
@@ -220,8 +220,8 @@ def of_card() -> ShapeSource:
 
 def test_that_particles_of_a_card_are_the_same_in_a_run(session: Session, tmp_path: Path) -> None:
     drawn(session, of_card(), GenerationRequest(l_max=6, n=4, seed=8, size_range=(20.0, 60.0)))
-    portrait = assert_that_a_run_gives_the_dataset_of(session, tmp_path)
-    assert portrait.model is None
+    session_recipe = assert_that_a_run_gives_the_dataset_of(session, tmp_path)
+    assert session_recipe.model is None
     assert not list(tmp_path.glob("recipe-model*"))
 
 
@@ -261,8 +261,8 @@ def test_that_a_project_brings_grains_and_drawn_particles_back(
         begin()
         session.open([write_grains(tmp_path / "more", "a.stl")], add=True)
         session.keep({entry.id for entry in session.particles[1:]})
-        portrait = SessionRecipe.of(session.particles, session.choices)
-        Project.of(session).save(tmp_path / f"{number}.regolith", portrait.model)
+        session_recipe = SessionRecipe.of(session.particles, session.choices)
+        Project.of(session).save(tmp_path / f"{number}.regolith", session_recipe.model)
         again = Session(InlineRunner())
         read_project(tmp_path / f"{number}.regolith").open_in(again, tmp_path)
         assert [entry.id for entry in again.particles] == [entry.id for entry in session.particles]
@@ -270,16 +270,16 @@ def test_that_a_project_brings_grains_and_drawn_particles_back(
             assert np.array_equal(old.particle.mesh.vertices, new.particle.mesh.vertices)
             assert old.particle.group == new.particle.group
         third = SessionRecipe.of(again.particles, again.choices).recipe
-        assert third.particles == portrait.recipe.particles
-        assert third.volumes == portrait.recipe.volumes
+        assert third.particles == session_recipe.recipe.particles
+        assert third.volumes == session_recipe.recipe.volumes
 
 
 def test_that_what_was_made_by_hand_is_named(session: Session, tmp_path: Path) -> None:
     session.open([write_grains(tmp_path / "one", "a.stl", "b.stl")])
     session.adopt([Particle("mine", icosphere(2))], add=True)
-    portrait = SessionRecipe.of(session.particles, session.choices)
-    assert portrait.lost == ("mine",)
+    session_recipe = SessionRecipe.of(session.particles, session.choices)
+    assert session_recipe.without_source == ("mine",)
     (tmp_path / "one" / "a.stl").unlink()
-    assert SessionRecipe.of(session.particles, session.choices).lost == ("a", "mine")
+    assert SessionRecipe.of(session.particles, session.choices).without_source == ("a", "mine")
     with pytest.raises(InputError, match="no particles to keep"):
         session.keep(set())

@@ -8,7 +8,7 @@ from PySide6.QtWidgets import QInputDialog, QLineEdit
 from regolith_studio.coarsening.weights import LossWeights, presets
 from regolith_studio.dataset.parameters import ContactParameters
 from regolith_studio.errors import InputError
-from regolith_studio.session.preferences import OwnPresets
+from regolith_studio.session.preferences import UserPresets
 from regolith_studio.session.recipe import Recipe
 from regolith_studio.ui.panels.loss import LossPanel
 from regolith_studio.ui.widgets.combo_box import text_room
@@ -93,7 +93,7 @@ def test_that_a_recipe_needs_nobodys_own_presets(panel):
 
 
 def test_that_damaged_and_foreign_presets_are_left_out(shown):
-    store = OwnPresets("weights")
+    store = UserPresets("weights")
     store.save("good", {"preset": "all", "weights": {"volume": 2.0}})
     store.save("bad", {"preset": "all", "weights": {"colour": 2.0}})
     store.save("worse", {"weights": 3})

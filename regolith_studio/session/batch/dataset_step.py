@@ -24,7 +24,7 @@ DATASET, EXPORTS = "dataset", "exports"
 
 
 def check_dataset_request(recipe: Recipe, n_particles: int) -> None:
-    """Refuse before the work what could not be done after it.
+    """Check before the work what would fail after it.
 
     Raises
     ------
@@ -33,12 +33,12 @@ def check_dataset_request(recipe: Recipe, n_particles: int) -> None:
     DatasetError
         If a format changes the shapes and that is not allowed.
     """
-    if (wish := recipe.representatives) is not None:
-        parse_sizes(wish.sizes)
-        if wish.count > n_particles:
+    if (request := recipe.representatives) is not None:
+        parse_sizes(request.sizes)
+        if request.count > n_particles:
             raise InputError(
-                f"The recipe asks for {wish.count} representatives of {n_particles} particles; there cannot "
-                "be more of them than particles."
+                f"The recipe asks for {request.count} representatives of {n_particles} particles; "
+                "there cannot be more of them than particles."
             )
     if recipe.exports is not None:
         for exporter in chosen_exporters(recipe.exports.targets):
@@ -48,9 +48,9 @@ def check_dataset_request(recipe: Recipe, n_particles: int) -> None:
 
 def build_dataset_step(
     recipe: Recipe,
-    wish: Representatives,
+    request: Representatives,
     particles: Sequence[Particle],
-    order: CoarseningRequest,
+    coarsening: CoarseningRequest,
     preset: str | None,
     folder: Path,
     workers: int | Executor,
@@ -62,14 +62,14 @@ def build_dataset_step(
     RegolithError
         As :func:`regolith_studio.jobs.dataset_jobs.build_dataset_folder`.
     """
-    name = wish.name or folder.resolve().name
+    name = request.name or folder.resolve().name
     options = DatasetOptions(
-        name, preset, True, workers, representatives_order(wish, recipe.seed), sizes=wish.sizes
+        name, preset, True, workers, representatives_request(request, recipe.seed), sizes=request.sizes
     )
-    return (yield from build_dataset_folder(particles, order, folder / DATASET, options))
+    return (yield from build_dataset_folder(particles, coarsening, folder / DATASET, options))
 
 
-def export_dataset_step(wish: Exports, seed: int, folder: Path) -> Steps:
+def export_dataset_step(request: Exports, seed: int, folder: Path) -> Steps:
     """Write ``dataset`` below `folder` for other programs, below ``exports``; returns the exports.
 
     Raises
@@ -79,26 +79,26 @@ def export_dataset_step(wish: Exports, seed: int, folder: Path) -> Steps:
     """
     return (
         yield from export_dataset_folder(
-            folder / DATASET, wish.targets, folder / EXPORTS, export_options(wish, seed), wish.lossy
+            folder / DATASET, request.targets, folder / EXPORTS, export_options(request, seed), request.lossy
         )
     )
 
 
-def representatives_order(wish: Representatives, seed: int) -> RepresentativesRequest | None:
-    """How those that stand for all are chosen; ``None`` where each stands for itself."""
-    if not wish.count:
+def representatives_request(request: Representatives, seed: int) -> RepresentativesRequest | None:
+    """How representatives are chosen; ``None`` where each particle represents itself."""
+    if not request.count:
         return None
-    chosen = seed if wish.seed is None else wish.seed
-    return RepresentativesRequest.of(wish.count, wish.weighting, wish.size_importance, chosen)
+    chosen = seed if request.seed is None else request.seed
+    return RepresentativesRequest.of(request.count, request.weighting, request.size_importance, chosen)
 
 
-def export_options(wish: Exports, seed: int) -> ExportOptions:
-    """What the formats are told.
+def export_options(request: Exports, seed: int) -> ExportOptions:
+    """The export options of a recipe.
 
     Raises
     ------
     InputError
         If there is no such setting, or a value cannot be used.
     """
-    told = ExportOptions(coarse_graining_factor=wish.coarse_graining, n_particles=wish.particles)
-    return replace(told, seed=seed if wish.seed is None else wish.seed).replaced(**wish.settings)
+    options = ExportOptions(coarse_graining_factor=request.coarse_graining, n_particles=request.particles)
+    return replace(options, seed=seed if request.seed is None else request.seed).replaced(**request.settings)

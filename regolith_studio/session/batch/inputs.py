@@ -26,7 +26,7 @@ from regolith_studio.shape_models.materials import materials
 from regolith_studio.shape_models.protocol import FittedModel
 from regolith_studio.shape_models.realizations import Realizations, virtual_mesh
 
-NOTHING = PreparedInputs()
+NO_PREPARED_INPUTS = PreparedInputs()
 
 
 class BatchInput(Protocol):
@@ -54,7 +54,7 @@ class BatchInput(Protocol):
 
 
 @dataclass(frozen=True)
-class _Named:
+class _NamedInput:
     """What all of them have.
 
     Parameters
@@ -71,7 +71,7 @@ class _Named:
 
 
 @dataclass(frozen=True)
-class FileInput(_Named):
+class FileInput(_NamedInput):
     """A mesh file."""
 
     file: MeshFile
@@ -93,7 +93,7 @@ class FileInput(_Named):
 
 
 @dataclass(frozen=True)
-class SampleInput(_Named):
+class SampleInput(_NamedInput):
     """A particle that ships with the program."""
 
     original: str
@@ -110,7 +110,7 @@ class SampleInput(_Named):
 
 
 @dataclass(frozen=True)
-class GrainInput(_Named):
+class GrainInput(_NamedInput):
     """A grain of a CT volume that has been extracted."""
 
     folder: Path
@@ -127,7 +127,7 @@ class GrainInput(_Named):
 
 
 @dataclass(frozen=True)
-class VirtualInput(_Named):
+class VirtualInput(_NamedInput):
     """A virtual particle.
 
     Parameters
@@ -145,12 +145,12 @@ class VirtualInput(_Named):
     @property
     def fingerprint(self) -> str:
         """What it is drawn from, and its number."""
-        known = self.model.name if self.model else ""
-        return f"{self.population.model_dump_json()} {known} {self.seed} {self.index} {self.level}"
+        fitted = self.model.name if self.model else ""
+        return f"{self.population.model_dump_json()} {fitted} {self.seed} {self.index} {self.level}"
 
     def particle(self) -> Particle:
         """The particle's surface."""
-        draws, groups = _draws(self.population, self.model, self.seed)
+        draws, groups = _realizations(self.population, self.model, self.seed)
         group = groups[self.index] or title_of(self.population)
         return Particle(self.name, virtual_mesh(draws, self.index, self.level), group)
 
@@ -169,7 +169,7 @@ class BatchInputs:
     problems: tuple[FileProblem, ...] = ()
 
     @classmethod
-    def of(cls, recipe: Recipe, base: Path, prepared: PreparedInputs = NOTHING) -> Self:
+    def of(cls, recipe: Recipe, base: Path, prepared: PreparedInputs = NO_PREPARED_INPUTS) -> Self:
         """What the inputs of `recipe` stand for; relative ones are looked up in `base`.
 
         Raises
@@ -191,9 +191,9 @@ class BatchInputs:
             for entry in read_index(folder):
                 members.append(GrainInput(unique_name(entry["name"], entry["group"], taken), folder, entry))
         if recipe.population is not None:
-            members += _drawn(recipe, recipe.population, prepared.model, taken)
+            members += _virtual_inputs(recipe, recipe.population, prepared.model, taken)
         if recipe.particles is not None:
-            members = _chosen(members, recipe.particles)
+            members = _select(members, recipe.particles)
         return cls(tuple(members), tuple(problems))
 
     def fingerprints(self) -> Iterable[str]:
@@ -209,7 +209,9 @@ def title_of(population: Population) -> str:
     return first if first in materials() else Path(first).stem or "virtual"
 
 
-def _drawn(recipe: Recipe, population: Population, model: Path | None, taken: set[str]) -> list[BatchInput]:
+def _virtual_inputs(
+    recipe: Recipe, population: Population, model: Path | None, taken: set[str]
+) -> list[BatchInput]:
     fitted = model_of(population, model)
     seed = recipe.seed if population.seed is None else population.seed
     level = population.level
@@ -221,15 +223,15 @@ def _drawn(recipe: Recipe, population: Population, model: Path | None, taken: se
     ]
 
 
-def _chosen(members: Sequence[BatchInput], wish: Sequence[str | NamedParticle]) -> list[BatchInput]:
-    known = {member.name: member for member in members}
-    pairs = [(each, each) if isinstance(each, str) else (each.name, each.called) for each in wish]
-    if missing := next((name for name, _ in pairs if name not in known), None):
+def _select(members: Sequence[BatchInput], selection: Sequence[str | NamedParticle]) -> list[BatchInput]:
+    by_name = {member.name: member for member in members}
+    pairs = [(each, each) if isinstance(each, str) else (each.name, each.called) for each in selection]
+    if missing := next((name for name, _ in pairs if name not in by_name), None):
         raise InputError(f"The recipe asks for a particle {missing!r}, which its inputs do not hold.")
     ((name, count),) = Counter(name for _, name in pairs).most_common(1)
     if count > 1:
         raise InputError(f"The recipe asks for {count} particles of the name {name!r}.")
-    return [known[name].called(new) for name, new in pairs]
+    return [by_name[name].called(new) for name, new in pairs]
 
 
 def model_of(population: Population, folder: Path | None) -> FittedModel:
@@ -241,16 +243,16 @@ def model_of(population: Population, folder: Path | None) -> FittedModel:
     return fitted
 
 
-def _draws(population: Population, folder: Path | None, seed: int) -> tuple[Realizations, tuple[str, ...]]:
+def _realizations(
+    population: Population, folder: Path | None, seed: int
+) -> tuple[Realizations, tuple[str, ...]]:
     """All draws of a population and their groups: a kilobyte each, made once in each process."""
-    return _remembered_draws(population.model_dump_json(), folder, seed)
+    return _cached_draws(population.model_dump_json(), folder, seed)
 
 
 @lru_cache(maxsize=1)
-def _remembered_draws(
-    population: str, folder: Path | None, seed: int
-) -> tuple[Realizations, tuple[str, ...]]:
-    wish = Population.model_validate_json(population)
-    model = model_of(wish, folder)
-    draws = model.draw(wish.n, seed, wish.bounds)
+def _cached_draws(population: str, folder: Path | None, seed: int) -> tuple[Realizations, tuple[str, ...]]:
+    selection = Population.model_validate_json(population)
+    model = model_of(selection, folder)
+    draws = model.draw(selection.n, seed, selection.bounds)
     return draws, groups_of(draws, model)

@@ -36,12 +36,12 @@ STAGES = ("reading", "measuring", "fitting", "coarsening", "writing")
 
 @dataclass(frozen=True)
 class ParticleTask:
-    """What is to be found out about each particle.
+    """What is computed of each particle.
 
     Parameters
     ----------
-    order
-        Of the coarsening; ``None`` for none.
+    coarsening
+        Settings of the coarsening; ``None`` for none.
     shapes
         Whether the polyhedra become a dataset.
     fit_options
@@ -50,15 +50,15 @@ class ParticleTask:
 
     measure: bool
     fit: bool
-    order: CoarseningRequest | None
+    coarsening: CoarseningRequest | None
     shapes: bool
     box_metric: str
     fit_options: FitOptions = DEFAULT_FIT_OPTIONS
 
 
 @dataclass
-class _Entry:
-    """A record in the making."""
+class _RecordBuilder:
+    """The record of a particle while it is processed."""
 
     index: int
     values: dict[str, Any]
@@ -80,7 +80,7 @@ class _Entry:
                 raise JobCancelled("The work was stopped.")
 
 
-def process_particles(items: Sequence[tuple[int, BatchInput]], wish: ParticleTask) -> Steps:
+def process_particles(items: Sequence[tuple[int, BatchInput]], task: ParticleTask) -> Steps:
     """Read, measure, fit and coarsen particles; returns a tuple of :class:`CheckpointRecord`, one an item.
 
     Whatever goes wrong with a particle stands in its record, under ``failures``, and stops nothing else.
@@ -88,58 +88,62 @@ def process_particles(items: Sequence[tuple[int, BatchInput]], wish: ParticleTas
     yield Started(N_("Working on particles"), len(items))
     records = []
     for index, item in items:
-        records.append((yield from _record(index, item, wish)))
+        records.append((yield from _process(index, item, task)))
         yield Progress(len(records), len(items), item.name)
     return tuple(records)
 
 
-def _record(index: int, item: BatchInput, wish: ParticleTask) -> Generator[Step, None, CheckpointRecord]:
-    entry = _Entry(index, {"name": item.name, "group": "", "seconds": {}})
-    particle = yield from entry.attempt("reading", Job(call, (_particle, item)))
+def _process(index: int, item: BatchInput, task: ParticleTask) -> Generator[Step, None, CheckpointRecord]:
+    entry = _RecordBuilder(index, {"name": item.name, "group": "", "seconds": {}})
+    particle = yield from entry.attempt("reading", Job(call, (_read, item)))
     if particle is not None:
         entry.values["group"] = particle.group
-        yield from _results(entry, particle, wish)
+        yield from _process_particle(entry, particle, task)
     entry.values["failures"] = entry.failures
     return CheckpointRecord(index, entry.values, entry.blobs)
 
 
-def _results(entry: _Entry, particle: Particle, wish: ParticleTask) -> Generator[Step, None, None]:
-    if wish.measure:
-        facts = yield from entry.attempt("measuring", Job(_examined, (particle, wish.box_metric)))
+def _process_particle(
+    entry: _RecordBuilder, particle: Particle, task: ParticleTask
+) -> Generator[Step, None, None]:
+    if task.measure:
+        facts = yield from entry.attempt("measuring", Job(_measure, (particle, task.box_metric)))
         if facts is not None:
             entry.values["described"] = facts
     fit = None
-    if wish.fit or (wish.order and wish.order.target == "fit"):
+    if task.fit or (task.coarsening and task.coarsening.target == "fit"):
         fit = yield from entry.attempt(
-            "fitting", Job(fit_one, (particle.mesh, FitRequest(fit_options=wish.fit_options)))
+            "fitting", Job(fit_one, (particle.mesh, FitRequest(fit_options=task.fit_options)))
         )
-        if fit is not None and wish.fit:
-            _keep_fit(entry, particle, fit)
-        if fit is None and wish.order and wish.order.target == "fit":
+        if fit is not None and task.fit:
+            _store_fit(entry, particle, fit)
+        if fit is None and task.coarsening and task.coarsening.target == "fit":
             return
-    if wish.order:
+    if task.coarsening:
         outcome = yield from entry.attempt(
-            "coarsening", Job(coarsen_particle, (particle, wish.order, entry.index, fit))
+            "coarsening", Job(coarsen_particle, (particle, task.coarsening, entry.index, fit))
         )
         if outcome is not None:
-            yield from entry.attempt("writing", Job(_keep_coarse, (entry, particle, outcome, wish.shapes)))
+            yield from entry.attempt(
+                "writing", Job(_store_polyhedron, (entry, particle, outcome, task.shapes))
+            )
 
 
-def _particle(item: BatchInput) -> Particle:
+def _read(item: BatchInput) -> Particle:
     return item.particle()
 
 
-def _examined(particle: Particle, box_metric: str) -> Steps:
+def _measure(particle: Particle, box_metric: str) -> Steps:
     """What ``descriptors.json`` says of the particle; a number that is not finite is a mistake here."""
     yield Started(N_("Measuring"))
     facts: MeasuredParticle = measure_particle(particle, box_metric)
     return _finite(described(particle, facts))
 
 
-def _keep_fit(entry: _Entry, particle: Particle, fit: HarmonicFit) -> None:
-    (known,) = fits_document([particle.name], [fit])["particles"]
+def _store_fit(entry: _RecordBuilder, particle: Particle, fit: HarmonicFit) -> None:
+    (document,) = fits_document([particle.name], [fit])["particles"]
     source = particle.source
-    entry.values["fit"] = _finite(known)
+    entry.values["fit"] = _finite(document)
     entry.values["origin"] = {
         "source": None if source is None else [source.path, source.sha256, source.unit],
         "notes": list(particle.notes),
@@ -147,7 +151,9 @@ def _keep_fit(entry: _Entry, particle: Particle, fit: HarmonicFit) -> None:
     entry.blobs[COEFFICIENTS] = _bytes(fit.coefficients.values)
 
 
-def _keep_coarse(entry: _Entry, particle: Particle, outcome: CoarsenedParticle, shapes: bool) -> Steps:
+def _store_polyhedron(
+    entry: _RecordBuilder, particle: Particle, outcome: CoarsenedParticle, shapes: bool
+) -> Steps:
     yield Started("Keeping the polyhedron")
     coarse = outcome.coarsened
     assert coarse is not None

@@ -62,16 +62,18 @@ class PreparedInputs:
     problems: tuple[FileProblem, ...] = ()
 
 
-def prepare_inputs(recipe: Recipe, base: Path, place: Path, executor: Executor, over: bool = False) -> Steps:
+def prepare_inputs(
+    recipe: Recipe, base: Path, root: Path, executor: Executor, finished: bool = False
+) -> Steps:
     """Extract the grains of all volumes and fit the population's model; returns :class:`PreparedInputs`.
 
     Parameters
     ----------
     base
         Folder that relative files are relative to.
-    place
+    root
         Where the folders are.
-    over
+    finished
         Whether all work on the grains is done, so that what is known of them is enough.
 
     Raises
@@ -83,10 +85,10 @@ def prepare_inputs(recipe: Recipe, base: Path, place: Path, executor: Executor, 
     """
     volumes = []
     for entry in recipe.volumes:
-        volumes.append((yield from _grains(entry, base, place, over)))
+        volumes.append((yield from _extract_grains(entry, base, root, finished)))
     model, problems = None, ()
     if recipe.population is not None and not is_card(recipe.population, base):
-        model, problems = yield from _model(recipe, recipe.population, base, place, executor)
+        model, problems = yield from _fit_population_model(recipe, recipe.population, base, root, executor)
     return PreparedInputs(tuple(volumes), model, problems)
 
 
@@ -143,21 +145,21 @@ def clear_prepared_inputs(prepared: PreparedInputs) -> None:
             path.unlink()
 
 
-def _grains(entry: VolumeEntry, base: Path, place: Path, over: bool) -> Steps:
+def _extract_grains(entry: VolumeEntry, base: Path, root: Path, finished: bool) -> Steps:
     given, settings = _volume_input(entry, base), _settings(entry, base)
     if not given.path.exists():
         raise InputError(f"There is no volume {given.path}.")
-    told = entry.model_dump(mode="json", exclude={"recipe"})
-    folder = place / f"volume-{_digest(told, settings.as_document(), volume_sha256(given.path))}"
-    if (folder / INDEX).is_file() and (over or _is_whole(folder)):
+    document = entry.model_dump(mode="json", exclude={"recipe"})
+    folder = root / f"volume-{_digest(document, settings.as_document(), volume_sha256(given.path))}"
+    if (folder / INDEX).is_file() and (finished or _is_whole(folder)):
         return folder
-    with _tidy(place), staged_folder(folder, "prepared") as stage:
+    with _removing_empty_folder(root), staged_folder(folder, "prepared") as stage:
         rows: dict[int, dict[str, Any]] = {}
 
         def keep(found: ExtractedParticle) -> None:
-            rows[found.label] = _stored(stage, found)
+            rows[found.label] = _store_grain(stage, found)
 
-        done = yield from extract_each(given, settings, place.parent, keep)
+        done = yield from extract_each(given, settings, root.parent, keep)
         (stage / RECIPE).write_bytes(json_bytes(recipe_document(given, settings, done)))
         (stage / INDEX).write_bytes(json_bytes([rows[label] for label in sorted(rows)]))
     return folder
@@ -167,7 +169,7 @@ def _is_whole(folder: Path) -> bool:
     return all((folder / entry["file"]).is_file() for entry in read_index(folder))
 
 
-def _stored(stage: Path, found: ExtractedParticle) -> dict[str, Any]:
+def _store_grain(stage: Path, found: ExtractedParticle) -> dict[str, Any]:
     particle, name = found.particle, f"{found.label:08d}.npz"
     np.savez(stage / name, vertices=particle.mesh.vertices, faces=particle.mesh.faces)
     source = particle.source
@@ -181,8 +183,10 @@ def _stored(stage: Path, found: ExtractedParticle) -> dict[str, Any]:
     }
 
 
-def _model(recipe: Recipe, population: Population, base: Path, place: Path, executor: Executor) -> Steps:
-    order = GenerationRequest(
+def _fit_population_model(
+    recipe: Recipe, population: Population, base: Path, root: Path, executor: Executor
+) -> Steps:
+    request = GenerationRequest(
         population.model,
         tuple(population.settings.items()),
         population.l_max,
@@ -191,7 +195,7 @@ def _model(recipe: Recipe, population: Population, base: Path, place: Path, exec
         population.bounds,
     )
     paths = [base / source for source in population.sources]
-    named = [text for text in map(_named(base), population.sources) if is_shape_source(text)]
+    named = [text for text in map(_resolve_source(base), population.sources) if is_shape_source(text)]
     if named and len(population.sources) > 1:
         raise InputError(
             "A population is drawn from one card, fit or model, or from meshes and tables only, got "
@@ -202,21 +206,21 @@ def _model(recipe: Recipe, population: Population, base: Path, place: Path, exec
         source = read_shape_source(named[0])
         marks = [named[0], source.sha256]
     else:
-        _check_there(population, paths)
+        _check_sources_exist(population, paths)
         marks = [sha256_of(file.path) for file in find_files(paths, problems)]
-    told = population.model_dump(mode="json", exclude={"n", "size_range"})
-    folder = place / f"model-{_digest(told, recipe.seed, recipe.unit, recipe.repair, marks)}"
+    document = population.model_dump(mode="json", exclude={"n", "size_range"})
+    folder = root / f"model-{_digest(document, recipe.seed, recipe.unit, recipe.repair, marks)}"
     if not (folder / MODEL).is_file():
         if not named:
             loaded = yield from load_particles(paths, recipe.unit, recipe.repair)
-            source = yield from sample_of_meshes(loaded.particles, fit_request_for(order), executor)
-        fitted = yield from fit_model(source, order)
-        with _tidy(place), staged_folder(folder, "prepared") as stage:
+            source = yield from sample_of_meshes(loaded.particles, fit_request_for(request), executor)
+        fitted = yield from fit_model(source, request)
+        with _removing_empty_folder(root), staged_folder(folder, "prepared") as stage:
             write_model(stage / MODEL, fitted, {"source": source.name, "notes": list(source.notes)})
     return folder, tuple(problems)
 
 
-def _named(base: Path) -> Any:
+def _resolve_source(base: Path) -> Any:
     """Turns a source into the path beside the recipe, but for the names of shipped cards."""
 
     def resolved(text: str) -> str:
@@ -225,7 +229,7 @@ def _named(base: Path) -> Any:
     return resolved
 
 
-def _check_there(population: Population, paths: list[Path]) -> None:
+def _check_sources_exist(population: Population, paths: list[Path]) -> None:
     for text, path in zip(population.sources, paths, strict=True):
         if not path.exists():
             raise InputError(
@@ -259,12 +263,12 @@ def _settings(entry: VolumeEntry, base: Path) -> GrainSettings:
     return GrainSettings.from_document(given)
 
 
-def _check_names(given: Mapping[str, Any], known: Mapping[str, Any], place: str) -> None:
+def _check_names(given: Mapping[str, Any], known: Mapping[str, Any], prefix: str) -> None:
     for name, value in given.items():
         if name not in known:
-            raise InputError(f"There is no setting {place}{name}; there are {', '.join(known)}.")
+            raise InputError(f"There is no setting {prefix}{name}; there are {', '.join(known)}.")
         if isinstance(value, Mapping) and isinstance(known[name], Mapping):
-            _check_names(value, known[name], f"{place}{name}.")
+            _check_names(value, known[name], f"{prefix}{name}.")
 
 
 def _digest(*parts: Any) -> str:
@@ -273,12 +277,12 @@ def _digest(*parts: Any) -> str:
 
 
 @contextmanager
-def _tidy(place: Path) -> Iterator[None]:
+def _removing_empty_folder(root: Path) -> Iterator[None]:
     """If what is made inside fails, no empty folder is left behind."""
     try:
         yield
     except BaseException:
-        for folder in (place, place.parent, place.parent.parent):
+        for folder in (root, root.parent, root.parent.parent):
             if folder.is_dir() and not any(folder.iterdir()):
                 shutil.rmtree(folder)
         raise

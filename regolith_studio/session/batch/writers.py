@@ -27,14 +27,14 @@ from regolith_studio.session.outputs.fits import FittedSample, write_fits
 
 
 class ResultWriter(Protocol):
-    """Takes the records of a batch in their order."""
+    """Writes the results of a batch, record by record."""
 
     def add(self, record: CheckpointRecord) -> None:
-        """Take one more."""
+        """Add the record of one particle."""
 
 
 @dataclass(frozen=True)
-class FitOrigin:
+class FittedParticleInfo:
     """What a fit's file says of its particle."""
 
     name: str
@@ -44,8 +44,8 @@ class FitOrigin:
 
 
 @dataclass
-class _Descriptors:
-    """``descriptors.json`` and ``descriptors.csv``; rows wait until it is known which columns there are."""
+class _DescriptorWriter:
+    """``descriptors.json`` and ``descriptors.csv``; the first descriptors name the columns."""
 
     entries: JsonListWriter
     table: IO[bytes]
@@ -85,14 +85,14 @@ def descriptor_writer(folder: Path) -> Iterator[ResultWriter]:
         staged_file(folder / "descriptors.json") as entries,
         staged_file(folder / "descriptors.csv") as table,
     ):
-        sink = _Descriptors(JsonListWriter(entries), table)
-        yield sink
-        sink.close()
+        writer = _DescriptorWriter(JsonListWriter(entries), table)
+        yield writer
+        writer.close()
 
 
 @dataclass
-class _Meshes:
-    stage: Path
+class _MeshWriter:
+    folder: Path
     entries: JsonListWriter
     failed: list[dict[str, str]] = field(default_factory=list)
 
@@ -100,33 +100,35 @@ class _Meshes:
         values = record.values
         if entry := values.get("coarse"):
             self.entries.add(entry)
-            (self.stage / entry["file"]).write_bytes(record.blobs[MESH])
+            (self.folder / entry["file"]).write_bytes(record.blobs[MESH])
         elif reason := reason_of(record):
             self.failed.append({"name": values["name"], "reason": reason})
 
 
 @contextmanager
-def mesh_writer(folder: Path, order: CoarseningRequest) -> Iterator[ResultWriter]:
+def mesh_writer(folder: Path, request: CoarseningRequest) -> Iterator[ResultWriter]:
     """Writes one STL a polyhedron, and ``coarsening.json``."""
     with staged_folder(folder, "coarsen") as stage, (stage / "coarsening.json").open("wb") as stream:
-        sink = _Meshes(stage, JsonListWriter(stream, document_head(order), "particles"))
-        yield sink
-        sink.entries.close({"failed": sink.failed})
+        writer = _MeshWriter(stage, JsonListWriter(stream, document_head(request), "particles"))
+        yield writer
+        writer.entries.close({"failed": writer.failed})
 
 
 @dataclass
-class _Fits:
-    origins: list[FitOrigin] = field(default_factory=list)
+class _FitWriter:
+    origins: list[FittedParticleInfo] = field(default_factory=list)
     fits: list[HarmonicFit] = field(default_factory=list)
     failed: list[tuple[str, str]] = field(default_factory=list)
 
     def add(self, record: CheckpointRecord) -> None:
         values = record.values
-        if known := values.get("fit"):
-            given = values["origin"]
-            source = None if given["source"] is None else Source(*given["source"])
-            self.origins.append(FitOrigin(values["name"], values["group"], source, tuple(given["notes"])))
-            self.fits.append(_fit(known, record.blobs[COEFFICIENTS]))
+        if entry := values.get("fit"):
+            origin = values["origin"]
+            source = None if origin["source"] is None else Source(*origin["source"])
+            self.origins.append(
+                FittedParticleInfo(values["name"], values["group"], source, tuple(origin["notes"]))
+            )
+            self.fits.append(_fit(entry, record.blobs[COEFFICIENTS]))
         elif reason := reason_of(record, "fitting"):
             self.failed.append((values["name"], reason))
 
@@ -134,13 +136,13 @@ class _Fits:
 @contextmanager
 def fit_writer(path: Path) -> Iterator[ResultWriter]:
     """Writes the coefficients of all particles: nine kilobytes of memory each."""
-    sink = _Fits()
-    yield sink
-    write_fits(path, FittedSample(tuple(sink.origins), tuple(sink.fits), tuple(sink.failed)))
+    writer = _FitWriter()
+    yield writer
+    write_fits(path, FittedSample(tuple(writer.origins), tuple(writer.fits), tuple(writer.failed)))
 
 
 @dataclass
-class _Failures:
+class _FailureWriter:
     rows: list[list[str]] = field(default_factory=list)
 
     def add(self, record: CheckpointRecord) -> None:
@@ -151,17 +153,17 @@ class _Failures:
 @contextmanager
 def failure_writer(folder: Path) -> Iterator[ResultWriter]:
     """Writes ``failed.csv`` with everything that went wrong, if anything did."""
-    sink = _Failures()
-    yield sink
+    writer = _FailureWriter()
+    yield writer
     path = folder / "failed.csv"
-    if sink.rows:
-        write_bytes(path, csv_bytes([["name", "stage", "reason"], *sink.rows]))
+    if writer.rows:
+        write_bytes(path, csv_bytes([["name", "stage", "reason"], *writer.rows]))
     else:
         path.unlink(missing_ok=True)
 
 
 @dataclass
-class _Times:
+class _TimeWriter:
     stream: IO[bytes]
 
     def add(self, record: CheckpointRecord) -> None:
@@ -175,12 +177,12 @@ def time_writer(path: Path) -> Iterator[ResultWriter]:
     """Writes how long each stage took for each particle, as CSV."""
     with staged_file(path) as stream:
         stream.write(csv_bytes([["name", *[f"{stage} [s]" for stage in STAGES]]]))
-        yield _Times(stream)
+        yield _TimeWriter(stream)
 
 
 @dataclass
 class RunStatistics:
-    """What has to be known of all particles together.
+    """Sums and lists over all particles.
 
     Parameters
     ----------
@@ -202,7 +204,7 @@ class RunStatistics:
     first_coarse: int | None = None
 
     def add(self, record: CheckpointRecord) -> None:
-        """Take one more."""
+        """Add the record of one particle."""
         values = record.values
         if reason := reason_of(record, "reading"):
             self.unread.append(reason)
@@ -238,10 +240,10 @@ def _reasons(record: CheckpointRecord) -> list[str]:
     return list(dict.fromkeys(each["reason"] for each in record.values["failures"]))
 
 
-def _fit(known: dict[str, Any], content: bytes) -> HarmonicFit:
+def _fit(entry: dict[str, Any], content: bytes) -> HarmonicFit:
     row = np.frombuffer(content, dtype="<f8")
-    point = np.array(known["star_point"])
+    point = np.array(entry["star_point"])
     (fit,) = fits_from(
-        {"particles": [known]}, {"coefficients": row[None], "star_points": point[None]}
+        {"particles": [entry]}, {"coefficients": row[None], "star_points": point[None]}
     ).values()
     return fit

@@ -18,7 +18,7 @@ from regolith_studio.jobs.coarsening_jobs import CoarsenedParticle, CoarseningRe
 STL_HEADER = "Regolith Studio, convex polyhedron, micrometres"
 
 
-def write_coarsening(folder: Path, order: CoarseningRequest, done: Sequence[CoarsenedParticle]) -> None:
+def write_coarsening(folder: Path, request: CoarseningRequest, done: Sequence[CoarsenedParticle]) -> None:
     """Write ``<name>.stl`` for each particle that succeeded, in its own frame, and ``coarsening.json``.
 
     How long each took stands in ``times.json`` alone, so that equal runs have equal results.
@@ -28,31 +28,31 @@ def write_coarsening(folder: Path, order: CoarseningRequest, done: Sequence[Coar
             write_bytes(folder / f"{each.name}.stl", stl_bytes(each.coarsened.mesh.triangles, STL_HEADER))
     times = {each.name: round(each.seconds, 3) for each in done}
     write_bytes(folder / "times.json", json_bytes({"seconds": times}))
-    write_bytes(folder / "coarsening.json", json_bytes(coarsening_document(order, done)))
+    write_bytes(folder / "coarsening.json", json_bytes(coarsening_document(request, done)))
 
 
-def coarsening_document(order: CoarseningRequest, done: Sequence[CoarsenedParticle]) -> dict[str, Any]:
+def coarsening_document(request: CoarseningRequest, done: Sequence[CoarsenedParticle]) -> dict[str, Any]:
     """What ``coarsening.json`` holds."""
-    return document_head(order) | {
+    return document_head(request) | {
         "particles": [coarsening_entry(each, each.coarsened) for each in done if each.coarsened],
         "failed": [{"name": each.name, "reason": each.problem} for each in done if not each.coarsened],
     }
 
 
-def document_head(order: CoarseningRequest) -> dict[str, Any]:
+def document_head(request: CoarseningRequest) -> dict[str, Any]:
     """What ``coarsening.json`` says before it comes to the particles."""
     return {
         "format": "regolith-studio coarsening",
         "version": 1,
         "unit": "um",
-        "order": order_document(order),
+        "order": request_document(request),
     }
 
 
-def order_document(order: CoarseningRequest) -> dict[str, Any]:
+def request_document(request: CoarseningRequest) -> dict[str, Any]:
     """An order as plain JSON values; the largest error only where one was asked for."""
-    values = asdict(order) | {"weights": dict(order.weights), "settings": dict(order.settings)}
-    if order.largest_error is None:
+    values = asdict(request) | {"weights": dict(request.weights), "settings": dict(request.settings)}
+    if request.largest_error is None:
         del values["largest_error"]
     return values
 

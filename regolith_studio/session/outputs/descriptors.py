@@ -10,7 +10,7 @@ from regolith_studio.jobs.particle_jobs import MeasuredParticle
 
 SHARES = ("hidden_surface_share", "unrepresentable_volume_share")
 """What no radius function keeps, of :class:`~regolith_studio.harmonics.visibility.StarPointVisibility`."""
-UNSEEN = dict.fromkeys((*SHARES, "star_point", "star_point_rule"))
+NO_VISIBILITY = dict.fromkeys((*SHARES, "star_point", "star_point_rule"))
 """Instead of ``StarPointVisibility.as_dict`` where a mesh has no inside."""
 _POWERS = {0: "", 1: "um", 2: "um^2", 3: "um^3", 5: "um^5"}
 
@@ -23,8 +23,10 @@ def described(particle: Particle, facts: MeasuredParticle) -> dict[str, Any]:
     """
     entry: dict[str, Any] = {"name": particle.name, "group": particle.group, "unit": "um"}
     entry |= dict(facts.descriptors or {})
-    entry["health"] = facts.health.as_dict() | (facts.visibility.as_dict() if facts.visibility else UNSEEN)
-    entry |= _mended(particle, facts)
+    entry["health"] = facts.health.as_dict() | (
+        facts.visibility.as_dict() if facts.visibility else NO_VISIBILITY
+    )
+    entry |= _repair_document(particle, facts)
     entry["notes"] = list(particle.notes)
     if particle.weight != 1.0:
         entry["weight"] = particle.weight
@@ -41,7 +43,7 @@ def described(particle: Particle, facts: MeasuredParticle) -> dict[str, Any]:
     return entry
 
 
-def _mended(particle: Particle, facts: MeasuredParticle) -> dict[str, Any]:
+def _repair_document(particle: Particle, facts: MeasuredParticle) -> dict[str, Any]:
     done = particle.repair
     before = done.health_before if done else facts.health
     return {"health_before_repair": before.as_dict(), "repair": done.as_dict() if done else None}
@@ -64,7 +66,7 @@ def _soundness(particle: Particle, facts: MeasuredParticle) -> str:
     return "mended" if particle.repair is not None and particle.repair.actions else "yes"
 
 
-class Named(Protocol):
+class TableItem(Protocol):
     """Anything that a row of a table can be about."""
 
     @property
@@ -76,7 +78,7 @@ class Named(Protocol):
         """That it belongs to; may be empty."""
 
 
-def descriptor_table(particles: Sequence[Named], facts: Sequence[MeasuredParticle]) -> Table:
+def descriptor_table(particles: Sequence[TableItem], facts: Sequence[MeasuredParticle]) -> Table:
     """One row a particle, one column a descriptor with its unit."""
     keys = [key for key in CATALOGUE if any(key in (each.descriptors or ()) for each in facts)]
     rows = [

@@ -113,13 +113,13 @@ DOCUMENT = "generation.json"
 
 
 @dataclass(frozen=True)
-class _Named:
+class _NameAndGroup:
     name: str
     group: str
 
 
 @dataclass(frozen=True, eq=False)
-class Generated:
+class GeneratedParticles:
     """Drawn particles with everything that is said about them in files.
 
     Parameters
@@ -131,81 +131,86 @@ class Generated:
     """
 
     source: ShapeSource
-    order: GenerationRequest
+    request: GenerationRequest
     model: FittedModel
     draws: Realizations
     groups: tuple[str, ...]
 
 
-def write_table_of_meshes(folder: Path, made: Generated, facts: Sequence[MeasuredParticle]) -> None:
+def write_table_of_meshes(
+    folder: Path, generated: GeneratedParticles, facts: Sequence[MeasuredParticle]
+) -> None:
     """Write ``particles.csv`` of particles whose meshes lie in `folder`: all descriptors, and the origin."""
-    named = [_Named(*each) for each in zip(particle_names(len(made.draws)), made.groups, strict=True)]
-    _write_table(folder, descriptor_table(named, facts), made.draws)
+    named = [
+        _NameAndGroup(*each)
+        for each in zip(particle_names(len(generated.draws)), generated.groups, strict=True)
+    ]
+    _write_table(folder, descriptor_table(named, facts), generated.draws)
 
 
-def write_coefficients(folder: Path, made: Generated) -> None:
+def write_coefficients(folder: Path, generated: GeneratedParticles) -> None:
     """Write ``particles.npz`` (coefficients of all particles) and ``particles.csv`` (name, group, size)."""
-    names, radii = particle_names(len(made.draws)), made.draws.equivalent_radii()
+    names, radii = particle_names(len(generated.draws)), generated.draws.equivalent_radii()
     arrays = {
         "names": np.array(names),
-        "coefficients": made.draws.coefficients,
+        "coefficients": generated.draws.coefficients,
         "equivalent_radius": radii,
-        "parents": np.asarray(made.draws.parents),
-        "components": np.asarray(made.draws.components),
+        "parents": np.asarray(generated.draws.parents),
+        "components": np.asarray(generated.draws.components),
     }
     packed = io.BytesIO()
     np.savez(packed, **arrays)  # type: ignore[arg-type]
     write_bytes(folder / ARRAYS, packed.getvalue())
     columns = (Column("name"), Column("group"), Column("equivalent_radius", "um"))
-    rows = tuple(zip(names, made.groups, radii.tolist(), strict=True))
-    _write_table(folder, Table(N_("Virtual particles"), columns, rows), made.draws)
+    rows = tuple(zip(names, generated.groups, radii.tolist(), strict=True))
+    _write_table(folder, Table(N_("Virtual particles"), columns, rows), generated.draws)
 
 
-def write_document(folder: Path, made: Generated, extra: dict[str, Any]) -> dict[str, Any]:
+def write_document(folder: Path, generated: GeneratedParticles, extra: dict[str, Any]) -> dict[str, Any]:
     """Write ``generation.json`` and return what it holds."""
-    document = generation_document(made) | extra
+    document = generation_document(generated) | extra
     write_bytes(folder / DOCUMENT, json_bytes(document))
     return document
 
 
-def generation_document(made: Generated) -> dict[str, Any]:
+def generation_document(generated: GeneratedParticles) -> dict[str, Any]:
     """Source, model, settings, seed, and how many draws were thrown away."""
-    draws, content = made.draws, made.source.content
+    draws, content = generated.draws, generated.source.content
     return {
         "format": FORMAT,
         "version": 1,
         "program": f"regolith-studio {__version__}",
         "source": {
-            "name": made.source.name,
-            "sha256": made.source.sha256 or None,
+            "name": generated.source.name,
+            "sha256": generated.source.sha256 or None,
             "n_particles": len(content) if isinstance(content, Sample) else None,
-            "notes": list(made.source.notes),
+            "notes": list(generated.source.notes),
         },
-        "model": made.model.key,
-        "settings": dict(made.order.settings),
+        "model": generated.model.key,
+        "settings": dict(generated.request.settings),
         "l_max": draws.l_max,
         "n_particles": len(draws),
         "seed": draws.seed,
         "unit": draws.unit,
-        "size_range": list(made.order.size_range) if made.order.size_range else None,
+        "size_range": list(generated.request.size_range) if generated.request.size_range else None,
         "rejected": draws.rejected,
         "acceptance": draws.acceptance,
         "coefficients": f"of {'the radius' if draws.scale == 'radius' else 'ln radius'}; {CONVENTION}",
-        "components": _components(made),
-        "rejection_bias": _rejection_bias(made),
+        "components": _components(generated),
+        "rejection_bias": _rejection_bias(generated),
     }
 
 
-def _rejection_bias(made: Generated) -> dict[str, float] | None:
+def _rejection_bias(generated: GeneratedParticles) -> dict[str, float] | None:
     """How kept draws differ from the model that rejects others; nothing where none was rejected."""
-    if not made.draws.rejected or not isinstance(made.model, RejectionSampler):
+    if not generated.draws.rejected or not isinstance(generated.model, RejectionSampler):
         return None
-    return asdict(made.model.rejection_bias())
+    return asdict(generated.model.rejection_bias())
 
 
-def _components(made: Generated) -> list[dict[str, Any]]:
-    names = getattr(made.model, "names", ())
-    counts = np.bincount(np.asarray(made.draws.components), minlength=len(names))
+def _components(generated: GeneratedParticles) -> list[dict[str, Any]]:
+    names = getattr(generated.model, "names", ())
+    counts = np.bincount(np.asarray(generated.draws.components), minlength=len(names))
     return [{"name": name, "drawn": int(count)} for name, count in zip(names, counts, strict=False)]
 
 

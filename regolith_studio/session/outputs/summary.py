@@ -106,7 +106,7 @@ def summary_page(recipe: Recipe, summary: Summary, studies: Sequence[str], probl
 
 def _lead(recipe: Recipe, summary: Summary) -> str:
     target = f"surface at l_max = {recipe.l_max}" if recipe.target == "fit" else "measured surface"
-    fineness = recipe.choices().order.fineness
+    fineness = recipe.choices().coarsening_request.fineness
     return (
         f"<p>{summary.n_particles:,} particles; {summary.n_coarse:,} convex polyhedra "
         f"with {fineness} (method {escape(recipe.method)}, weights {escape(_weights(recipe))}, "

@@ -10,7 +10,7 @@ from regolith_studio.coarsening.weights import JACCARD, WEIGHT_KEYS, LossWeights
 from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.errors import InputError
 from regolith_studio.messages import N_
-from regolith_studio.session.preferences import OwnPresets
+from regolith_studio.session.preferences import UserPresets
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.fixed_height_text import FixedHeightText
 from regolith_studio.ui.widgets.labels import heading, remark, rich_symbol
@@ -56,7 +56,7 @@ class LossPanel(QWidget):
     def __init__(self) -> None:
         super().__init__()
         self.setObjectName("loss")
-        self._own = OwnPresets("weights")
+        self._own = UserPresets("weights")
         self._preset = self._chosen = next(iter(presets()))
         self._known: dict[str, Preset] = {}
         self.bar = PresetBar("preset", tr("Preset of weights"))

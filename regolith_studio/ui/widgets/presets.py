@@ -10,7 +10,7 @@ from PySide6.QtWidgets import QFormLayout, QInputDialog, QMenu, QPushButton, QTo
 
 from regolith_studio.errors import InputError
 from regolith_studio.messages import N_
-from regolith_studio.session.preferences import OwnPresets
+from regolith_studio.session.preferences import UserPresets
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.combo_box import ComboBoxRow, ElidedComboBox
 from regolith_studio.ui.widgets.forms import ParameterForm
@@ -151,7 +151,7 @@ class PresetForm(ParameterForm):
     """
 
     def __init__(self, kind: type[Any], name: str, label: str) -> None:
-        self._own = OwnPresets(kind.__name__.lower())
+        self._own = UserPresets(kind.__name__.lower())
         self._chosen = SHIPPED
         self._known: dict[str, dict[str, Any]] = {SHIPPED: {}}
         self._label = label

@@ -171,7 +171,7 @@ class DatasetPage(PageWidget):
         )
         job = Job(
             build_dataset_folder,
-            (self._particles, session.choices.order, folder, options, survey_now.population),
+            (self._particles, session.choices.coarsening_request, folder, options, survey_now.population),
         )
         self._context.remember("place", str(folder.parent))
         self._context.start(tr("Building the dataset"), job, self._take_built, lane=BUILD)

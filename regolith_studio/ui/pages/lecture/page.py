@@ -165,7 +165,7 @@ class LecturePage(PageWidget):
         if self._made_for.get("annealing") == wanted:
             return
         self._made_for["annealing"] = wanted
-        order = choices.replaced(method="annealing", settings=settings, seed=seed).order
+        request = choices.replaced(method="annealing", settings=settings, seed=seed).coarsening_request
         index = [each.id for each in self._session.particles].index(entry.id)
         imitated = (
             tr("the fit at l<sub>max</sub> = {degree}", degree=choices.l_max)
@@ -182,7 +182,7 @@ class LecturePage(PageWidget):
         )
         self.annealing.wait()
         show = self.annealing.show_lesson
-        job = Job(trace_annealing, (mesh, order, index))
+        job = Job(trace_annealing, (mesh, request, index))
         self._context.start(
             tr("Annealing step by step"),
             job,

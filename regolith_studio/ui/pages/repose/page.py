@@ -133,7 +133,7 @@ class ReposePage(PageWidget):
             return
         folder = self._folder / "datasets" / "open-particles"
         options = DatasetOptions(name="open particles", preset=session.choices.preset, overwrite=True)
-        job = Job(build_dataset_folder, (particles, session.choices.order, folder, options))
+        job = Job(build_dataset_folder, (particles, session.choices.coarsening_request, folder, options))
         self._context.start(
             tr("Making a dataset"), job, lambda built: self.setup.set_dataset(built.folder), lane=BUILD
         )

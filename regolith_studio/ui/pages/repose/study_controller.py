@@ -82,7 +82,9 @@ class ReposeStudyController:
         if key not in SHAPE_KEYS:
             return ReposeStudyRequest(key, values, order, self._setup.dataset, repeats)
         particles = tuple(entry.particle for entry in session.particles)
-        return ReposeStudyRequest(key, values, order, None, repeats, particles, session.choices.order)
+        return ReposeStudyRequest(
+            key, values, order, None, repeats, particles, session.choices.coarsening_request
+        )
 
     def _finished(self, study: ReposeStudy) -> None:
         self._panel.show_study(study)

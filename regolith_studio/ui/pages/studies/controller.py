@@ -64,7 +64,7 @@ class SweepController:
             return
         title = SWEEPS[key].title
         options = {"rows": rows, "box_metric": self._bar.box.value(), "title": title}
-        job = Job(study_coarsening, (particles, choices.order), options)
+        job = Job(study_coarsening, (particles, choices.coarsening_request), options)
         self._made[key] = choices
         take = partial(self._take, key)
         self._context.start(title, job, partial(self._end, key), partial=take, lane=key)

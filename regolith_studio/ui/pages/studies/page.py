@@ -126,7 +126,8 @@ class StudiesPage(PageWidget):
         self._drawn = [row.label for row in rows], [entry.particle.name for entry in shown]
         self.gallery.begin([entry.id for entry in shown], [translate(row.label) for row in rows])
         job = Job(
-            coarsen_gallery, (tuple(entry.particle for entry in shown), self._session.choices.order, rows)
+            coarsen_gallery,
+            (tuple(entry.particle for entry in shown), self._session.choices.coarsening_request, rows),
         )
         show = self.gallery.show_solids
         self._context.start(tr("Coarsening for the gallery"), job, show, partial=show, lane="gallery")
