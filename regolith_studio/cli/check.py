@@ -57,7 +57,7 @@ def library_sentence(error: ImportError) -> str | None:
     )
 
 
-_PATIENCE = 60
+_TIMEOUT = 60
 _OPENGL_QUESTION = """
 import json, os, sys
 os.environ.setdefault("PYVISTA_OFF_SCREEN", "true")
@@ -196,10 +196,10 @@ def _ask_child(question: str) -> dict[str, Any]:
     """The JSON that a child process prints in answer, or ``problem`` with one sentence."""
     try:
         child = subprocess.run(
-            [sys.executable, "-c", question], capture_output=True, text=True, timeout=_PATIENCE, check=False
+            [sys.executable, "-c", question], capture_output=True, text=True, timeout=_TIMEOUT, check=False
         )
     except subprocess.TimeoutExpired:
-        return {"problem": f"no answer came within {_PATIENCE} s."}
+        return {"problem": f"no answer came within {_TIMEOUT} s."}
     if child.returncode < 0:
         return {"problem": f"the attempt ended with signal {-child.returncode}."}
     lines = child.stdout.strip().splitlines()

@@ -6,13 +6,13 @@ from regolith_studio.cli.dataclass_options import with_dataclass_options
 from regolith_studio.cli.inputs import ReadingOptions, exit_code
 from regolith_studio.cli.options import (
     CoarseningOptions,
-    FinenessOptions,
     Folder,
     Jobs,
     Json,
     Meshes,
     Preset,
     Seed,
+    StoppingOptions,
 )
 from regolith_studio.cli.terminal import print_errors, print_json, print_table, run_with_progress
 
@@ -22,7 +22,7 @@ def coarsen(
     *,
     meshes: Meshes,
     output: Folder,
-    fineness: FinenessOptions,
+    stopping: StoppingOptions,
     preset: Preset = "",
     how: CoarseningOptions,
     reading: ReadingOptions,
@@ -35,7 +35,7 @@ def coarsen(
     from regolith_studio.jobs.coarsening_jobs import coarsen_sample
     from regolith_studio.session.outputs.coarsening import coarsening_document, error_table, write_coarsening
 
-    choices = how.choices(preset, seed=seed, **fineness.changes)
+    choices = how.choices(preset, seed=seed, **stopping.changes)
     request = choices.coarsening_request
     loaded = reading.read(meshes)
     done = run_with_progress(coarsen_sample(loaded.particles, request, jobs))

@@ -17,7 +17,7 @@ from regolith_studio.errors import InputError
 
 
 def with_dataclass_options(command: Callable[..., None]) -> Callable[..., None]:
-    """The command as typer is to see it: with the options of its groups in their places.
+    """The command with the options of its groups in place of the groups, for typer.
 
     Raises
     ------
@@ -25,15 +25,17 @@ def with_dataclass_options(command: Callable[..., None]) -> Callable[..., None]:
         If two options have the same name.
     """
     hints = get_type_hints(command, include_extras=True)
-    given = inspect.signature(command).parameters.values()
-    groups = {each.name: hints[each.name] for each in given if is_dataclass(hints[each.name])}
+    parameters = inspect.signature(command).parameters.values()
+    groups = {each.name: hints[each.name] for each in parameters if is_dataclass(hints[each.name])}
 
     @functools.wraps(command)
     def called(**values: Any) -> None:
-        made = {name: _taken(group, values) for name, group in groups.items()}
-        command(**values, **made)
+        arguments = {name: _make_group(group, values) for name, group in groups.items()}
+        command(**values, **arguments)
 
-    options = [option for each in given for option in _options(each.name, hints[each.name], each.default)]
+    options = [
+        option for each in parameters for option in _options(each.name, hints[each.name], each.default)
+    ]
     signature = inspect.Signature(options)
     called.__signature__ = signature  # type: ignore[attr-defined]
     called.__annotations__ = {each.name: each.annotation for each in options}
@@ -41,7 +43,7 @@ def with_dataclass_options(command: Callable[..., None]) -> Callable[..., None]:
 
 
 def _options(name: str, hint: Any, default: Any) -> Iterator[inspect.Parameter]:
-    """An option, or those that a group stands for."""
+    """An option, or those of a group."""
     if not is_dataclass(hint):
         yield inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=hint)
         return
@@ -53,22 +55,22 @@ def _options(name: str, hint: Any, default: Any) -> Iterator[inspect.Parameter]:
 
 
 def _annotated(each: Field[Any], hint: Any) -> Any:
-    """The type of a setting with its option: its tip and the keys that it may be are the help."""
-    known = each.metadata
-    keys = [key for key in known.get("choices", ()) if key]
-    help_ = f"{known['tip']} One of: {', '.join(keys)}." if keys else known["tip"]
-    metavar = known.get("metavar") or ("KEY" if isinstance(each.default, str) else "N")
+    """The type of a setting with its option; its tip and its keys are the help."""
+    metadata = each.metadata
+    keys = [key for key in metadata.get("choices", ()) if key]
+    help_ = f"{metadata['tip']} One of: {', '.join(keys)}." if keys else metadata["tip"]
+    metavar = metadata.get("metavar") or ("KEY" if isinstance(each.default, str) else "N")
     name = f"--{each.name.replace('_', '-')}"
     return Annotated[hint, typer.Option(name, help=help_, metavar=metavar, show_default=bool(each.default))]
 
 
-def _taken(group: Any, values: dict[str, Any]) -> Any:
-    """The group, made of those of the values that are its own; they are taken out of the rest."""
+def _make_group(group: Any, values: dict[str, Any]) -> Any:
+    """Make a group of its values, which are removed from `values`."""
     hints = get_type_hints(group)
-    made = {}
+    arguments = {}
     for name in (each.name for each in fields(group)):
-        made[name] = _taken(hints[name], values) if is_dataclass(hints[name]) else values.pop(name)
+        arguments[name] = _make_group(hints[name], values) if is_dataclass(hints[name]) else values.pop(name)
     try:
-        return group(**made)
+        return group(**arguments)
     except InputError as error:
         raise typer.BadParameter(str(error)) from error

@@ -9,13 +9,13 @@ from regolith_studio.cli.dataclass_options import with_dataclass_options
 from regolith_studio.cli.inputs import ReadingOptions, exit_code
 from regolith_studio.cli.options import (
     CoarseningOptions,
-    FinenessOptions,
     Folder,
     Jobs,
     Json,
     Meshes,
     Preset,
     Seed,
+    StoppingOptions,
     claim_file,
     output_path,
     usage_errors,
@@ -39,7 +39,7 @@ def build(
     *,
     meshes: Meshes,
     output: Folder,
-    fineness: FinenessOptions,
+    stopping: StoppingOptions,
     preset: Preset = "",
     how: CoarseningOptions,
     representatives: Annotated[
@@ -106,7 +106,7 @@ def build(
     )
     from regolith_studio.session.outputs.coarsening import coarsening_document
 
-    choices = how.choices(preset, seed=seed, **fineness.changes)
+    choices = how.choices(preset, seed=seed, **stopping.changes)
     with usage_errors():
         parse_sizes(sizes)
         chosen = RepresentativesRequest.of(representatives or 10, weighting, size_importance, seed)

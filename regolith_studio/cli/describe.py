@@ -72,15 +72,15 @@ def describe(
     ]
     if csv is not None:
         _write_csv(csv, entries)
-    spread = _statistics(entries, weighting, border_weights) if statistics else None
+    table = _statistics(entries, weighting, border_weights) if statistics else None
     if json:
         rows = [described(particle, each) for particle, each in pairs]
-        print_json(rows if spread is None else {"particles": rows, "statistics": _as_rows(spread)})
+        print_json(rows if table is None else {"particles": rows, "statistics": _as_rows(table)})
     else:
         print_table(short_table(loaded.particles, facts))
-        if spread is not None:
+        if table is not None:
             typer.echo()
-            print_table(spread)
+            print_table(table)
         for particle, each in pairs:
             print_errors(f"{particle.name}: {note}" for note in (*particle.notes, each.problem) if note)
     raise typer.Exit(exit_code(meshes, loaded, sum(bool(each.problem) for each in facts)))

@@ -26,28 +26,28 @@ def run(arguments: Sequence[str]) -> int:
     try:
         app(list(arguments), prog_name="regolith-studio")
     except SystemExit as end:
-        if end.code == INTERRUPTED:  # so typer ends at Ctrl+C, without a word
-            return _say(STOPPED, INTERRUPTED)
+        if end.code == INTERRUPTED:  # typer ends so at Ctrl+C
+            return _report(STOPPED, INTERRUPTED)
         return end.code if isinstance(end.code, int) else DONE
     except (KeyboardInterrupt, JobCancelled):
-        return _say(STOPPED, INTERRUPTED)
+        return _report(STOPPED, INTERRUPTED)
     except RegolithError as error:
-        return _say(str(error), BAD_INPUT)
+        return _report(str(error), BAD_INPUT)
     except OSError as error:
-        return _say(format_os_error(error), BAD_INPUT)
+        return _report(format_os_error(error), BAD_INPUT)
     except MemoryError:
-        return _say("The work needs more memory than this machine has.", BAD_INPUT)
+        return _report("The work needs more memory than this machine has.", BAD_INPUT)
     except ImportError as error:
         from regolith_studio.cli.check import library_sentence
 
-        return _say(library_sentence(error) or f"{error}; install the program anew.", BAD_INPUT)
+        return _report(library_sentence(error) or f"{error}; install the program anew.", BAD_INPUT)
     except Exception as error:  # noqa: BLE001  the last one who can turn it into a sentence
         first_line = (str(error).splitlines() or [""])[0]
-        return _say(f"The program made a mistake ({type(error).__name__}: {first_line}).", BAD_INPUT)
+        return _report(f"The program made a mistake ({type(error).__name__}: {first_line}).", BAD_INPUT)
     return DONE
 
 
-def _say(sentence: str, code: int) -> int:
+def _report(sentence: str, code: int) -> int:
     if os.environ.get("REGOLITH_STUDIO_DEBUG"):
         traceback.print_exc()
     print(printable(sentence), file=sys.stderr)  # noqa: T201  the only output of a failed command

@@ -166,7 +166,7 @@ class GrainOptions:
 
     @property
     def recipe(self) -> "GrainSettings":
-        """The settings that the options stand for; a wrong one is bad use."""
+        """The settings that the options define; a wrong one is a usage error."""
         from regolith_studio.imaging.extraction import ExtractionSettings
         from regolith_studio.imaging.segmentation.denoising import DenoiseSettings
         from regolith_studio.imaging.segmentation.morphology import CleaningSettings
@@ -204,7 +204,7 @@ def volume_kind(text: str) -> "VolumeKind | None":
 
 
 def threshold_from(text: str, dark: bool) -> "ThresholdSettings":
-    """The threshold that ``otsu``, ``multi-otsu:4:2``, ``probability:0.6`` or ``87.5`` stands for."""
+    """The threshold that ``otsu``, ``multi-otsu:4:2``, ``probability:0.6`` or ``87.5`` denotes."""
     from regolith_studio.imaging.segmentation.thresholding import ThresholdSettings
 
     name, _, rest = text.partition(":")

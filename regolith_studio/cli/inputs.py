@@ -28,7 +28,7 @@ class ReadingOptions:
 
 
 def read_inputs(paths: Sequence[Path], unit: str, repair: bool = True) -> "LoadedParticles":
-    """The particles in files and folders; what cannot be read is a sentence on stderr.
+    """The particles in files and folders; unreadable files are reported on stderr.
 
     Raises
     ------
@@ -46,11 +46,11 @@ def read_inputs(paths: Sequence[Path], unit: str, repair: bool = True) -> "Loade
 
 
 def start_reader() -> None:
-    """Let the process that reads files start while this one is still importing what it computes with."""
+    """Start the process that reads files while this one still imports."""
     from regolith_studio.readers.sandbox.parent import shared_sandbox
 
     def start() -> None:
-        with contextlib.suppress(RegolithError, OSError):  # whoever reads first will hear of it
+        with contextlib.suppress(RegolithError, OSError):  # the first reader raises it again
             shared_sandbox().start()
 
     threading.Thread(target=start, name="start reader", daemon=True).start()

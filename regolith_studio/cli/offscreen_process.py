@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from regolith_studio.jobs.coarsening_jobs import CoarsenedParticle
     from regolith_studio.session.choices import Choices
 
-_PATIENCE = 120.0
+_TIMEOUT = 120.0
 
 
 def draw_three_views(
@@ -52,7 +52,7 @@ def draw_in_process(draw: Callable[..., None], arguments: tuple[Any, ...], path:
     stage = path.with_name(f".{path.stem}-drawn{path.suffix}")
     child = multiprocessing.get_context("spawn").Process(target=draw, args=(*arguments, stage), daemon=True)
     child.start()
-    child.join(_PATIENCE)
+    child.join(_TIMEOUT)
     if child.is_alive():
         child.kill()
         child.join()

@@ -1,4 +1,4 @@
-"""Options that several commands share, with their help, and groups of them that stand for settings."""
+"""Options that several commands share, with their help, and groups of them."""
 
 import os
 from collections.abc import Iterator
@@ -84,13 +84,13 @@ def claim_json(context: typer.Context, path: Path | None) -> Path | None:
 
 
 def _check_folder(folder: Path) -> None:
-    there = next(place for place in (folder, *folder.absolute().parents) if os.path.lexists(place))
-    if not there.exists():
-        raise FileError(f"{there} is a link that leads nowhere; name a folder for the results.")
-    if not there.is_dir():
-        raise FileError(f"{there} is a file; name a folder for the results.")
-    if not os.access(there, os.W_OK | os.X_OK):
-        raise FileError(f"The folder {there} cannot be written (Permission denied).")
+    existing = next(place for place in (folder, *folder.absolute().parents) if os.path.lexists(place))
+    if not existing.exists():
+        raise FileError(f"{existing} is a link that leads nowhere; name a folder for the results.")
+    if not existing.is_dir():
+        raise FileError(f"{existing} is a file; name a folder for the results.")
+    if not os.access(existing, os.W_OK | os.X_OK):
+        raise FileError(f"The folder {existing} cannot be written (Permission denied).")
 
 
 Folder = Annotated[
@@ -184,7 +184,7 @@ Settings = Annotated[
 
 @contextmanager
 def usage_errors() -> Iterator[None]:
-    """Inside, a value that cannot be used is the fault of the command, not of the input: exit code 2."""
+    """Report an :class:`InputError` raised inside as a usage error: exit code 2."""
     try:
         yield
     except InputError as error:
@@ -193,13 +193,13 @@ def usage_errors() -> Iterator[None]:
 
 def numbers(entries: list[str] | None, what: str) -> dict[str, float]:
     """``KEY=VALUE`` entries with numeric values."""
-    found = {}
+    parsed = {}
     for key, text in _pairs(entries, what):
         try:
-            found[key] = float(text)
+            parsed[key] = float(text)
         except ValueError:
             raise typer.BadParameter(f"The {what} {key} must be a number, got {text!r}.") from None
-    return found
+    return parsed
 
 
 def values(entries: list[str] | None, what: str) -> dict[str, bool | int | float | str]:
@@ -209,17 +209,17 @@ def values(entries: list[str] | None, what: str) -> dict[str, bool | int | float
 
 def whole_numbers(text: str, low: int, high: int) -> tuple[int, ...]:
     """``1,2,5`` or ``1-20`` or both, ascending, each from `low` to `high`."""
-    found: set[int] = set()
+    parsed: set[int] = set()
     for part in text.split(","):
         first, dash, last = part.strip().partition("-")
         try:
-            least, most = int(first), int(last if dash else first)
+            first_number, last_number = int(first), int(last if dash else first)
         except ValueError:
             raise typer.BadParameter(f"Write whole numbers as 1,2,5 or 1-20, got {text!r}.") from None
-        if not low <= least <= most <= high:
+        if not low <= first_number <= last_number <= high:
             raise typer.BadParameter(f"The numbers must lie between {low} and {high}, got {text!r}.")
-        found.update(range(least, most + 1))
-    return tuple(sorted(found))
+        parsed.update(range(first_number, last_number + 1))
+    return tuple(sorted(parsed))
 
 
 def _pairs(entries: list[str] | None, what: str) -> Iterator[tuple[str, str]]:
@@ -242,12 +242,12 @@ def _simplest(text: str) -> bool | int | float | str:
 
 
 FACETS = 20
-"""By itself; :class:`FinenessOptions` tells by it whether another number was asked for."""
+"""Default of ``--facets``."""
 
 
 @dataclass(frozen=True)
-class FinenessOptions:
-    """How fine a polyhedron is to be."""
+class StoppingOptions:
+    """When the coarsening stops: number of facets or triangles, or largest error."""
 
     facets: Facets = FACETS
     triangles: Triangles = None
@@ -255,7 +255,7 @@ class FinenessOptions:
 
     @property
     def changes(self) -> dict[str, object]:
-        """Of the choices; more than one way of saying it is bad use."""
+        """Changes of the choices; more than one of the options is a usage error."""
         named = (self.facets != FACETS) + (self.triangles is not None) + (self.max_error is not None)
         if named > 1:
             raise typer.BadParameter(
@@ -270,7 +270,7 @@ class FinenessOptions:
 
 @dataclass(frozen=True, kw_only=True)
 class CoarseningOptions:
-    """How particles become polyhedra, but for the number of facets and named weights."""
+    """Options of the coarsening, without the stopping criterion and the preset."""
 
     method: Method = ""
     weight: Weights = None
@@ -280,12 +280,12 @@ class CoarseningOptions:
     radii: FitOptions
 
     def choices(self, preset: str = "", **others: object) -> "Choices":
-        """The choices that the options stand for; a bad one is bad use.
+        """The choices that the options define; a wrong value is a usage error.
 
         Parameters
         ----------
         preset
-            Key of the loss weights that ``--weight`` changes; without one, those that it names are the only.
+            Key of the preset whose weights ``--weight`` changes; without one, all other weights are 0.
         others
             Further choices, ``seed`` and ``n_facets`` say.
         """
@@ -306,10 +306,10 @@ class CoarseningOptions:
                 changes["preset"] = preset
             if (weights := self._weights(preset)) is not None:
                 changes["weights"] = weights
-            made = Choices().replaced(**changes)
-            if made.weights.all_zero and made.method != "quadric":
+            choices = Choices().replaced(**changes)
+            if choices.weights.all_zero and choices.method != "quadric":
                 raise InputError("All weights of the loss are 0, so there is nothing to optimise; raise one.")
-            return made
+            return choices
 
     def _weights(self, preset: str) -> "LossWeights | None":
         from regolith_studio.coarsening.coarsen import DEFAULT_PRESET

@@ -1,4 +1,4 @@
-"""Options of the commands of ``repose``, and the orders that they stand for."""
+"""Options of the commands of ``repose``, and the requests that they define."""
 
 import dataclasses
 from collections.abc import Mapping
@@ -48,7 +48,7 @@ Measure = Annotated[
 
 @dataclass(frozen=True)
 class CaseOptions:
-    """How a lifting cylinder is simulated and its pile measured."""
+    """Options of the simulation of a lifting cylinder and of its evaluation."""
 
     engine: EngineKey = "mujoco"
     contact: Contact = None
@@ -57,44 +57,46 @@ class CaseOptions:
     measure: Measure = None
 
     def request(self, **case: Any) -> "ReposeRequest":
-        """The order that the options stand for; a wrong one is bad use. `case`: fields of ``ReposeCase``."""
+        """The request of the options; wrong ones are usage errors. `case`: fields of ``ReposeCase``."""
         from regolith_studio.dataset.parameters import ContactParameters, LiftingCylinderTest
         from regolith_studio.dem.case import ReposeCase
         from regolith_studio.dem.engines import engine_named
         from regolith_studio.jobs.repose_jobs import ReposeRequest
 
         with usage_errors():
-            code = engine_named(self.engine)
-        test = filled(LiftingCylinderTest, values(self.test, "value"), "value of the test")
-        contact = filled(ContactParameters, values(self.contact, "value"), "contact parameter")
+            engine = engine_named(self.engine)
+        test = settings_from(LiftingCylinderTest, values(self.test, "value"), "value of the test")
+        contact = settings_from(ContactParameters, values(self.contact, "value"), "contact parameter")
         return ReposeRequest(
-            filled(ReposeCase, {"test": test, "contact": contact, **case}, "value of the case"),
+            settings_from(ReposeCase, {"test": test, "contact": contact, **case}, "value of the case"),
             self.engine,
-            filled(code.Settings, values(self.set_, "setting"), f"setting of {code.label}"),
+            settings_from(engine.Settings, values(self.set_, "setting"), f"setting of {engine.label}"),
             evaluation_settings(self.measure),
         )
 
 
 def evaluation_settings(entries: list[str] | None) -> "EvaluationSettings":
-    """Settings of the evaluation from KEY=VALUE entries; a wrong one is bad use."""
+    """Settings of the evaluation from KEY=VALUE entries; a wrong one is a usage error."""
     from regolith_studio.dem.evaluation.settings import EvaluationSettings
 
-    found: EvaluationSettings = filled(EvaluationSettings, values(entries, "setting"), "evaluation setting")
-    return found
+    settings: EvaluationSettings = settings_from(
+        EvaluationSettings, values(entries, "setting"), "evaluation setting"
+    )
+    return settings
 
 
-def filled(kind: type[Any], given: Mapping[str, Any], what: str) -> Any:
-    """A settings dataclass with the given values; an unknown name or a bad value is bad use."""
-    known = {each.name: each for each in dataclasses.fields(kind)}
-    fitting = {}
+def settings_from(kind: type[Any], given: Mapping[str, Any], what: str) -> Any:
+    """A settings dataclass with the given values; an unknown name or a bad value is a usage error."""
+    by_name = {each.name: each for each in dataclasses.fields(kind)}
+    checked = {}
     for name, value in given.items():
-        if name not in known:
-            raise typer.BadParameter(f"There is no {what} {name!r}; there are {', '.join(known)}.")
-        default = known[name].default
+        if name not in by_name:
+            raise typer.BadParameter(f"There is no {what} {name!r}; there are {', '.join(by_name)}.")
+        default = by_name[name].default
         if isinstance(default, float) and isinstance(value, int) and not isinstance(value, bool):
             value = float(value)
         elif default is not dataclasses.MISSING and not isinstance(value, type(default)):
             raise typer.BadParameter(f"The {what} {name} must be like {default!r}, got {value!r}.")
-        fitting[name] = value
+        checked[name] = value
     with usage_errors():
-        return kind(**fitting)
+        return kind(**checked)

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from regolith_studio.jobs.events import Steps
 
 
-_SILENCE = 30.0
+_LINE_INTERVAL = 30.0
 """Seconds between two lines of progress where there is no terminal."""
 
 
@@ -32,21 +32,21 @@ def run_with_progress(steps: "Steps", logged: bool = False) -> Any:
     """
     if sys.stderr.isatty():
         return _with_bar(steps)
-    return _with_lines(steps, _SILENCE if logged else math.inf)
+    return _with_lines(steps, _LINE_INTERVAL if logged else math.inf)
 
 
-def _with_lines(steps: "Steps", silence: float) -> Any:
-    """A line after so many seconds without one."""
+def _with_lines(steps: "Steps", interval: float) -> Any:
+    """Print a line of progress, at most one in `interval` seconds."""
     from regolith_studio.jobs import events
 
-    said = time.monotonic()
+    last_line = time.monotonic()
     while True:
         try:
             step = next(steps)
         except StopIteration as end:
             return end.value
-        if isinstance(step, events.Progress) and time.monotonic() - said > silence:
-            said = time.monotonic()
+        if isinstance(step, events.Progress) and time.monotonic() - last_line > interval:
+            last_line = time.monotonic()
             print_errors([f"{step.done:,} of {step.total:,}{': ' if step.message else ''}{step.message}"])
 
 
@@ -56,15 +56,15 @@ def _with_bar(steps: "Steps") -> Any:
 
     from regolith_studio.jobs import events
 
-    look = (
+    columns = (
         TextColumn("{task.description}"),
         BarColumn(),
         MofNCompleteColumn(),
         TimeRemainingColumn(),
         TextColumn("[dim]{task.fields[note]}"),
     )
-    with Progress(*look, console=Console(stderr=True), transient=True) as bar:
-        shown = bar.add_task("Working", total=None, note="")
+    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task("Working", total=None, note="")
         while True:
             try:
                 step = next(steps)
@@ -72,9 +72,9 @@ def _with_bar(steps: "Steps") -> Any:
                 return end.value
             match step:
                 case events.Started(title, total):
-                    bar.update(shown, description=title, total=total or None)
+                    bar.update(task, description=title, total=total or None)
                 case events.Progress(done, total, message):
-                    bar.update(shown, completed=done, total=total or None, note=message)
+                    bar.update(task, completed=done, total=total or None, note=message)
 
 
 def print_json(document: Any) -> None:

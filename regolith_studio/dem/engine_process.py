@@ -167,7 +167,7 @@ def run_task(target: BinaryIO, key: str, prepared: PreparedCase, settings: Any, 
         _send(target, "The simulation needs more memory than this machine has; take fewer particles.")
     except OSError as error:
         _send(target, f"The simulation could not go on: {error.strerror or error}. What was saved is kept.")
-    except Exception as error:  # noqa: BLE001 (the parent must be told)
+    except Exception as error:  # noqa: BLE001 (the parent reports it)
         _send(target, f"The engine failed ({type(error).__name__}: {error}). What was saved is kept.")
 
 

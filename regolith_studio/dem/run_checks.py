@@ -41,16 +41,16 @@ def check_run(
     problems
         Sentences of the engine, which come first.
     """
-    kept, said = int(np.count_nonzero(heights > -1.0)), list(problems)
+    kept, sentences = int(np.count_nonzero(heights > -1.0)), list(problems)
     largest = float(overlaps.max(initial=0.0))
     if kept < len(heights):
-        said.append(f"{len(heights) - kept} of {len(heights)} particles fell through the plate.")
+        sentences.append(f"{len(heights) - kept} of {len(heights)} particles fell through the plate.")
     if largest > MAX_OVERLAP:
-        said.append(f"Particles overlap by up to {100 * largest:.1f} % of the mean diameter.")
+        sentences.append(f"Particles overlap by up to {100 * largest:.1f} % of the mean diameter.")
     if energy_gain > MAX_ENERGY_GAIN:
-        said.append(f"The energy rose by {energy_gain:.2g} m g d a particle out of nothing.")
+        sentences.append(f"The energy rose by {energy_gain:.2g} m g d a particle out of nothing.")
     if not at_rest:
-        said.append("The heap was still moving at the end.")
+        sentences.append("The heap was still moving at the end.")
     return RunChecks(
         particles_in=len(heights),
         particles_out=kept,
@@ -61,7 +61,7 @@ def check_run(
         at_rest=at_rest,
         fill_height=filling[0],
         solid_fraction=filling[1],
-        problems=tuple(said),
+        problems=tuple(sentences),
     )
 
 

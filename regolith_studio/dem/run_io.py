@@ -100,7 +100,7 @@ def save_shapes(folder: Path, prepared: PreparedCase) -> Path:
 def save_result(folder: Path, document: dict[str, Any], final: ParticleState | None, seconds: float) -> None:
     """Write the result; the document is written last, when all other files exist.
 
-    The duration stands in ``times.json`` alone, so that equal runs have equal documents.
+    The duration is in ``times.json`` alone, so that equal runs have equal documents.
 
     Raises
     ------

@@ -85,29 +85,29 @@ def scaling_report(prepared: PreparedCase) -> ScalingReport:
 
 def _sentences(prepared: PreparedCase, bonds: tuple[float, float, float]) -> list[str]:
     test, mean, factor = prepared.case.test, prepared.mean_diameter, prepared.coarse_graining
-    said = [
+    sentences = [
         f"{len(prepared):,} particles of {1e3 * mean:.2g} mm stand for {1e3 * test.mass:.3g} g: "
         f"{factor:.0f} times the size of the dataset's (the paper: {PAPER_COARSE_GRAINING:.0f})."
     ]
     across = test.diameter / mean
     if across < 20:
-        said.append(f"The cylinder is only {across:.1f} particles wide; walls and single grains matter.")
+        sentences.append(f"The cylinder is only {across:.1f} particles wide; walls and single grains matter.")
     if len(prepared) < RELIABLE_N:
-        said.append(COARSE_PILE)
+        sentences.append(COARSE_PILE)
     low, high = PAPER_FILL_HEIGHT
     if not 0.9 * low <= prepared.fill_height <= 1.1 * high:
-        said.append(
+        sentences.append(
             f"The filling will be about {100 * prepared.fill_height:.2g} cm high (the paper: 2.5 to 3 cm)."
         )
     real, given, simulated = bonds
     if prepared.case.contact.surface_energy > 0.0:
-        said.append(
+        sentences.append(
             f"Cohesion over weight is {_plain(real)} for the dataset's particles and {_plain(given)} for the "
             f"simulated ones at the given surface energy; this run has {_plain(simulated)}."
         )
     if prepared.case.contact.static_friction != prepared.case.contact.dynamic_friction:
-        said.append("The constraint solver knows one coefficient of friction; it takes the static one.")
-    return said
+        sentences.append("The constraint solver knows one coefficient of friction; it takes the static one.")
+    return sentences
 
 
 def _plain(number: float) -> str:

@@ -72,7 +72,7 @@ class CoarseningRequest:
         return self.n_facets if self.largest_error is None else FACETS_LIMITS[1]
 
     @property
-    def fineness(self) -> str:
+    def stopping_criterion(self) -> str:
         """How fine the polyhedra are, to be put into a sentence."""
         if self.largest_error is None:
             return f"{self.n_facets} facets"

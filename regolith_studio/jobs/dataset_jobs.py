@@ -54,7 +54,7 @@ class DatasetOptions:
     workers
         Processes that coarsen at the same time, 0 for one a core; or an open executor.
     representatives
-        How particles that stand for all are chosen; ``None`` lets every particle stand for itself.
+        How representatives are chosen; ``None`` if each particle represents itself.
     sizes
         Size distributions of the classes, as :mod:`regolith_studio.dataset.size_parsing` writes them.
     """
@@ -181,7 +181,7 @@ def dataset_of(
     Parameters
     ----------
     chosen
-        What `outcomes` stand for, in their order; each for itself if not given.
+        The representatives in the order of `outcomes`; by default each particle represents itself.
     sizing
         From measured sizes to those that are written.
 
@@ -243,7 +243,7 @@ def dataset_provenance(
         processing_steps=(
             "Meshes read and repaired.",
             *(fit if request.target == "fit" else ()),
-            f"CoarseningResult to {request.fineness} by the method {request.method}.",
+            f"CoarseningResult to {request.stopping_criterion} by the method {request.method}.",
             "Turned to principal axes and scaled to unit volume.",
         ),
         seed=request.seed,

@@ -240,7 +240,7 @@ def study_repose(rows: Sequence[ReposeVariant], folder: Path, repeats: int = 1) 
     """Run every row `repeats` times, each run in a folder of its own; returns :class:`ReposeStudy`.
 
     Runs that a folder holds already, finished and of the same case, are not run again: a study that was
-    stopped goes on where it was. A run that fails is a row without an angle.
+    stopped is resumed. A run that fails is a row without an angle.
     """
     plan = [(row, row.request.case.seed + k) for row in rows for k in range(repeats)]
     yield Started(N_("Angle of repose: study"), PROGRESS_STEPS * len(plan))

@@ -1,4 +1,4 @@
-"""Which particles stand for a sample: descriptors of all, then representatives for one number or for many."""
+"""Representatives of a sample: descriptors of all particles, then one or many choices."""
 
 import math
 from collections.abc import Sequence
@@ -117,7 +117,7 @@ class ChosenParticles:
         return cls(places, found, len(population.kept))
 
     def measured(self, population: MeasuredPopulation) -> "ChosenParticles":
-        """With how well they stand for the population that they were chosen from."""
+        """With the quality of the representation of their population."""
         return replace(self, representation=representation_of(population.descriptors, self.representatives))
 
 
@@ -175,7 +175,7 @@ def measure_quality(population: MeasuredPopulation, request: RepresentativesRequ
 
 
 def choose_particles(population: MeasuredPopulation, request: RepresentativesRequest) -> ChosenParticles:
-    """The particles that stand for a population.
+    """The representatives of a population.
 
     Raises
     ------

@@ -141,12 +141,12 @@ class Choices(FitOptions):
 
     @property
     def facet_count(self) -> int:
-        """Facets that are asked for; where the errors say so, those that studies take."""
+        """Maximum number of facets; studies use it also where the largest error is the criterion."""
         return facets_for_triangles(self.n_triangles) if self.stop_at == "triangles" else self.n_facets
 
     @property
-    def fineness(self) -> tuple[int, float | None]:
-        """What of :attr:`stop_at` and its numbers makes a difference to a polyhedron."""
+    def stopping_criterion(self) -> tuple[int, float | None]:
+        """Number of facets and largest error; the one that :attr:`stop_at` ignores is 0 or ``None``."""
         return (0, self.largest_error) if self.stop_at == "error" else (self.facet_count, None)
 
     @property
@@ -162,7 +162,7 @@ class Choices(FitOptions):
             l_max=self.l_max,
             level=self.level,
             fit_options=self.fit_options,
-            largest_error=self.fineness[1],
+            largest_error=self.stopping_criterion[1],
         )
 
     @property
@@ -192,7 +192,7 @@ DEPENDS_ON: Mapping[Kind, tuple[str, ...]] = {
     Kind.FIT: ("selected", *_FIT_OPTIONS),
     Kind.SURFACE: ("selected", *_FIT_OPTIONS, "l_max", "level"),
     Kind.DESCRIPTORS: ("selected", *_FIT_OPTIONS, "l_max", "level", "box_metric"),
-    Kind.COARSENING: ("selected", "target", "fineness", "method", "settings", "weights", "seed"),
+    Kind.COARSENING: ("selected", "target", "stopping_criterion", "method", "settings", "weights", "seed"),
     Kind.LMAX_STUDY: (*_FIT_OPTIONS, "level"),
     Kind.COARSENING_STUDY: ("target", "facet_count", "method", "settings", "seed"),
 }

@@ -11,7 +11,7 @@ from regolith_studio.session.recipe import SAMPLE
 def as_command(choices: Choices, inputs: list[str]) -> str:
     """The ``coarsen`` command that does to all particles what the window does to one."""
     words = ["regolith-studio", "coarsen", *inputs]
-    words += ["-o", "coarsened", *_fineness_options(choices), "--method", choices.method]
+    words += ["-o", "coarsened", *_stopping_options(choices), "--method", choices.method]
     words += ["--seed", str(choices.seed), "--target", choices.target]
     if choices.target == "fit":
         words += ["--l-max", str(choices.l_max)]
@@ -43,11 +43,11 @@ def as_python(choices: Choices, source: str) -> str:
         named = "" if source == SAMPLE or not name else f" if each.name == {name!r}"
         reading = f"next(each for each in sample_particles(){named})"
     body = "reconstruct(fit, l_max, level)" if choices.target == "fit" else "particle.mesh"
-    until = choices.stop_at == "error"
-    doors = [*([] if until else ["coarsen"]), "fit_harmonics", *([] if sample else ["read_mesh"])]
+    by_error = choices.stop_at == "error"
+    functions = [*([] if by_error else ["coarsen"]), "fit_harmonics", *([] if sample else ["read_mesh"])]
     lines = [
-        f"from regolith_studio import {', '.join(doors)}",
-        *(["from regolith_studio.coarsening.stopping_criteria import coarsen_below"] if until else []),
+        f"from regolith_studio import {', '.join(functions)}",
+        *(["from regolith_studio.coarsening.stopping_criteria import coarsen_below"] if by_error else []),
         "from regolith_studio.coarsening.coarsen import settings_of",
         "from regolith_studio.coarsening.weights import LossWeights",
         "from regolith_studio.harmonics.surface import reconstruct",
@@ -55,17 +55,17 @@ def as_python(choices: Choices, source: str) -> str:
         "",
         f"l_max, level = {choices.l_max}, {choices.level}",
         f"particle = {reading}",
-        f"fit = {_expanding(choices)}",
+        f"fit = {_fit_call(choices)}",
         f"target = {body}",
         f"weights = LossWeights.of(**{dict(choices.weights)!r})",
         f"settings = settings_of({choices.method!r}, {dict(choices.settings)!r})",
-        *_coarsening(choices),
+        *_coarsening_call(choices),
         "print(done.n_facets, done.errors, done.jaccard_distance)",
     ]
     return "\n".join(lines) + "\n"
 
 
-def _fineness_options(choices: Choices) -> list[str]:
+def _stopping_options(choices: Choices) -> list[str]:
     match choices.stop_at:
         case "triangles":
             return ["--triangles", str(choices.n_triangles)]
@@ -74,21 +74,21 @@ def _fineness_options(choices: Choices) -> list[str]:
     return ["--facets", str(choices.n_facets)]
 
 
-def _coarsening(choices: Choices) -> list[str]:
+def _coarsening_call(choices: Choices) -> list[str]:
     """The call that coarsens; of a budget of triangles the number of facets that it allows."""
-    door, fineness = "coarsen", f"n_facets={choices.facet_count}"
+    function, criterion = "coarsen", f"n_facets={choices.facet_count}"
     if choices.stop_at == "error":
-        door, fineness = "coarsen_below", f"limit={choices.largest_error!r}"
+        function, criterion = "coarsen_below", f"limit={choices.largest_error!r}"
     return [
-        f"done = {door}(",
-        f"    target, {fineness}, method={choices.method!r}, weights=weights,",
+        f"done = {function}(",
+        f"    target, {criterion}, method={choices.method!r}, weights=weights,",
         f"    seed={choices.seed}, settings=settings,",
         ")",
     ]
 
 
-def _expanding(choices: Choices) -> str:
-    usual = asdict(FitOptions())
+def _fit_call(choices: Choices) -> str:
+    defaults = asdict(FitOptions())
     options = asdict(choices.fit_options).items()
-    told = [f"{name}={value!r}" for name, value in options if value != usual[name]]
-    return f"fit_harmonics({', '.join(['particle.mesh', 'l_max=30', *told])})"
+    arguments = [f"{name}={value!r}" for name, value in options if value != defaults[name]]
+    return f"fit_harmonics({', '.join(['particle.mesh', 'l_max=30', *arguments])})"

@@ -78,7 +78,7 @@ def filter_of(text: str) -> Filter:
 
 
 def has_weights(entries: Iterable[ParticleEntry]) -> bool:
-    """Whether some particle stands for more than itself."""
+    """Whether the weight of some particle differs from 1."""
     return any(entry.particle.weight != 1.0 for entry in entries)
 
 

@@ -64,13 +64,13 @@ def test_that_a_preset_brings_its_weights_and_a_moved_weight_marks_it_modified()
 def test_that_one_of_three_numbers_says_how_fine_a_polyhedron_is(
     stop: str, facets: int, error: float | None, most: int, words: str
 ) -> None:
-    order = Choices(stop_at=stop, n_facets=12, n_triangles=59, largest_error=0.025).coarsening_request
-    assert (order.n_facets, order.largest_error, order.max_facets, order.fineness) == (
+    request = Choices(stop_at=stop, n_facets=12, n_triangles=59, largest_error=0.025).coarsening_request
+    assert (request.n_facets, request.largest_error, request.max_facets, request.stopping_criterion) == (
         *(facets, error, most),
         words,
     )
 
 
 def test_that_the_order_of_a_coarsening_repeats_the_choices() -> None:
-    order = Choices(n_facets=12, seed=4, l_max=3, target="particle").coarsening_request
-    assert (order.n_facets, order.seed, order.l_max, order.target) == (12, 4, 3, "particle")
+    request = Choices(n_facets=12, seed=4, l_max=3, target="particle").coarsening_request
+    assert (request.n_facets, request.seed, request.l_max, request.target) == (12, 4, 3, "particle")

@@ -30,7 +30,7 @@ class Pausable(Handle, Protocol):
         ...
 
     def resume(self) -> None:
-        """Let the job go on."""
+        """Resume the job."""
         ...
 
 

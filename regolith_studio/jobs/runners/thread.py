@@ -43,7 +43,7 @@ class PauseToken:
             self._paused = not self._stopped
 
     def resume(self) -> None:
-        """Let the job go on."""
+        """Resume the job."""
         with self._changed:
             self._paused = False
             self._changed.notify_all()
@@ -55,7 +55,7 @@ class PauseToken:
             self._changed.notify_all()
 
     def wait_while_paused(self) -> bool:
-        """Block while paused; returns whether the job may go on."""
+        """Block while paused; returns whether the job may continue."""
         with self._changed:
             self._changed.wait_for(lambda: not self._paused)
             return not self._stopped

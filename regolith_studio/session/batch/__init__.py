@@ -1,7 +1,7 @@
 """A recipe run particle by particle, with every result on disk at once.
 
-* :mod:`~regolith_studio.session.batch.inputs`: what a recipe's inputs stand for; nothing is read yet.
-* :mod:`~regolith_studio.session.batch.preprocessing`: grains of volumes and fitted models, made before.
+* :mod:`~regolith_studio.session.batch.inputs`: the particles of a recipe before they are read.
+* :mod:`~regolith_studio.session.batch.preprocessing`: grains of volumes and fitted models.
 * :mod:`~regolith_studio.session.batch.particle_task`: all that is done to one particle, in any process.
 * :mod:`~regolith_studio.session.batch.writers`: the files that the results become.
 * :mod:`~regolith_studio.session.batch.dataset_step`: the dataset and its exports.

@@ -55,7 +55,7 @@ class BatchInput(Protocol):
 
 @dataclass(frozen=True)
 class _NamedInput:
-    """What all of them have.
+    """Fields of all inputs.
 
     Parameters
     ----------
@@ -144,7 +144,7 @@ class VirtualInput(_NamedInput):
 
     @property
     def fingerprint(self) -> str:
-        """What it is drawn from, and its number."""
+        """Model, settings, seed and index."""
         fitted = self.model.name if self.model else ""
         return f"{self.population.model_dump_json()} {fitted} {self.seed} {self.index} {self.level}"
 
@@ -170,7 +170,7 @@ class BatchInputs:
 
     @classmethod
     def of(cls, recipe: Recipe, base: Path, prepared: PreparedInputs = NO_PREPARED_INPUTS) -> Self:
-        """What the inputs of `recipe` stand for; relative ones are looked up in `base`.
+        """The particles of `recipe`; relative paths are relative to `base`.
 
         Raises
         ------

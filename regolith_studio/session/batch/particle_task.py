@@ -83,7 +83,7 @@ class _RecordBuilder:
 def process_particles(items: Sequence[tuple[int, BatchInput]], task: ParticleTask) -> Steps:
     """Read, measure, fit and coarsen particles; returns a tuple of :class:`CheckpointRecord`, one an item.
 
-    Whatever goes wrong with a particle stands in its record, under ``failures``, and stops nothing else.
+    Failures of a particle are listed in its record, under ``failures``, and do not stop the others.
     """
     yield Started(N_("Working on particles"), len(items))
     records = []

@@ -1,7 +1,7 @@
 """Preprocessing of a recipe's inputs: extract the grains of volumes, fit the model of a population.
 
 Each lies in a folder of its own, named by a hash of all that it depends on, beside the journal: whole or not
-there at all, so that a run that goes on finds it.
+absent, so that a resumed run finds it.
 """
 
 import hashlib
@@ -74,7 +74,7 @@ def prepare_inputs(
     root
         Where the folders are.
     finished
-        Whether all work on the grains is done, so that what is known of them is enough.
+        Whether all grains are processed already, so that their index is enough.
 
     Raises
     ------
@@ -106,26 +106,26 @@ def resolved(entry: VolumeEntry, base: Path) -> VolumeEntry:
     return entry.model_copy(update={"file": file, "recipe": settings})
 
 
-def entry_of(given: VolumeInput, settings: GrainSettings) -> VolumeEntry:
+def entry_of(volume: VolumeInput, settings: GrainSettings) -> VolumeEntry:
     """What a recipe says of a volume and of the way from its voxels to particles."""
-    sizes, raw = given.voxel_size, given.raw
-    shipped = (name for name, kind in SAMPLE_VOLUMES.items() if given.path == sample_file(kind))
+    sizes, raw = volume.voxel_size, volume.raw
+    shipped = (name for name, kind in SAMPLE_VOLUMES.items() if volume.path == sample_file(kind))
     return VolumeEntry(
-        file=next(shipped, str(given.path.absolute())),
+        file=next(shipped, str(volume.path.absolute())),
         voxel_size=[float(e) for e in sizes] if isinstance(sizes, Sequence) else sizes,
-        unit=given.unit,
-        kind=given.kind,
-        dataset=given.dataset,
-        axes=given.axes,
+        unit=volume.unit,
+        kind=volume.kind,
+        dataset=volume.dataset,
+        axes=volume.axes,
         raw=None if raw is None else RawVolume(**{**asdict(raw), "shape": list(raw.shape)}),
         **settings.as_document(),
     )
 
 
 def read_index(folder: Path) -> list[dict[str, Any]]:
-    """What is known of the grains of a volume, in their order."""
-    found: list[dict[str, Any]] = json.loads((folder / INDEX).read_text(encoding="utf-8"))
-    return found
+    """Entries of the grains of a volume, in order."""
+    extracted: list[dict[str, Any]] = json.loads((folder / INDEX).read_text(encoding="utf-8"))
+    return extracted
 
 
 def read_grain(folder: Path, entry: Mapping[str, Any]) -> Particle:
@@ -146,21 +146,21 @@ def clear_prepared_inputs(prepared: PreparedInputs) -> None:
 
 
 def _extract_grains(entry: VolumeEntry, base: Path, root: Path, finished: bool) -> Steps:
-    given, settings = _volume_input(entry, base), _settings(entry, base)
-    if not given.path.exists():
-        raise InputError(f"There is no volume {given.path}.")
+    volume, settings = _volume_input(entry, base), _settings(entry, base)
+    if not volume.path.exists():
+        raise InputError(f"There is no volume {volume.path}.")
     document = entry.model_dump(mode="json", exclude={"recipe"})
-    folder = root / f"volume-{_digest(document, settings.as_document(), volume_sha256(given.path))}"
+    folder = root / f"volume-{_digest(document, settings.as_document(), volume_sha256(volume.path))}"
     if (folder / INDEX).is_file() and (finished or _is_whole(folder)):
         return folder
     with _removing_empty_folder(root), staged_folder(folder, "prepared") as stage:
         rows: dict[int, dict[str, Any]] = {}
 
-        def keep(found: ExtractedParticle) -> None:
-            rows[found.label] = _store_grain(stage, found)
+        def keep(extracted: ExtractedParticle) -> None:
+            rows[extracted.label] = _store_grain(stage, extracted)
 
-        done = yield from extract_each(given, settings, root.parent, keep)
-        (stage / RECIPE).write_bytes(json_bytes(recipe_document(given, settings, done)))
+        done = yield from extract_each(volume, settings, root.parent, keep)
+        (stage / RECIPE).write_bytes(json_bytes(recipe_document(volume, settings, done)))
         (stage / INDEX).write_bytes(json_bytes([rows[label] for label in sorted(rows)]))
     return folder
 
@@ -169,8 +169,8 @@ def _is_whole(folder: Path) -> bool:
     return all((folder / entry["file"]).is_file() for entry in read_index(folder))
 
 
-def _store_grain(stage: Path, found: ExtractedParticle) -> dict[str, Any]:
-    particle, name = found.particle, f"{found.label:08d}.npz"
+def _store_grain(stage: Path, extracted: ExtractedParticle) -> dict[str, Any]:
+    particle, name = extracted.particle, f"{extracted.label:08d}.npz"
     np.savez(stage / name, vertices=particle.mesh.vertices, faces=particle.mesh.faces)
     source = particle.source
     return {
@@ -179,7 +179,7 @@ def _store_grain(stage: Path, found: ExtractedParticle) -> dict[str, Any]:
         "file": name,
         "notes": list(particle.notes),
         "source": None if source is None else [source.path, source.sha256, source.unit],
-        "weight": float(found.weight),
+        "weight": float(extracted.weight),
     }
 
 
@@ -258,17 +258,17 @@ def _volume_input(entry: VolumeEntry, base: Path) -> VolumeInput:
 def _settings(entry: VolumeEntry, base: Path) -> GrainSettings:
     if entry.recipe is not None:
         return read_grain_settings(base / entry.recipe)
-    given = {"segmentation": entry.segmentation, "extraction": entry.extraction}
-    _check_names(given, GrainSettings().as_document(), "")
-    return GrainSettings.from_document(given)
+    volume = {"segmentation": entry.segmentation, "extraction": entry.extraction}
+    _check_names(volume, GrainSettings().as_document(), "")
+    return GrainSettings.from_document(volume)
 
 
-def _check_names(given: Mapping[str, Any], known: Mapping[str, Any], prefix: str) -> None:
-    for name, value in given.items():
-        if name not in known:
-            raise InputError(f"There is no setting {prefix}{name}; there are {', '.join(known)}.")
-        if isinstance(value, Mapping) and isinstance(known[name], Mapping):
-            _check_names(value, known[name], f"{prefix}{name}.")
+def _check_names(volume: Mapping[str, Any], allowed: Mapping[str, Any], prefix: str) -> None:
+    for name, value in volume.items():
+        if name not in allowed:
+            raise InputError(f"There is no setting {prefix}{name}; there are {', '.join(allowed)}.")
+        if isinstance(value, Mapping) and isinstance(allowed[name], Mapping):
+            _check_names(value, allowed[name], f"{prefix}{name}.")
 
 
 def _digest(*parts: Any) -> str:

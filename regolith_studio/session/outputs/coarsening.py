@@ -1,4 +1,4 @@
-"""CoarseningResult particles: one STL each, and ``coarsening.json`` with how well each was met."""
+"""Coarsened particles: one STL each, and ``coarsening.json`` with their errors."""
 
 from collections.abc import Sequence
 from dataclasses import asdict
@@ -21,7 +21,7 @@ STL_HEADER = "Regolith Studio, convex polyhedron, micrometres"
 def write_coarsening(folder: Path, request: CoarseningRequest, done: Sequence[CoarsenedParticle]) -> None:
     """Write ``<name>.stl`` for each particle that succeeded, in its own frame, and ``coarsening.json``.
 
-    How long each took stands in ``times.json`` alone, so that equal runs have equal results.
+    The durations are in ``times.json`` alone, so that equal runs have equal results.
     """
     for each in done:
         if each.coarsened:
@@ -50,7 +50,7 @@ def document_head(request: CoarseningRequest) -> dict[str, Any]:
 
 
 def request_document(request: CoarseningRequest) -> dict[str, Any]:
-    """An order as plain JSON values; the largest error only where one was asked for."""
+    """A request as plain JSON values; the largest error only if it is the stopping criterion."""
     values = asdict(request) | {"weights": dict(request.weights), "settings": dict(request.settings)}
     if request.largest_error is None:
         del values["largest_error"]

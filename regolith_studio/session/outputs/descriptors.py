@@ -9,9 +9,10 @@ from regolith_studio.io.tables import Column, Table
 from regolith_studio.jobs.particle_jobs import MeasuredParticle
 
 SHARES = ("hidden_surface_share", "unrepresentable_volume_share")
-"""What no radius function keeps, of :class:`~regolith_studio.harmonics.visibility.StarPointVisibility`."""
+"""Shares that no radius function represents, of
+:class:`~regolith_studio.harmonics.visibility.StarPointVisibility`."""
 NO_VISIBILITY = dict.fromkeys((*SHARES, "star_point", "star_point_rule"))
-"""Instead of ``StarPointVisibility.as_dict`` where a mesh has no inside."""
+"""In place of ``StarPointVisibility.as_dict`` where a mesh has no inside."""
 _POWERS = {0: "", 1: "um", 2: "um^2", 3: "um^3", 5: "um^5"}
 
 

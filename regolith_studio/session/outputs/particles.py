@@ -35,7 +35,7 @@ _LIBRARIES = ("scikit-image", "connected-components-3d", "vtk", "tifffile", "h5p
 
 
 class ExtractionFolder:
-    """Takes particles as they come and keeps only what the tables need.
+    """Writes particles one by one; keeps only the rows of the tables in memory.
 
     Parameters
     ----------
@@ -48,27 +48,27 @@ class ExtractionFolder:
         self._rows: dict[int, dict[Column, Cell]] = {}
         self._entries: dict[int, dict[str, Any]] = {}
 
-    def add(self, found: ExtractedParticle, facts: MeasuredParticle) -> None:
+    def add(self, extracted: ExtractedParticle, facts: MeasuredParticle) -> None:
         """Write one particle's STL and remember its row."""
-        particle = found.particle
+        particle = extracted.particle
         write_bytes(self._folder / f"{particle.name}.stl", stl_bytes(particle.mesh.triangles, STL_HEADER))
         table = descriptor_table([particle], [facts])
         extra: Mapping[Column, Cell] = {
-            Column("label"): found.label,
-            Column("voxels"): found.n_voxels,
-            Column("weight"): found.weight,
-            Column("surface"): found.surface,
+            Column("label"): extracted.label,
+            Column("voxels"): extracted.n_voxels,
+            Column("weight"): extracted.weight,
+            Column("surface"): extracted.surface,
             Column("notes"): " ".join(particle.notes),
         }
-        self._rows[found.label] = dict(zip(table.columns, table.rows[0], strict=True)) | dict(extra)
-        self._entries[found.label] = described(particle, facts) | {
-            "label": found.label,
-            "voxels": found.n_voxels,
-            "weight": found.weight,
-            "surface": found.surface,
+        self._rows[extracted.label] = dict(zip(table.columns, table.rows[0], strict=True)) | dict(extra)
+        self._entries[extracted.label] = described(particle, facts) | {
+            "label": extracted.label,
+            "voxels": extracted.n_voxels,
+            "weight": extracted.weight,
+            "surface": extracted.surface,
         }
 
-    def finish(self, given: VolumeInput, recipe: GrainSettings, done: ExtractedFile) -> dict[str, Any]:
+    def finish(self, volume: VolumeInput, recipe: GrainSettings, result: ExtractedFile) -> dict[str, Any]:
         """Write ``particles.csv`` and the recipe; returns what ``--json`` prints."""
         rows = [self._rows[label] for label in sorted(self._rows)]
         columns = next(tuple(row) for row in rows if len(row) == max(map(len, rows)))
@@ -76,33 +76,33 @@ class ExtractionFolder:
             "Particles of a volume", columns, tuple(tuple(row.get(c) for c in columns) for row in rows)
         )
         write_bytes(self._folder / "particles.csv", csv_text(table).encode("utf-8"))
-        document = recipe_document(given, recipe, done)
+        document = recipe_document(volume, recipe, result)
         write_bytes(self._folder / RECIPE, json_bytes(document))
         return {"particles": [self._entries[label] for label in sorted(self._entries)]} | document
 
 
-def recipe_document(given: VolumeInput, recipe: GrainSettings, done: ExtractedFile) -> dict[str, Any]:
+def recipe_document(volume: VolumeInput, recipe: GrainSettings, result: ExtractedFile) -> dict[str, Any]:
     """Everything that is needed to make the same particles again, and what was left out."""
     document: dict[str, Any] = {
         "volume": {
-            "path": str(given.path),
-            "dataset": given.dataset,
-            "axes": given.axes,
-            "sha256": done.sha256,
-            "shape_xyz": list(done.shape),
-            "dtype": done.dtype,
-            "kind": done.kind,
-            "voxel_size_um": list(done.voxel_size),
+            "path": str(volume.path),
+            "dataset": volume.dataset,
+            "axes": volume.axes,
+            "sha256": result.sha256,
+            "shape_xyz": list(result.shape),
+            "dtype": result.dtype,
+            "kind": result.kind,
+            "voxel_size_um": list(result.voxel_size),
         },
         "extraction": recipe.as_document()["extraction"],
-        "n_particles": done.extraction.n_found,
-        "border": list(done.extraction.border),
-        "small": list(done.extraction.small),
+        "n_particles": result.extraction.n_found,
+        "border": list(result.extraction.border),
+        "small": list(result.extraction.small),
         "software": software_versions() | {name: version(name) for name in _LIBRARIES},
     }
-    if done.facts is not None:
+    if result.facts is not None:
         document["segmentation"] = recipe.as_document()["segmentation"]
-        document["segmented"] = asdict(done.facts)
+        document["segmented"] = asdict(result.facts)
     return document
 
 
@@ -120,12 +120,12 @@ class _NameAndGroup:
 
 @dataclass(frozen=True, eq=False)
 class GeneratedParticles:
-    """Drawn particles with everything that is said about them in files.
+    """Drawn particles with their source, request and model.
 
     Parameters
     ----------
     source, order, model, draws
-        What was asked of what, and what came of it.
+        Source and request, the fitted model and the drawn particles.
     groups
         Name of the part of the mixture each came from, or empty.
     """

@@ -78,4 +78,4 @@ STUDIES: Mapping[str, StudyKind] = {
         for key, each in SWEEPS.items()
     },
 }
-"""The first two can be asked for by a recipe, by the keys of ``session.dependencies.Kind``."""
+"""The first two can be asked for by a recipe, by the keys of ``session.choices.Kind``."""

@@ -33,7 +33,7 @@ SHOWN_ROWS = 200
 
 @dataclass
 class Summary:
-    """What the page tells, gathered particle by particle; only the first of many are kept.
+    """Content of the page, collected particle by particle; only the first of many are kept.
 
     Parameters
     ----------
@@ -106,10 +106,10 @@ def summary_page(recipe: Recipe, summary: Summary, studies: Sequence[str], probl
 
 def _lead(recipe: Recipe, summary: Summary) -> str:
     target = f"surface at l_max = {recipe.l_max}" if recipe.target == "fit" else "measured surface"
-    fineness = recipe.choices().coarsening_request.fineness
+    criterion = recipe.choices().coarsening_request.stopping_criterion
     return (
         f"<p>{summary.n_particles:,} particles; {summary.n_coarse:,} convex polyhedra "
-        f"with {fineness} (method {escape(recipe.method)}, weights {escape(_weights(recipe))}, "
+        f"with {criterion} (method {escape(recipe.method)}, weights {escape(_weights(recipe))}, "
         f"seed {recipe.seed}) that imitate the {target}. Lengths are in micrometres.</p>"
     )
 
@@ -192,10 +192,10 @@ def _problems(problems: Sequence[str]) -> str:
 
 def _provenance(recipe: Recipe) -> str:
     versions = ", ".join(f"{name} {version}" for name, version in software_versions().items())
-    told = [*recipe.named_inputs, *(f"the grains of {volume.file}" for volume in recipe.volumes)]
+    inputs_named = [*recipe.named_inputs, *(f"the grains of {volume.file}" for volume in recipe.volumes)]
     if (population := recipe.population) is not None:
-        told.append(f"{population.n:,} particles drawn like {', '.join(population.sources)}")
-    inputs = ", ".join(told)
+        inputs_named.append(f"{population.n:,} particles drawn like {', '.join(population.sources)}")
+    inputs = ", ".join(inputs_named)
     return (
         f"<h2>How to repeat it</h2><p><code>regolith-studio run recipe.json -o FOLDER</code> with the "
         f"recipe beside this page. Inputs: {escape(inputs)}. Software: {escape(versions)}.</p>"

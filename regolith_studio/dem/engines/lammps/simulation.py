@@ -73,13 +73,13 @@ def simulate(prepared: PreparedCase, settings: LammpsSettings) -> Generator[Snap
         (folder / "bodies.txt").write_text(bodies_file(clumps))
         (folder / "in.repose").write_text(script(prepared, settings, run.plan, radius, top))
         words, environment = command()
-        with (folder / "output.txt").open("wb") as said:
+        with (folder / "output.txt").open("wb") as output:
             child = subprocess.Popen(
                 [*words, "-in", "in.repose", "-log", "log.lammps"],
                 cwd=folder,
                 env=environment,
                 stdin=subprocess.DEVNULL,
-                stdout=said,
+                stdout=output,
                 stderr=subprocess.STDOUT,
             )
         try:
@@ -191,9 +191,9 @@ def kinetic_energies(log: str) -> dict[int, float]:
     return found
 
 
-def last_words(said: str, step_share: float) -> str:
+def last_words(output: str, step_share: float) -> str:
     """Why LAMMPS has ended before its time, by its own first error."""
-    lines = said.splitlines()
+    lines = output.splitlines()
     errors = [line for line in lines if "ERROR" in line] or lines[-1:] or ["it said nothing"]
     own = errors[0].strip()
     if any(sign in own for sign in _LOST_ATOMS_ERRORS):

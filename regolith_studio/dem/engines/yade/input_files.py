@@ -72,7 +72,7 @@ def input_document(
     duration
         Expected, in sqrt(d/g); sets the interval of the snapshots.
     after
-        The last state of a run that goes on.
+        The last state of a resumed run.
     """
     case = prepared.case
     contact, test = case.contact, case.test

@@ -71,13 +71,13 @@ def _attempt(run: _Run, folder: Path) -> Generator[Snapshot, None, int]:
     plan = input_document(run.prepared, run.settings, run.duration, run.last)
     (folder / "input.json").write_text(json.dumps(plan), encoding="utf-8")
     words, environment = command(folder)
-    with (folder / "output.txt").open("wb") as said:
+    with (folder / "output.txt").open("wb") as output:
         child = subprocess.Popen(
             words,
             cwd=folder,
             env=environment,
             stdin=subprocess.DEVNULL,
-            stdout=said,
+            stdout=output,
             stderr=subprocess.STDOUT,
         )
     try:
@@ -105,8 +105,8 @@ def _handle_crash(run: _Run, code: int, folder: Path) -> None:
         With YADE's own last words where it said any.
     """
     run.crashes += 1
-    said = (folder / "output.txt").read_text(errors="replace").splitlines()
-    errors = [line.strip() for line in said if "Error" in line or "ERROR" in line or "FATAL" in line]
+    output = (folder / "output.txt").read_text(errors="replace").splitlines()
+    errors = [line.strip() for line in output if "Error" in line or "ERROR" in line or "FATAL" in line]
     how = f"was ended by signal {-code}" if code < 0 else f"ended with code {code}"
     if code >= 0 and errors:
         raise RegolithError(f"YADE {how}: {errors[-1][:200]}")
