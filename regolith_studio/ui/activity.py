@@ -141,7 +141,7 @@ class TaskListPanel(QWidget):
 
 LIMIT = 2000
 """Maximum number of lines."""
-MOODS = {"note": N_("note"), "problem": N_("problem")}
+MESSAGE_KINDS = {"note": N_("note"), "problem": N_("problem")}
 
 
 class LogPanel(QWidget):
@@ -164,10 +164,10 @@ class LogPanel(QWidget):
         layout.addWidget(self.text, 1)
         layout.addLayout(row)
 
-    def add(self, mood: str, sentence: str, details: str = "") -> None:
+    def add(self, kind: str, sentence: str, details: str = "") -> None:
         """Add a message of the kind ``note`` or ``problem``."""
         clock = time.strftime("%H:%M:%S")
-        lines = [f"{clock}  {tr(MOODS[mood]):8s} {sentence}"]
+        lines = [f"{clock}  {tr(MESSAGE_KINDS[kind]):8s} {sentence}"]
         lines += [f"          {line}" for line in details.splitlines()]
         self.text.appendPlainText("\n".join(lines))
 

@@ -30,7 +30,7 @@ def show_recovery_and_tour(window: MainWindow) -> None:
     """Offer what a crash has left; start the tour at the first start."""
     window.projects.offer_recovery()
     if not window.preferences.window.get(TOUR_SEEN):
-        window.show_round()
+        window.show_tour()
 
 
 def open_window(

@@ -14,7 +14,7 @@ from regolith_studio.session.preferences import Preferences
 from regolith_studio.session.project import SessionRecipe, without_file
 from regolith_studio.session.recipe import Recipe, read_recipe
 from regolith_studio.session.session import Session
-from regolith_studio.ui.dialogs.batch import BatchDialog, BatchOrder
+from regolith_studio.ui.dialogs.batch import BatchDialog, BatchRequest
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.toast import Toast
 
@@ -65,38 +65,38 @@ class BatchRuns(QObject):
             self._dialog.deleteLater()
         count, unsaved = len(self._session.particles), len(without_file(self._session))
         self._dialog = BatchDialog(count, unsaved, Path.home() / "regolith-results", self._window)
-        self._dialog.remember(self._preferences.window.get("batch", {}))
+        self._dialog.restore_fields(self._preferences.window.get("batch", {}))
         self._dialog.started.connect(self._start)
         self._dialog.stopped.connect(lambda: self._session.cancel(self._task))
 
-    def _start(self, order: BatchOrder) -> None:
+    def _start(self, request: BatchRequest) -> None:
         dialog = self._dialog
         assert dialog is not None
-        self._preferences.window = self._preferences.window | {"batch": dialog.remembered()}
+        self._preferences.window = self._preferences.window | {"batch": dialog.field_values()}
         try:
-            recipe = self._recipe(order)
+            recipe = self._recipe(request)
         except RegolithError as error:
             dialog.finish(str(error))
             return
-        base = order.recipe.parent if order.recipe else Path.cwd()
-        job = Job(run_recipe_job, (recipe, base, order.folder, order.executor, order.resume))
+        base = request.recipe.parent if request.recipe else Path.cwd()
+        job = Job(run_recipe_job, (recipe, base, request.folder, request.executor, request.resume))
         self._task = self._session.run(
-            "batch", TITLE, job, self._done, self._hired, self._failed, self._stopped
+            "batch", TITLE, job, self._done, self._show_executor, self._failed, self._stopped
         )
         self.show_tasks()
 
-    def _recipe(self, order: BatchOrder) -> Recipe:
-        if order.recipe:
-            return read_recipe(order.recipe)
+    def _recipe(self, request: BatchRequest) -> Recipe:
+        if request.recipe:
+            return read_recipe(request.recipe)
         dataset_request = self._session.dataset_request
         session_recipe = SessionRecipe.of(
-            self._session.particles, self._session.choices, order.outputs, dataset_request
+            self._session.particles, self._session.choices, request.outputs, dataset_request
         )
-        return session_recipe.recipe_for((order.folder / "drawn.json").absolute(), absolute_path=True)
+        return session_recipe.recipe_for((request.folder / "drawn.json").absolute(), absolute_path=True)
 
-    def _hired(self, value: object) -> None:
+    def _show_executor(self, value: object) -> None:
         if isinstance(value, ExecutorReady) and self._dialog is not None:
-            self._dialog.show_hired(value)
+            self._dialog.show_executor(value)
 
     def _done(self, done: "RecipeRun") -> None:
         written = tr("Done: {count} files in {folder}.", count=len(done.files), folder=done.folder)

@@ -20,7 +20,7 @@ from regolith_studio.session.project import SessionRecipe, input_shown, inputs_o
 from regolith_studio.session.provenance import MAX_RESTORED
 from regolith_studio.session.recipe import DatasetRequest, read_recipe
 from regolith_studio.session.session import Session
-from regolith_studio.ui.dialogs.export import ExportDialog, ExportOrder
+from regolith_studio.ui.dialogs.export import ExportDialog, ExportRequest
 from regolith_studio.ui.dialogs.unit import UnitDialog
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.toast import Toast
@@ -191,8 +191,8 @@ class Commands(QObject):
             return None
         return self._session.open_recipe(recipe, path.parent)
 
-    def _start_export(self, order: ExportOrder) -> None:
-        task = self._try(lambda: self._session.export_dataset(order.folder, order.options))
+    def _start_export(self, request: ExportRequest) -> None:
+        task = self._try(lambda: self._session.export_dataset(request.folder, request.options))
         self._export_task = task or 0
         if task is None and self._export:
             self._export.finish()

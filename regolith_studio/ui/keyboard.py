@@ -155,7 +155,7 @@ def is_being_typed(box: QAbstractSpinBox) -> bool:
     if not isinstance(box, QSpinBox | QDoubleSpinBox):
         return False
     number = box.textFromValue(box.value())  # type: ignore[arg-type]
-    usual = f"{box.prefix()}{number}{box.suffix()}"
+    default = f"{box.prefix()}{number}{box.suffix()}"
     if box.value() == box.minimum():
-        usual = box.specialValueText() or usual
-    return box.text() != usual
+        default = box.specialValueText() or default
+    return box.text() != default

@@ -1,4 +1,4 @@
-"""Work that follows the hand: what is under way is finished and shown, then comes the newest wish."""
+"""Jobs of a control that is dragged: the running one is finished and shown, then the newest one runs."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -9,16 +9,16 @@ from regolith_studio.ui.page import PageContext
 
 
 @dataclass(frozen=True, eq=False)
-class _Wish:
+class _Request:
     job: Job
     show: Callable[[Any], None]
     refuse: Callable[[str], None]
 
 
 class LatestJob:
-    """Does one piece of work at a time in the background, and leaves out what was wished for in between.
+    """Runs one job at a time in the background, and skips those that a newer one has replaced.
 
-    A lane alone would stop what is under way: who drags without a rest would see nothing.
+    A lane alone would stop the running job, so that nothing would be shown during a drag.
 
     Parameters
     ----------
@@ -33,43 +33,43 @@ class LatestJob:
     def __init__(self, context: PageContext, title: str, lane: str) -> None:
         self._context, self._title, self._lane = context, title, lane
         self._busy = False
-        self._next: _Wish | None = None
+        self._next: _Request | None = None
 
     def submit(self, job: Job, show: Callable[[Any], None], refuse: Callable[[str], None]) -> None:
-        """Do this as soon as what is under way has ended, unless something newer is wanted by then.
+        """Run `job` when the running one has ended, unless a newer one was submitted by then.
 
         Parameters
         ----------
         show
             Called with the result.
         refuse
-            Called with one sentence if there can be none.
+            Called with one sentence if the job fails.
         """
-        self._next = _Wish(job, show, refuse)
+        self._next = _Request(job, show, refuse)
         if not self._busy:
             self._begin()
 
     def _begin(self) -> None:
-        wish, self._next = self._next, None
-        if wish is None:
+        request, self._next = self._next, None
+        if request is None:
             return
         self._busy = True
         self._context.start(
             self._title,
-            wish.job,
-            lambda made: self._end(lambda: wish.show(made)),
-            failed=lambda failure: self._end(lambda: self._tell(wish, failure)),
+            request.job,
+            lambda result: self._end(lambda: request.show(result)),
+            failed=lambda failure: self._end(lambda: self._report(request, failure)),
             stopped=lambda: self._end(lambda: None),
             lane=self._lane,
         )
 
-    def _end(self, tell: Callable[[], None]) -> None:
+    def _end(self, report: Callable[[], None]) -> None:
         self._busy = False
         try:
-            tell()
+            report()
         finally:
             self._begin()
 
     @staticmethod
-    def _tell(wish: _Wish, failure: Failed) -> None:
-        wish.refuse(failure.sentence)
+    def _report(request: _Request, failure: Failed) -> None:
+        request.refuse(failure.sentence)

@@ -89,7 +89,7 @@ class MainWindow(QMainWindow):
         """Show a page, the first one if there is none of this key."""
         return self.pages.go(key if key in self.pages.pages else next(iter(self.pages.pages)))
 
-    def show_round(self) -> None:
+    def show_tour(self) -> None:
         """Begin the guided tour."""
         start_tour(self, self.go, self.preferences)
 
@@ -113,7 +113,7 @@ class MainWindow(QMainWindow):
             "palette": self._open_palette,
             "preferences": self.appearance.ask,
             "standard_layout": self._standard_layout,
-            "tour": self.show_round,
+            "tour": self.show_tour,
             "quit": self.close,
             "go": self.pages.go,
             "next_page": partial(self.pages.neighbour, 1),

@@ -99,7 +99,7 @@ class ProjectFiles(QObject):
         text = tr("Regolith Studio was not closed properly the last time. Bring its state back?")
         box = QMessageBox(QMessageBox.Icon.Question, tr("Recover"), text, parent=self._window)
         box.setObjectName("recovery")
-        box.setInformativeText(_told(path))
+        box.setInformativeText(_saved_at(path))
         yes, no = QMessageBox.StandardButton.Yes, QMessageBox.StandardButton.No
         box.setStandardButtons(yes | no)
         box.setDefaultButton(yes)
@@ -212,13 +212,13 @@ def autosave_path() -> Path:
 
 def stale_autosaves() -> list[Path]:
     """What windows that no longer live have left, the newest first."""
-    found = preferences_path().parent.glob(f"autosave-*{SUFFIX}")
-    left = [path for path in found if path != autosave_path() and _is_abandoned(path)]
-    return sorted(left, key=lambda path: path.stat().st_mtime, reverse=True)
+    autosaves = preferences_path().parent.glob(f"autosave-*{SUFFIX}")
+    abandoned = [path for path in autosaves if path != autosave_path() and _is_abandoned(path)]
+    return sorted(abandoned, key=lambda path: path.stat().st_mtime, reverse=True)
 
 
-def _told(path: Path) -> str:
-    """When the state was kept."""
+def _saved_at(path: Path) -> str:
+    """Text with the time of an autosave."""
     moment = QDateTime.fromSecsSinceEpoch(int(path.stat().st_mtime))
     return tr("It was kept at {moment}.", moment=moment.toString("yyyy-MM-dd HH:mm"))
 

@@ -42,7 +42,7 @@ class Shortcuts:
     ) -> None:
         self.actions = {name: each for name, each in actions.items() if each.menu() is None and each.text()}
         self._pages, self._preferences = pages, preferences
-        self.usual = {name: each.shortcut().toString() for name, each in self.actions.items()}
+        self.defaults = {name: each.shortcut().toString() for name, each in self.actions.items()}
         kept = preferences.window.get(SHORTCUTS)
         for name, keys in kept.items() if isinstance(kept, dict) else ():
             if name in self.actions and isinstance(keys, str) and not self.conflict(name, keys):
@@ -83,7 +83,7 @@ class Shortcuts:
 
     def reset(self) -> None:
         """Give every command its usual keys."""
-        for name, keys in self.usual.items():
+        for name, keys in self.defaults.items():
             self._set(name, keys)
         self._keep()
 
@@ -94,7 +94,9 @@ class Shortcuts:
         action.setToolTip(with_keys(tip, action.shortcut()))
 
     def _keep(self) -> None:
-        changed = {name: self.keys(name) for name, usual in self.usual.items() if self.keys(name) != usual}
+        changed = {
+            name: self.keys(name) for name, default in self.defaults.items() if self.keys(name) != default
+        }
         self._preferences.window = self._preferences.window | {SHORTCUTS: changed}
         self._preferences.save()
 

@@ -51,10 +51,10 @@ def run(paths: Sequence[str | Path] = (), unit: str | None = None) -> int:
     splash.show()
     app.processEvents()
     from regolith_studio.session.preferences import Preferences
-    from regolith_studio.ui.translation.language import SETTING, SYSTEM, speak
+    from regolith_studio.ui.translation.language import SETTING, SYSTEM, install_translators
 
     preferences = Preferences.load()
-    speak(app, str(preferences.window.get(SETTING, SYSTEM)))
+    install_translators(app, str(preferences.window.get(SETTING, SYSTEM)))
     from regolith_studio.ui.app import make_excepthook, open_window, show_recovery_and_tour
 
     window = open_window(paths, unit, preferences=preferences)

@@ -238,7 +238,7 @@ QFrame[role="card"] QAbstractSpinBox, QFrame[role="card"] QLineEdit, QTabWidget 
 QTabWidget QLineEdit {{ background-color: palette(button); }}
 QFrame[role="toast"] {{ background: palette(button); border: 1px solid palette(bright-text);
     border-radius: 6px; }}
-QFrame[role="toast"][mood="note"] {{ border-color: palette(highlight); }}
+QFrame[role="toast"][kind="note"] {{ border-color: palette(highlight); }}
 QTableView {{ border: 1px solid palette(mid); border-radius: 5px; gridline-color: transparent;
     selection-background-color: palette(midlight); selection-color: palette(text); }}
 QTableView[focused="true"] {{ border-color: palette(highlight); }}

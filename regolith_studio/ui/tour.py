@@ -57,7 +57,7 @@ class Tour(QWidget):
         self._bubble = QFrame(window)
         self._bubble.setObjectName("tour_bubble")
         self._bubble.setProperty("role", "toast")
-        self._bubble.setProperty("mood", "note")
+        self._bubble.setProperty("kind", "note")
         self._title, self._text, self._count = heading(""), QLabel(), remark()
         self._text.setWordWrap(True)
         self.back, self.next = QPushButton(tr("Back")), QPushButton(tr("Next"))

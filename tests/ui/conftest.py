@@ -28,8 +28,8 @@ from regolith_studio.ui import app as ui_app
 from regolith_studio.ui import main_window
 from regolith_studio.ui.bindings import Bindings
 from regolith_studio.ui.startup import make_application
-from regolith_studio.ui.translation.language import fall_silent, speak
-from regolith_studio.ui.widgets.formula import THREAD_NAME, all_outlines_made
+from regolith_studio.ui.translation.language import install_translators, remove_translators
+from regolith_studio.ui.widgets.formula import THREAD_NAME, all_outlines
 
 
 @pytest.fixture(scope="session")
@@ -96,7 +96,7 @@ def settled(wait):
     def run(window, seconds=60.0):
         def rests():
             refreshed = all(each.idle for each in window.findChildren(Bindings))
-            return refreshed and not window.session.tasks and all_outlines_made()
+            return refreshed and not window.session.tasks and all_outlines()
 
         wait(rests, seconds)
         wait(rests, seconds)  # what the last refreshment has set off
@@ -144,10 +144,10 @@ def speaking(app):
             app.installTranslator(translator)
             installed.append(translator)
         else:
-            installed.extend(speak(app, language))
+            installed.extend(install_translators(app, language))
 
     yield begin
-    fall_silent(app, installed)
+    remove_translators(app, installed)
 
 
 @pytest.fixture

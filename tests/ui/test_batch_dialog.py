@@ -62,7 +62,7 @@ def filled(batches, recipe, folder, place):
     dialog.source.kind.setCurrentIndex(1)
     dialog.source.file.setValue(recipe)
     dialog.folder.setValue(folder)
-    dialog.workers.place.setCurrentIndex(dialog.workers.place.findData(place))
+    dialog.workers.executor.setCurrentIndex(dialog.workers.executor.findData(place))
     dialog.workers.count.setValue(2)
     assert dialog.go.isEnabled(), dialog.state.text()
     return dialog
@@ -91,7 +91,7 @@ def test_that_the_dialog_begins_with_the_open_files_and_processes_of_this_machin
 
 def test_that_who_works_is_asked_for_as_needed(dialog):
     workers = dialog.workers
-    workers.place.setCurrentIndex(workers.place.findData("address"))
+    workers.executor.setCurrentIndex(workers.executor.findData("address"))
     assert not workers.count.isVisible()
     assert not workers.tls.isVisible()
     workers.address.setText("login:8786")
@@ -107,7 +107,7 @@ def test_that_who_works_is_asked_for_as_needed(dialog):
     [("", "no host"), ("login", "no port"), ("http://login:8787", "begins with http")],
 )
 def test_that_an_address_is_judged_while_it_is_typed(dialog, address, sentence):
-    dialog.workers.place.setCurrentIndex(2)
+    dialog.workers.executor.setCurrentIndex(2)
     dialog.workers.address.setText(address)
     assert sentence in dialog.state.text()
     assert not dialog.go.isEnabled()
@@ -129,12 +129,12 @@ def test_that_nothing_to_write_nowhere_to_write_and_no_recipe_are_said(dialog, t
 
 def test_that_what_was_chosen_is_suggested_again(dialog, shown, tmp_path):
     dialog.results["fits"].setChecked(True)
-    dialog.workers.place.setCurrentIndex(2)
+    dialog.workers.executor.setCurrentIndex(2)
     dialog.workers.address.setText("tls://login:8786")
     again = shown(BatchDialog(1, 0, tmp_path))
-    again.remember(dialog.remembered())
-    assert again.remembered() == dialog.remembered()
-    again.remember({"results": 7, "workers": ["?"]})
+    again.restore_fields(dialog.field_values())
+    assert again.field_values() == dialog.field_values()
+    again.restore_fields({"results": 7, "workers": ["?"]})
 
 
 @pytest.mark.parametrize("workers", [1, pytest.param(2, marks=pytest.mark.slow)])
@@ -187,8 +187,8 @@ def test_that_a_cluster_is_watched_stopped_and_gone_on_with(cluster, batches, re
     dialog = filled_with_address(batches, recipe, tmp_path / "out", cluster.scheduler_address)
     dialog.go.click()
     wait(lambda: dialog.bar.value() >= 1 or not batches._session.tasks)
-    assert cluster.dashboard_link in dialog.place.text()
-    assert dialog.place.text().startswith("2 workers")
+    assert cluster.dashboard_link in dialog.dashboard.text()
+    assert dialog.dashboard.text().startswith("2 workers")
     dialog.halt.click()
     wait(lambda: not batches._session.tasks)
     wait(lambda: dialog.state.text().startswith(("Stopped", "Done")))

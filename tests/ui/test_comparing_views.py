@@ -135,11 +135,11 @@ def test_that_the_frame_of_the_section_is_dragged_in_a_view(window):
     edges = (corners + np.roll(corners, -1, axis=0)) / 2
     inside = [(x, y) for x, y in edges if 12 < x < sight.width - 12 and 12 < y < sight.height - 12]
     x, y = (round(float(each)) for each in inside[0])
-    before, pose = views.sections.place, view.pose
+    before, pose = views.sections.position, view.pose
     pull(view.widget, (x, y), (x, y - 10))
     steepness = np.linalg.norm(sight.seen([np.zeros(3), [0.0, 0.0, 1.0]])[0] - sight.seen([[0, 0, 1.0]])[0])
-    assert views.sections.place - before == pytest.approx(10 / steepness, rel=0.15)
-    assert window.page.plots.section.place.value() == pytest.approx(views.sections.place, abs=0.06)
+    assert views.sections.position - before == pytest.approx(10 / steepness, rel=0.15)
+    assert window.page.plots.section.place.value() == pytest.approx(views.sections.position, abs=0.06)
     assert view.pose == pose
     pull(view.widget, (3, 3), (40, 30))
     assert view.pose != pose

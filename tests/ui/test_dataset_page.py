@@ -353,8 +353,8 @@ def test_that_a_recipe_that_is_opened_sets_the_controls(page, wait, tmp_path) ->
     page._context.commands.open_paths([path])
     wait(lambda: len(page._particles) == 8)
     wait(lambda: page.folder.name.text() == "six")
-    assert page.representatives.order().count == 6
-    assert page.representatives.order().weighting == "volume"
+    assert page.representatives.request().count == 6
+    assert page.representatives.request().weighting == "volume"
     assert page.sizes.text() == "classes:30,60"
     assert page.targets.chosen() == ("lammps", "yade")
     options = page.targets.options()

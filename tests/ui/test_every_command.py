@@ -79,7 +79,7 @@ class Witness:
 
         return reply
 
-    def _hear(self, _mood, sentence, _details):
+    def _hear(self, _kind, sentence, _details):
         assert sentence.strip().endswith((".", "!", "?")), f"no sentence: {sentence}"
         self.asked.append(sentence)
 

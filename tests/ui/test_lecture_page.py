@@ -59,13 +59,15 @@ def actor(frame, name):
 def test_that_every_step_of_the_annealing_is_shown_said_and_set(page):
     lesson = page.annealing._lesson
     assert len(lesson.steps) == 26
-    playback, moods = page.annealing.playback, set()
+    playback, outcomes = page.annealing.playback, set()
     for number, step in enumerate(lesson.steps):
         playback.go(number)
-        mood = texts.mood_of(step)
-        moods.add(mood)
+        outcome = texts.outcome_of(step)
+        outcomes.add(outcome)
         said = page.annealing.sentence.text()
-        assert {"refused": "Refused", "accepted": "accepted", "lucky": "luck", "start": "start"}[mood] in said
+        assert {"refused": "Refused", "accepted": "accepted", "lucky": "luck", "start": "start"}[
+            outcome
+        ] in said
         if step.move is not None:
             assert f"Plane {step.move.plane + 1} of 12" in said
             frame = page.annealing.frames["annealing"]
@@ -73,7 +75,7 @@ def test_that_every_step_of_the_annealing_is_shown_said_and_set(page):
             assert (actor(frame, FRAME_NEW) is not None) == (other is not None)
             facet = step.proposed_facet if step.move.accepted else step.facet
             assert (actor(frame, FACET_OLD) is not None) == (facet is not None)
-    assert {"start", "refused", "accepted"} <= moods
+    assert {"start", "refused", "accepted"} <= outcomes
     assert len(page.annealing.loss.curves[0].x) == 26
     assert page.annealing.loss.curves[-1].y[0] == lesson.exact.loss
 

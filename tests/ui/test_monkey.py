@@ -239,7 +239,7 @@ def play(window, monkeypatch, app, count, seed, pages=PAGES, tell=lambda *_: Non
     monkeypatch.setattr(QDesktopServices, "openUrl", lambda *_: True)
     wrong, problems, slowest = [], [], (0.0, "")
     monkeypatch.setattr(sys, "excepthook", lambda *error: wrong.append(error))
-    window.toast.shown.connect(lambda _mood, _sentence, details: problems.append(details))
+    window.toast.shown.connect(lambda _kind, _sentence, details: problems.append(details))
     monkey = Monkey(window, seed, pages)
     with _somebody_closes_popups():
         for number in range(count):

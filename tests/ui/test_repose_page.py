@@ -206,7 +206,7 @@ def test_that_wishes_without_a_dataset_are_one_sentence(page):
 
 def test_that_gravity_can_be_chosen_by_name_and_the_state_comes_back(page, dataset):
     page.setup.gravity.setCurrentIndex(1)
-    assert page.setup.order().case.test.gravity == 1.62
+    assert page.setup.request().case.test.gravity == 1.62
     page.setup.test.setValue(replace(page.setup.test.value(), gravity=5.0))
     page.setup.test.valueChanged.emit()
     assert page.setup.gravity.currentText() == "Other"
@@ -216,8 +216,8 @@ def test_that_gravity_can_be_chosen_by_name_and_the_state_comes_back(page, datas
     page.setup.seed.setValue(0)
     page.setup.test.setValue(LiftingCylinderTest())
     page.restore(kept)
-    order = page.setup.order()
-    assert (order.case.seed, order.case.test.gravity) == (7, 5.0)
+    request = page.setup.request()
+    assert (request.case.seed, request.case.test.gravity) == (7, 5.0)
     page.restore({"setup": {"test": {"gravity": "heavy"}, "unknown": 1}})
     page.restore({"setup": 3})
 
@@ -246,16 +246,16 @@ def test_that_runs_are_compared(page, dataset, wait):
 def test_that_each_engine_has_its_own_numerics(page):
     page.setup.numerics.setValue({"time_step": 0.01})
     page.setup.engine.setCurrentIndex(page.setup.engine.findData("lammps"))
-    assert page.setup.order().engine == "lammps"
+    assert page.setup.request().engine == "lammps"
     page.setup.numerics.setValue({"spheres": 3})
-    assert page.setup.order().settings.spheres == 3
+    assert page.setup.request().settings.spheres == 3
     kept = page.state()
     page.setup.engine.setCurrentIndex(page.setup.engine.findData("mujoco"))
     page.setup.numerics.setValue({})
     page.restore(kept)
-    assert page.setup.order().settings.spheres == 3
+    assert page.setup.request().settings.spheres == 3
     page.setup.engine.setCurrentIndex(page.setup.engine.findData("mujoco"))
-    assert page.setup.order().settings.time_step == 0.01
+    assert page.setup.request().settings.time_step == 0.01
 
 
 def test_that_the_open_particles_become_a_dataset(page, wait):

@@ -113,7 +113,7 @@ def test_that_the_exported_table_has_the_rows_that_are_seen_with_units(page, tmp
 def test_that_only_the_chosen_particles_can_be_kept(window, page, wait):
     page.table.choose([])
     choose(page, "bead-1", "bead-2")
-    page.keep_chosen()
+    page.keep_selected_particles()
     assert [entry.id for entry in window.session.particles] == ["bead-1", "bead-2"]
     wait(lambda: len(page.table.visible_entries()) == 2)
 

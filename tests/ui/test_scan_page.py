@@ -144,14 +144,14 @@ def test_that_h_and_the_frame_change_the_preview_and_settings_undo_what_was_foun
 def test_that_a_click_and_the_wheel_go_through_the_slices(page, part, wait):
     page.read(VolumeInput(part, 2.3, kind="grey"))
     wait(lambda: page.preview is not None, SECONDS)
-    assert page.slices.place == (45, 40, 35)
+    assert page.slices.position == (45, 40, 35)
     top = page.slices.views[0]
     centre = QPoint(top.canvas.width() // 4, top.canvas.height() // 4)
     QTest.mouseClick(top.canvas.viewport(), Qt.MouseButton.LeftButton, pos=centre)
-    wait(lambda: page.slices.place != (45, 40, 35))
-    assert page.slices.place[2] == 35
+    wait(lambda: page.slices.position != (45, 40, 35))
+    assert page.slices.position[2] == 35
     top.turn(3)
-    assert page.slices.place[2] == 38
+    assert page.slices.position[2] == 38
     assert "z = 39 of 70" in top.title.text()
 
 

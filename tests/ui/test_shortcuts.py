@@ -96,7 +96,7 @@ def test_that_the_dialog_finds_changes_and_resets_by_keys_alone(shortcuts, shown
     dialog.change.click()
     assert shortcuts.keys("scan.find") == "F7"
     assert dialog.table.item(0, 1).text() == "F7 *"
-    dialog.usual.click()
+    dialog.default.click()
     assert shortcuts.keys("scan.find") == "F5"
     dialog.search.clear()
     assert dialog.table.rowCount() == len(KEYS)

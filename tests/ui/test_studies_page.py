@@ -108,7 +108,7 @@ def test_that_errors_against_facets_are_drawn_told_and_saved(window, wait, settl
     volume = panel.part.series[0]
     assert volume.x == (8.0, 12.0, 30.0)
     assert volume.y == pytest.approx(100 * study.rmsre[:, 0])
-    told = panel.part.value_at(panel.part.scene_place(12.0, volume.y[1]))
+    told = panel.part.value_at(panel.part.scene_position(12.0, volume.y[1]))
     assert told.startswith("V\nFacets: 12\n")
     assert f"({volume.low[1]:.4g} to {volume.high[1]:.4g})" in told
     header, rows = panel.part.numbers()

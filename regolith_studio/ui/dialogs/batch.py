@@ -41,7 +41,7 @@ RESULTS = {
 
 
 @dataclass(frozen=True)
-class BatchOrder:
+class BatchRequest:
     """What the user asked for.
 
     Parameters
@@ -91,11 +91,11 @@ class BatchDialog(QDialog):
         self.resume.setObjectName("batch_resume")
         self.resume.setChecked(True)
         self.workers = WorkersField()
-        self.state, self.place = remark(), QLabel()
+        self.state, self.dashboard = remark(), QLabel()
         self.state.setObjectName("batch_state")
-        self.place.setObjectName("batch_dashboard")
-        self.place.setOpenExternalLinks(True)
-        self.place.setTextInteractionFlags(Qt.TextInteractionFlag.TextBrowserInteraction)
+        self.dashboard.setObjectName("batch_dashboard")
+        self.dashboard.setOpenExternalLinks(True)
+        self.dashboard.setTextInteractionFlags(Qt.TextInteractionFlag.TextBrowserInteraction)
         self.bar = QProgressBar()
         self.bar.setAccessibleName(tr("Progress of the batch"))
         self._buttons()
@@ -106,7 +106,7 @@ class BatchDialog(QDialog):
             box.toggled.connect(self._judge)
         self._judge()
 
-    def value(self) -> BatchOrder:
+    def value(self) -> BatchRequest:
         """The order.
 
         Raises
@@ -121,20 +121,20 @@ class BatchDialog(QDialog):
         if self.source.value() is None and not any(box.isChecked() for box in self.results.values()):
             raise InputError(tr("Choose what is to be written."))
         resume = is_unfinished(folder) and self.resume.isChecked()
-        return BatchOrder(self.source.checked(), folder, resume, outputs, self.workers.value())
+        return BatchRequest(self.source.checked(), folder, resume, outputs, self.workers.value())
 
-    def remembered(self) -> dict[str, Any]:
+    def field_values(self) -> dict[str, Any]:
         """What the next dialog may suggest, as plain JSON."""
         results = [key for key, box in self.results.items() if box.isChecked()]
-        return {"results": results, "workers": self.workers.remembered()}
+        return {"results": results, "workers": self.workers.field_values()}
 
-    def remember(self, known: Mapping[str, Any]) -> None:
+    def restore_fields(self, values: Mapping[str, Any]) -> None:
         """Suggest what was given before; what is not understood is left out."""
-        if isinstance(results := known.get("results"), list):
+        if isinstance(results := values.get("results"), list):
             for key, box in self.results.items():
                 box.setChecked(key in results)
-        if isinstance(workers := known.get("workers"), dict):
-            self.workers.remember(workers)
+        if isinstance(workers := values.get("workers"), dict):
+            self.workers.restore_fields(workers)
 
     def show_task(self, task: Task) -> None:
         """Show how far the work is."""
@@ -143,17 +143,19 @@ class BatchDialog(QDialog):
         count = tr("{at:,} of {total:,}", at=task.done, total=task.total) if task.total else ""
         self.state.setText(", ".join(filter(None, [f"{tr(task.title)} {count}".strip(), task.message])))
 
-    def show_hired(self, hired: ExecutorReady) -> None:
+    def show_executor(self, executor: ExecutorReady) -> None:
         """Say who works, and where that can be watched."""
-        who = tr_count(N_("1 worker"), N_("{count} workers"), hired.workers)
-        link = f'<a href="{hired.dashboard}">{hired.dashboard}</a>'
-        self.place.setText(tr("{who}, watched at {link}", who=who, link=link) if hired.dashboard else who)
-        self.place.show()
+        who = tr_count(N_("1 worker"), N_("{count} workers"), executor.workers)
+        link = f'<a href="{executor.dashboard}">{executor.dashboard}</a>'
+        self.dashboard.setText(
+            tr("{who}, watched at {link}", who=who, link=link) if executor.dashboard else who
+        )
+        self.dashboard.show()
 
     def finish(self, sentence: str, report: bool = False) -> None:
         """The work has ended, in whichever way; the fields can be edited again."""
         self._set_running(False)
-        self.place.hide()
+        self.dashboard.hide()
         self._judge()
         self.state.setText(sentence)
         self.report.setVisible(report)
@@ -187,9 +189,9 @@ class BatchDialog(QDialog):
         promise = tr("The results are the same bytes whoever works, and a run that was stopped can go on.")
         layout.addWidget(remark(promise))
         layout.addStretch(1)
-        for widget in (self.state, self.place, self.bar, self.box):
+        for widget in (self.state, self.dashboard, self.bar, self.box):
             layout.addWidget(widget)
-        for hidden in (self.bar, self.place, self.halt, self.report):
+        for hidden in (self.bar, self.dashboard, self.halt, self.report):
             hidden.hide()
 
     def _judge(self) -> None:
@@ -201,11 +203,11 @@ class BatchDialog(QDialog):
             box.setEnabled(self.source.value() is None)
         self.report.hide()
         try:
-            order = self.value()
+            request = self.value()
         except InputError as error:
             sentence = str(error)
         else:
-            blocked = is_unfinished(order.folder) and not order.resume
+            blocked = is_unfinished(request.folder) and not request.resume
             begun = tr("The folder holds a run that has not ended: go on with it, or choose another folder.")
             sentence = begun if blocked else ""
         self.state.setText(sentence)
@@ -220,13 +222,13 @@ class BatchDialog(QDialog):
         self.bar.setVisible(running)
 
     def _start(self) -> None:
-        order = self.value()
+        request = self.value()
         self._set_running(True)
         self.report.hide()
-        self.place.hide()
+        self.dashboard.hide()
         self.bar.setRange(0, 0)
         self.state.setText(tr("Starting …"))
-        self.started.emit(order)
+        self.started.emit(request)
 
     def _open_results(self) -> None:
         folder = self.folder.value()

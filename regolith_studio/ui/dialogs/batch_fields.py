@@ -133,11 +133,11 @@ class WorkersField(QWidget):
 
     def __init__(self) -> None:
         super().__init__()
-        self.place = QComboBox()
-        self.place.setObjectName("batch_place")
-        self.place.setAccessibleName(tr("Work done by"))
+        self.executor = QComboBox()
+        self.executor.setObjectName("batch_place")
+        self.executor.setAccessibleName(tr("Work done by"))
         for key, label in PLACES.items():
-            self.place.addItem(tr(label), key)
+            self.executor.addItem(tr(label), key)
         self.count = QSpinBox()
         self.count.setObjectName("batch_workers")
         self.count.setAccessibleName(tr("Number of processes"))
@@ -152,11 +152,11 @@ class WorkersField(QWidget):
         self.tls.text.setPlaceholderText(tr("folder with {names}", names=names))
         self._form = QFormLayout(self)
         self._form.setContentsMargins(0, 0, 0, 0)
-        self._form.addRow(self.place)
+        self._form.addRow(self.executor)
         self._form.addRow(tr("Processes"), self.count)
         self._form.addRow(tr("Scheduler"), self.address)
         self._form.addRow(tr("Certificates"), self.tls)
-        self.place.currentIndexChanged.connect(self._changed)
+        self.executor.currentIndexChanged.connect(self._changed)
         self.count.valueChanged.connect(self._changed)
         self.address.textChanged.connect(self._changed)
         self.tls.changed.connect(self._changed)
@@ -170,10 +170,10 @@ class WorkersField(QWidget):
         InputError
             If the address has not its form, or certificates are missing.
         """
-        place = self.place.currentData()
-        if place == "processes":
+        executor = self.executor.currentData()
+        if executor == "processes":
             return ExecutorSettings("processes", self.count.value())
-        if place == "local":
+        if executor == "local":
             return ExecutorSettings("dask", self.count.value())
         address = SchedulerAddress.parse(self.address.text())
         tls = self.tls.value() if address.scheme == "tls" else None
@@ -183,19 +183,19 @@ class WorkersField(QWidget):
             raise InputError(tr("An encrypted cluster needs a folder with {names}.", names=names))
         return ExecutorSettings("dask", 0, str(address), tls)
 
-    def remembered(self) -> dict[str, str]:
+    def field_values(self) -> dict[str, str]:
         """For the next sitting."""
         tls = self.tls.text.text()
-        return {"place": str(self.place.currentData()), "address": self.address.text(), "tls": tls}
+        return {"place": str(self.executor.currentData()), "address": self.address.text(), "tls": tls}
 
-    def remember(self, known: Mapping[str, Any]) -> None:
+    def restore_fields(self, values: Mapping[str, Any]) -> None:
         """Suggest what was given before."""
-        self.place.setCurrentIndex(max(0, self.place.findData(known.get("place"))))
-        self.address.setText(str(known.get("address", "")))
-        self.tls.text.setText(str(known.get("tls", "")))
+        self.executor.setCurrentIndex(max(0, self.executor.findData(values.get("place"))))
+        self.address.setText(str(values.get("address", "")))
+        self.tls.text.setText(str(values.get("tls", "")))
 
     def _changed(self) -> None:
-        remote = self.place.currentData() == "address"
+        remote = self.executor.currentData() == "address"
         encrypted = self.address.text().strip().startswith("tls://")
         self._form.setRowVisible(self.count, not remote)
         self._form.setRowVisible(self.address, remote)

@@ -30,7 +30,7 @@ from regolith_studio.ui.widgets.labels import remark, rich_symbol
 
 
 @dataclass(frozen=True)
-class ExportOrder:
+class ExportRequest:
     """What the user asked for."""
 
     folder: Path
@@ -105,10 +105,10 @@ class ExportDialog(QDialog):
         self.overwrite.toggled.connect(self._judge)
         self._judge()
 
-    def value(self) -> ExportOrder:
+    def value(self) -> ExportRequest:
         """Folder and options."""
         options = DatasetOptions(name=self.name.text().strip(), overwrite=self.overwrite.isChecked())
-        return ExportOrder(Path(self.folder.text().strip()).expanduser(), options)
+        return ExportRequest(Path(self.folder.text().strip()).expanduser(), options)
 
     def show_task(self, task: Task) -> None:
         """Show how far the work is."""

@@ -65,10 +65,14 @@ class ShortcutsDialog(QDialog):
         self.editor.setAccessibleName(tr("New keys of the chosen command"))
         self.editor.setMaximumSequenceLength(1)
         self.editor.setClearButtonEnabled(True)
-        self.change, self.usual, self.all_usual = (
+        self.change, self.default, self.all_defaults = (
             QPushButton(words) for words in (tr("Change"), tr("Usual keys"), tr("All usual keys"))
         )
-        for button, name in ((self.change, "change"), (self.usual, "usual"), (self.all_usual, "all_usual")):
+        for button, name in (
+            (self.change, "change"),
+            (self.default, "usual"),
+            (self.all_defaults, "all_defaults"),
+        ):
             button.setObjectName(f"shortcuts_{name}")
             button.setAutoDefault(False)
         self.sentence = remark(role="warning")
@@ -76,8 +80,8 @@ class ShortcutsDialog(QDialog):
         self.search.textChanged.connect(lambda _: self._fill())
         self.table.itemSelectionChanged.connect(self._show_chosen)
         self.change.clicked.connect(lambda: self._try(self.editor.keySequence().toString()))
-        self.usual.clicked.connect(lambda: self._try(self._shortcuts.usual[self.chosen()]))
-        self.all_usual.clicked.connect(self._reset)
+        self.default.clicked.connect(lambda: self._try(self._shortcuts.defaults[self.chosen()]))
+        self.all_defaults.clicked.connect(self._reset)
         self._fill()
 
     def chosen(self) -> str:
@@ -101,7 +105,7 @@ class ShortcutsDialog(QDialog):
             keys = action.shortcut().toString(QKeySequence.SequenceFormat.NativeText)
             if all(word in f"{title} {keys}".lower() for word in words):
                 rows.append(
-                    (key, title, keys, keys and self._shortcuts.usual[key] != self._shortcuts.keys(key))
+                    (key, title, keys, keys and self._shortcuts.defaults[key] != self._shortcuts.keys(key))
                 )
         self.table.setRowCount(len(rows))
         for row, (key, title, keys, own) in enumerate(rows):
@@ -114,7 +118,7 @@ class ShortcutsDialog(QDialog):
 
     def _show_chosen(self) -> None:
         name = self.chosen()
-        for widget in (self.editor, self.change, self.usual):
+        for widget in (self.editor, self.change, self.default):
             widget.setEnabled(bool(name))
         self.editor.setKeySequence(QKeySequence(self._shortcuts.keys(name) if name else ""))
         self.sentence.setText("")
@@ -135,7 +139,7 @@ class ShortcutsDialog(QDialog):
         row = QHBoxLayout()
         row.addWidget(QLabel(tr("Keys:")))
         row.addWidget(self.editor, 1)
-        for button in (self.change, self.usual, self.all_usual):
+        for button in (self.change, self.default, self.all_defaults):
             row.addWidget(button)
         mouse = QFormLayout()
         mouse.setHorizontalSpacing(24)

@@ -20,8 +20,8 @@ def language_of(choice: str) -> str:
     return wanted if wanted in LANGUAGES else "en"
 
 
-def speak(app: QCoreApplication, choice: str) -> list[QTranslator]:
-    """Let the window and the dialogs of Qt speak a language from now on; returns what was installed.
+def install_translators(app: QCoreApplication, choice: str) -> list[QTranslator]:
+    """Translate the window and the dialogs of Qt from now on; returns the translators installed.
 
     Texts take it when they are made, so that this comes before any window.
     """
@@ -36,8 +36,8 @@ def speak(app: QCoreApplication, choice: str) -> list[QTranslator]:
     return [of_qt, ours]
 
 
-def fall_silent(app: QCoreApplication, installed: list[QTranslator]) -> None:
-    """Take back what :func:`speak` did."""
+def remove_translators(app: QCoreApplication, installed: list[QTranslator]) -> None:
+    """Remove the translators that :func:`install_translators` installed."""
     for each in installed:
         app.removeTranslator(each)
         each.deleteLater()

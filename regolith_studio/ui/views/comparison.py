@@ -57,7 +57,7 @@ class Comparison:
             frame.view.mouse.grips += [DividerGrip(self.dividers[name], self.set_share), grip]
             frame.partner.setValue(self.partners[name])
             frame.partnerChanged.connect(partial(self.set_partner, name))
-        sections.changed.connect(partial(self.dress, *NAMES))
+        sections.changed.connect(partial(self.apply_style, *NAMES))
 
     def set_shapes(self, shapes: Mapping[str, SceneShape], *changed: str) -> None:
         """Other bodies; those that are named have changed."""
@@ -66,7 +66,7 @@ class Comparison:
         if not self._sections.shown:
             comparing = self.overlay or self.wipe
             concerned = [name for name in NAMES if comparing and self.partners[name] in changed]
-            self.dress(*{*concerned, *(changed if comparing else ())})
+            self.apply_style(*{*concerned, *(changed if comparing else ())})
 
     def set_mode(self, *, overlay: bool | None = None, wipe: bool | None = None) -> None:
         """Lay the partner over each body, or show it to the right of the line; both: a veil to the right."""
@@ -74,13 +74,13 @@ class Comparison:
         self.wipe = self.wipe if wipe is None else wipe
         for frame in self._frames.values():
             frame.set_comparing(self.overlay or self.wipe)
-        self.dress(*NAMES)
+        self.apply_style(*NAMES)
 
     def set_partner(self, name: str, other: str) -> None:
         """Compare a body with another one, or with none."""
         self.partners[name] = other
         self._frames[name].partner.setValue(other)
-        self.dress(name)
+        self.apply_style(name)
 
     def set_share(self, share: float) -> None:
         """Where the line stands in every view, as a share of its width."""
@@ -93,22 +93,22 @@ class Comparison:
         self._theme = theme
         for divider in self.dividers.values():
             divider.set_ink(theme.surroundings)
-        self.dress(*NAMES)
+        self.apply_style(*NAMES)
 
-    def dress(self, *names: str) -> None:
+    def apply_style(self, *names: str) -> None:
         """Draw partners, cuts and lines of these views anew."""
         if self._theme is not None:
             for name in names:
                 self._frames[name].view.draw(partial(self._fill, name))
 
-    def is_seen(self, name: str, place: FloatArray, x_share: float) -> bool:
+    def is_visible_at(self, name: str, place: FloatArray, x_share: float) -> bool:
         """Whether a point of a body is neither cut away nor covered by its partner beyond the line."""
         plane, divider = self._sections.plane, self.dividers[name]
         kept = plane is None or float(place @ np.asarray(plane.normal)) <= plane.offset
         return kept and (self.overlay or not divider.shown or x_share <= divider.share)
 
     @contextmanager
-    def lines_taken_away(self) -> Iterator[list[float | None]]:
+    def without_lines(self) -> Iterator[list[float | None]]:
         """No lines while it lasts, though everything ends where they stood: where, for each view."""
         shown = {name: divider for name, divider in self.dividers.items() if divider.shown}
         for divider in shown.values():

@@ -1,4 +1,4 @@
-"""Points out the facet of a polyhedron that is under the mouse."""
+"""Highlights the facet of a polyhedron below the mouse."""
 
 from collections.abc import Callable
 
@@ -13,8 +13,8 @@ from regolith_studio.ui.translation import tr
 from regolith_studio.ui.views.protocol import SceneView
 
 
-class FacetPointer:
-    """Outlines and numbers the facet, and tells its numbers in a line.
+class FacetHover:
+    """Outlines and numbers the facet, and reports its properties in one line.
 
     Parameters
     ----------
@@ -24,9 +24,9 @@ class FacetPointer:
         Reads what it shows.
     ink
         Reads the inks.
-    seen
+    is_visible
         Whether a point of the body, shape (3,), at a share of the picture's width is seen.
-    tell
+    report
         Receives the line, or nothing when the mouse is elsewhere.
     """
 
@@ -35,21 +35,21 @@ class FacetPointer:
         view: SceneView,
         shape: Callable[[], SceneShape | None],
         ink: Callable[[], ThemeColors],
-        seen: Callable[[FloatArray, float], bool],
-        tell: Callable[[str], None],
+        is_visible: Callable[[FloatArray, float], bool],
+        report: Callable[[str], None],
     ) -> None:
-        self._view, self._shape, self._ink, self._tell = view, shape, ink, tell
-        self._seen = seen
-        self._known: tuple[SceneShape, int] | None = None
+        self._view, self._shape, self._ink, self._report = view, shape, ink, report
+        self._is_visible = is_visible
+        self._shown: tuple[SceneShape, int] | None = None
         view.mouse.pointed.append(self._point)
-        view.mouse.left.append(self.forget)
+        view.mouse.left.append(self.clear)
 
-    def forget(self) -> None:
-        """Point out nothing."""
-        if self._known is not None:
-            self._known = None
+    def clear(self) -> None:
+        """Highlight no facet."""
+        if self._shown is not None:
+            self._shown = None
             self._view.draw(lambda plotter: facets.show_facet(plotter, None))
-            self._tell("")
+            self._report("")
 
     def _point(self, sight: Projection, x: float, y: float) -> None:
         shape = self._shape()
@@ -59,13 +59,13 @@ class FacetPointer:
         outside = start - shape.origin - 1e3 * float(np.linalg.norm(start - shape.origin)) * direction
         hit = facets.facet_met(shape.polyhedron, outside, direction)
         met, reach = hit if hit is not None else (-1, 0.0)
-        if hit is None or not self._seen(outside + reach * direction + shape.origin, x / sight.width):
-            self.forget()
-        elif self._known is None or self._known[0] is not shape or self._known[1] != met:
-            self._known = (shape, met)
+        if hit is None or not self._is_visible(outside + reach * direction + shape.origin, x / sight.width):
+            self.clear()
+        elif self._shown is None or self._shown[0] is not shape or self._shown[1] != met:
+            self._shown = (shape, met)
             facet, ink = facets.facet_of(shape.polyhedron, met), self._ink()
             self._view.draw(lambda plotter: facets.show_facet(plotter, facet, shape.origin, ink))
-            self._tell(words_of(facet))
+            self._report(words_of(facet))
 
 
 def words_of(facet: facets.Facet) -> str:

@@ -13,7 +13,7 @@ from regolith_studio.scene import annotations, cameras, plotter_setup
 from regolith_studio.scene.cameras import CameraPose
 from regolith_studio.scene.palette import LIGHT, ThemeColors
 from regolith_studio.ui.views.camera_mouse import CameraMouse
-from regolith_studio.ui.views.keep_framed import Refitting
+from regolith_studio.ui.views.keep_framed import KeepFramed
 from regolith_studio.ui.views.protocol import Picture
 
 
@@ -29,7 +29,7 @@ class ImageView(QWidget):
         self._image = QImage()
         self._stale = True
         self._moved: list[Callable[[CameraPose], None]] = []
-        self._refitting = Refitting(self)
+        self._refitting = KeepFramed(self)
         self.mouse = CameraMouse(lambda: self.pose, self._move, self)
         self.setMouseTracking(True)
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)

@@ -4,7 +4,7 @@ from regolith_studio.scene.cameras import refitted
 from regolith_studio.ui.views.protocol import SceneView
 
 
-class Refitting:
+class KeepFramed:
     """Knows for which shape of its view the camera was placed.
 
     What is shown along the shorter side is kept, whatever the user has done with the camera: a body that was

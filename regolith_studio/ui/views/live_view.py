@@ -14,7 +14,7 @@ from regolith_studio.scene import annotations, cameras, plotter_setup
 from regolith_studio.scene.cameras import CameraPose
 from regolith_studio.scene.palette import LIGHT, ThemeColors
 from regolith_studio.ui.views.camera_mouse import CameraMouse
-from regolith_studio.ui.views.keep_framed import Refitting
+from regolith_studio.ui.views.keep_framed import KeepFramed
 from regolith_studio.ui.views.protocol import Picture
 
 
@@ -88,7 +88,7 @@ class LiveView(QWidget):
         plotter_setup.set_stage(self._canvas, surroundings)
         self._scale_bar = annotations.ScaleBar(self._canvas, surroundings)
         self._moved: list[Callable[[CameraPose], None]] = []
-        self._refitting = Refitting(self)
+        self._refitting = KeepFramed(self)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(self._canvas)

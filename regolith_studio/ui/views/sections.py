@@ -16,7 +16,7 @@ EYE = "eye"
 
 
 class Sections(QObject):
-    """A plane by its direction and its place between the ends of the particle; ``changed`` tells of both.
+    """A plane by its direction and its position between the ends of the particle; ``changed`` reports both.
 
     Also told when the bodies change while the section is shown.
     """
@@ -61,20 +61,20 @@ class Sections(QObject):
         self.flipped = flipped
         self.changed.emit()
 
-    def set_place(self, micrometres: float) -> None:
+    def set_position(self, micrometres: float) -> None:
         """Move the plane to a distance from the particle's middle, along the direction."""
         low, high = self._reach()
-        place = micrometres + (low + high) / 2
-        self._share = float(np.clip((place - low) / (high - low), 0.0, 1.0)) if high > low else 0.5
+        position = micrometres + (low + high) / 2
+        self._share = float(np.clip((position - low) / (high - low), 0.0, 1.0)) if high > low else 0.5
         self.changed.emit()
 
     def move_to(self, offset: float) -> None:
         """Move the plane to an offset along its own normal."""
         low, high = self._reach()
-        self.set_place((-offset if self.flipped else offset) - (low + high) / 2)
+        self.set_position((-offset if self.flipped else offset) - (low + high) / 2)
 
     @property
-    def place(self) -> float:
+    def position(self) -> float:
         """Distance of the plane from the particle's middle along the direction."""
         return (self._share - 0.5) * 2 * self.half_length
 

@@ -22,7 +22,7 @@ from regolith_studio.ui.translation import tr
 from regolith_studio.ui.views.camera_link import CameraLink
 from regolith_studio.ui.views.comparison import COMPARE, Comparison, partners_of
 from regolith_studio.ui.views.distance_worker import Distances, Follow
-from regolith_studio.ui.views.facet_hover import FacetPointer
+from regolith_studio.ui.views.facet_hover import FacetHover
 from regolith_studio.ui.views.factory import make_view
 from regolith_studio.ui.views.sections import Sections
 from regolith_studio.ui.views.snapshot import snapshot
@@ -69,11 +69,11 @@ class ThreeViews(QSplitter):
         self._distances.refused.connect(self._show_status)
         self.sections = Sections(self)
         self.comparison = Comparison(self.frames, self.sections)
-        self.pointer = FacetPointer(
+        self.pointer = FacetHover(
             self.views[POLYHEDRON],
             lambda: self._shapes.get(POLYHEDRON),
             lambda: self._theme.surroundings,
-            partial(self.comparison.is_seen, POLYHEDRON),
+            partial(self.comparison.is_visible_at, POLYHEDRON),
             self._show_status,
         )
         self.set_theme(self._theme)
@@ -86,7 +86,7 @@ class ThreeViews(QSplitter):
         mesh = entry.particle.mesh
         self._shapes = {PARTICLE: SceneShape(PARTICLE, mesh)}
         self._star_point = self._hidden = None
-        self.pointer.forget()
+        self.pointer.clear()
         for name in NAMES[1:]:
             self.views[name].draw(surfaces.clear)
         self._draw_extras(*NAMES)
@@ -126,12 +126,12 @@ class ThreeViews(QSplitter):
             return
         solid, centre = found.polyhedron, np.asarray(found.centre, dtype=np.float64)
         self._shapes[POLYHEDRON] = SceneShape(POLYHEDRON, solid, centre)
-        self.pointer.forget()
+        self.pointer.clear()
         self._draw_polyhedron()
         self.frames[POLYHEDRON].set_texts(
             tr("Polyhedron, {count} facets", count=solid.n_facets),
             tr("{count} vertices, {triangles} triangles", count=solid.n_vertices, triangles=solid.n_triangles)
-            + _shortfall(results),
+            + _missing_facets_text(results),
             tr("{count} facets", count=solid.n_facets),
         )
         self.comparison.set_shapes(self._shapes, POLYHEDRON)
@@ -193,7 +193,7 @@ class ThreeViews(QSplitter):
     def snapshot(self, scale: int, transparent: bool) -> QImage:
         """The views as they are seen."""
         frames = list(self.frames.values())
-        with self.comparison.lines_taken_away() as lines:
+        with self.comparison.without_lines() as lines:
             return snapshot(frames, self._theme, scale, transparent, lines)
 
     def set_theme(self, theme: Theme) -> None:
@@ -285,7 +285,7 @@ def _lengths(bounds: FloatArray) -> str:
     return " × ".join(f"{edge:.3g}" for edge in bounds[1] - bounds[0]) + " µm"
 
 
-def _shortfall(results: Results) -> str:
+def _missing_facets_text(results: Results) -> str:
     """A few words where a finished coarsening has fewer facets than were asked for."""
     done = results.coarsened
     if done is None or done.n_facets == done.n_facets_asked:

@@ -171,7 +171,7 @@ def _outline_maker() -> _OutlineMaker:
     return _OutlineMaker(QCoreApplication.instance())
 
 
-def all_outlines_made() -> bool:
+def all_outlines() -> bool:
     """Whether every formula shows its latest lines."""
     return _outline_maker().idle
 

@@ -78,8 +78,8 @@ class Toast(QFrame):
         self._timer.stop()
         super().hideEvent(event)  # type: ignore[arg-type]
 
-    def _show_message(self, mood: str, sentence: str, details: str, seconds: int) -> None:
-        self.setProperty("mood", mood)
+    def _show_message(self, kind: str, sentence: str, details: str, seconds: int) -> None:
+        self.setProperty("kind", kind)
         self.style().unpolish(self)
         self.style().polish(self)
         self._details = details
@@ -90,7 +90,7 @@ class Toast(QFrame):
         self._place()
         self.raise_()
         self._timer.start(1000 * seconds)
-        self.shown.emit(mood, sentence, details)
+        self.shown.emit(kind, sentence, details)
 
     def _place(self) -> None:
         parent = self.parentWidget()

@@ -81,13 +81,13 @@ class RepresentativesPanel(QWidget):
         self.weighting.currentIndexChanged.connect(lambda _: self.orderChanged.emit())
         self.start.clicked.connect(self.findRequested)
 
-    def order(self) -> RepresentativesRequest:
+    def request(self) -> RepresentativesRequest:
         """The requested number and weighting."""
         return RepresentativesRequest.of(int(self.count.value()), self.weighting.currentData())
 
     def recipe_part(self, sizes: str, name: str) -> Representatives:
         """The fields of a recipe for representatives and dataset."""
-        return Representatives(**asdict(self.order()), sizes=sizes, name=name)
+        return Representatives(**asdict(self.request()), sizes=sizes, name=name)
 
     def show_population(self, n_particles: int) -> None:
         """Set the number of open particles, the upper limit of representatives."""

@@ -135,7 +135,7 @@ class DatasetPage(PageWidget):
             return
         self._points = []
         known = self._survey.population if self._survey else None
-        job = Job(survey_representatives, (self._particles, self.representatives.order(), known))
+        job = Job(survey_representatives, (self._particles, self.representatives.request(), known))
         self._context.start(
             tr("Finding representatives"), job, self._show_survey, partial=self._show_point, lane=FIND
         )
@@ -166,7 +166,7 @@ class DatasetPage(PageWidget):
             self.folder.name.text().strip(),
             preset,
             overwrite=overwrite,
-            representatives=self.representatives.order(),
+            representatives=self.representatives.request(),
             sizes=self.sizes.text(),
         )
         job = Job(
@@ -278,8 +278,8 @@ class DatasetPage(PageWidget):
         if known is not None:
             self._take_chosen(known)
             return
-        order = replace(self.representatives.order(), count=count)
-        job = Job(choose_job, (self._survey.population, order))
+        request = replace(self.representatives.request(), count=count)
+        job = Job(choose_job, (self._survey.population, request))
         self._context.start(tr("Choosing representatives"), job, self._take_chosen, lane="choice")
 
     def _take_chosen(self, chosen: ChosenParticles) -> None:

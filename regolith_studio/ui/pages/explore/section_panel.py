@@ -48,7 +48,7 @@ class SectionPanel(QWidget):
         self._place()
         self.direction.currentIndexChanged.connect(lambda _: triptych.cut_across(self.direction.value()))
         self.flipped.toggled.connect(self._sections.set_flipped)
-        self.place.valueChanged.connect(self._sections.set_place)
+        self.place.valueChanged.connect(self._sections.set_position)
         self._sections.changed.connect(self.refresh)
         self.refresh()
 
@@ -69,7 +69,7 @@ class SectionPanel(QWidget):
         self.flipped.blockSignals(False)
         self.place.set_range(-sections.half_length, sections.half_length)
         if not self.place.slider.isSliderDown():
-            self.place.setValue(sections.place)
+            self.place.setValue(sections.position)
         self._draw(sections.cuts())
 
     def _draw(self, cuts: dict[str, CrossSection]) -> None:

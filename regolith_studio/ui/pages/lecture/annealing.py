@@ -117,7 +117,7 @@ class AnnealingView(QWidget):
         """Colour of a step: rejected moves orange-red, improvements green, uphill moves blue."""
         theme = self._theme
         return {texts.REFUSED: theme.bad, texts.ACCEPTED: theme.good, texts.LUCKY: theme.fit}.get(
-            texts.mood_of(step), theme.muted
+            texts.outcome_of(step), theme.muted
         )
 
     def _show_step(self, number: int) -> None:
@@ -210,7 +210,7 @@ class AnnealingView(QWidget):
 
     def _proposals(self, seen: tuple[AnnealingStep, ...]) -> list[PlotCurve]:
         curves = []
-        for mood, label, colour in (
+        for outcome, label, colour in (
             (texts.ACCEPTED, tr("better"), self._theme.good),
             (texts.LUCKY, tr("worse, accepted"), self._theme.fit),
             (texts.REFUSED, tr("refused"), self._theme.bad),
@@ -218,7 +218,9 @@ class AnnealingView(QWidget):
             chosen = [
                 (float(step.number), step.move.proposed.loss)
                 for step in seen
-                if step.move is not None and step.move.proposed is not None and texts.mood_of(step) == mood
+                if step.move is not None
+                and step.move.proposed is not None
+                and texts.outcome_of(step) == outcome
             ]
             x, y = zip(*chosen, strict=True) if chosen else ((), ())
             curves.append(PlotCurve(label, colour, tuple(x), tuple(y), markers=True, line=False))

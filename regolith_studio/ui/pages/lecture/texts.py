@@ -12,7 +12,7 @@ from regolith_studio.ui.translation import tr
 TERMS = (JACCARD, *LOSS_KEYS)
 REFUSED, ACCEPTED, LUCKY, START = "refused", "accepted", "lucky", "start"
 DEGREE = "l<sub>max</sub>"
-"""The mood as rich text."""
+"""The outcome of a step as rich text."""
 A_LINE = 4
 """Terms of the loss on one line."""
 GENERAL_LOSS = r"$L=\alpha_J\,J+\sum_i\alpha_i\,\varepsilon_i$"
@@ -92,7 +92,7 @@ def decision_line(step: AnnealingStep) -> str:
     return rf"$\Delta L={_signed(change)}\geq 0,\quad {drawn}\quad\Rightarrow\quad$ {end}"
 
 
-def mood_of(step: AnnealingStep) -> str:
+def outcome_of(step: AnnealingStep) -> str:
     """Outcome of a step, one of the constants of this module."""
     if step.move is None:
         return START

@@ -287,7 +287,9 @@ class DrawControls(QWidget):
         layout.addLayout(parts)
 
 
-def order_from(source: Mapping[str, Any], drawing: Mapping[str, Any], brings_model: str) -> GenerationRequest:
+def request_from(
+    source: Mapping[str, Any], drawing: Mapping[str, Any], brings_model: str
+) -> GenerationRequest:
     """The request with the values of the controls.
 
     Raises

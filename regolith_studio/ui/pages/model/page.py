@@ -31,7 +31,7 @@ from regolith_studio.shape_models.spectrum_sliders import can_be_edited, relativ
 from regolith_studio.ui.latest_job import LatestJob
 from regolith_studio.ui.layout import padded, scrolled_column, side_by_side, stacked, tabs
 from regolith_studio.ui.page import PageContext, PageWidget
-from regolith_studio.ui.pages.model.controls import DrawControls, SourceControls, default_degree, order_from
+from regolith_studio.ui.pages.model.controls import DrawControls, SourceControls, default_degree, request_from
 from regolith_studio.ui.pages.model.distributions import DistributionsPanel
 from regolith_studio.ui.pages.model.evaluation_panel import EvaluationPanel
 from regolith_studio.ui.pages.model.files import save_card, save_model
@@ -197,35 +197,35 @@ class ModelPage(PageWidget):
 
     def _fit(self) -> None:
         origin = self._sources.origin(self.source.value()["source"])
-        order = self._order()
-        job = Job(fit_shapes, (origin, order, bool(self.source.value()["half"])))
+        request = self._request()
+        job = Job(fit_shapes, (origin, request, bool(self.source.value()["half"])))
         self._context.start(tr("Fitting a model of shapes"), job, self._show_fitted, lane="fit")
 
     def _draw(self) -> None:
         if self._model is None:
             raise InputError(tr("There is no model to draw from: fit one first."))
-        job = Job(draw_shapes, (self._model, self._order()))
+        job = Job(draw_shapes, (self._model, self._request()))
         self._context.start(tr("Drawing particles"), job, self._show_drawn, lane="draw")
 
     def _judge(self) -> None:
         sample = self._sample()
         if sample is None:
             raise InputError(tr("Models are judged on measured particles: fit one to a sample first."))
-        order, chosen = self._order(), self.evaluation.value()
+        request, chosen = self._request(), self.evaluation.value()
         key = str(self.source.value()["model"])
-        usual = min(default_degree(key), sample.l_max)
+        default = min(default_degree(key), sample.l_max)
         options = {
-            "l_max": None if order.l_max == usual else order.l_max,
+            "l_max": None if request.l_max == default else request.l_max,
             "n_splits": chosen["splits"],
             "n_repeats": chosen["repeats"],
-            "seed": order.seed,
+            "seed": request.seed,
         }
         job = Job(evaluate_models, (sample, None if chosen["all_models"] else (key,)), options)
         show = self.evaluation.show_judged
         self._context.start(tr("Judging models"), job, show, partial=show, lane=JUDGE)
 
-    def _order(self) -> GenerationRequest:
-        return order_from(self.source.value(), self.drawing.value(), self._brings())
+    def _request(self) -> GenerationRequest:
+        return request_from(self.source.value(), self.drawing.value(), self._brings())
 
     # --- results -------------------------------------------------------------------------------
 

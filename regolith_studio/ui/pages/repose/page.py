@@ -145,17 +145,17 @@ class ReposePage(PageWidget):
             self._context.toast.problem(tr("There is no dataset yet: open one, or make one first."))
             return
         try:
-            order = self.setup.order()
+            request = self.setup.request()
         except RegolithError as error:
             self._context.toast.problem(str(error))
             return
         self._later.stop()
         self._context.stop(PREVIEW)
-        folder = self._new_folder(f"{dataset.name}-{order.case.n_particles}")
+        folder = self._new_folder(f"{dataset.name}-{request.case.n_particles}")
         self._set_running(True)
         self._context.start(
-            tr("Angle of repose, {count:,} particles", count=order.case.n_particles),
-            Job(simulate_repose, (dataset, folder, order)),
+            tr("Angle of repose, {count:,} particles", count=request.case.n_particles),
+            Job(simulate_repose, (dataset, folder, request)),
             self._finished,
             partial=self._show_moment,
             failed=self._failed,
@@ -219,11 +219,11 @@ class ReposePage(PageWidget):
         if dataset is None or self._running:
             return
         try:
-            order = self.setup.order()
+            request = self.setup.request()
         except RegolithError as error:
             self.setup.show_consequences([], str(error))
             return
-        if order.case.n_particles > MAX_PREVIEWED:
+        if request.case.n_particles > MAX_PREVIEWED:
             words = tr(
                 "More than {count:,} particles are for other programs: export the dataset.",
                 count=MAX_PREVIEWED,
@@ -232,9 +232,9 @@ class ReposePage(PageWidget):
             return
 
         def show(drawn: tuple[PreparedCase, ParticleState]) -> None:
-            self._show_preview(order, *drawn)
+            self._show_preview(request, *drawn)
 
-        job = Job(preview_repose, (dataset, order.case))
+        job = Job(preview_repose, (dataset, request.case))
         self._context.start(
             tr("Drawing particles"),
             job,
@@ -243,11 +243,11 @@ class ReposePage(PageWidget):
             lane=PREVIEW,
         )
 
-    def _show_preview(self, order: Any, prepared: PreparedCase, pile: ParticleState) -> None:
-        seconds = engine_named(order.engine).seconds(prepared, order.settings)
+    def _show_preview(self, request: Any, prepared: PreparedCase, pile: ParticleState) -> None:
+        seconds = engine_named(request.engine).seconds(prepared, request.settings)
         time = tr("About {time} on one core.", time=duration_text(seconds))
         self.setup.show_consequences([time, *scaling_report(prepared).sentences])
-        self.player.set_scene(prepared.shapes, order.case.shapes == "spheres", order.case.test)
+        self.player.set_scene(prepared.shapes, request.case.shapes == "spheres", request.case.test)
         self.player.show_moment(
             pile,
             tr("Before the fall"),

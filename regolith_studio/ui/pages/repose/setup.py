@@ -115,7 +115,7 @@ class SetupPanel(QWidget):
         self.dataset_label.setText(str(folder) if folder else tr("No dataset yet"))
         self.valueChanged.emit()
 
-    def order(self) -> ReposeRequest:
+    def request(self) -> ReposeRequest:
         """The request with the values of the panel.
 
         Raises

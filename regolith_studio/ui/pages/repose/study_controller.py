@@ -78,12 +78,12 @@ class ReposeStudyController:
 
     def _request(self) -> ReposeStudyRequest:
         key, values, repeats = self._panel.request()
-        session, order = self._context.session, self._setup.order()
+        session, request = self._context.session, self._setup.request()
         if key not in SHAPE_KEYS:
-            return ReposeStudyRequest(key, values, order, self._setup.dataset, repeats)
+            return ReposeStudyRequest(key, values, request, self._setup.dataset, repeats)
         particles = tuple(entry.particle for entry in session.particles)
         return ReposeStudyRequest(
-            key, values, order, None, repeats, particles, session.choices.coarsening_request
+            key, values, request, None, repeats, particles, session.choices.coarsening_request
         )
 
     def _finished(self, study: ReposeStudy) -> None:

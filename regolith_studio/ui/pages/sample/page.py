@@ -75,7 +75,7 @@ class SamplePage(PageWidget):
             "export_table": self.export_table,
             "copy_table": self.copy_table,
             "explore": lambda: self._context.go("explore"),
-            "keep": self.keep_chosen,
+            "keep": self.keep_selected_particles,
             "clear_filter": self.filter.clear,
         }
 
@@ -111,7 +111,7 @@ class SamplePage(PageWidget):
         QApplication.clipboard().setText(text.replace(",", "\t"))
         self._context.toast.note(tr("The table is on the clipboard."))
 
-    def keep_chosen(self) -> None:
+    def keep_selected_particles(self) -> None:
         """Close all particles but the selected ones."""
         chosen = set(self.table.chosen())
         if not any(entry.id in chosen for entry in self._session.particles):

@@ -60,7 +60,7 @@ class ScanPage(PageWidget):
         self._context = context
         self.scan: Scan | None = None
         self._given = VolumeInput(Path())
-        self._whole: GrainSegmentation | None = None
+        self._segmented: GrainSegmentation | None = None
         self.preview: Segmentation | None = None
         self._found_with: SegmentationSettings | None = None
 
@@ -76,7 +76,7 @@ class ScanPage(PageWidget):
     @property
     def grains(self) -> Segmentation | None:
         """The grains of the whole volume, or ``None``."""
-        return self._whole.segmentation if self._whole else None
+        return self._segmented.segmentation if self._segmented else None
 
     def set_theme(self, theme: Theme) -> None:
         self.slices.set_theme(theme)
@@ -135,18 +135,18 @@ class ScanPage(PageWidget):
 
     def open_sample(self) -> None:
         """Open the shipped scan."""
-        given = VolumeInput(sample_file("grey"))
+        volume = VolumeInput(sample_file("grey"))
         self._context.start(
             tr("Reading the sample scan"),
             Job(read_sample_scan),
-            lambda scan: self._take(scan, given),
+            lambda scan: self._take(scan, volume),
             lane="read",
         )
 
-    def read(self, given: VolumeInput) -> None:
+    def read(self, volume: VolumeInput) -> None:
         """Read a volume."""
-        job = Job(read_scan, (given,))
-        self._context.start(tr("Reading the volume"), job, lambda scan: self._take(scan, given), lane="read")
+        job = Job(read_scan, (volume,))
+        self._context.start(tr("Reading the volume"), job, lambda scan: self._take(scan, volume), lane="read")
 
     def _on_header(self, path: Path, header: VolumeHeader) -> None:
         if needs_asking(header):
@@ -166,26 +166,26 @@ class ScanPage(PageWidget):
         self._show_dialog(VolumeDialog(path, None, layout, self._last_size(), self))
 
     def _show_dialog(self, dialog: VolumeDialog) -> None:
-        dialog.accepted.connect(lambda: self._read_and_remember(dialog.value()))
+        dialog.accepted.connect(lambda: self._read_volume(dialog.value()))
         dialog.finished.connect(dialog.deleteLater)
         dialog.open()
 
-    def _read_and_remember(self, given: VolumeInput) -> None:
-        size = np.ravel(np.asarray(given.voxel_size))[0]
-        self._context.remember("voxel_size", [float(size), given.unit])
-        self.read(given)
+    def _read_volume(self, volume: VolumeInput) -> None:
+        size = np.ravel(np.asarray(volume.voxel_size))[0]
+        self._context.remember("voxel_size", [float(size), volume.unit])
+        self.read(volume)
 
     def _last_size(self) -> tuple[float, str]:
         """Voxel size and unit of the previous volume, proposed for the next one."""
         size, unit = self._context.recall("voxel_size", [1.0, "um"])
         return float(size), str(unit)
 
-    def _take(self, scan: Scan, given: VolumeInput) -> None:
+    def _take(self, scan: Scan, volume: VolumeInput) -> None:
         self._stop_work()
         self._discard_grains()
         if self.scan is not None:
             self.scan.scratch.close()
-        self.scan, self.preview, self._given = scan, None, given
+        self.scan, self.preview, self._given = scan, None, volume
         self.slices.set_scan(scan)
         self.controls.set_kind(scan.volume.kind)
         self._show_level()
@@ -252,15 +252,15 @@ class ScanPage(PageWidget):
 
     def _show_grains(self, found: GrainSegmentation, settings: SegmentationSettings) -> None:
         self._discard_grains()
-        self._whole, self.preview, self._found_with = found, None, settings
-        self.slices.show_whole(found.segmentation, found.sections)
+        self._segmented, self.preview, self._found_with = found, None, settings
+        self.slices.show_segmentation(found.segmentation, found.sections)
         self.controls.show_automatic_level(found.segmentation.level)
         self._show_state()
 
     def _discard_grains(self) -> None:
-        if self._whole is not None:
-            self._whole.scratch.close()
-        self._whole = None
+        if self._segmented is not None:
+            self._segmented.scratch.close()
+        self._segmented = None
 
     def _adopt(self, extraction: Extraction, entry: VolumeEntry) -> None:
         if not extraction.found:

@@ -79,11 +79,11 @@ class SliceView(QWidget):
         width, height = (volume.shape[each] * volume.voxel_size[each] for each in (self.across, self.down))
         self.canvas.view.setRange(QRectF(0, 0, width, height), padding=0.02)
 
-    def show_place(self, place: tuple[int, int, int], box: Box) -> None:
+    def show_position(self, position: tuple[int, int, int], box: Box) -> None:
         """Show the slice through a voxel, with a crosshair and the box of the preview."""
         if self._volume is None or self._sections is None:
             return
-        number, count = place[self.axis], self._volume.shape[self.axis]
+        number, count = position[self.axis], self._volume.shape[self.axis]
         with QSignalBlocker(self.slider):
             self.slider.setValue(number)
         self.title.setText(
@@ -103,7 +103,7 @@ class SliceView(QWidget):
         else:
             self._set(self._grey, np.asarray(picture, dtype=np.float32), (0, 0), whole)
         for line, each in zip(self._cross, (self.across, self.down), strict=True):
-            line.setValue((place[each] + 0.5) * self._volume.voxel_size[each])
+            line.setValue((position[each] + 0.5) * self._volume.voxel_size[each])
         corner = self._rectangle(
             (box[self.across].start, box[self.down].start),
             (_length(box[self.across]), _length(box[self.down])),
@@ -161,12 +161,12 @@ class SliceView(QWidget):
         """Select the voxel at a point of the scene in micrometres."""
         if self._volume is None:
             return
-        place = [0, 0, 0]
-        place[self.axis] = self.slider.value()
+        position = [0, 0, 0]
+        position[self.axis] = self.slider.value()
         for each, where in ((self.across, point.x()), (self.down, point.y())):
             voxel = int(np.floor(where / self._volume.voxel_size[each]))
-            place[each] = min(max(voxel, 0), self._volume.shape[each] - 1)
-        self.placePicked.emit(*place)
+            position[each] = min(max(voxel, 0), self._volume.shape[each] - 1)
+        self.placePicked.emit(*position)
 
     def turn(self, steps: int) -> None:
         """Go some slices forward or back."""

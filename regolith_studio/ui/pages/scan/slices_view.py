@@ -28,7 +28,7 @@ class SlicesView(QWidget):
         super().__init__()
         self.views = [SliceView(axis) for axis in (2, 1, 0)]
         self.histogram = HistogramPlot()
-        self.place = (0, 0, 0)
+        self.position = (0, 0, 0)
         self.box: Box = box_between((0, 0, 0), (1, 1, 1))
         self._scan: Scan | None = None
         self._labels: SliceImages | None = None
@@ -56,15 +56,15 @@ class SlicesView(QWidget):
         x, y, z = (edge // 2 for edge in scan.volume.shape)
         self.go_to((x, y, z))
 
-    def go_to(self, place: tuple[int, int, int]) -> None:
+    def go_to(self, position: tuple[int, int, int]) -> None:
         """Show the slices through a voxel."""
         if self._scan is None:
             return
-        self.place = place
-        box = box_about(place, PREVIEW_EDGE, self._scan.volume.shape)
+        self.position = position
+        box = box_about(position, PREVIEW_EDGE, self._scan.volume.shape)
         moved, self.box = box != self.box, box
         for view in self.views:
-            view.show_place(place, box)
+            view.show_position(position, box)
         self._lay_over()
         if moved:
             self.boxMoved.emit()
@@ -78,7 +78,7 @@ class SlicesView(QWidget):
             view.set_box_shown(True)
         self._lay_over()
 
-    def show_whole(self, found: Segmentation, labels: SliceImages) -> None:
+    def show_segmentation(self, found: Segmentation, labels: SliceImages) -> None:
         """Overlay the grains of the whole volume."""
         self._labels, self._part = labels, box_between((0, 0, 0), found.labels.shape)
         self.histogram.set_denoised(found.seen)
@@ -88,13 +88,13 @@ class SlicesView(QWidget):
         self._lay_over()
 
     def _turn(self, axis: int, number: int) -> None:
-        place = list(self.place)
-        place[axis] = number
-        self.go_to((place[0], place[1], place[2]))
+        position = list(self.position)
+        position[axis] = number
+        self.go_to((position[0], position[1], position[2]))
 
     def _lay_over(self) -> None:
         for view in self.views:
-            view.show_grains(self._labels, self._part, self.place[view.axis])
+            view.show_grains(self._labels, self._part, self.position[view.axis])
 
     def _arrange(self) -> None:
         above = equal_parts(Qt.Orientation.Horizontal, self.views[:2])

@@ -88,13 +88,13 @@ class BandPlot(CurvePlot):
         best, words = HOVER_DISTANCE, ""
         for s in self._series:
             for number, (x, y) in enumerate(zip(s.x, s.y, strict=True)):
-                seen = self.scene_place(x, y)
+                seen = self.scene_position(x, y)
                 away = float(np.hypot(seen.x() - place.x(), seen.y() - place.y()))
                 if away < best:
                     best, words = away, self._words(s, number)
         return words
 
-    def scene_place(self, x: float, y: float) -> QPointF:
+    def scene_position(self, x: float, y: float) -> QPointF:
         """Position of a point in the scene."""
         with np.errstate(divide="ignore", invalid="ignore"):
             high = float(np.log10(y)) if self._log_y else y

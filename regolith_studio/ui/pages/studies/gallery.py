@@ -40,7 +40,7 @@ class GalleryPanel(QWidget):
     def __init__(self) -> None:
         super().__init__()
         self.setObjectName("solid_gallery")
-        self._solids: tuple[GalleryCell, ...] = ()
+        self._cells: tuple[GalleryCell, ...] = ()
         self._colour = current_theme().polyhedron
         self.table = QTableWidget()
         self.table.setAccessibleName(tr("Polyhedra by loss function and particle"))
@@ -67,7 +67,7 @@ class GalleryPanel(QWidget):
 
     def begin(self, names: Sequence[str], labels: Sequence[str]) -> None:
         """Show empty cells for these particles and losses."""
-        self._solids = ()
+        self._cells = ()
         self._stack.setCurrentWidget(self.table)
         self.table.clear()
         self.table.setRowCount(len(labels))
@@ -75,30 +75,30 @@ class GalleryPanel(QWidget):
         self.table.setVerticalHeaderLabels(list(labels))
         self.table.setHorizontalHeaderLabels(list(names))
 
-    def show_solids(self, solids: Sequence[GalleryCell]) -> None:
+    def show_cells(self, cells: Sequence[GalleryCell]) -> None:
         """Fill the cells of new polyhedra."""
-        for solid in solids[len(self._solids) :]:
-            self.table.setItem(solid.row, solid.column, self._cell(solid))
-        self._solids = tuple(solids)
+        for cell in cells[len(self._cells) :]:
+            self.table.setItem(cell.row, cell.column, self._cell(cell))
+        self._cells = tuple(cells)
 
     def value(self) -> tuple[GalleryCell, ...]:
         """The polyhedra that are shown."""
-        return self._solids
+        return self._cells
 
     def set_theme(self, theme: Theme) -> None:
         """Take the colours of a theme."""
         if theme.polyhedron != self._colour:
             self._colour = theme.polyhedron
-            for solid in self._solids:
-                self.table.setItem(solid.row, solid.column, self._cell(solid))
+            for cell in self._cells:
+                self.table.setItem(cell.row, cell.column, self._cell(cell))
 
-    def _cell(self, solid: GalleryCell) -> QTableWidgetItem:
-        found = solid.outcome.coarsened
+    def _cell(self, cell: GalleryCell) -> QTableWidgetItem:
+        found = cell.outcome.coarsened
         item = QTableWidgetItem()
         item.setTextAlignment(Qt.AlignmentFlag.AlignCenter)
         if found is None:
             item.setText("–")
-            item.setToolTip(solid.outcome.problem or "")
+            item.setToolTip(cell.outcome.problem or "")
             return item
         item.setIcon(QIcon(thumbnail(found.mesh, self._colour, SIZE)))
         item.setText(f"J {found.jaccard_distance:.3f}")

@@ -129,15 +129,15 @@ class StudiesPage(PageWidget):
             coarsen_gallery,
             (tuple(entry.particle for entry in shown), self._session.choices.coarsening_request, rows),
         )
-        show = self.gallery.show_solids
+        show = self.gallery.show_cells
         self._context.start(tr("Coarsening for the gallery"), job, show, partial=show, lane="gallery")
 
     def save(self) -> None:
         """Ask for a folder and write tables and figures of all results."""
         found = {kind.value: getattr(self._session.results, kind.value) for kind in KINDS}
         found |= {f"{key}_study": study for key, study in self.sweeps.results.items() if study.names}
-        if solids := self.gallery.value():
-            found["solids_study"] = study_of_cells(solids, *self._drawn)
+        if cells := self.gallery.value():
+            found["solids_study"] = study_of_cells(cells, *self._drawn)
         done = tuple((kind, study) for kind, study in found.items() if study is not None)
         if not done:
             self._context.toast.problem(tr("Compute a study first."))
