@@ -6,10 +6,10 @@ from regolith_studio.dataset.folder_io import read_dataset
 
 
 def test_that_a_built_dataset_is_sound_and_reads_back(command, grains: Path, tmp_path: Path) -> None:
-    said = command(
+    result = command(
         "dataset", "build", grains, "-o", tmp_path / "set", "--method", "quadric", "--name", "trio"
     )
-    assert said.code == 0
+    assert result.code == 0
     dataset = read_dataset(tmp_path / "set")
     assert dataset.name == "trio"
     assert len(dataset) == 3
@@ -20,18 +20,18 @@ def test_that_a_damaged_dataset_is_found_out(command, grains: Path, tmp_path: Pa
     command("dataset", "build", grains, "-o", tmp_path / "set", "--method", "quadric")
     mesh = next((tmp_path / "set").rglob("*.stl"))
     mesh.write_bytes(mesh.read_bytes()[:-1])
-    said = command("dataset", "validate", tmp_path / "set", "--json")
-    assert said.code == 1
-    assert said.json["valid"] is False
-    assert any(mesh.name in problem for problem in said.json["problems"])
+    result = command("dataset", "validate", tmp_path / "set", "--json")
+    assert result.code == 1
+    assert result.json["valid"] is False
+    assert any(mesh.name in problem for problem in result.json["problems"])
 
 
 def test_that_other_peoples_files_are_never_replaced(command, grains: Path, tmp_path: Path) -> None:
     (tmp_path / "thesis.txt").write_text("important")
     for overwrite in ([], ["--overwrite"]):
-        said = command("dataset", "build", grains, "-o", tmp_path, "--method", "quadric", *overwrite)
-        assert said.code == 1
-        assert len(said.err.strip().splitlines()) == 1
+        result = command("dataset", "build", grains, "-o", tmp_path, "--method", "quadric", *overwrite)
+        assert result.code == 1
+        assert len(result.err.strip().splitlines()) == 1
     assert [path.name for path in tmp_path.iterdir()] == ["thesis.txt"]
 
 

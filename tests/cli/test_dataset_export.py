@@ -21,9 +21,9 @@ def folder(command, grains: Path, tmp_path: Path) -> Path:
 def test_that_a_sample_is_a_table_and_the_same_for_the_same_seed(
     command, folder: Path, tmp_path: Path
 ) -> None:
-    said = command("dataset", "sample", folder, "-n", 500, "--seed", 4)
-    assert said.code == 0
-    rows = list(csv.DictReader(io.StringIO(said.out)))
+    result = command("dataset", "sample", folder, "-n", 500, "--seed", 4)
+    assert result.code == 0
+    rows = list(csv.DictReader(io.StringIO(result.out)))
     assert len(rows) == 500
     assert {row["name"] for row in rows} == {"grain-a", "grain-b", "grain-c"}
     sizes = {one.name: float(one.sizes.quantile(0.5)) for one in read_dataset(folder).representatives}
@@ -32,24 +32,24 @@ def test_that_a_sample_is_a_table_and_the_same_for_the_same_seed(
         assert np.linalg.norm([float(row[key]) for key in ("qw", "qx", "qy", "qz")]) == pytest.approx(1.0)
     again = command("dataset", "sample", folder, "-n", 500, "--seed", 4, "-o", tmp_path / "drawn.csv")
     assert again.code == 0
-    assert (tmp_path / "drawn.csv").read_text() == said.out
-    assert command("dataset", "sample", folder, "-n", 500, "--seed", 5).out != said.out
+    assert (tmp_path / "drawn.csv").read_text() == result.out
+    assert command("dataset", "sample", folder, "-n", 500, "--seed", 5).out != result.out
     assert command("dataset", "sample", folder, "-n", 2, "--json").json[0]["class"] in (0, 1, 2)
 
 
 def test_that_an_export_leaves_one_folder_a_format_that_names_the_dataset(
     command, folder: Path, tmp_path: Path
 ) -> None:
-    said = command("dataset", "export", folder, "--to", "rocky, hoomd", "-o", tmp_path / "out", "--json")
-    assert said.code == 0
-    assert [one["key"] for one in said.json] == ["rocky", "hoomd"]
-    for one in said.json:
+    result = command("dataset", "export", folder, "--to", "rocky, hoomd", "-o", tmp_path / "out", "--json")
+    assert result.code == 0
+    assert [one["key"] for one in result.json] == ["rocky", "hoomd"]
+    for one in result.json:
         record = json.loads((Path(one["folder"]) / "export.json").read_text())
         assert record["dataset_sha256"] == dataset_hash(folder)
         assert set(one["files"]) == {
             path.relative_to(one["folder"]).as_posix() for path in files(one["folder"])
         }
-    assert all(lost in said.err for lost in EXPORTERS["hoomd"].loses)
+    assert all(lost in result.err for lost in EXPORTERS["hoomd"].loses)
 
 
 def test_that_all_formats_are_written_when_changed_shapes_are_allowed(
@@ -65,12 +65,12 @@ def test_that_all_formats_are_written_when_changed_shapes_are_allowed(
 
 
 def test_that_settings_reach_the_files(command, folder: Path, tmp_path: Path) -> None:
-    said = command(
+    result = command(
         "dataset", "export", folder, "--to", "rocky", "-o", tmp_path / "out",
         "--coarse-graining", 5,
         "--set", "density=2900", "--set", "mass=0.01", "--set", "gravity=1.62",
     )  # fmt: skip
-    assert said.code == 0
+    assert result.code == 0
     case = json.loads((tmp_path / "out" / "rocky" / "case.json").read_text())
     assert case["coarse_graining_factor"] == 5.0
     assert case["contact"]["density"] == 2900
@@ -88,9 +88,9 @@ def test_that_settings_reach_the_files(command, folder: Path, tmp_path: Path) ->
     ],
 )
 def test_that_bad_use_is_told_in_a_sentence(command, folder: Path, tmp_path: Path, extra, code, word) -> None:
-    said = command("dataset", "export", folder, "-o", tmp_path / "out", *extra)
-    assert said.code == code
-    assert word in " ".join(said.err.replace("│", " ").split())
+    result = command("dataset", "export", folder, "-o", tmp_path / "out", *extra)
+    assert result.code == code
+    assert word in " ".join(result.err.replace("│", " ").split())
     assert not (tmp_path / "out").exists()
 
 
@@ -99,24 +99,24 @@ def test_that_a_folder_without_a_dataset_is_one_sentence(command, tmp_path: Path
         ("export", tmp_path, "--to", "rocky", "-o", tmp_path / "out"),
         ("sample", tmp_path, "-n", 3),
     ):
-        said = command("dataset", *action)
-        assert said.code == 1
-        assert len(said.err.strip().splitlines()) == 1
+        result = command("dataset", *action)
+        assert result.code == 1
+        assert len(result.err.strip().splitlines()) == 1
 
 
 def test_that_formats_are_listed_with_what_they_lose(command) -> None:
-    said = command("dataset", "formats")
-    assert said.code == 0
+    result = command("dataset", "formats")
+    assert result.code == 0
     for exporter in EXPORTERS.values():
-        assert all(text in said.out for text in (exporter.label, *exporter.carries, *exporter.loses))
+        assert all(text in result.out for text in (exporter.label, *exporter.carries, *exporter.loses))
     assert [one["key"] for one in command("dataset", "formats", "--json").json] == list(EXPORTERS)
 
 
 def test_that_a_library_is_listed_with_what_came_from_what(command, folder: Path, tmp_path: Path) -> None:
     command("dataset", "export", folder, "--to", "hoomd", "-o", tmp_path / "out")
-    said = command("dataset", "list", tmp_path)
-    assert said.code == 0
-    first, _, child, _ = said.out.splitlines()
+    result = command("dataset", "list", tmp_path)
+    assert result.code == 0
+    first, _, child, _ = result.out.splitlines()
     assert first.startswith("set: 3 shapes")
     assert child.startswith("    set for hoomd")
     (top,) = command("dataset", "list", tmp_path, "--json").json

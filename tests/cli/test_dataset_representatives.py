@@ -35,9 +35,9 @@ def build(command, crowd: Path, folder: Path, *more: object):
 
 def test_that_two_representatives_stand_for_balls_and_needles(command, crowd: Path, tmp_path: Path) -> None:
     curve = tmp_path / "curve.csv"
-    said = build(command, crowd, tmp_path / "set", "--representatives", 2, "--quality-curve", curve)
-    assert said.code == 0
-    assert "2 of 9 particles" in said.out
+    result = build(command, crowd, tmp_path / "set", "--representatives", 2, "--quality-curve", curve)
+    assert result.code == 0
+    assert "2 of 9 particles" in result.out
     dataset = read_dataset(tmp_path / "set")
     assert sorted(one.n_members for one in dataset.representatives) == [3, 6]
     assert sorted(dataset.weights) == pytest.approx([1 / 3, 2 / 3])
@@ -69,11 +69,11 @@ def test_that_a_shape_does_not_depend_on_how_many_are_chosen(command, crowd: Pat
 
 
 def test_that_sizes_can_be_given(command, crowd: Path, tmp_path: Path) -> None:
-    said = build(
+    result = build(
         command, crowd, tmp_path / "set", "--representatives", 2, "--sizes", "log-normal:50,0.3",
         "--weighting", "volume",
     )  # fmt: skip
-    assert said.code == 0
+    assert result.code == 0
     dataset = read_dataset(tmp_path / "set")
     assert dataset.weighting == "volume"
     assert all(one.sizes.median_um == 50.0 for one in dataset.representatives)
@@ -88,7 +88,7 @@ def test_that_sizes_can_be_given(command, crowd: Path, tmp_path: Path) -> None:
     ],
 )
 def test_that_what_makes_no_sense_is_one_sentence(command, crowd, tmp_path: Path, more, code, word) -> None:
-    said = build(command, crowd, tmp_path / "set", *more)
-    assert said.code == code
-    assert word in " ".join(said.err.replace("│", " ").split())
+    result = build(command, crowd, tmp_path / "set", *more)
+    assert result.code == code
+    assert word in " ".join(result.err.replace("│", " ").split())
     assert not (tmp_path / "set").exists()

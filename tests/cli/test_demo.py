@@ -60,9 +60,9 @@ def test_that_the_demo_shows_the_whole_chain(
 ) -> None:
     few = [particle for particle in sample_particles() if particle.name in ("angular-1", "bead-2")]
     monkeypatch.setattr(inputs, "sample_particles", lambda: few)
-    said = command("demo", "-o", tmp_path / "demo", "--jobs", 1)
-    assert said.err == ""
-    assert said.code == 0
+    result = command("demo", "-o", tmp_path / "demo", "--jobs", 1)
+    assert result.err == ""
+    assert result.code == 0
     check(tmp_path / "demo")
     assert len(read_dataset(tmp_path / "demo" / "dataset")) == 2
 

@@ -10,10 +10,10 @@ from regolith_studio.descriptors.catalogue import CATALOGUE
 
 
 def test_that_an_ellipsoid_is_measured_in_micrometres(command, grains: Path) -> None:
-    said = command("describe", grains / "grain-a.stl", "--json")
-    assert said.code == 0
-    assert said.err == ""
-    (entry,) = said.json
+    result = command("describe", grains / "grain-a.stl", "--json")
+    assert result.code == 0
+    assert result.err == ""
+    (entry,) = result.json
     assert entry["name"] == "grain-a"
     assert entry["unit"] == "um"
     assert entry["volume"] == pytest.approx(4 / 3 * math.pi * 30 * 20 * 15, rel=0.02)
@@ -31,15 +31,15 @@ def test_that_the_unit_scales_lengths(command, grains: Path) -> None:
 
 
 def test_that_a_folder_gives_one_entry_a_mesh_in_the_order_of_names(command, grains: Path) -> None:
-    said = command("describe", grains, "--json")
-    assert [entry["name"] for entry in said.json] == ["grain-a", "grain-b", "grain-c"]
+    result = command("describe", grains, "--json")
+    assert [entry["name"] for entry in result.json] == ["grain-a", "grain-b", "grain-c"]
 
 
 def test_that_a_table_names_particles_and_descriptors(command, grains: Path) -> None:
-    said = command("describe", grains)
-    assert said.code == 0
+    result = command("describe", grains)
+    assert result.code == 0
     for word in ("grain-a", "grain-c", "D_min [um]", "V [um^3]"):
-        assert word in said.out
+        assert word in result.out
 
 
 def test_that_the_table_tells_sound_mended_and_broken_meshes_apart(command, tmp_path: Path) -> None:
@@ -57,19 +57,19 @@ def test_that_the_table_tells_sound_mended_and_broken_meshes_apart(command, tmp_
 def test_that_a_file_that_is_no_mesh_is_one_sentence(command, tmp_path: Path) -> None:
     path = tmp_path / "letter.stl"
     path.write_text("Dear Sir")
-    said = command("describe", path)
-    assert said.code == 1
-    assert len(said.err.strip().splitlines()) == 1
-    assert "Traceback" not in said.err
+    result = command("describe", path)
+    assert result.code == 1
+    assert len(result.err.strip().splitlines()) == 1
+    assert "Traceback" not in result.err
 
 
 def test_that_a_bad_file_among_good_ones_is_told_and_the_others_are_measured(
     command, grains: Path, tmp_path: Path
 ) -> None:
-    said = command("describe", grains / "grain-a.stl", tmp_path / "missing.stl", "--json")
-    assert said.code == 1
-    assert [entry["name"] for entry in said.json] == ["grain-a"]
-    assert "missing.stl" in said.err
+    result = command("describe", grains / "grain-a.stl", tmp_path / "missing.stl", "--json")
+    assert result.code == 1
+    assert [entry["name"] for entry in result.json] == ["grain-a"]
+    assert "missing.stl" in result.err
 
 
 @pytest.mark.parametrize(
@@ -82,19 +82,19 @@ def test_that_a_bad_file_among_good_ones_is_told_and_the_others_are_measured(
     ],
 )
 def test_that_bad_use_is_exit_code_2(command, arguments: tuple[str, ...]) -> None:
-    said = command(*arguments)
-    assert said.code == 2
-    assert said.out == ""
-    assert "Traceback" not in said.err
+    result = command(*arguments)
+    assert result.code == 2
+    assert result.out == ""
+    assert "Traceback" not in result.err
 
 
 def test_that_statistics_and_a_table_are_written_where_they_are_asked_for(
     command, grains: Path, tmp_path: Path
 ) -> None:
     plain = command("describe", grains, "--json").json
-    said = command("describe", grains, "--json", "--statistics", "--csv", tmp_path / "t.csv")
-    assert said.json["particles"] == plain
-    rows = {row["descriptor"]: row for row in said.json["statistics"]}
+    result = command("describe", grains, "--json", "--statistics", "--csv", tmp_path / "t.csv")
+    assert result.json["particles"] == plain
+    rows = {row["descriptor"]: row for row in result.json["statistics"]}
     volumes = [entry["volume"] for entry in plain]
     assert rows["volume [um^3]"]["mean"] == pytest.approx(sum(volumes) / 3)
     assert rows["volume [um^3]"]["count"] == 3
@@ -107,21 +107,21 @@ def test_that_statistics_and_a_table_are_written_where_they_are_asked_for(
 
 
 def test_that_an_unknown_weighting_is_bad_use(command, grains: Path) -> None:
-    said = command("describe", grains, "--statistics", "--weighting", "mass")
-    assert said.code == 2
-    assert "not by 'mass'" in said.err
+    result = command("describe", grains, "--statistics", "--weighting", "mass")
+    assert result.code == 2
+    assert "not by 'mass'" in result.err
 
 
 def test_that_a_mesh_is_measured_as_it_is_where_repair_is_switched_off(command, tmp_path: Path) -> None:
     crumb = trimesh.creation.box((1, 2, 3), trimesh.transformations.translation_matrix((20, 0, 0)))
     trimesh.util.concatenate([trimesh.creation.box((4, 5, 6)), crumb]).export(tmp_path / "two.stl")
-    (mended,) = command("describe", tmp_path / "two.stl", "--json").json
+    (repaired,) = command("describe", tmp_path / "two.stl", "--json").json
     (as_it_is,) = command("describe", tmp_path / "two.stl", "--json", "--no-repair").json
-    assert mended["volume"] == pytest.approx(4 * 5 * 6)
+    assert repaired["volume"] == pytest.approx(4 * 5 * 6)
     assert as_it_is["volume"] == pytest.approx(4 * 5 * 6 + 1 * 2 * 3)
     assert as_it_is["notes"] == ["It consists of 2 separate bodies."]
-    assert (mended["health"]["sound"], as_it_is["health"]["sound"]) == (True, False)
-    assert (mended["source"]["repaired"], as_it_is["source"]["repaired"]) == (True, False)
+    assert (repaired["health"]["sound"], as_it_is["health"]["sound"]) == (True, False)
+    assert (repaired["source"]["repaired"], as_it_is["source"]["repaired"]) == (True, False)
 
 
 def test_that_a_mesh_inside_out_is_told_and_not_measured_where_repair_is_switched_off(
@@ -130,9 +130,9 @@ def test_that_a_mesh_inside_out_is_told_and_not_measured_where_repair_is_switche
     box = trimesh.creation.box((4, 5, 6))
     box.invert()
     box.export(tmp_path / "inverted.stl")
-    said = command("describe", tmp_path / "inverted.stl", "--no-repair")
-    assert said.code == 1
-    assert "inverted: The mesh is inside out: its signed volume is -120" in said.err
+    result = command("describe", tmp_path / "inverted.stl", "--no-repair")
+    assert result.code == 1
+    assert "inverted: The mesh is inside out: its signed volume is -120" in result.err
 
 
 def test_that_json_tells_the_mesh_as_it_came_what_was_done_and_what_is_hidden(

@@ -41,12 +41,12 @@ def rows_of(folder: Path) -> list[dict[str, str]]:
 def test_that_a_grey_scan_becomes_particles_with_a_recipe(command, tmp_path: Path, surface: str) -> None:
     scan, x = part_of_scan(tmp_path, "grey"), tmp_path / "x"
     asked = ["--denoise", "gaussian", "--voxel-size", 2.3, "--surface", surface, "--json"]
-    said = command("extract", scan, "-o", x, *asked)
-    assert said.code == 0
+    result = command("extract", scan, "-o", x, *asked)
+    assert result.code == 0
     rows, recipe = rows_of(x), json.loads((x / "extraction.json").read_text())
     assert recipe["volume"]["sha256"] == hashlib.sha256(scan.read_bytes()).hexdigest()
     assert recipe["segmentation"]["denoise"]["method"] == "gaussian"
-    assert len(rows) == recipe["n_particles"] == len(said.json["particles"]) > 3
+    assert len(rows) == recipe["n_particles"] == len(result.json["particles"]) > 3
     assert len(rows) + len(recipe["border"]) + len(recipe["small"]) == recipe["segmented"]["n_grains"]
     assert len(list(x.glob("*.stl"))) == len(rows)
     for row in rows:
@@ -72,8 +72,8 @@ def test_that_the_recipe_of_one_scan_serves_the_next(command, tmp_path: Path) ->
 
 def test_that_keeping_the_border_of_labels_gives_all_grains(command, tmp_path: Path) -> None:
     scan, x = part_of_scan(tmp_path, "labels"), tmp_path / "x"
-    said = command("extract", scan, "-o", x, "--border", "keep", "--voxel-size", 1, "--min-voxels", 600)
-    assert said.code == 0
+    result = command("extract", scan, "-o", x, "--border", "keep", "--voxel-size", 1, "--min-voxels", 600)
+    assert result.code == 0
     sizes = np.bincount(sample_volume("labels").array[PART].ravel())[1:]
     assert [int(row["voxels"]) for row in rows_of(x)] == sizes[sizes >= 600].tolist()
     assert {row["weight"] for row in rows_of(x)} == {"1.0"}
@@ -84,19 +84,19 @@ def test_that_a_raw_file_needs_its_shape_and_gives_balls_of_the_right_size(comma
     two_balls().tofile(tmp_path / "scan.raw")
     call = ("extract", tmp_path / "scan.raw", "-o", tmp_path / "x", "--voxel-size", 0.002, "--unit", "mm")
     assert command(*call).code == 1
-    said = command(*call, "--shape", "60,44,40", "--kind", "grey")
-    assert said.code == 0
+    result = command(*call, "--shape", "60,44,40", "--kind", "grey")
+    assert result.code == 0
     radii = sorted(float(row["equivalent_radius [um]"]) for row in rows_of(tmp_path / "x"))
     assert radii == pytest.approx([18.0, 24.0], rel=0.02)
 
 
 def test_that_voxels_may_be_longer_one_way(command, tmp_path: Path) -> None:
     np.save(tmp_path / "scan.npy", two_balls()[::2])
-    said = command(
+    result = command(
         "extract", tmp_path / "scan.npy", "-o", tmp_path / "x", "--kind", "grey", "--voxel-size", "1,1,2",
         "--threshold", 110, "--min-voxels", 100,
     )  # fmt: skip
-    assert said.code == 0
+    assert result.code == 0
     radii = sorted(float(row["equivalent_radius [um]"]) for row in rows_of(tmp_path / "x"))
     assert radii == pytest.approx([9.0, 12.0], rel=0.03)
 
@@ -106,12 +106,12 @@ def test_that_a_probability_map_of_an_hdf5_file_is_taken(command, tmp_path: Path
     with h5py.File(tmp_path / "scan.h5", "w") as file:
         file["raw"] = two_balls()
         file["likely"] = (two_balls() > 100).astype(np.float32)
-    said = command(
+    result = command(
         "extract", tmp_path / "scan.h5", "-o", tmp_path / "x", "--dataset", "likely", "--kind", "grey",
         "--threshold", "probability:0.5", "--voxel-size", 1,
     )  # fmt: skip
-    assert said.code == 0, said.err
-    assert "2 particles" in said.out
+    assert result.code == 0, result.err
+    assert "2 particles" in result.out
 
 
 @pytest.mark.parametrize(
@@ -130,17 +130,17 @@ def test_that_a_probability_map_of_an_hdf5_file_is_taken(command, tmp_path: Path
     ],
 )
 def test_that_bad_options_are_bad_use(command, tmp_path: Path, options, sentence: str) -> None:
-    said = command("extract", GREY, "-o", tmp_path / "x", *options)
-    assert said.code == 2
-    assert sentence in " ".join(said.err.split())
+    result = command("extract", GREY, "-o", tmp_path / "x", *options)
+    assert result.code == 2
+    assert sentence in " ".join(result.err.split())
 
 
 def test_that_grey_values_without_grains_are_one_sentence(command, tmp_path: Path) -> None:
     noise = np.random.default_rng(0).integers(0, 255, (20, 20, 20)).astype(np.uint8)
     tifffile.imwrite(tmp_path / "noise.tif", noise)
-    said = command(
+    result = command(
         "extract", tmp_path / "noise.tif", "-o", tmp_path / "x", "--voxel-size", 1, "--kind", "grey"
     )
-    assert said.code == 1
-    assert len(said.err.strip().splitlines()) == 1
+    assert result.code == 1
+    assert len(result.err.strip().splitlines()) == 1
     assert not (tmp_path / "x").exists()

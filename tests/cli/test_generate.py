@@ -42,14 +42,14 @@ def fit(command, ellipsoids: Path, tmp_path: Path) -> Path:
 def test_that_each_virtual_particle_is_a_closed_mesh_inside_the_range(
     command, fit: Path, tmp_path: Path
 ) -> None:
-    said = command(
+    result = command(
         "generate", fit, "-n", 5, "-o", tmp_path / "v", "--l-max", 4, "--size-range", 15, 25, "--json"
     )
-    assert said.code == 0, said.err
-    assert said.json == json.loads((tmp_path / "v" / "generation.json").read_text()) | {
+    assert result.code == 0, result.err
+    assert result.json == json.loads((tmp_path / "v" / "generation.json").read_text()) | {
         "folder": str(tmp_path / "v")
     }
-    assert said.json["model"] == "sample_matched"
+    assert result.json["model"] == "sample_matched"
     rows = rows_of(tmp_path / "v" / "particles.csv")
     assert [row["name"] for row in rows] == [f"virtual-00000{i}" for i in range(1, 6)]
     for row in rows:
@@ -65,8 +65,8 @@ def test_that_each_virtual_particle_is_a_closed_mesh_inside_the_range(
 @pytest.mark.slow
 def test_that_workers_and_repetition_do_not_change_a_byte(command, fit: Path, tmp_path: Path) -> None:
     for place, jobs in (("one", 1), ("two", 2)):
-        said = command("generate", fit, "-n", 23, "-o", tmp_path / place, "--level", 2, "--jobs", jobs)
-        assert said.code == 0, said.err
+        result = command("generate", fit, "-n", 23, "-o", tmp_path / place, "--level", 2, "--jobs", jobs)
+        assert result.code == 0, result.err
     names = sorted(path.name for path in (tmp_path / "one").iterdir())
     assert len([name for name in names if name.endswith(".stl")]) == 23
     for name in names:
@@ -77,8 +77,8 @@ def test_that_workers_and_repetition_do_not_change_a_byte(command, fit: Path, tm
 
 
 def test_that_coefficients_of_many_particles_go_into_one_archive(command, tmp_path: Path) -> None:
-    said = command("generate", "ma165", "-n", 2000, "-o", tmp_path / "v", "--format", "npz", "--seed", 3)
-    assert said.code == 0, said.err
+    result = command("generate", "ma165", "-n", 2000, "-o", tmp_path / "v", "--format", "npz", "--seed", 3)
+    assert result.code == 0, result.err
     assert sorted(path.name for path in (tmp_path / "v").iterdir()) == [
         "generate.sha256",
         "generation.json",
@@ -98,10 +98,10 @@ def test_that_coefficients_of_many_particles_go_into_one_archive(command, tmp_pa
 
 def test_that_meshes_can_be_given_in_place_of_their_fit(command, ellipsoids: Path, tmp_path: Path) -> None:
     wanted = ("-n", 3, "-o", tmp_path / "v", "--model", "gaussian_field", "--l-max", 3, "--level", 2)
-    said = command("generate", ellipsoids, *wanted, "--json")
-    assert said.code == 0, said.err
-    assert said.json["source"]["n_particles"] == 24
-    assert said.json["l_max"] == 3
+    result = command("generate", ellipsoids, *wanted, "--json")
+    assert result.code == 0, result.err
+    assert result.json["source"]["n_particles"] == 24
+    assert result.json["l_max"] == 3
 
 
 def test_that_a_saved_model_draws_the_same_particles_again(command, fit: Path, tmp_path: Path) -> None:
@@ -111,15 +111,15 @@ def test_that_a_saved_model_draws_the_same_particles_again(command, fit: Path, t
     assert sorted(path.name for path in tmp_path.glob("m.*")) == ["m.json"]
     assert command("generate", tmp_path / "m", "-o", tmp_path / "b", *wanted).code == 0
     assert (tmp_path / "a/particles.npz").read_bytes() == (tmp_path / "b/particles.npz").read_bytes()
-    said = command("generate", tmp_path / "m", "-o", tmp_path / "c", "--model", "log_field")
-    assert said.code == 1
-    assert "begin with the fit of the sample" in said.err
+    result = command("generate", tmp_path / "m", "-o", tmp_path / "c", "--model", "log_field")
+    assert result.code == 1
+    assert "begin with the fit of the sample" in result.err
 
 
 def test_that_the_parts_of_a_mixture_can_be_named(command, fit: Path, tmp_path: Path) -> None:
     wanted = ("--model", "mixture_field", "--set", "n_components=2", "--format", "npz", "--l-max", 3)
-    said = command("generate", fit, "-n", 40, "-o", tmp_path / "v", *wanted, "--names", "basalt, glass")
-    assert said.code == 0, said.err
+    result = command("generate", fit, "-n", 40, "-o", tmp_path / "v", *wanted, "--names", "basalt, glass")
+    assert result.code == 0, result.err
     groups = [row["group"] for row in rows_of(tmp_path / "v" / "particles.csv")]
     assert set(groups) <= {"basalt", "glass"}
     document = json.loads((tmp_path / "v" / "generation.json").read_text())
@@ -147,10 +147,10 @@ def test_that_the_parts_of_a_mixture_can_be_named(command, fit: Path, tmp_path: 
 def test_that_what_cannot_be_drawn_is_one_sentence(
     command, fit: Path, tmp_path: Path, arguments: tuple[object, ...], code: int, words: str
 ) -> None:
-    said = command("generate", fit, "-o", tmp_path / "v", *arguments)
-    assert said.code == code
-    assert words in said.err
-    assert "Traceback" not in said.err
+    result = command("generate", fit, "-o", tmp_path / "v", *arguments)
+    assert result.code == code
+    assert words in result.err
+    assert "Traceback" not in result.err
     assert not (tmp_path / "v").exists()
 
 
@@ -165,24 +165,24 @@ def test_that_what_cannot_be_drawn_is_one_sentence(
 def test_that_a_source_that_is_none_is_one_sentence(
     command, tmp_path: Path, sources: list[str], words: str
 ) -> None:
-    said = command("generate", *sources, "-o", tmp_path / "v")
-    assert said.code in (1, 2)
-    assert words in said.err
+    result = command("generate", *sources, "-o", tmp_path / "v")
+    assert result.code in (1, 2)
+    assert words in result.err
     assert not list(tmp_path.iterdir())
 
 
 def test_that_one_particle_makes_no_model(command, ellipsoids: Path, tmp_path: Path) -> None:
-    said = command("generate", ellipsoids / "grain-00.stl", "-o", tmp_path / "v")
-    assert said.code == 1
-    assert "at least 2 different particles, got 1" in said.err
+    result = command("generate", ellipsoids / "grain-00.stl", "-o", tmp_path / "v")
+    assert result.code == 1
+    assert "at least 2 different particles, got 1" in result.err
 
 
 @pytest.mark.slow
 def test_that_models_are_judged_on_what_they_have_not_seen(command, fit: Path, tmp_path: Path) -> None:
     wanted = ("--models", "gaussian_field,sample_matched", "--l-max", 4, "--splits", 2, "--repeats", 1)
-    said = command("study", "population", fit, "-o", tmp_path / "p", *wanted, "--draws", 20, "--json")
-    assert said.code == 0, said.err
-    assert set(said.json["files"]) == {path.name for path in (tmp_path / "p").iterdir()}
+    result = command("study", "population", fit, "-o", tmp_path / "p", *wanted, "--draws", 20, "--json")
+    assert result.code == 0, result.err
+    assert set(result.json["files"]) == {path.name for path in (tmp_path / "p").iterdir()}
     distances = rows_of(tmp_path / "p" / "population_distances.csv")
     assert len(distances) == 2 * 2 * 5
     for row in distances:
@@ -201,7 +201,7 @@ def test_that_models_are_judged_on_what_they_have_not_seen(command, fit: Path, t
 def test_that_a_study_that_cannot_be_made_is_one_sentence(
     command, fit: Path, tmp_path: Path, source: str | None, arguments: tuple[object, ...], words: str
 ) -> None:
-    said = command("study", "population", source or fit, "-o", tmp_path / "p", "--l-max", 4, *arguments)
-    assert said.code == 1
-    assert words in said.err
+    result = command("study", "population", source or fit, "-o", tmp_path / "p", "--l-max", 4, *arguments)
+    assert result.code == 1
+    assert words in result.err
     assert not (tmp_path / "p").exists()

@@ -42,10 +42,10 @@ def test_that_a_place_that_cannot_be_written_is_one_sentence_before_anything_is_
     (tmp_path / "taken").write_text("mine")
     names = {"MESH": grains / "grain-a.stl", "RECIPE": tmp_path / "recipe.json"}
     (tmp_path / "recipe.json").write_text("{}")
-    wish = [names.get(word, word) for word in words.split()]
-    said = command(*wish, "-o", tmp_path / "taken" / "inside")
-    assert said.code == 1
-    assert said.err.strip() == f"{tmp_path / 'taken'} is a file; name a folder for the results."
+    request = [names.get(word, word) for word in words.split()]
+    result = command(*request, "-o", tmp_path / "taken" / "inside")
+    assert result.code == 1
+    assert result.err.strip() == f"{tmp_path / 'taken'} is a file; name a folder for the results."
     assert sorted(path.name for path in tmp_path.iterdir()) == ["recipe.json", "taken"]
 
 
@@ -53,15 +53,15 @@ def test_that_a_place_without_permission_is_one_sentence(
     command, grains: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("os.access", lambda *_: False)
-    said = command("coarsen", grains, "-o", tmp_path / "a" / "b")
-    assert said.code == 1
-    assert said.err.strip() == f"The folder {tmp_path} cannot be written (Permission denied)."
+    result = command("coarsen", grains, "-o", tmp_path / "a" / "b")
+    assert result.code == 1
+    assert result.err.strip() == f"The folder {tmp_path} cannot be written (Permission denied)."
 
 
 def test_that_a_file_is_not_written_over_a_folder(command, grains: Path, tmp_path: Path) -> None:
-    said = command("fit", grains, "-o", tmp_path)
-    assert said.code == 1
-    assert said.err.strip() == f"{tmp_path} is a folder; name a file."
+    result = command("fit", grains, "-o", tmp_path)
+    assert result.code == 1
+    assert result.err.strip() == f"{tmp_path} is a folder; name a file."
 
 
 def test_that_a_full_disk_is_a_sentence_of_the_system(
@@ -85,19 +85,19 @@ def test_that_links_that_lead_nowhere_and_places_without_a_name_are_refused(
     (tmp_path / "circle").symlink_to("circle")
     (tmp_path / "dangling").symlink_to("nowhere")
     for name in ("circle", "dangling"):
-        said = command("coarsen", grains, "-o", tmp_path / name)
-        assert said.code == 1
-        assert "is a link that leads nowhere; name a folder for the results." in said.err
-    said = command("coarsen", grains, "-o", "")
-    assert said.code == 2
-    assert "got an empty name" in said.err
+        result = command("coarsen", grains, "-o", tmp_path / name)
+        assert result.code == 1
+        assert "is a link that leads nowhere; name a folder for the results." in result.err
+    result = command("coarsen", grains, "-o", "")
+    assert result.code == 2
+    assert "got an empty name" in result.err
 
 
 def test_that_a_model_that_cannot_be_saved_is_said_before_the_work(command, tmp_path: Path) -> None:
     (tmp_path / "taken").write_text("mine")
-    said = command("generate", "ma165", "-o", tmp_path / "v", "--save-model", tmp_path / "taken" / "m")
-    assert said.code == 1
-    assert "is a file" in said.err
+    result = command("generate", "ma165", "-o", tmp_path / "v", "--save-model", tmp_path / "taken" / "m")
+    assert result.code == 1
+    assert "is a file" in result.err
     assert not (tmp_path / "v").exists()
 
 
@@ -110,10 +110,12 @@ def test_that_odd_names_cost_nothing(command, grains: Path, tmp_path: Path) -> N
     for name in odd:
         (place / os.fsdecode(name)).write_bytes((grains / "grain-a.stl").read_bytes())
     (place / os.fsdecode(b"no\x1bmesh\xff.stl")).write_text("no mesh")
-    said = command("fit", place, "-o", tmp_path / "fit", "--l-max", 2, "--surfaces", tmp_path / "s", "--json")
-    assert said.code == 0, said.err
-    assert len(said.json["particles"]) == 3
-    names = {each["name"] for each in said.json["particles"]}
+    result = command(
+        "fit", place, "-o", tmp_path / "fit", "--l-max", 2, "--surfaces", tmp_path / "s", "--json"
+    )
+    assert result.code == 0, result.err
+    assert len(result.json["particles"]) == 3
+    names = {each["name"] for each in result.json["particles"]}
     assert names == {"lat_", "x" * 150, "red_[31m"}
     assert {path.stem for path in (tmp_path / "s").glob("*.stl")} == names
     described = command("describe", place, "--csv", tmp_path / "t.csv")
@@ -126,6 +128,6 @@ def test_that_a_range_of_degrees_is_checked_before_it_is_expanded(
     command, grains: Path, tmp_path: Path
 ) -> None:
     for degrees in ("1-1000000000", "5-1", "-1", "0-31"):
-        said = command("study", "lmax", grains, "-o", tmp_path / "s", "--degrees", degrees)
-        assert said.code == 2, said.err
+        result = command("study", "lmax", grains, "-o", tmp_path / "s", "--degrees", degrees)
+        assert result.code == 2, result.err
     assert not (tmp_path / "s").exists()

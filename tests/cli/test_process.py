@@ -25,10 +25,10 @@ def start(*arguments: object, **options: object) -> subprocess.CompletedProcess[
 
 
 def test_that_help_lists_every_command_and_imports_nothing_heavy() -> None:
-    said = start("--help")
-    assert said.returncode == 0
+    result = start("--help")
+    assert result.returncode == 0
     for name in ("open", "describe", "fit", "coarsen", "extract", "study", "dataset", "run", "demo", "check"):
-        assert f"\n  {name} " in said.stdout
+        assert f"\n  {name} " in result.stdout
     code = "import sys; from regolith_studio.cli.commands import app; print(*sys.modules)"
     modules = subprocess.run(
         [sys.executable, "-c", code], capture_output=True, text=True, cwd=ROOT, check=True
@@ -42,14 +42,14 @@ def test_that_describe_imports_no_more_than_it_computes_with(grains: Path) -> No
         "import sys; from regolith_studio.cli.entry import run;"
         "assert run(['describe', sys.argv[1]]) == 0; print('modules', *sys.modules)"
     )
-    said = subprocess.run(
+    result = subprocess.run(
         [sys.executable, "-c", code, grains / "grain-a.stl"],
         capture_output=True,
         text=True,
         cwd=ROOT,
         check=True,
     )
-    modules = said.stdout.split("modules")[-1].split()
+    modules = result.stdout.split("modules")[-1].split()
     heavy = {
         "matplotlib",
         "pyvista",
@@ -64,15 +64,17 @@ def test_that_describe_imports_no_more_than_it_computes_with(grains: Path) -> No
 
 def test_that_the_package_itself_imports_nothing_heavy() -> None:
     code = "import sys, regolith_studio; print(*sys.modules); assert 'describe' in dir(regolith_studio)"
-    said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=ROOT, check=True)
-    assert not {"numpy", "PySide6", "pyvista", "typer"} & set(said.stdout.split())
+    result = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, cwd=ROOT, check=True
+    )
+    assert not {"numpy", "PySide6", "pyvista", "typer"} & set(result.stdout.split())
 
 
 def test_that_lines_of_help_are_wrapped_and_not_cut() -> None:
     for group in ((), ("study",), ("dataset",), ("repose",)):
-        said = start(*group, "--help").stdout
-        assert "..." not in said.partition("Commands:")[2].replace("diameters ...,", "")
-        assert all(len(line) <= 80 for line in said.splitlines())
+        result = start(*group, "--help").stdout
+        assert "..." not in result.partition("Commands:")[2].replace("diameters ...,", "")
+        assert all(len(line) <= 80 for line in result.splitlines())
 
 
 def test_that_the_doors_of_the_package_lead_to_their_folders() -> None:
@@ -90,9 +92,9 @@ def test_that_the_version_is_printed() -> None:
 
 def test_that_check_answers_without_a_display_and_survives_a_broken_opengl() -> None:
     blind = {key: value for key, value in os.environ.items() if key not in ("DISPLAY", "WAYLAND_DISPLAY")}
-    said = start("check", "--json", env=blind)
-    assert said.returncode == 0
-    report = json.loads(said.stdout)
+    result = start("check", "--json", env=blind)
+    assert result.returncode == 0
+    report = json.loads(result.stdout)
     assert report["program"]["regolith-studio"] == "0.1.0"
     assert set(report) == {
         *("program", "packages", "machine", "libraries", "opengl", "display", "engines", "missing")

@@ -14,10 +14,10 @@ def recipe(folder: Path, grains: Path, **entries: object) -> Path:
 
 
 def test_that_a_recipe_leaves_everything_it_asks_for(command, grains: Path, tmp_path: Path) -> None:
-    wish = recipe(tmp_path, grains, outputs={"fits": True})
-    said = command("run", wish, "-o", tmp_path / "out", "--json")
-    assert said.code == 0
-    files = set(said.json["files"])
+    given_recipe = recipe(tmp_path, grains, outputs={"fits": True})
+    result = command("run", given_recipe, "-o", tmp_path / "out", "--json")
+    assert result.code == 0
+    files = set(result.json["files"])
     expected = {"recipe.json", "summary.html", "descriptors.csv", "descriptors.json", "fit.json"}
     assert expected <= files
     assert {"meshes/coarsening.json", "meshes/grain-a.stl", "dataset/dataset.json"} <= files
@@ -27,8 +27,8 @@ def test_that_a_recipe_leaves_everything_it_asks_for(command, grains: Path, tmp_
 
 
 def test_that_the_recipe_in_the_results_repeats_them(command, grains: Path, tmp_path: Path) -> None:
-    wish = recipe(tmp_path, grains, outputs={"meshes": True, "dataset": True, "summary": False})
-    assert command("run", wish, "-o", tmp_path / "one").code == 0
+    given_recipe = recipe(tmp_path, grains, outputs={"meshes": True, "dataset": True, "summary": False})
+    assert command("run", given_recipe, "-o", tmp_path / "one").code == 0
     assert command("run", tmp_path / "one" / "recipe.json", "-o", tmp_path / "two").code == 0
     for name in ("meshes/grain-a.stl", "meshes/grain-c.stl", "descriptors.json"):
         assert (tmp_path / "one" / name).read_bytes() == (tmp_path / "two" / name).read_bytes()
@@ -38,8 +38,8 @@ def test_that_a_recipe_stops_at_an_error_as_the_commands_do(command, grains: Pat
     grain = grains / "grain-c.stl"
     entries = {"target": "particle", "method": "exact", "stop_at": "error", "largest_error": 0.02}
     outputs = {"summary": True, "descriptors": False}
-    wish = recipe(tmp_path, grain, **entries, outputs=outputs)
-    assert command("run", wish, "-o", tmp_path / "out").code == 0
+    given_recipe = recipe(tmp_path, grain, **entries, outputs=outputs)
+    assert command("run", given_recipe, "-o", tmp_path / "out").code == 0
     assert "the fewest facets whose errors are all below 2 %" in (tmp_path / "out/summary.html").read_text()
     common = (grain, "--target", "particle", "--max-error", 2)
     assert command("coarsen", *common, "-o", tmp_path / "few").code == 0
@@ -51,23 +51,23 @@ def test_that_a_recipe_stops_at_an_error_as_the_commands_do(command, grains: Pat
 
 
 def test_that_another_seed_can_be_given(command, grains: Path, tmp_path: Path) -> None:
-    wish = recipe(tmp_path, grains, outputs={"dataset": False, "summary": False})
-    assert command("run", wish, "-o", tmp_path / "out", "--seed", 77).code == 0
+    given_recipe = recipe(tmp_path, grains, outputs={"dataset": False, "summary": False})
+    assert command("run", given_recipe, "-o", tmp_path / "out", "--seed", 77).code == 0
     assert json.loads((tmp_path / "out" / "recipe.json").read_text())["seed"] == 77
 
 
 def test_that_inputs_are_found_beside_the_recipe(command, grains: Path, tmp_path: Path) -> None:
     (tmp_path / "here.stl").write_bytes((grains / "grain-a.stl").read_bytes())
-    wish = recipe(tmp_path, grains, inputs=["here.stl"], outputs={"dataset": False, "summary": False})
-    assert command("run", wish, "-o", tmp_path / "out").code == 0
+    given_recipe = recipe(tmp_path, grains, inputs=["here.stl"], outputs={"dataset": False, "summary": False})
+    assert command("run", given_recipe, "-o", tmp_path / "out").code == 0
     assert (tmp_path / "out" / "meshes" / "here.stl").exists()
 
 
 def test_that_a_bad_recipe_is_one_sentence(command, grains: Path, tmp_path: Path) -> None:
     for entries in ({"n_facets": 1}, {"lmax": 3}, {"inputs": ["nowhere.stl"]}):
-        said = command("run", recipe(tmp_path, grains, **entries), "-o", tmp_path / "out")
-        assert said.code == 1
-        assert len(said.err.strip().splitlines()) == 1
+        result = command("run", recipe(tmp_path, grains, **entries), "-o", tmp_path / "out")
+        assert result.code == 1
+        assert len(result.err.strip().splitlines()) == 1
         assert not (tmp_path / "out").exists()
 
 
@@ -81,21 +81,21 @@ def test_that_a_sentence_is_all_that_an_unknown_mistake_prints(capsys, monkeypat
 
 
 def test_that_runner_and_address_must_go_together(command, grains: Path, tmp_path: Path) -> None:
-    wish = recipe(tmp_path, grains)
+    given_recipe = recipe(tmp_path, grains)
     for options in (
         ("--runner", "hamster"),
         ("--address", "tcp://x:1"),
         ("--runner", "dask", "--address", "tls://x:1"),
     ):
-        said = command("run", wish, "-o", tmp_path / "out", *options)
-        assert said.code == 2
+        result = command("run", given_recipe, "-o", tmp_path / "out", *options)
+        assert result.code == 2
         assert not (tmp_path / "out").exists()
 
 
 def test_that_a_run_is_resumed_on_the_command_line(command, grains: Path, tmp_path: Path) -> None:
-    wish = recipe(tmp_path, grains, outputs={"dataset": False, "summary": False})
-    first = command("run", wish, "-o", tmp_path / "out", "--resume", "--chunk", 2, "--json")
-    again = command("run", wish, "-o", tmp_path / "out", "--resume", "--json")
+    given_recipe = recipe(tmp_path, grains, outputs={"dataset": False, "summary": False})
+    first = command("run", given_recipe, "-o", tmp_path / "out", "--resume", "--chunk", 2, "--json")
+    again = command("run", given_recipe, "-o", tmp_path / "out", "--resume", "--json")
     assert first.json["files"] == again.json["files"]
     assert again.code == 0
 
@@ -119,8 +119,8 @@ def test_that_representatives_and_exports_are_those_of_the_dataset_commands(
     exports = {"targets": ["yade", "rocky"], "coarse_graining": 4, "particles": 7}
     exports |= {"settings": {"density": 2500.0}}
     whole = {"seed": 5, "level": 4, "representatives": STANDING}
-    wish = recipe(tmp_path, grains, **whole, exports=exports)
-    assert command("run", wish, "-o", tmp_path / "out").code == 0
+    given_recipe = recipe(tmp_path, grains, **whole, exports=exports)
+    assert command("run", given_recipe, "-o", tmp_path / "out").code == 0
     shape = ("--method", "quadric", "--l-max", 4, "--facets", 12, "--seed", 5)
     chosen = ("--representatives", 2, "--weighting", "volume", "--size-importance", 0.5)
     sizes = ("--sizes", "classes:5,9,20", "--name", "two")
@@ -144,8 +144,8 @@ def test_that_sizes_can_be_changed_where_each_particle_stands_for_itself(
     command, grains: Path, tmp_path: Path
 ) -> None:
     each = {"count": 0, "sizes": "log-normal:50,0.4", "name": "all"}
-    wish = recipe(tmp_path, grains, level=4, representatives=each)
-    assert command("run", wish, "-o", tmp_path / "out").code == 0
+    given_recipe = recipe(tmp_path, grains, level=4, representatives=each)
+    assert command("run", given_recipe, "-o", tmp_path / "out").code == 0
     shape = ("--method", "quadric", "--l-max", 4, "--facets", 12)
     sizes = ("--sizes", "log-normal:50,0.4", "--name", "all")
     assert command("dataset", "build", grains, "-o", tmp_path / "ds", *shape, *sizes).code == 0
@@ -163,8 +163,8 @@ def test_that_a_wish_for_the_dataset_that_cannot_be_met_is_refused_before_the_wo
         ({"exports": {"targets": ["yade"], "settings": {"colour": 1}}}, "no setting 'colour'"),
         ({"exports": {"targets": ["yade"]}, "outputs": {"dataset": False}}, "need the dataset"),
     ):
-        said = command("run", recipe(tmp_path, grains, **entries), "-o", tmp_path / "out")
-        assert said.code in (1, 2)
-        assert sentence in said.err
+        result = command("run", recipe(tmp_path, grains, **entries), "-o", tmp_path / "out")
+        assert result.code in (1, 2)
+        assert sentence in result.err
         assert not (tmp_path / "out" / "dataset").exists()
         assert not (tmp_path / "out" / "journal").exists()

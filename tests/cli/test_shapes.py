@@ -16,8 +16,8 @@ from regolith_studio.geometry.sphere_points import icosphere
 def test_that_a_fit_holds_the_mean_radius_of_a_ball(command, tmp_path: Path) -> None:
     ball = trimesh.Trimesh(icosphere(4).vertices * 25.0, icosphere(4).faces, process=False)
     ball.export(tmp_path / "ball.stl")
-    said = command("fit", tmp_path / "ball.stl", "-o", tmp_path / "fit", "--l-max", 6)
-    assert said.code == 0
+    result = command("fit", tmp_path / "ball.stl", "-o", tmp_path / "fit", "--l-max", 6)
+    assert result.code == 0
     document = json.loads((tmp_path / "fit.json").read_text())
     entry = document["arrays"]["coefficients"]
     coefficients = np.frombuffer(base64.b64decode(entry["base64"]), "<f8").reshape(entry["shape"])
@@ -43,9 +43,9 @@ def test_that_the_surface_of_a_fit_is_a_solid_with_the_volume_of_its_particle(
 
 
 def test_that_what_a_fit_cannot_have_is_bad_use(command, grains: Path, tmp_path: Path) -> None:
-    said = command("fit", grains, "-o", tmp_path / "fit", "--star-point", "middle")
-    assert said.code == 2
-    assert "must be one of centre_of_mass, kernel_centre, least_hidden_volume, got 'middle'" in said.err
+    result = command("fit", grains, "-o", tmp_path / "fit", "--star-point", "middle")
+    assert result.code == 2
+    assert "must be one of centre_of_mass, kernel_centre, least_hidden_volume, got 'middle'" in result.err
     assert not list(tmp_path.iterdir())
 
 
@@ -53,9 +53,9 @@ def test_that_what_a_fit_cannot_have_is_bad_use(command, grains: Path, tmp_path:
 def test_that_a_gallery_is_a_picture_and_an_animation_of_all_degrees(
     command, grains: Path, tmp_path: Path
 ) -> None:
-    said = command("gallery", grains / "grain-c.stl", "-o", tmp_path / "g", "--degrees", "0,2,4", "--json")
-    assert said.code == 0, said.err
-    assert said.json["files"] == ["grain-c_degrees.png", "grain-c_degrees.gif"]
+    result = command("gallery", grains / "grain-c.stl", "-o", tmp_path / "g", "--degrees", "0,2,4", "--json")
+    assert result.code == 0, result.err
+    assert result.json["files"] == ["grain-c_degrees.png", "grain-c_degrees.gif"]
     with Image.open(tmp_path / "g" / "grain-c_degrees.gif") as animation:
         assert animation.n_frames == 5
 
@@ -68,10 +68,10 @@ def test_that_a_fit_is_one_file(command, grains: Path, tmp_path: Path) -> None:
 def test_that_coarsening_writes_convex_bodies_that_another_program_reads(
     command, grains: Path, tmp_path: Path
 ) -> None:
-    said = command("coarsen", grains, "-o", tmp_path / "c", "--facets", 16, "--method", "quadric", "--json")
-    assert said.code == 0
+    result = command("coarsen", grains, "-o", tmp_path / "c", "--facets", 16, "--method", "quadric", "--json")
+    assert result.code == 0
     document = json.loads((tmp_path / "c" / "coarsening.json").read_text())
-    assert said.json == document
+    assert result.json == document
     for entry in document["particles"]:
         body = trimesh.load_mesh(tmp_path / "c" / entry["file"])
         assert body.is_watertight
@@ -116,8 +116,8 @@ def test_that_the_number_of_processes_changes_no_byte(command, grains: Path, tmp
 def test_that_an_option_out_of_range_is_bad_use_and_writes_nothing(
     command, grains: Path, tmp_path: Path, options: tuple[object, ...]
 ) -> None:
-    said = command("coarsen", grains, "-o", tmp_path / "c", *options)
-    assert said.code == 2
+    result = command("coarsen", grains, "-o", tmp_path / "c", *options)
+    assert result.code == 2
     assert not (tmp_path / "c").exists()
 
 
@@ -141,17 +141,17 @@ def test_that_a_weight_of_zero_alone_is_taken_out_of_the_usual_ones(
 
 
 def test_that_a_budget_of_triangles_is_kept(command, grains: Path, tmp_path: Path) -> None:
-    said = command("coarsen", grains / "grain-b.stl", "-o", tmp_path, "--triangles", 59, "--json")
-    (entry,) = said.json["particles"]
+    result = command("coarsen", grains / "grain-b.stl", "-o", tmp_path, "--triangles", 59, "--json")
+    (entry,) = result.json["particles"]
     assert entry["n_facets"] == 17
     assert len(trimesh.load_mesh(tmp_path / "grain-b.stl").faces) == 56
 
 
 def test_that_the_fewest_facets_below_an_error_are_found(command, grains: Path, tmp_path: Path) -> None:
     common = ("coarsen", grains / "grain-c.stl", "--target", "particle", "--json")
-    said = command(*common, "-o", tmp_path / "few", "--max-error", 1)
-    (entry,) = said.json["particles"]
-    assert said.json["order"]["largest_error"] == 0.01
+    result = command(*common, "-o", tmp_path / "few", "--max-error", 1)
+    (entry,) = result.json["particles"]
+    assert result.json["order"]["largest_error"] == 0.01
     kept = ("volume", "sphericity", "min_diameter", "max_diameter", "aspect_ratio")
     assert max(entry["errors"][key] for key in kept) <= 0.01
     if entry["n_facets"] > 5:
@@ -160,8 +160,8 @@ def test_that_the_fewest_facets_below_an_error_are_found(command, grains: Path, 
 
 
 def test_that_errors_bounds_and_reasons_are_shown(command, grains: Path, tmp_path: Path) -> None:
-    said = command("coarsen", grains / "grain-b.stl", "-o", tmp_path, "--facets", 5, "--json")
-    (entry,) = said.json["particles"]
+    result = command("coarsen", grains / "grain-b.stl", "-o", tmp_path, "--facets", 5, "--json")
+    (entry,) = result.json["particles"]
     shown = command("coarsen", grains / "grain-b.stl", "-o", tmp_path, "--facets", 5)
     for word in ("facets", "vertices", "triangles", "Jaccard"):
         assert word in shown.out
@@ -175,14 +175,14 @@ def test_that_a_particle_that_fails_does_not_stop_the_others(command, grains: Pa
     corners = [[0, 0, 0], [9, 0, 0], [0, 9, 0], [0, 0, 9]]
     faces = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]]
     trimesh.Trimesh(corners, faces, process=False).export(tmp_path / "four.stl")
-    said = command(
+    result = command(
         "coarsen", grains / "grain-a.stl", tmp_path / "four.stl", "-o", tmp_path / "c", "--facets", 20,
         "--method", "quadric", "--target", "particle", "--json",
     )  # fmt: skip
-    assert said.code == 1
-    assert [entry["name"] for entry in said.json["particles"]] == ["grain-a"]
-    assert [entry["name"] for entry in said.json["failed"]] == ["four"]
-    assert "four" in said.err
+    assert result.code == 1
+    assert [entry["name"] for entry in result.json["particles"]] == ["grain-a"]
+    assert [entry["name"] for entry in result.json["failed"]] == ["four"]
+    assert "four" in result.err
     assert (tmp_path / "c" / "grain-a.stl").exists()
 
 
@@ -196,8 +196,8 @@ def labels_of_two_balls() -> np.ndarray:
 
 def test_that_balls_come_out_of_a_label_volume_at_their_size(command, tmp_path: Path) -> None:
     tifffile.imwrite(tmp_path / "labels.tif", labels_of_two_balls())
-    said = command("extract", tmp_path / "labels.tif", "-o", tmp_path / "x", "--voxel-size", 2.5)
-    assert said.code == 0
+    result = command("extract", tmp_path / "labels.tif", "-o", tmp_path / "x", "--voxel-size", 2.5)
+    assert result.code == 0
     radii = [
         (trimesh.load_mesh(path).volume * 3 / 4 / np.pi) ** (1 / 3)
         for path in sorted((tmp_path / "x").glob("*.stl"))
@@ -210,24 +210,24 @@ def test_that_balls_come_out_of_a_label_volume_at_their_size(command, tmp_path: 
 
 def test_that_a_volume_without_voxel_size_asks_for_it(command, tmp_path: Path) -> None:
     tifffile.imwrite(tmp_path / "labels.tif", labels_of_two_balls())
-    said = command("extract", tmp_path / "labels.tif", "-o", tmp_path / "x")
-    assert said.code == 1
-    assert "does not state the size of a voxel" in said.err
+    result = command("extract", tmp_path / "labels.tif", "-o", tmp_path / "x")
+    assert result.code == 1
+    assert "does not state the size of a voxel" in result.err
 
 
 @pytest.mark.parametrize("content", [b"", b"II*\0\x08\0\0\0", b"no picture at all"])
 def test_that_a_broken_volume_is_one_sentence(command, tmp_path: Path, content: bytes) -> None:
     (tmp_path / "labels.tif").write_bytes(content)
-    said = command("extract", tmp_path / "labels.tif", "-o", tmp_path / "x", "--voxel-size", 1)
-    assert said.code == 1
-    assert "Traceback" not in said.err
+    result = command("extract", tmp_path / "labels.tif", "-o", tmp_path / "x", "--voxel-size", 1)
+    assert result.code == 1
+    assert "Traceback" not in result.err
     assert not (tmp_path / "x").exists()
 
 
 def test_that_a_study_of_l_max_leaves_tables_and_pictures(command, grains: Path, tmp_path: Path) -> None:
-    said = command("study", "lmax", grains, "-o", tmp_path / "s", "--degrees", "1,4", "--json")
-    assert said.code == 0
-    suffixes = {Path(name).suffix for name in said.json["files"]}
+    result = command("study", "lmax", grains, "-o", tmp_path / "s", "--degrees", "1,4", "--json")
+    assert result.code == 0
+    suffixes = {Path(name).suffix for name in result.json["files"]}
     assert suffixes == {".csv", ".json", ".png", ".svg"}
-    for name in said.json["files"]:
+    for name in result.json["files"]:
         assert (tmp_path / "s" / name).stat().st_size > 0

@@ -8,11 +8,11 @@ import pytest
 
 @pytest.mark.parametrize(("box", "met"), [("exact", True), ("trimesh", False)])
 def test_that_only_the_exact_box_is_kept_to_rounding(command, grains: Path, tmp_path: Path, box, met) -> None:
-    said = command(
+    result = command(
         "study", "coarsening", grains / "grain-a.stl", "-o", tmp_path, "--target", "particle",
         "--facets", 30, "--box", box, "--json",
     )  # fmt: skip
-    assert said.code == 0
+    assert result.code == 0
     with (tmp_path / "coarsening_rmsre.csv").open(newline="") as file:
         rows = [row for row in csv.DictReader(file) if "min_diameter" in row.values()]
     assert rows
@@ -21,6 +21,6 @@ def test_that_only_the_exact_box_is_kept_to_rounding(command, grains: Path, tmp_
 
 
 def test_that_an_unknown_box_is_bad_use(command, grains: Path, tmp_path: Path) -> None:
-    said = command("study", "coarsening", grains, "-o", tmp_path, "--box", "round")
-    assert said.code == 2
-    assert "must be one of exact, trimesh" in said.err.replace("\n", " ")
+    result = command("study", "coarsening", grains, "-o", tmp_path, "--box", "round")
+    assert result.code == 2
+    assert "must be one of exact, trimesh" in result.err.replace("\n", " ")

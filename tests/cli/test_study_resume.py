@@ -77,13 +77,13 @@ def test_that_other_options_and_other_inputs_are_refused(
     broken_off("lmax", 1)
     command(*words, "1,4")
     monkeypatch.undo()
-    said = command(*words, "1,5", "--resume")
-    assert said.code == 1
-    assert "another set of options" in said.err
+    result = command(*words, "1,5", "--resume")
+    assert result.code == 1
+    assert "another set of options" in result.err
     (tmp_path / "grains" / "grain-c.stl").unlink()
-    said = command(*words, "1,4", "--resume")
-    assert said.code == 1
-    assert "another set of particles" in said.err
+    result = command(*words, "1,4", "--resume")
+    assert result.code == 1
+    assert "another set of particles" in result.err
 
 
 @pytest.mark.slow

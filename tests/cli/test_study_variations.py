@@ -14,19 +14,19 @@ def rows_of(path: Path) -> list[dict[str, str]]:
 
 
 def test_that_errors_against_faces_are_written(command, grains: Path, tmp_path: Path) -> None:
-    said = command(
+    result = command(
         "study", "facets", grains, "-o", tmp_path / "s", "--facets", "10,30", "--method", "quadric", *ONE
     )
-    assert said.code == 0, said.err
-    assert set(said.json["files"]) >= {f"facets.{end}" for end in ("csv", "json", "png", "svg")}
+    assert result.code == 0, result.err
+    assert set(result.json["files"]) >= {f"facets.{end}" for end in ("csv", "json", "png", "svg")}
     rows = rows_of(tmp_path / "s" / "facets.csv")
     volume = [float(row["rmsre [%]"]) for row in rows if row["descriptor"] == "volume"]
     assert volume[0] > volume[1] > 0  # fewer faces, larger error
 
 
 def test_that_the_trade_off_begins_with_the_best_overlap(command, grains: Path, tmp_path: Path) -> None:
-    said = command("study", "tradeoff", grains / "grain-a.stl", "-o", tmp_path / "s", "--facets", 30, *ONE)
-    assert said.code == 0, said.err
+    result = command("study", "tradeoff", grains / "grain-a.stl", "-o", tmp_path / "s", "--facets", 30, *ONE)
+    assert result.code == 0, result.err
     rows = rows_of(tmp_path / "s" / "tradeoff.csv")
     distance = [float(row["jaccard_distance [%]"]) for row in rows]
     error = [float(row["mean_rmsre [%]"]) for row in rows]
@@ -38,19 +38,19 @@ def test_that_the_trade_off_begins_with_the_best_overlap(command, grains: Path, 
 def test_that_one_weight_at_a_time_is_changed(command, grains: Path, tmp_path: Path) -> None:
     chosen = ("--weight", "volume=1", "--weight", "jaccard_distance=1", "--method", "annealing")
     quick = ("--set", "iterations=5", "--facets", 12, "--factors", "0,2")
-    said = command(
+    result = command(
         "study", "sensitivity", grains / "grain-a.stl", "-o", tmp_path / "s", *chosen, *quick, *ONE
     )
-    assert said.code == 0, said.err
+    assert result.code == 0, result.err
     changes = [row["change"] for row in rows_of(tmp_path / "s" / "sensitivity.csv")]
     assert list(dict.fromkeys(changes)) == ["Overlap × 0", "Overlap × 2", "Volume × 0", "Volume × 2"]
 
 
 def test_that_the_polyhedra_of_each_loss_are_drawn(command, grains: Path, tmp_path: Path) -> None:
     losses = ("--loss", "quadric", "--loss", "only_volume")
-    said = command("study", "solids", grains, "-o", tmp_path / "s", "--facets", 12, *losses, *ONE)
-    assert said.code == 0, said.err
-    assert set(said.json["files"]) == {f"solids.{end}" for end in ("csv", "json", "png", "svg")}
+    result = command("study", "solids", grains, "-o", tmp_path / "s", "--facets", 12, *losses, *ONE)
+    assert result.code == 0, result.err
+    assert set(result.json["files"]) == {f"solids.{end}" for end in ("csv", "json", "png", "svg")}
     rows = rows_of(tmp_path / "s" / "solids.csv")
     assert [row["name"] for row in rows] == ["grain-a", "grain-b", "grain-c"] * 2
     assert all(float(row["volume [%]"]) < 1e-4 for row in rows[3:])
@@ -59,10 +59,10 @@ def test_that_the_polyhedra_of_each_loss_are_drawn(command, grains: Path, tmp_pa
 
 def test_that_any_losses_can_be_the_rows_of_figure_8(command, grains: Path, tmp_path: Path) -> None:
     losses = ("--loss", "only_volume", "--loss", "chosen", "--weight", "sphericity=1")
-    said = command(
+    result = command(
         "study", "coarsening", grains / "grain-a.stl", "-o", tmp_path / "s", "--facets", 30, *losses, *ONE
     )
-    assert said.code == 0, said.err
+    assert result.code == 0, result.err
     rows = rows_of(tmp_path / "s" / "coarsening_rmsre.csv")
     met = {(row["row"], row["descriptor"]): float(row["rmsre [%]"]) < 1e-4 for row in rows}
     assert met[("Volume only", "volume")]
@@ -84,7 +84,7 @@ def test_that_any_losses_can_be_the_rows_of_figure_8(command, grains: Path, tmp_
 )
 def test_that_bad_use_is_one_sentence(command, grains: Path, tmp_path: Path, wrong, sentence) -> None:
     name, *options = wrong
-    said = command("study", name, grains, "-o", tmp_path / "s", *options)
-    assert said.code == 2
-    assert sentence in " ".join(said.err.replace("│", " ").split())
+    result = command("study", name, grains, "-o", tmp_path / "s", *options)
+    assert result.code == 2
+    assert sentence in " ".join(result.err.replace("│", " ").split())
     assert not (tmp_path / "s").exists()

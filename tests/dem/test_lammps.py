@@ -113,7 +113,7 @@ def test_that_what_lammps_writes_is_read_and_losses_are_noticed(tmp_path) -> Non
 
 
 @pytest.mark.parametrize(
-    ("said", "told"),
+    ("output", "expected"),
     [
         (
             "Step 1\nERROR on proc 0: Rigid body atoms 410 110 missing on proc 0 at step 42807 (f.cpp:3418)",
@@ -124,8 +124,8 @@ def test_that_what_lammps_writes_is_read_and_losses_are_noticed(tmp_path) -> Non
         ("", "^LAMMPS ended before its time: it said nothing$"),
     ],
 )
-def test_that_it_is_told_what_to_do_when_lammps_loses_its_particles(said, told) -> None:
-    assert re.search(told, last_words(said, 0.15))
+def test_that_the_message_says_what_to_do_when_lammps_loses_its_particles(output, expected) -> None:
+    assert re.search(expected, last_words(output, 0.15))
 
 
 def test_that_bad_settings_are_one_sentence() -> None:

@@ -147,9 +147,9 @@ def test_that_a_study_goes_on_where_it_was(finished: Path, boxes_folder: Path, t
     shutil.copytree(finished, tmp_path / "static_friction_0.8_seed1")
     row = ReposeVariant("static_friction", 0.8, boxes_folder, ORDER)
     steps = study_repose([row], tmp_path)
-    told = list(steps)
-    assert not [step for step in told if isinstance(step, Progress) and "simulated" in step.message]
-    study = told[-1].value
+    events = list(steps)
+    assert not [step for step in events if isinstance(step, Progress) and "simulated" in step.message]
+    study = events[-1].value
     assert [each.document["measurement"]["status"] for each in study.runs] == ["layer"]
     files = {path.name for path in write_repose_study(study, tmp_path / "figures")}
     assert files == {f"repose_study.{kind}" for kind in ("csv", "json", "png", "svg")}
@@ -172,9 +172,9 @@ def test_that_a_wish_of_the_window_is_the_same_study(
     finished: Path, boxes_folder: Path, tmp_path: Path
 ) -> None:
     shutil.copytree(finished, tmp_path / "static_friction_0.8_seed1")
-    wish = ReposeStudyRequest("static_friction", (0.8,), ORDER, boxes_folder)
-    told = list(run_repose_study(wish, tmp_path))
-    assert not [step for step in told if isinstance(step, Progress) and "simulated" in step.message]
+    request = ReposeStudyRequest("static_friction", (0.8,), ORDER, boxes_folder)
+    events = list(run_repose_study(request, tmp_path))
+    assert not [step for step in events if isinstance(step, Progress) and "simulated" in step.message]
     assert {f"repose_study.{kind}" for kind in ("csv", "json", "png", "svg")} <= {
         path.name for path in tmp_path.iterdir()
     }
@@ -209,9 +209,9 @@ def test_that_values_are_read_as_their_key_has_them() -> None:
     for key, value in (("colour", 1), ("gravity", "moon"), ("gravity", -1.0), ("cohesion", "glue")):
         with pytest.raises(InputError):
             with_value(ORDER, key, value)
-    for wish in (("static_friction", ()), ("static_friction", (0.2,)), ("n_facets", (8,))):
+    for request in (("static_friction", ()), ("static_friction", (0.2,)), ("n_facets", (8,))):
         with pytest.raises(InputError):
-            ReposeStudyRequest(*wish, ORDER)
+            ReposeStudyRequest(*request, ORDER)
 
 
 def test_that_a_crash_of_the_engine_is_one_sentence_and_keeps_the_last_snapshot(
@@ -298,9 +298,9 @@ def test_that_bad_wishes_are_one_sentence(
     assert run([*where, "--set", "speed=3"]) == 2
     assert run([*where, "-n", "12", "--measure", "min_particles=10"]) == 1
     assert run(["repose", "run", str(tmp_path), "-o", str(tmp_path / "run")]) == 1
-    said = capsys.readouterr().err
-    assert "Traceback" not in said
-    assert "wider cylinder" in said
+    result = capsys.readouterr().err
+    assert "Traceback" not in result
+    assert "wider cylinder" in result
     assert not (tmp_path / "run").exists()
 
 

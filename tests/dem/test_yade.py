@@ -68,21 +68,21 @@ def outcome(
 
 def test_that_the_input_is_the_case_in_the_solver_s_units(boxes: Dataset) -> None:
     prepared, settings = prepare(boxes, SMALL), YadeSettings()
-    told = input_document(prepared, settings, 60.0, None)
-    volumes = np.array([one["scale"] ** 3 for one in told["particles"]])
+    document = input_document(prepared, settings, 60.0, None)
+    volumes = np.array([one["scale"] ** 3 for one in document["particles"]])
     assert (6 * volumes / np.pi) ** (1 / 3) == pytest.approx(
         prepared.diameters / prepared.mean_diameter * LENGTH
     )
-    assert told["tube"]["radius"] / LENGTH == pytest.approx(0.01 / prepared.mean_diameter)
-    froude = told["plan"]["lift_speed"] ** 2 / (told["gravity"] * LENGTH)
+    assert document["tube"]["radius"] / LENGTH == pytest.approx(0.01 / prepared.mean_diameter)
+    froude = document["plan"]["lift_speed"] ** 2 / (document["gravity"] * LENGTH)
     assert froude == pytest.approx(0.3**2 / (9.81 * prepared.mean_diameter))
     # a mean particle's weight on a flat contact of half its size squared sinks in by 1/2,500 of its size
-    depth = WEIGHT / (told["young"] / 2 * 0.5 * LENGTH**2)
+    depth = WEIGHT / (document["young"] / 2 * 0.5 * LENGTH**2)
     assert depth / LENGTH == pytest.approx(1 / (0.5 * settings.stiffness))
     smallest = volumes.min() * 3000
-    swing = np.sqrt(smallest / (told["young"] / 2 * 0.5 * (6 / np.pi * volumes.min()) ** (2 / 3)))
-    assert told["time_step"] == pytest.approx(0.35 * swing)
-    assert json.loads(json.dumps(told)) == told
+    swing = np.sqrt(smallest / (document["young"] / 2 * 0.5 * (6 / np.pi * volumes.min()) ** (2 / 3)))
+    assert document["time_step"] == pytest.approx(0.35 * swing)
+    assert json.loads(json.dumps(document)) == document
 
 
 def test_that_states_become_moments_in_si(boxes: Dataset, pretender) -> None:

@@ -26,20 +26,20 @@ ORDER = CoarseningRequest(LossWeights.from_preset("all"), method="quadric", targ
 
 
 def played(steps: Steps) -> tuple[list[Step], Any]:
-    heard = []
+    received = []
     while True:
         try:
-            heard.append(next(steps))
+            received.append(next(steps))
         except StopIteration as end:
-            return heard, end.value
+            return received, end.value
 
 
 def test_that_a_story_begins_with_its_title_and_counts_to_its_end(tmp_path: Path) -> None:
     for name in ("b", "a"):
         (tmp_path / f"{name}.stl").write_bytes(stl_bytes(GRAIN.triangles, "test"))
-    heard, loaded = played(load_particles([tmp_path]))
-    assert heard[0] == Started("Reading particles", 2)
-    assert heard[-1] == Progress(2, 2, "b.stl")
+    received, loaded = played(load_particles([tmp_path]))
+    assert received[0] == Started("Reading particles", 2)
+    assert received[-1] == Progress(2, 2, "b.stl")
     assert [particle.name for particle in loaded.particles] == ["a", "b"]
 
 
@@ -74,8 +74,8 @@ def test_that_a_flat_mesh_is_examined_and_its_trouble_named() -> None:
 
 
 def test_that_partial_results_grow_to_the_result() -> None:
-    heard, seen = played(measure_particles([Particle("a", GRAIN), Particle("b", GRAIN)]))
-    parts = [step.value for step in heard if isinstance(step, Partial)]
+    received, seen = played(measure_particles([Particle("a", GRAIN), Particle("b", GRAIN)]))
+    parts = [step.value for step in received if isinstance(step, Partial)]
     assert [len(part) for part in parts] == [1, 2]
     assert parts[-1] == seen
 
@@ -84,15 +84,15 @@ def test_that_what_is_copied_grows_as_the_number_of_particles(monkeypatch: pytes
     known = measure_particle(Particle("a", GRAIN))
     monkeypatch.setattr("regolith_studio.jobs.particle_jobs.measure_particle", lambda *_: known)
     for count in (500, 5000):
-        heard, seen = played(measure_particles([Particle("a", GRAIN)] * count))
-        copied = sum(len(step.value) for step in heard if isinstance(step, Partial))
+        received, seen = played(measure_particles([Particle("a", GRAIN)] * count))
+        copied = sum(len(step.value) for step in received if isinstance(step, Partial))
         assert copied < 10 * count
         assert len(seen) == count
 
 
 def test_that_a_coarsening_shows_a_polyhedron_at_its_first_step() -> None:
-    heard, coarsened = played(coarsen_one(GRAIN, ORDER))
-    first = next(step.value for step in heard if isinstance(step, Partial))
+    received, coarsened = played(coarsen_one(GRAIN, ORDER))
+    first = next(step.value for step in received if isinstance(step, Partial))
     assert first.polyhedron is not None
     assert coarsened.n_facets == 20
 
@@ -121,5 +121,5 @@ def test_that_a_particle_carries_the_warnings_of_the_fit_at_the_degree_that_is_c
     flake = Particle("flake", Mesh(SPHERE.vertices * [60.0, 50.0, 6.0], SPHERE.faces))
     wanted = fit_harmonics(flake.mesh, FIT_DEGREE).truncated(ORDER.l_max).warnings
     assert any("up to l = 4" in sentence for sentence in wanted)
-    _, (told,) = played(coarsen_sample([flake], ORDER))
-    assert set(wanted) <= set(told.notes)
+    _, (outcome,) = played(coarsen_sample([flake], ORDER))
+    assert set(wanted) <= set(outcome.notes)

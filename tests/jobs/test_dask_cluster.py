@@ -27,7 +27,7 @@ pytestmark = pytest.mark.filterwarnings("default")  # Dask's own
 ROOT = Path(__file__).resolve().parents[2]
 
 
-def wish(n: int = 12) -> Recipe:
+def small_recipe(n: int = 12) -> Recipe:
     return recipe_of(
         inputs=[],
         population={"sources": ["ma165"], "n": n, "l_max": 5},
@@ -46,7 +46,7 @@ def digests(folder: Path) -> dict[str, bytes]:
 
 
 def done(folder: Path, executor: Executor | int, n: int = 12) -> dict[str, bytes]:
-    for _ in run_recipe(wish(n), folder.parent, folder, executor, chunk=2):
+    for _ in run_recipe(small_recipe(n), folder.parent, folder, executor, chunk=2):
         pass
     return digests(folder)
 
@@ -115,7 +115,7 @@ def test_that_a_cluster_that_loses_a_worker_ends_with_the_same_bytes(
     with cluster() as there, closing(Executor.on_cluster(there.address)) as executor:
         executor._runner._client.wait_for_workers(2, timeout=60)  # type: ignore[union-attr]
         killed = False
-        for step in run_recipe(wish(), tmp_path, tmp_path / "out", executor, chunk=2):
+        for step in run_recipe(small_recipe(), tmp_path, tmp_path / "out", executor, chunk=2):
             if isinstance(step, Progress) and step.done >= 2 and not killed:
                 there.workers[0].send_signal(signal.SIGKILL)
                 killed = True
@@ -128,12 +128,12 @@ def test_that_a_cluster_that_goes_away_is_one_sentence_and_the_run_can_go_on(
     tmp_path: Path, alone: dict[str, bytes]
 ) -> None:
     with cluster() as there, closing(Executor.on_cluster(there.address)) as executor:
-        steps = run_recipe(wish(), tmp_path, tmp_path / "out", executor, chunk=2)
+        steps = run_recipe(small_recipe(), tmp_path, tmp_path / "out", executor, chunk=2)
         with pytest.raises(MissingRequirement, match="--resume"):  # noqa: PT012
             for step in steps:
                 if isinstance(step, Progress) and step.done >= 4:
                     there.scheduler.kill()
-    for _ in run_recipe(wish(), tmp_path, tmp_path / "out", resume=True):
+    for _ in run_recipe(small_recipe(), tmp_path, tmp_path / "out", resume=True):
         pass
     assert digests(tmp_path / "out") == alone
 

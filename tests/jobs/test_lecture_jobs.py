@@ -16,7 +16,7 @@ from regolith_studio.shape_models.materials import materials
 WEIGHTS = LossWeights.from_preset("all")
 
 
-def told(steps):
+def results_of(steps):
     """Partial results, and the result."""
     partial = []
     while True:
@@ -36,7 +36,7 @@ def egg():
 @pytest.fixture(scope="module")
 def lesson(egg):
     order = CoarseningRequest(WEIGHTS, 12, "annealing", (("iterations", 60),), seed=5)
-    partial, made = told(trace_annealing(egg, order, 2))
+    partial, made = results_of(trace_annealing(egg, order, 2))
     assert partial[0].exact is None
     assert partial[0].steps is made.steps
     return made
@@ -86,7 +86,7 @@ def test_that_a_lesson_has_an_end_and_needs_a_weight(egg):
 
 
 def test_that_the_fit_grows_from_a_sphere_to_the_particle(egg):
-    partial, steps = told(trace_degrees(egg, fit_harmonics(egg, 8), level=3))
+    partial, steps = results_of(trace_degrees(egg, fit_harmonics(egg, 8), level=3))
     assert [len(each) for each in partial] == list(range(1, 10))
     radii = np.linalg.norm(steps[0].mesh.vertices - steps[0].mesh.centroid, axis=1)
     assert np.ptp(radii) < 1e-3 * radii.mean()

@@ -13,28 +13,28 @@ PNG = b"\x89PNG"
 
 
 @pytest.fixture(scope="module")
-def story() -> tuple[list[Step], ModelEvaluationResult]:
+def job_steps() -> tuple[list[Step], ModelEvaluationResult]:
     draws = materials()["ma165"].model(3).draw(24, 0)
     sample = Sample(np.stack([draws.particle(i).values for i in range(24)]))
-    steps, told = [], evaluate_models(sample, ("log_field",), l_max=3, n_splits=1, n_repeats=1, level=1)
+    steps, reported = [], evaluate_models(sample, ("log_field",), l_max=3, n_splits=1, n_repeats=1, level=1)
     while True:
         try:
-            steps.append(next(told))
+            steps.append(next(reported))
         except StopIteration as end:
             return steps, end.value
 
 
-def test_that_a_judgement_has_its_figures(story: tuple[list[Step], ModelEvaluationResult]) -> None:
-    _, judged = story
+def test_that_a_judgement_has_its_figures(job_steps: tuple[list[Step], ModelEvaluationResult]) -> None:
+    _, judged = job_steps
     assert set(judged.pictures) == {"number", "volume", "pairs", "quantiles"}
     assert all(picture.startswith(PNG) for picture in judged.pictures.values())
     assert judged.study.models[0].key == "log_field"
 
 
 def test_that_it_can_be_stopped_between_figures_and_never_goes_back(
-    story: tuple[list[Step], ModelEvaluationResult],
+    job_steps: tuple[list[Step], ModelEvaluationResult],
 ) -> None:
-    steps, _ = story
+    steps, _ = job_steps
     progress = [step for step in steps if isinstance(step, Progress)]
     assert [step.done for step in progress] == sorted(step.done for step in progress)
     figures = [step for step in progress if step.message == "figures"]
@@ -47,8 +47,8 @@ def test_that_it_can_be_stopped_between_figures_and_never_goes_back(
 def test_that_drawing_can_be_stopped_between_chunks_and_says_how_far_it_is() -> None:
     model = materials()["ma165"].model(3)
     steps = draw(model, GenerationRequest(n=1203, seed=2))
-    told = [next(steps) for _ in range(3)]
-    assert told == [Started("Drawing", 1203), Progress(500, 1203), Progress(1000, 1203)]
+    reported = [next(steps) for _ in range(3)]
+    assert reported == [Started("Drawing", 1203), Progress(500, 1203), Progress(1000, 1203)]
     steps.close()
     again, done = draw(model, GenerationRequest(n=1203, seed=2)), False
     while not done:

@@ -23,7 +23,7 @@ class Bench:
     def __init__(self) -> None:
         self.allowed = threading.Semaphore(0)
         self.reached: queue.SimpleQueue[int] = queue.SimpleQueue()
-        self.heard: list[Event] = []
+        self.received: list[Event] = []
         self.over = threading.Event()
         self.runner = ThreadRunner(lambda call: call())
 
@@ -34,8 +34,8 @@ class Bench:
             yield Progress(number, n)
         return "counted"
 
-    def hear(self, event: Event) -> None:
-        self.heard.append(event)
+    def listen(self, event: Event) -> None:
+        self.received.append(event)
         if isinstance(event, Finished | Stopped):
             self.over.set()
 
@@ -79,7 +79,7 @@ def test_that_who_is_stopped_waits_no_longer() -> None:
 
 
 def test_that_a_job_in_a_thread_waits_between_two_steps_and_goes_on(bench: Bench) -> None:
-    handle = bench.runner.submit(Job(bench.count, (5,)), bench.hear)
+    handle = bench.runner.submit(Job(bench.count, (5,)), bench.listen)
     assert isinstance(handle, Pausable)
     bench.allowed.release()
     assert bench.reached.get(timeout=SECONDS) == 1
@@ -89,12 +89,12 @@ def test_that_a_job_in_a_thread_waits_between_two_steps_and_goes_on(bench: Bench
     assert bench.reached.qsize() <= 1, "one step may have been under way when the job was paused"
     handle.resume()
     assert bench.over.wait(SECONDS)
-    assert bench.heard[-1] == Finished("counted")
+    assert bench.received[-1] == Finished("counted")
 
 
 @pytest.mark.parametrize("closing", [False, True])
 def test_that_a_job_that_waits_can_be_stopped(bench: Bench, closing: bool) -> None:
-    handle = bench.runner.submit(Job(bench.count, (5,)), bench.hear)
+    handle = bench.runner.submit(Job(bench.count, (5,)), bench.listen)
     bench.allowed.release()
     bench.reached.get(timeout=SECONDS)
     handle.pause()
@@ -104,7 +104,7 @@ def test_that_a_job_that_waits_can_be_stopped(bench: Bench, closing: bool) -> No
     else:
         handle.cancel()
     assert bench.over.wait(SECONDS)
-    assert bench.heard[-1] == Stopped()
+    assert bench.received[-1] == Stopped()
 
 
 def test_that_a_newer_job_of_the_lane_does_not_wait_for_one_that_is_held_back(bench: Bench) -> None:
@@ -113,9 +113,9 @@ def test_that_a_newer_job_of_the_lane_does_not_wait_for_one_that_is_held_back(be
     bench.reached.get(timeout=SECONDS)
     first.pause()
     bench.allowed.release(9)
-    bench.runner.submit(Job(bench.count, (2,)), bench.hear, "a")
+    bench.runner.submit(Job(bench.count, (2,)), bench.listen, "a")
     assert bench.over.wait(SECONDS)
-    assert bench.heard[-1] == Finished("counted")
+    assert bench.received[-1] == Finished("counted")
 
 
 def item(number: int) -> Steps:
@@ -131,7 +131,7 @@ def test_that_a_batch_is_held_back_between_two_particles(bench: Bench) -> None:
                 yield from bench.count(1)
         return "all"
 
-    handle = bench.runner.submit(Job(batch, (6,)), bench.hear)
+    handle = bench.runner.submit(Job(batch, (6,)), bench.listen)
     bench.allowed.release()
     bench.reached.get(timeout=SECONDS)
     handle.pause()
@@ -140,7 +140,7 @@ def test_that_a_batch_is_held_back_between_two_particles(bench: Bench) -> None:
     assert bench.reached.qsize() <= 1
     handle.resume()
     assert bench.over.wait(SECONDS)
-    assert bench.heard[-1] == Finished("all")
+    assert bench.received[-1] == Finished("all")
 
 
 def test_that_the_list_of_tasks_tells_what_is_held_back(bench: Bench) -> None:

@@ -87,14 +87,14 @@ def test_that_the_processes_stay_warm(pool: ProcessPoolRunner) -> None:
 
 
 def test_that_a_job_in_a_process_stops_between_two_yields(pool: ProcessPoolRunner) -> None:
-    heard: list[Event] = []
-    handle = pool.submit(Job(wait_forever), heard.append)
+    received: list[Event] = []
+    handle = pool.submit(Job(wait_forever), received.append)
     time.sleep(0.2)
     handle.cancel()
     end = time.monotonic() + 20
     while not handle.done and time.monotonic() < end:
         time.sleep(0.01)
-    assert heard == [Stopped()]
+    assert received == [Stopped()]
 
 
 def test_that_leaving_a_batch_early_stops_its_jobs(pool: ProcessPoolRunner) -> None:
@@ -145,21 +145,21 @@ def test_that_a_process_that_holds_too_much_memory_is_replaced() -> None:
 @pytest.mark.skipif(os.name == "nt", reason="signals are a matter of POSIX")
 def test_that_a_process_killed_from_outside_is_replaced_and_its_job_done(tmp_path: Path) -> None:
     runner = ProcessPoolRunner(2)
-    heard: list[Event] = []
+    received: list[Event] = []
     other: list[Event] = []
     try:
         (first,) = [e for e in in_order(runner, [Job(process_id)], 1) if e]
-        runner.submit(Job(wait_for, (str(tmp_path / "go"),)), heard.append)
+        runner.submit(Job(wait_for, (str(tmp_path / "go"),)), received.append)
         assert isinstance(first, Finished)
         os.kill(first.value, signal.SIGKILL)
         runner.submit(Job(square, (5,)), other.append)
         (tmp_path / "go").write_text("")
         end = time.monotonic() + 60
-        while not (heard and other) and time.monotonic() < end:
+        while not (received and other) and time.monotonic() < end:
             time.sleep(0.01)
     finally:
         runner.close()
-    assert heard == [Finished(str(tmp_path / "go"))]
+    assert received == [Finished(str(tmp_path / "go"))]
     assert other == [Finished(25)]
 
 
@@ -211,13 +211,13 @@ def test_that_closing_waits_for_no_process_that_is_still_importing(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("regolith_studio.jobs.runners.process_pool._CLOSE_SECONDS", 300.0)
-    runner, heard, begun = ProcessPoolRunner(1), list[Event](), tmp_path / "slow.begun"
-    runner.submit(Job(square, (SlowToImport(str(begun)),)), heard.append)
+    runner, received, begun = ProcessPoolRunner(1), list[Event](), tmp_path / "slow.begun"
+    runner.submit(Job(square, (SlowToImport(str(begun)),)), received.append)
     end = time.monotonic() + 60
     while not begun.exists() and time.monotonic() < end:
         time.sleep(0.01)
     runner.close()
     assert begun.exists()
-    assert heard == [Stopped()]
+    assert received == [Stopped()]
     assert not begun.with_suffix(".ended").exists()
     assert not runner._workers

@@ -28,12 +28,12 @@ FLAT = Mesh([[0, 0, 0], [9, 0, 0], [0, 9, 0], [9, 9, 0]], [[0, 1, 2], [0, 2, 1],
 
 
 def played(steps: Steps) -> tuple[list[Any], Any]:
-    heard = []
+    received = []
     while True:
         try:
-            heard.append(next(steps))
+            received.append(next(steps))
         except StopIteration as end:
-            return heard, end.value
+            return received, end.value
 
 
 def sample(count: int = 8) -> list[Particle]:
@@ -56,13 +56,13 @@ def test_that_a_particle_without_descriptors_is_left_out_and_named() -> None:
 
 
 def test_that_a_survey_tells_its_points_and_holds_every_choice() -> None:
-    heard, found = played(survey_representatives(sample(), RepresentativesRequest(3)))
-    points = [each.value for each in heard if isinstance(each, Partial)]
+    received, found = played(survey_representatives(sample(), RepresentativesRequest(3)))
+    points = [each.value for each in received if isinstance(each, Partial)]
     assert tuple(points) == found.curve.points
     assert found.chosen(3).representatives.chosen.shape == (3,)
     assert found.chosen(7) is None
     again, _ = played(survey_representatives(sample(), RepresentativesRequest(3), found.population))
-    assert len(again) < len(heard)
+    assert len(again) < len(received)
 
 
 def test_that_nothing_to_describe_is_told() -> None:

@@ -54,14 +54,14 @@ def threads(owner: Owner) -> Iterator[ThreadRunner]:
     assert not [thread for thread in threading.enumerate() if thread.name.startswith("lane ")]
 
 
-def ended(heard: list[Event]) -> Callable[[], bool]:
-    return lambda: bool(heard) and isinstance(heard[-1], Finished | Failed | Stopped)
+def ended(received: list[Event]) -> Callable[[], bool]:
+    return lambda: bool(received) and isinstance(received[-1], Finished | Failed | Stopped)
 
 
 def test_that_an_inline_job_is_heard_from_start_to_end() -> None:
-    heard: list[Event] = []
-    handle = InlineRunner().submit(Job(count_to, (2,)), heard.append)
-    assert heard == [Started("Counting", 2), Progress(1, 2), Progress(2, 2), Finished(2)]
+    received: list[Event] = []
+    handle = InlineRunner().submit(Job(count_to, (2,)), received.append)
+    assert received == [Started("Counting", 2), Progress(1, 2), Progress(2, 2), Finished(2)]
     assert handle.done
 
 
@@ -84,34 +84,34 @@ def test_that_a_job_that_gives_up_counts_as_stopped() -> None:
 
 
 def test_that_cancelling_takes_effect_between_two_yields() -> None:
-    heard: list[Event] = []
-    result = run_job(Job(count_to, (5,)), heard.append, lambda: len(heard) == 3)
+    received: list[Event] = []
+    result = run_job(Job(count_to, (5,)), received.append, lambda: len(received) == 3)
     assert result == Stopped()
-    assert heard == [Started("Counting", 5), Progress(1, 5), Progress(2, 5)]
+    assert received == [Started("Counting", 5), Progress(1, 5), Progress(2, 5)]
 
 
 def test_that_a_thread_delivers_in_the_thread_of_the_owner(owner: Owner, threads: ThreadRunner) -> None:
-    heard: list[Event] = []
+    received: list[Event] = []
     where: set[int] = set()
 
     def listen(event: Event) -> None:
-        heard.append(event)
+        received.append(event)
         where.add(threading.get_ident())
 
     threads.submit(Job(count_to, (50,)), listen, "a")
-    owner.run_until(ended(heard))
-    assert heard[0] == Started("Counting", 50)
-    assert heard[-1] == Finished(50)
+    owner.run_until(ended(received))
+    assert received[0] == Started("Counting", 50)
+    assert received[-1] == Finished(50)
     assert where == {owner.thread}
 
 
 def test_that_unread_progress_is_replaced_and_endings_never_are(owner: Owner, threads: ThreadRunner) -> None:
-    heard: list[Event] = []
-    handle = threads.submit(Job(count_to, (1000,)), heard.append, "a")
+    received: list[Event] = []
+    handle = threads.submit(Job(count_to, (1000,)), received.append, "a")
     while not handle.done:
         time.sleep(0.001)
-    owner.run_until(ended(heard))
-    assert heard == [Started("Counting", 1000), Progress(1000, 1000), Finished(1000)]
+    owner.run_until(ended(received))
+    assert received == [Started("Counting", 1000), Progress(1000, 1000), Finished(1000)]
 
 
 def test_that_the_newest_job_of_a_lane_wins(owner: Owner, threads: ThreadRunner) -> None:
@@ -142,11 +142,11 @@ def test_that_lanes_do_not_disturb_each_other(owner: Owner, threads: ThreadRunne
 
 
 def test_that_a_job_cancelled_at_its_last_step_is_not_finished(owner: Owner, threads: ThreadRunner) -> None:
-    heard: list[Event] = []
-    handle = threads.submit(Job(count_to, (10**9,)), heard.append, "a")
+    received: list[Event] = []
+    handle = threads.submit(Job(count_to, (10**9,)), received.append, "a")
     handle.cancel()
-    owner.run_until(ended(heard))
-    assert heard[-1] == Stopped()
+    owner.run_until(ended(received))
+    assert received[-1] == Stopped()
 
 
 def test_that_closing_stops_the_threads_and_refuses_new_jobs(owner: Owner) -> None:
@@ -165,12 +165,12 @@ def test_that_a_partial_result_stands_for_all_before_it(owner: Owner, threads: T
         yield Partial((1, 2))
         return (1, 2)
 
-    heard: list[Event] = []
-    handle = threads.submit(Job(rows), heard.append)
+    received: list[Event] = []
+    handle = threads.submit(Job(rows), received.append)
     while not handle.done:
         time.sleep(0.001)
-    owner.run_until(ended(heard))
-    assert heard == [Partial((1, 2)), Finished((1, 2))]
+    owner.run_until(ended(received))
+    assert received == [Partial((1, 2)), Finished((1, 2))]
 
 
 class _Heap:

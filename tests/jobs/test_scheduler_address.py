@@ -66,9 +66,9 @@ def test_that_an_address_is_read_in_its_usual_forms(text: str, whole: str) -> No
     ],
 )
 def test_that_another_form_is_refused_with_the_right_one(text: str, sentence: str) -> None:
-    with pytest.raises(InputError, match=sentence) as told:
+    with pytest.raises(InputError, match=sentence) as reported:
         SchedulerAddress.parse(text)
-    assert "tcp://HOST:8786" in str(told.value)
+    assert "tcp://HOST:8786" in str(reported.value)
 
 
 def test_that_a_greeting_of_a_few_hundred_bytes_is_taken_for_a_scheduler() -> None:

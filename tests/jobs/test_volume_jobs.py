@@ -32,17 +32,17 @@ QUICK = GrainSettings(SegmentationSettings(DenoiseSettings("none")))
 
 
 def played(steps: Steps) -> tuple[list[Step], Any]:
-    heard = []
+    received = []
     while True:
         try:
-            heard.append(next(steps))
+            received.append(next(steps))
         except StopIteration as end:
-            return heard, end.value
+            return received, end.value
 
 
 def test_that_a_grey_file_tells_its_stages_and_gives_particles() -> None:
-    heard, done = played(extract_file(VolumeInput(GREY), QUICK))
-    titles = [step.title for step in heard if isinstance(step, Started)]
+    received, done = played(extract_file(VolumeInput(GREY), QUICK))
+    titles = [step.title for step in received if isinstance(step, Started)]
     assert titles[0] == "Reading synthetic-grey.tif"
     assert titles[1:] == [
         "Denoising",
@@ -51,7 +51,7 @@ def test_that_a_grey_file_tells_its_stages_and_gives_particles() -> None:
         "Numbering grains",
         "Extracting particles",
     ]
-    assert heard[-1] == Progress(done.extraction.n_found, done.extraction.n_found, heard[-1].message)
+    assert received[-1] == Progress(done.extraction.n_found, done.extraction.n_found, received[-1].message)
     assert done.facts.n_grains == 60
     assert done.kind == "grey"
     assert len(done.extraction.particles) == done.extraction.n_found

@@ -59,10 +59,10 @@ def test_that_the_copied_command_is_understood_and_coarsens(
     monkeypatch.chdir(tmp_path)
     assert run(words[1:]) == 0
     assert (tmp_path / "coarsened" / "a grain.stl").exists()
-    told = json.loads((tmp_path / "coarsened" / "coarsening.json").read_text())
+    document = json.loads((tmp_path / "coarsened" / "coarsening.json").read_text())
     shown = session.results.coarsened
     assert shown is not None
-    (row,) = told["particles"] if isinstance(told, dict) else told
+    (row,) = document["particles"] if isinstance(document, dict) else document
     assert row["errors"] == pytest.approx(dict(shown.errors), abs=1e-9)
 
 

@@ -92,9 +92,9 @@ def test_that_the_grains_of_a_volume_are_those_that_extract_finds(
     assert [row["name"] for row in rows] == [each.name for each in wanted]
     volumes = [each.mesh.volume for each in wanted]
     assert [row["volume"] for row in rows] == pytest.approx(volumes, rel=1e-12)
-    told = json.loads((tmp_path / "out" / "volumes" / "labels.json").read_text())
-    assert told["n_particles"] == len(rows)
-    assert told["border"] == [6]
+    document = json.loads((tmp_path / "out" / "volumes" / "labels.json").read_text())
+    assert document["n_particles"] == len(rows)
+    assert document["border"] == [6]
     assert "labels.npy" in (tmp_path / "out" / "summary.html").read_text()
 
 
@@ -183,10 +183,10 @@ def test_that_a_model_file_a_card_and_its_file_draw_the_same_particles(tmp_path:
     card = materials()["ma165"]
     write_model(tmp_path / "ma165-model.json", card.model(6))
     (tmp_path / "mine.json").write_text(card.model_dump_json())
-    wish = {"n": 3, "l_max": 6}
+    given_recipe = {"n": 3, "l_max": 6}
     volumes = []
     for number, source in enumerate(("ma165", "mine.json", "ma165-model", "ma165-model.json")):
-        run(tmp_path / str(number), population={**wish, "sources": [source]})
+        run(tmp_path / str(number), population={**given_recipe, "sources": [source]})
         volumes.append([row["volume"] for row in described(tmp_path / str(number))])
     assert volumes[1:] == [volumes[0]] * 3
 

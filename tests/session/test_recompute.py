@@ -29,11 +29,11 @@ class Held:
             return False
         handle = self.waiting[lane].pop(0)
 
-        def hear(event: object) -> None:
+        def listen(event: object) -> None:
             handle.listener(event)  # type: ignore[arg-type]
             between()
 
-        handle.listener(run_job(handle.job, hear, lambda: handle.cancelled))
+        handle.listener(run_job(handle.job, listen, lambda: handle.cancelled))
         return not handle.cancelled
 
     def all(self) -> None:

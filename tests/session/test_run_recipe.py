@@ -127,8 +127,8 @@ def test_that_a_study_given_up_within_a_run_goes_on_to_the_same_bytes(
     grains: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     outputs = {"meshes": False, "dataset": False, "lmax_study": True}
-    wish = recipe(grains, outputs=outputs, inputs=["grain-0.stl", "grain-1.stl"])
-    steps = run_recipe(wish, grains, tmp_path / "out")
+    given_recipe = recipe(grains, outputs=outputs, inputs=["grain-0.stl", "grain-1.stl"])
+    steps = run_recipe(given_recipe, grains, tmp_path / "out")
     studied = False
     for step in steps:
         studied = studied or step == Started("RMSRE against l_max", 2)
@@ -142,9 +142,9 @@ def test_that_a_study_given_up_within_a_run_goes_on_to_the_same_bytes(
         return work(mesh, **options)
 
     monkeypatch.setattr(lmax, "errors_or_reason", counted)
-    done(wish, grains, tmp_path / "out", resume=True)
+    done(given_recipe, grains, tmp_path / "out", resume=True)
     assert len(given) == 1
-    assert digests(tmp_path / "out") == digests(done(wish, grains, tmp_path / "whole").folder)
+    assert digests(tmp_path / "out") == digests(done(given_recipe, grains, tmp_path / "whole").folder)
 
 
 def n_records(checkpoint: Path) -> int:
@@ -156,9 +156,18 @@ def n_records(checkpoint: Path) -> int:
     return 0
 
 
-def killed(wish: Path, folder: Path, records: int) -> None:
+def killed(given_recipe: Path, folder: Path, records: int) -> None:
     """Start the command and kill it once its checkpoint has so many records."""
-    command = [sys.executable, "-m", "regolith_studio", "run", str(wish), "-o", str(folder), "--resume"]
+    command = [
+        sys.executable,
+        "-m",
+        "regolith_studio",
+        "run",
+        str(given_recipe),
+        "-o",
+        str(folder),
+        "--resume",
+    ]
     checkpoint = folder / "journal" / "checkpoint.sqlite"
     with subprocess.Popen(command, cwd=ROOT, stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL) as process:
         while process.poll() is None:
@@ -172,10 +181,10 @@ def killed(wish: Path, folder: Path, records: int) -> None:
 def test_that_a_run_killed_again_and_again_ends_with_the_same_bytes(
     grains: Path, tmp_path: Path, alone: tuple[RecipeRun, dict]
 ) -> None:
-    wish = tmp_path / "recipe.json"
-    wish.write_text(recipe(grains).to_json())
+    given_recipe = tmp_path / "recipe.json"
+    given_recipe.write_text(recipe(grains).to_json())
     for records in (2, 7):
-        killed(wish, tmp_path / "out", records)
+        killed(given_recipe, tmp_path / "out", records)
     assert n_records(tmp_path / "out" / "journal" / "checkpoint.sqlite") >= 7
     done(recipe(grains), tmp_path, tmp_path / "out", resume=True)
     assert digests(tmp_path / "out") == alone[1]
@@ -207,14 +216,14 @@ def test_that_a_changed_input_is_noticed(tmp_path: Path, grains: Path) -> None:
     (tmp_path / "in").mkdir()
     for index in range(3):
         (tmp_path / "in" / f"{index}.stl").write_bytes((grains / f"grain-{index}.stl").read_bytes())
-    wish = recipe(tmp_path / "in")
-    steps = run_recipe(wish, tmp_path, tmp_path / "out")
+    given_recipe = recipe(tmp_path / "in")
+    steps = run_recipe(given_recipe, tmp_path, tmp_path / "out")
     while not (isinstance(step := next(steps), Progress) and step.done == 1):
         pass
     steps.close()
     (tmp_path / "in" / "2.stl").write_bytes((grains / "grain-5.stl").read_bytes() + b" ")
     with pytest.raises(FileError, match="another set of input files"):
-        done(wish, tmp_path, tmp_path / "out", resume=True)
+        done(given_recipe, tmp_path, tmp_path / "out", resume=True)
 
 
 def test_that_nothing_is_left_where_nothing_can_be_read(tmp_path: Path, grains: Path) -> None:
@@ -225,12 +234,14 @@ def test_that_nothing_is_left_where_nothing_can_be_read(tmp_path: Path, grains: 
 
 def test_that_a_population_is_drawn_measured_coarsened_and_written(tmp_path: Path) -> None:
     entries = {"inputs": [], "population": {"sources": ["ma165"], "n": 4, "l_max": 6}, "target": "particle"}
-    wish = recipe_of(**{**BASE, **entries}, outputs={"fits": False, "summary": False})
-    found = done(wish, tmp_path, tmp_path / "out")
+    given_recipe = recipe_of(**{**BASE, **entries}, outputs={"fits": False, "summary": False})
+    found = done(given_recipe, tmp_path, tmp_path / "out")
     names = [entry["name"] for entry in json.loads((tmp_path / "out" / "descriptors.json").read_text())]
     assert names == [f"ma165-{index:04d}" for index in range(4)]
     assert validate_dataset(tmp_path / "out" / "dataset") == []
-    longer = recipe_of(**{**wish.model_dump(), "population": {"sources": ["ma165"], "n": 6, "l_max": 6}})
+    longer = recipe_of(
+        **{**given_recipe.model_dump(), "population": {"sources": ["ma165"], "n": 6, "l_max": 6}}
+    )
     more = done(longer, tmp_path, tmp_path / "more")
     same = {name: digest for name, digest in digests(found.folder).items() if name.startswith("meshes/ma")}
     assert len(same) == 4
@@ -239,19 +250,19 @@ def test_that_a_population_is_drawn_measured_coarsened_and_written(tmp_path: Pat
 
 def test_that_a_recipe_divides_radii_by_the_reference_that_it_names(tmp_path: Path, grains: Path) -> None:
     """Coefficients of the ratio to an ellipsoid are no lengths, so there is no spectrum of lengths."""
-    wish = recipe(grains, reference="ellipsoid", target="fit")
-    folder = done(wish, grains, tmp_path / "out").folder
+    given_recipe = recipe(grains, reference="ellipsoid", target="fit")
+    folder = done(given_recipe, grains, tmp_path / "out").folder
     (first, *_) = json.loads((folder / "fit.json").read_text())["particles"]
     assert first["reference"]
-    told = json.loads((folder / "dataset" / "dataset.json").read_text())["metadata"]
-    assert told["angular_power_spectrum_um2"] is None
-    assert "reference ellipsoid" in " ".join(told["processing_steps"])
+    document = json.loads((folder / "dataset" / "dataset.json").read_text())["metadata"]
+    assert document["angular_power_spectrum_um2"] is None
+    assert "reference ellipsoid" in " ".join(document["processing_steps"])
 
 
 def test_that_an_unknown_card_is_an_error_before_any_work(tmp_path: Path) -> None:
-    wish = recipe_of(inputs=[], population={"sources": ["cheese"], "n": 4})
+    given_recipe = recipe_of(inputs=[], population={"sources": ["cheese"], "n": 4})
     with pytest.raises(InputError, match=r"no material card 'cheese'"):
-        done(wish, tmp_path, tmp_path / "out")
+        done(given_recipe, tmp_path, tmp_path / "out")
     assert not (tmp_path / "out").exists()
 
 
@@ -270,7 +281,7 @@ def test_that_a_worker_killed_in_mid_run_changes_no_byte(
 
 
 def test_that_a_dataset_too_large_to_be_read_again_is_refused_before_the_work(tmp_path: Path) -> None:
-    wish = recipe_of(inputs=[], population={"sources": ["ma165"], "n": 120_000}, n_facets=20)
+    given_recipe = recipe_of(inputs=[], population={"sources": ["ma165"], "n": 120_000}, n_facets=20)
     with pytest.raises(InputError, match="make several of at most 104,"):
-        done(wish, tmp_path, tmp_path / "out")
+        done(given_recipe, tmp_path, tmp_path / "out")
     assert not (tmp_path / "out").exists()

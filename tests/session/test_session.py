@@ -52,10 +52,10 @@ def opened(session: Session, grains: Path) -> Session:
 
 
 def listen(session: Session, *events: str) -> list[str]:
-    heard: list[str] = []
+    received: list[str] = []
     for event in events:
-        getattr(session.events, event).connect(lambda *_, name=event: heard.append(name))
-    return heard
+        getattr(session.events, event).connect(lambda *_, name=event: received.append(name))
+    return received
 
 
 def test_that_opening_selects_the_first_particle_and_computes_everything(opened: Session) -> None:
@@ -89,13 +89,13 @@ def test_that_every_row_gets_health_and_descriptors(opened: Session) -> None:
 
 def test_that_moving_l_max_draws_another_surface_and_keeps_the_fit(opened: Session) -> None:
     before = opened.results
-    heard = listen(opened, "fit", "surface", "descriptors", "coarsening")
+    received = listen(opened, "fit", "surface", "descriptors", "coarsening")
     opened.choose(l_max=2)
     assert opened.results.fit is before.fit
     assert opened.results.surface is not before.surface
-    assert heard[0] == "surface"
-    assert "fit" not in heard
-    assert {"descriptors", "coarsening"} <= set(heard)
+    assert received[0] == "surface"
+    assert "fit" not in received
+    assert {"descriptors", "coarsening"} <= set(received)
 
 
 def test_that_moving_a_weight_leaves_fit_and_surface_alone(opened: Session) -> None:

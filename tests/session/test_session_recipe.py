@@ -109,8 +109,8 @@ def test_that_meshes_mended_and_left_as_they_are_are_the_same_in_a_run(
     session.open([path])
     session.choose(repair=False)
     session.open([path], add=True)
-    mended, as_it_is = [entry.particle.mesh.volume for entry in session.particles]
-    assert as_it_is == pytest.approx(1.008 * mended, rel=1e-4)  # the second ball has a fifth of the size
+    repaired, as_it_is = [entry.particle.mesh.volume for entry in session.particles]
+    assert as_it_is == pytest.approx(1.008 * repaired, rel=1e-4)  # the second ball has a fifth of the size
     session_recipe = assert_that_a_run_gives_the_dataset_of(session, tmp_path)
     assert [repair for _, _, repair in session_recipe.recipe.openings] == [True, False]
 
@@ -130,9 +130,9 @@ def test_that_a_closed_particle_gives_its_name_free_and_the_run_knows(
     session.open([write_grains(tmp_path / "two", "a.stl")], add=True)
     assert [entry.id for entry in session.particles] == ["b", "a"]
     session_recipe = assert_that_a_run_gives_the_dataset_of(session, tmp_path)
-    told = session_recipe.recipe.particles
-    assert told is not None
-    assert told[0] == "b"
+    options = session_recipe.recipe.particles
+    assert options is not None
+    assert options[0] == "b"
 
 
 def test_that_a_table_of_coefficients_is_the_same_in_a_run(session: Session, tmp_path: Path) -> None:

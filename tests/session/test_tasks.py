@@ -36,49 +36,49 @@ def board() -> tuple[Puppet, TaskBoard, list[object]]:
 
 
 def test_that_an_answer_to_an_old_request_is_dropped() -> None:
-    puppet, tasks, heard = board()
-    tasks.start("fit", "first", JOB, Reactions(heard.append, heard.append))
-    tasks.start("fit", "second", JOB, Reactions(heard.append, heard.append))
+    puppet, tasks, received = board()
+    tasks.start("fit", "first", JOB, Reactions(received.append, received.append))
+    tasks.start("fit", "second", JOB, Reactions(received.append, received.append))
     assert puppet.cancelled == [0]
     old, new = puppet.listeners
     old(Partial("stale part"))
     old(Finished("stale"))
     new(Finished("fresh"))
-    assert heard == ["fresh"]
+    assert received == ["fresh"]
     assert tasks.running == ()
 
 
 def test_that_lanes_do_not_replace_each_other() -> None:
-    puppet, tasks, heard = board()
-    tasks.start("fit", "one", JOB, Reactions(heard.append))
-    tasks.start("surface", "two", JOB, Reactions(heard.append))
+    puppet, tasks, received = board()
+    tasks.start("fit", "one", JOB, Reactions(received.append))
+    tasks.start("surface", "two", JOB, Reactions(received.append))
     puppet.listeners[0](Finished(1))
     puppet.listeners[1](Finished(2))
-    assert heard == [1, 2]
+    assert received == [1, 2]
 
 
 def test_that_progress_shows_in_the_list() -> None:
-    puppet, tasks, heard = board()
-    number = tasks.start("load", "Reading", JOB, Reactions(heard.append))
+    puppet, tasks, received = board()
+    number = tasks.start("load", "Reading", JOB, Reactions(received.append))
     puppet.listeners[0](Started("Reading particles", 4))
     puppet.listeners[0](Progress(3, 4, "b.stl"))
     assert tasks.running == (Task(number, "load", "Reading particles", 3, 4, "b.stl"),)
 
 
 def test_that_a_cancelled_task_is_listed_until_it_has_stopped() -> None:
-    puppet, tasks, heard = board()
-    reactions = Reactions(heard.append, stopped=lambda: heard.append("stopped"))
+    puppet, tasks, received = board()
+    reactions = Reactions(received.append, stopped=lambda: received.append("stopped"))
     number = tasks.start("load", "Reading", JOB, reactions)
     tasks.cancel(number)
     assert puppet.cancelled == [0]
     assert tasks.is_running("load")
     puppet.listeners[0](Stopped())
     assert not tasks.is_running("load")
-    assert heard == ["stopped"]
+    assert received == ["stopped"]
 
 
 def test_that_a_failure_reaches_its_reaction() -> None:
-    puppet, tasks, heard = board()
-    tasks.start("load", "Reading", JOB, Reactions(heard.append, failed=heard.append))
+    puppet, tasks, received = board()
+    tasks.start("load", "Reading", JOB, Reactions(received.append, failed=received.append))
     puppet.listeners[0](Failed("Broken."))
-    assert heard == [Failed("Broken.")]
+    assert received == [Failed("Broken.")]
