@@ -1,4 +1,4 @@
-"""``coarsen``: convex polyhedra with few faces."""
+"""``coarsen``: convex polyhedra with few facets."""
 
 import typer
 

@@ -1,4 +1,4 @@
-"""Options that belong together, taken by a command as one argument.
+"""Groups of options that a command takes as one argument, defined by a dataclass.
 
 A group is a frozen dataclass whose fields are annotated as options, are made by
 :func:`~regolith_studio.settings.setting`, or are groups themselves. A command with

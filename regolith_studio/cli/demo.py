@@ -1,4 +1,4 @@
-"""``demo``: the whole chain on the shipped sample, without a screen."""
+"""``demo``: all steps for the shipped sample, without a screen."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING

@@ -1,4 +1,4 @@
-"""From arguments to an exit code: 0 done, 1 bad input, 2 bad use, 130 interrupted; never a traceback."""
+"""Run a command and return its exit code: 0 done, 1 bad input, 2 usage error, 130 interrupted."""
 
 import io
 import os

@@ -1,4 +1,4 @@
-"""Particles named on the command line."""
+"""Reading the particles that a command line names."""
 
 import contextlib
 import threading

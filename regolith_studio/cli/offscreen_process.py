@@ -1,4 +1,4 @@
-"""Pictures drawn in a process of their own, because OpenGL may take the process with it."""
+"""Draw pictures in a separate process, because a failure of OpenGL may end the process."""
 
 import multiprocessing
 from collections.abc import Callable

@@ -1,4 +1,4 @@
-"""What is written into a picture: the scale bar in micrometres, the title."""
+"""Texts in a picture: the scale bar in micrometres, the title."""
 
 import math
 import weakref

@@ -1,4 +1,4 @@
-"""Camera poses as values: read from one plotter, applied to another.
+"""Camera poses as values, and how the mouse orbits, pans, zooms and rolls them.
 
 The views are linked by copying values, never by sharing a camera object: a shared camera repaints
 only the view that moved, and keeps the clipping range of the other's surface.
@@ -55,7 +55,7 @@ MARGIN = 1.16
 
 @dataclass(frozen=True)
 class CameraPose:
-    """Where a camera stands and what it shows; parallel projection.
+    """Position and direction of a camera in parallel projection.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""A cross-section: the half towards the eye taken away, the cut filled, outlines over each other."""
+"""A cross-section: the half towards the viewer is removed, the cut is filled, outlines are overlaid."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -39,7 +39,7 @@ FRAME_SHARE = 1.08
 
 @dataclass(frozen=True)
 class SectionPlane:
-    """The plane <n, x> = `offset`; what lies beyond it is taken away.
+    """The plane <n, x> = `offset`; points with a larger <n, x> are removed.
 
     Parameters
     ----------

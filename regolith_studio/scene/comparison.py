@@ -1,4 +1,4 @@
-"""Overlay and wipe: another shape over or beside the one that is shown, and both clipped by a plane."""
+"""Overlay and wipe: a second shape over or beside the one that is shown, both clipped by a plane."""
 
 from collections.abc import Mapping
 from typing import Any

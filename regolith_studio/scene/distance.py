@@ -1,4 +1,4 @@
-"""How far one surface lies from another, vertex by vertex: the numbers of the distance map."""
+"""Distances from the vertices of one surface to another, for the distance map."""
 
 import numpy as np
 from scipy.spatial import cKDTree

@@ -1,4 +1,4 @@
-"""One facet of a polyhedron: which one is seen at a point of the picture, its numbers, its outline."""
+"""One facet of a polyhedron: the one at a point of the picture, its properties, its outline."""
 
 from dataclasses import dataclass
 from typing import Any

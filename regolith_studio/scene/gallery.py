@@ -1,4 +1,4 @@
-"""Measured particles above, drawn ones below, all to one scale."""
+"""Gallery of measured particles above drawn ones, at one scale."""
 
 from collections.abc import Sequence
 from dataclasses import replace

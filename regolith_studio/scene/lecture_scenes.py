@@ -1,4 +1,4 @@
-"""What the lecture shows: one move of the annealing, and a random field on the sphere with its particle."""
+"""Scenes of the lecture: one move of the annealing; a random field on the sphere with its particle."""
 
 from typing import Any
 

@@ -17,7 +17,7 @@ ERROR_MAP = "RdBu_r"
 
 @dataclass(frozen=True)
 class Material:
-    """How a surface takes the light.
+    """Shading of a surface.
 
     Parameters
     ----------
@@ -41,7 +41,7 @@ POLYHEDRON_MATERIAL = Material("#f6c56d", ambient=0.30, specular=0.0)
 
 @dataclass(frozen=True)
 class ThemeColors:
-    """What stands around a surface: background, letters and lines.
+    """Colours around a surface: background, text and lines.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""An empty plotter made ready: background, lights, parallel projection, anti-aliasing by the renderer."""
+"""Set up an empty plotter: background, lights, parallel projection, anti-aliasing."""
 
 import os
 import sys

@@ -1,4 +1,4 @@
-"""From points of the scene to points of the picture and back; parallel projection."""
+"""Parallel projection from points of the scene to points of the picture and back."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""What can be shown in a view: one of the three bodies, as a value."""
+"""The content of a view: particle, fit or polyhedron, as a value."""
 
 from dataclasses import dataclass
 from functools import cached_property

@@ -1,4 +1,4 @@
-"""The three surfaces of the studio: particle, spherical-harmonics fit, coarsened polyhedron.
+"""Show the three surfaces: particle, spherical-harmonics fit, coarsened polyhedron.
 
 Each function may be called again and again on one plotter: the actors stay, only their data change,
 and the camera is left alone.

@@ -1,4 +1,4 @@
-"""What a program with a user needs, without any window.
+"""The session of a user without any window: choices, results, jobs, recipes and projects.
 
 The cycle
 ---------

@@ -1,4 +1,4 @@
-"""What the program remembers between sittings; a file that is damaged costs the memory, nothing else."""
+"""Preferences and presets that are kept between sessions; a damaged file counts as none."""
 
 import contextlib
 import json

@@ -1,4 +1,4 @@
-"""Where open particles came from, in the terms of a recipe, and how a recipe brings them back."""
+"""The origin of open particles in the terms of a recipe, and how a recipe restores them."""
 
 import re
 import tempfile

@@ -1,4 +1,4 @@
-"""A recipe: everything that turns files into results, as JSON; the window saves it, ``run`` takes it."""
+"""A recipe: inputs, choices and outputs as JSON; the window saves it, ``run`` runs it."""
 
 from collections.abc import Sequence
 from dataclasses import Field as DataclassField

@@ -1,4 +1,4 @@
-"""A sample as a table: words on health, filters such as ``flat S<0.8``, statistics of groups."""
+"""A sample as a table: health, filters such as ``flat S<0.8``, statistics of groups."""
 
 import operator
 import re

@@ -1,4 +1,4 @@
-"""The session: particles, choices and results, and the cycle that keeps the last two in step."""
+"""The session: particles, choices and results; a change of choices updates the results."""
 
 import dataclasses
 from collections.abc import Callable, Collection, Sequence

@@ -1,4 +1,4 @@
-"""What can be done from menus, tool bar and keyboard: one row each; pages bring rows of their own."""
+"""The actions of menus, tool bar and keyboard, a row each; pages add their own."""
 
 from collections.abc import Callable, Mapping
 from functools import partial
@@ -100,7 +100,7 @@ ROWS: tuple[ActionSpec, ...] = (
 
 
 class Actions:
-    """The rows as Qt actions, in the menus and the tool bar of a window.
+    """The actions as Qt actions in the menus and the tool bar of a window.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Language, theme and size of letters: taken from the preferences, asked for, and kept."""
+"""Language, theme and font size: read from the preferences, chosen in a dialog, saved."""
 
 from collections.abc import Callable
 from typing import cast
@@ -13,7 +13,7 @@ from regolith_studio.ui.theme import apply_letters, choose_letters, choose_theme
 
 
 class Appearance(QObject):
-    """Knows what was chosen before; letters have their size before other widgets are made.
+    """Applies the saved appearance; the font size is set before other widgets are made.
 
     Parameters
     ----------

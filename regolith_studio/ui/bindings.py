@@ -1,4 +1,4 @@
-"""Connects the session with the panels: the one place that knows both."""
+"""Connections between the session and the panels."""
 
 import time
 from collections.abc import Callable, Collection, Mapping
@@ -32,7 +32,7 @@ class ChoicePanel(Protocol):
 
 
 class Bindings(QObject):
-    """Refreshes what has changed, not more often than can be seen, and hands choices to the session.
+    """Refreshes panels after changes, at a limited rate, and passes choices to the session.
 
     Parameters
     ----------
@@ -144,7 +144,7 @@ class Bindings(QObject):
 
 
 class Throttle(QObject):
-    """Calls what has been added, each at most every `seconds`."""
+    """Calls added functions, each at most once in `seconds`."""
 
     def __init__(self, seconds: float, parent: QObject, *, at_once: bool) -> None:
         super().__init__(parent)

@@ -1,4 +1,4 @@
-"""What menus, tool bar, shortcuts and dropped files do."""
+"""The commands of menus, tool bar, shortcuts and dropped files."""
 
 import dataclasses
 from collections.abc import Callable, Sequence
@@ -52,7 +52,7 @@ def without(session_recipe: SessionRecipe) -> tuple[str, ...]:
 
 
 class Commands(QObject):
-    """Opens, saves and exports, asking what must be asked.
+    """Opens, saves and exports, with the dialogs that are needed.
 
     Parameters
     ----------

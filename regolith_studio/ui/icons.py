@@ -1,4 +1,4 @@
-"""The program's own icons: line drawings that take the colour of the letters around them."""
+"""Icons: line drawings in the text colour of the theme."""
 
 from functools import lru_cache
 

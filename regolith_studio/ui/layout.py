@@ -1,4 +1,4 @@
-"""Ways of placing parts beside each other."""
+"""Layouts: splitters, columns and tabs."""
 
 from collections.abc import Sequence
 
@@ -61,7 +61,7 @@ def scrolled_column(panels: Sequence[QWidget]) -> QScrollArea:
 
 
 class _Column(QScrollArea):
-    """As wide as what is in it needs, in any language and size of letters.
+    """A column as wide as its content needs, in any language and font size.
 
     What height is left when it gets its size is for texts that have use for it; later, nothing moves.
     """

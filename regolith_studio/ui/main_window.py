@@ -1,4 +1,4 @@
-"""The window: places pages and menus. Every other idea has a file of its own."""
+"""The main window: places pages and menus."""
 
 from collections.abc import Callable
 from functools import partial
@@ -36,7 +36,7 @@ from regolith_studio.ui.window_state import WindowState
 
 
 class MainWindow(QMainWindow):
-    """A sidebar of pages, the page that is seen, menus, and what is running.
+    """Sidebar, current page, menus, and the running task.
 
     Parameters
     ----------

@@ -58,7 +58,7 @@ PAGE_MENU = N_("&Page")
 
 
 class PageWidget(QWidget):
-    """What a page shows; every method may be left as it is."""
+    """Base class of pages; every method may be overridden."""
 
     def build(self) -> None:
         """Make the parts of the page; called once, right after construction."""
@@ -96,7 +96,7 @@ class PageWidget(QWidget):
 
 @dataclass(frozen=True)
 class PageContext:
-    """What a page is given.
+    """The context of a page: session, preferences and services of the window.
 
     Parameters
     ----------
@@ -170,7 +170,7 @@ class PageContext:
 
 @dataclass(frozen=True)
 class Page:
-    """One page, as the sidebar announces it.
+    """A page as a row of the sidebar.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The sidebar and the page that is seen; a page is built when it is first visited."""
+"""The sidebar and the current page; a page is built when it is first opened."""
 
 from collections.abc import Callable
 

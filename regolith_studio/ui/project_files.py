@@ -1,4 +1,4 @@
-"""Project files in the window: saved, opened, saved by themselves, and brought back after a crash."""
+"""Project files in the window: saving, opening, autosaving, and recovery after a crash."""
 
 import os
 from contextlib import suppress
@@ -23,7 +23,7 @@ AUTOSAVE_SECONDS = 10
 
 
 class ProjectFiles(QObject):
-    """Knows which file the work belongs to, and whether it has changed since.
+    """The current project file, and whether the session has changed since it was saved.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Shortcuts of one's own: what each command has, what it may have, and what the preferences keep."""
+"""User-defined shortcuts: the keys of each command, conflicts, and their storage in the preferences."""
 
 from collections.abc import Mapping
 
@@ -27,7 +27,7 @@ _NEEDED = {
 
 
 class Shortcuts:
-    """Those of all commands; a conflict is between commands that can be seen together.
+    """The shortcuts of all commands; commands that are shown together must not share keys.
 
     Parameters
     ----------

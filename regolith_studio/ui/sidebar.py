@@ -1,4 +1,4 @@
-"""The buttons of the pages: icons over words; beside them in a low window, alone in a very low one."""
+"""The buttons of the pages: icon above text, beside it in a low window, alone in a very low one."""
 
 from collections.abc import Mapping
 from functools import partial

@@ -1,4 +1,4 @@
-"""How the window looks: light or dark as the system says, one palette and one style sheet for all of it."""
+"""The theme of the window: light or dark as the system, one palette and one style sheet."""
 
 from collections.abc import Container
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""The guided tour: a bubble beside one part of the window after another; texts in ``resources/tour``."""
+"""The guided tour: bubbles beside parts of the window, one after the other; texts in ``resources/tour``."""
 
 import json
 from collections.abc import Callable
@@ -22,7 +22,7 @@ _GAP = 14
 
 @dataclass(frozen=True)
 class Step:
-    """One stop: the page it is on, the object name of what it shows, what it says."""
+    """One step of the tour: its page, the object name of its widget, its text."""
 
     page: str
     target: str
@@ -45,7 +45,7 @@ def start_tour(window: QWidget, go: Callable[[str], object], preferences: Prefer
 
 
 class Tour(QWidget):
-    """A frame about what is shown, and a bubble with text; the window stays usable meanwhile."""
+    """A frame around the widget, and a bubble with text; the window stays usable."""
 
     def __init__(self, window: QWidget, go: Callable[[str], object], preferences: Preferences) -> None:
         super().__init__(window)

@@ -1,4 +1,4 @@
-"""Remembers where things stood: the size of the window and the borders between its parts."""
+"""Saves and restores the size of the window and the positions of its splitters."""
 
 import base64
 import binascii

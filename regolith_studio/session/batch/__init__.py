@@ -1,4 +1,4 @@
-"""A recipe run particle by particle, with every result on disk at once.
+"""Running a recipe particle by particle; each result is written to disk when it is done.
 
 * :mod:`~regolith_studio.session.batch.inputs`: the particles of a recipe before they are read.
 * :mod:`~regolith_studio.session.batch.preprocessing`: grains of volumes and fitted models.

@@ -1,4 +1,4 @@
-"""All that a recipe asks for one particle, in any process; the result is a record on disk."""
+"""The task of one particle of a recipe, run in any process; its result is a record on disk."""
 
 import json
 import time

@@ -1,4 +1,4 @@
-"""Writers of the files of a batch: they take the records one by one, and hold only fits in memory."""
+"""Writers of the files of a batch, which take the records one by one and hold only fits in memory."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager

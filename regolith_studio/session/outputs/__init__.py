@@ -1,1 +1,1 @@
-"""The files that results leave behind; the command line, recipes and the window write them here."""
+"""Result files, as the command line, recipes and the window write them."""

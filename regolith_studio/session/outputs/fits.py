@@ -1,4 +1,4 @@
-"""Coefficients of a sample as ``FIT.json``: what they are, the numbers, the spectrum."""
+"""The fits of a sample as ``FIT.json``: coefficients, convention, spectrum."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""The one-page summary: what was done with which numbers, in tables and pictures, as HTML."""
+"""The one-page summary of a run as HTML, with tables and pictures."""
 
 import math
 from collections.abc import Mapping, Sequence

@@ -1,4 +1,4 @@
-"""A recipe as a batch, on this machine or on a cluster: what, where and by whom; then its progress."""
+"""Dialog of a batch run, on this machine or on a cluster: outputs, folder, workers; then its progress."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -42,7 +42,7 @@ RESULTS = {
 
 @dataclass(frozen=True)
 class BatchRequest:
-    """What the user asked for.
+    """The settings of the dialog.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Asks before work in progress is thrown away."""
+"""Asks for confirmation before running jobs are stopped by closing the window."""
 
 from collections.abc import Sequence
 

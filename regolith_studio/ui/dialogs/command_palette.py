@@ -1,4 +1,4 @@
-"""Every command by a few letters of its name."""
+"""The command palette: finds a command by some letters of its name."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -14,7 +14,7 @@ SHOWN = 14
 
 @dataclass(frozen=True)
 class Command:
-    """What can be run: where it belongs, its name, its shortcut."""
+    """A command: its menu, name and shortcut."""
 
     place: str
     text: str
@@ -36,7 +36,7 @@ def matches(commands: Sequence[Command], typed: str) -> list[Command]:
 
 
 class CommandPalette(QDialog):
-    """A line to type in and what fits it; Enter runs the chosen one."""
+    """A text field and the commands that match it; Enter runs the selected one."""
 
     def __init__(self, commands: Sequence[Command], parent: QWidget | None = None) -> None:
         super().__init__(parent)

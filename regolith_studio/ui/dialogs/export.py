@@ -1,4 +1,4 @@
-"""The export of a dataset: what will be written and where, then its progress."""
+"""Dialog of the export of a dataset: content and folder, then its progress."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -31,7 +31,7 @@ from regolith_studio.ui.widgets.labels import remark, rich_symbol
 
 @dataclass(frozen=True)
 class ExportRequest:
-    """What the user asked for."""
+    """The settings of the dialog."""
 
     folder: Path
     options: DatasetOptions
@@ -68,7 +68,7 @@ def summary(count: int, choices: Choices) -> list[tuple[str, str]]:
 
 
 class ExportDialog(QDialog):
-    """Asks, then shows the progress; ``started`` carries the order, ``stopped`` asks to cancel."""
+    """Edits a request, then shows the progress; ``started`` carries it, ``stopped`` asks to cancel."""
 
     started = Signal(object)
     stopped = Signal()

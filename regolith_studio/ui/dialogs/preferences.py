@@ -1,4 +1,4 @@
-"""What holds for every sitting: language, theme, size of letters."""
+"""Dialog of the preferences: language, theme, font size."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -19,7 +19,7 @@ THEMES = {SYSTEM: N_("As the system"), "light": N_("Light"), "dark": N_("Dark")}
 
 
 class PreferencesDialog(QDialog):
-    """Edits settings of the window; what is changed holds at once, the language at the next start."""
+    """Edits settings of the window; changes apply at once, the language at the next start."""
 
     valueChanged = Signal(dict)  # noqa: N815
 

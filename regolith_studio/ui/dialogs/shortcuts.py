@@ -1,4 +1,4 @@
-"""Every command with its keys, to be read, searched and changed; and what the mouse does."""
+"""Dialog of the shortcuts of all commands, and a list of the mouse actions."""
 
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QKeySequence

@@ -1,4 +1,4 @@
-"""Linked cameras: what moves one view moves the others, by copying values."""
+"""Linked cameras: the pose of one view is copied to the others."""
 
 from collections.abc import Callable, Sequence
 
@@ -9,7 +9,7 @@ from regolith_studio.ui.views.protocol import SceneView
 
 
 class CameraLink:
-    """Keeps the cameras of some views together while it is on.
+    """Copies the pose of one view to the others while it is on.
 
     Parameters
     ----------

@@ -32,7 +32,7 @@ ZOOMS = {
 
 
 class Grip(Protocol):
-    """Something in the picture that can be dragged; pixels count from the upper left."""
+    """A handle in the picture that can be dragged; pixels count from the upper left."""
 
     cursor: Qt.CursorShape
 

@@ -1,4 +1,4 @@
-"""Two bodies in one view: as a veil over each other, or side by side along a line that can be dragged."""
+"""Two surfaces in one view: overlaid, or side by side along a line that can be dragged (wipe)."""
 
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager

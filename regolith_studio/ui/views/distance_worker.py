@@ -1,4 +1,4 @@
-"""How far the fit is from the particle: measured in the background, and kept while both are on screen."""
+"""Distances between fit and particle, computed in the background and kept while both are shown."""
 
 from collections.abc import Callable
 from typing import Any
@@ -16,7 +16,7 @@ Follow = Callable[[Job, Callable[[Any], None], Callable[[str], None]], None]
 
 
 class Distances(QObject):
-    """What was measured last; ``measured`` tells that it is another, ``refused`` why it is none.
+    """The last distances; ``measured`` is emitted for new ones, ``refused`` with the reason if there are none.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What can be dragged in a view: the line of a wipe, the plane of a section."""
+"""Drag handles in a view: the line of a wipe, the plane of a section."""
 
 from collections.abc import Callable
 

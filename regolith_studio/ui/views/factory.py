@@ -1,4 +1,4 @@
-"""Which backend draws the views on this machine."""
+"""Selects the backend that draws the views on this machine."""
 
 import os
 from typing import TYPE_CHECKING

@@ -1,4 +1,4 @@
-"""The view that draws off-screen and shows the picture: needs no OpenGL in the window, nor an X server."""
+"""A view that renders off-screen and shows the image; needs neither OpenGL in the window nor an X server."""
 
 from collections.abc import Callable
 from typing import Any

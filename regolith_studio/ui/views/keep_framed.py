@@ -1,11 +1,11 @@
-"""A view that is resized goes on showing all that it has shown: no body is cut, none stays small."""
+"""Keeps what a view shows framed when the view is resized."""
 
 from regolith_studio.scene.cameras import refitted
 from regolith_studio.ui.views.protocol import SceneView
 
 
 class KeepFramed:
-    """Knows for which shape of its view the camera was placed.
+    """Adapts the camera to the aspect ratio of its view.
 
     What is shown along the shorter side is kept, whatever the user has done with the camera: a body that was
     framed is framed again, and what was looked at closely stays as close.

@@ -1,4 +1,4 @@
-"""The view that draws with OpenGL straight into the window."""
+"""A view that renders with OpenGL into the window."""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager

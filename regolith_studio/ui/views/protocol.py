@@ -1,4 +1,4 @@
-"""What the window asks of a three-dimensional view, whichever backend draws it."""
+"""The interface of three-dimensional views, independent of the backend."""
 
 from collections.abc import Callable
 from typing import Any, Protocol
@@ -15,7 +15,7 @@ Picture = NDArray[np.uint8]
 
 
 class SceneView(Protocol):
-    """One view. Drawing is asked for, not done: many requests before the next paint cost one picture."""
+    """One view. ``draw`` schedules a repaint; calls are coalesced."""
 
     @property
     def widget(self) -> QWidget:

@@ -1,4 +1,4 @@
-"""The cross-section that all views share: which plane, and what it cuts out of each body."""
+"""The cross-section that all views share: its plane, and the outlines of each body."""
 
 from collections.abc import Mapping
 

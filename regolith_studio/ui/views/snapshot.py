@@ -1,4 +1,4 @@
-"""The views as they are seen, with their titles, as one picture of any size."""
+"""The views with their titles as one picture of any size."""
 
 from collections.abc import Sequence
 

@@ -1,4 +1,4 @@
-"""Particle, fit and polyhedron side by side: the three views that are always there."""
+"""Particle, fit and polyhedron side by side in three views."""
 
 import html
 from functools import partial

@@ -18,7 +18,7 @@ _PADDING = 9
 
 
 class ViewFrame(QFrame):
-    """Title, one quiet line, the view; a double click on the title asks for more room.
+    """Title, a line of details and the view; a double click on the title enlarges it.
 
     Parameters
     ----------
