@@ -12,11 +12,11 @@ from regolith_studio.messages import N_
 from regolith_studio.scene.distance import signed_distances
 
 Follow = Callable[[Job, Callable[[Any], None], Callable[[str], None]], None]
-"""Does a job as soon as what is under way has ended; told who shows its result, or says why there is none."""
+"""Submits a job with functions that show its result, or the sentence of its failure."""
 
 
 class Distances(QObject):
-    """The last distances; ``measured`` is emitted for new ones, ``refused`` with the reason if there are none.
+    """The last distances; ``measured`` is emitted for new ones, ``refused`` with the reason for none.
 
     Parameters
     ----------
