@@ -17,7 +17,7 @@ def test_that_a_log_gets_a_line_now_and_then(
 ) -> None:
     assert terminal.run_with_progress(steps()) == 7
     assert capsys.readouterr().err == ""
-    monkeypatch.setattr(terminal, "_SILENCE", -1.0)
+    monkeypatch.setattr(terminal, "_LINE_INTERVAL", -1.0)
     assert terminal.run_with_progress(steps()) == 7
     assert capsys.readouterr().err == ""
     assert terminal.run_with_progress(steps(), logged=True) == 7

@@ -122,7 +122,7 @@ def test_that_going_back_to_a_particle_finds_its_fit_again(opened: Session) -> N
 
 
 def test_that_only_the_last_fits_are_at_hand(opened: Session, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(recompute, "FITS_KEPT", 2)
+    monkeypatch.setattr(recompute, "MAX_CACHED_FITS", 2)
     first = opened.results.fit
     opened.select("grain-1")
     second = opened.results.fit
