@@ -95,13 +95,13 @@ def slider_moves(window: Any, count: int) -> Growth:
 
 def coarsened_and_drawn(window: Any, count: int) -> Growth:
     """A face count is chosen, the polyhedron is made by the quick method, and its view is drawn."""
-    session, triptych = window.session, window.page.triptych
+    session, three_views = window.session, window.page.three_views
     session.choose(method="quadric", level=2)
     settle(window)
 
     def shown() -> bool:
         done = session.results.coarsened
-        return done is not None and any(each.polyhedron is done.polyhedron for each in triptych.shapes)
+        return done is not None and any(each.polyhedron is done.polyhedron for each in three_views.shapes)
 
     def act(number: int) -> None:
         session.choose(n_facets=12 + number % 20)

@@ -49,7 +49,7 @@ def responses(window: Any) -> Iterator[Response]:
     """All sliders of the page *Explore* that change a view, each from the usual choices."""
     from PySide6.QtWidgets import QSlider
 
-    views = window.page.triptych.views
+    views = window.page.three_views.views
     sliders = [each for each in window.page.findChildren(QSlider) if each.isVisible() and each.isEnabled()]
     for number, slider in enumerate(sliders):
         name = next((word for each in _upwards(slider) if (word := each.objectName())), str(number))

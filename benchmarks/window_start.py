@@ -87,14 +87,14 @@ def _watch(now: Any, seen: dict[str, float]) -> None:
 def _frames(window: Any, now: Any, seen: dict[str, float]) -> None:
     from PySide6.QtCore import QTimer
 
-    waiting = set(window.page.triptych.views)
+    waiting = set(window.page.three_views.views)
 
     def painted(name: str) -> None:
         waiting.discard(name)
         if not waiting:
             now("three views")
 
-    for name, view in window.page.triptych.views.items():
+    for name, view in window.page.three_views.views.items():
         if (canvas := getattr(view, "_canvas", None)) is not None:
             canvas.frameSwapped.connect(lambda name=name: painted(name))
         else:

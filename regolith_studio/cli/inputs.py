@@ -23,26 +23,21 @@ class ReadingOptions:
     repair: Repair = True
 
     def read(self, paths: Sequence[Path]) -> "LoadedParticles":
-        """The particles in files and folders; see :func:`read_inputs`."""
-        return read_inputs(paths, self.unit, self.repair)
+        """The particles in files and folders; unreadable files are reported on stderr.
 
+        Raises
+        ------
+        FileError
+            If nothing can be read.
+        """
+        from regolith_studio.jobs.particle_jobs import load_particles
+        from regolith_studio.readers.units import unit_factor
 
-def read_inputs(paths: Sequence[Path], unit: str, repair: bool = True) -> "LoadedParticles":
-    """The particles in files and folders; unreadable files are reported on stderr.
-
-    Raises
-    ------
-    FileError
-        If nothing can be read.
-    """
-    from regolith_studio.jobs.particle_jobs import load_particles
-    from regolith_studio.readers.units import unit_factor
-
-    with usage_errors():
-        unit_factor(unit)
-    loaded: LoadedParticles = run_with_progress(load_particles(tuple(paths), unit, repair))
-    print_errors(problem.with_path for problem in loaded.problems)
-    return loaded
+        with usage_errors():
+            unit_factor(self.unit)
+        loaded: LoadedParticles = run_with_progress(load_particles(tuple(paths), self.unit, self.repair))
+        print_errors(problem.with_path for problem in loaded.problems)
+        return loaded
 
 
 def start_reader() -> None:

@@ -31,7 +31,7 @@ def window(shown, preferences, wait, settled):
 
 
 def actor(window, view, name):
-    found = window.page.triptych.views[view]._plotter.actors.get(name)
+    found = window.page.three_views.views[view]._plotter.actors.get(name)
     return found if found is not None and found.GetVisibility() else None
 
 
@@ -56,7 +56,7 @@ def hover(widget, x, y):
 
 
 def test_that_any_two_bodies_are_wiped_along_one_line_that_is_dragged(window):
-    views = window.page.triptych
+    views = window.page.three_views
     switch(window, "wipe")
     pose = views.views["fit"].pose
     for name, frame in views.frames.items():
@@ -80,7 +80,7 @@ def test_that_any_two_bodies_are_wiped_along_one_line_that_is_dragged(window):
 
 
 def test_that_the_section_draws_and_measures_what_the_plane_cuts(window):
-    views, panel = window.page.triptych, window.page.plots.section
+    views, panel = window.page.three_views, window.page.plots.section
     switch(window, "section")
     assert window.page.plots.left.currentWidget() is panel
     panel.direction.setCurrentIndex(panel.direction.findData("z"))
@@ -104,7 +104,7 @@ def test_that_the_section_draws_and_measures_what_the_plane_cuts(window):
 
 
 def test_that_the_fit_says_its_size_again_when_the_distances_go(window, wait):
-    frame = window.page.triptych.frames["fit"]
+    frame = window.page.three_views.frames["fit"]
     before = frame.detail.text()
     assert before.startswith("121 coefficients")
     switch(window, "heat")
@@ -126,7 +126,7 @@ def test_that_the_place_of_the_section_can_be_read_in_a_narrow_panel(window):
 
 
 def test_that_the_frame_of_the_section_is_dragged_in_a_view(window):
-    views = window.page.triptych
+    views = window.page.three_views
     switch(window, "section")
     views.sections.set_direction("z", np.array([0.0, 0.0, 1.0]))
     view = views.views["particle"]
@@ -146,7 +146,7 @@ def test_that_the_frame_of_the_section_is_dragged_in_a_view(window):
 
 
 def test_that_the_facet_under_the_mouse_is_outlined_numbered_and_told(window):
-    views = window.page.triptych
+    views = window.page.three_views
     widget = views.views["polyhedron"].widget
     hover(widget, widget.width() // 2, widget.height() // 2)
     solid = window.session.results.coarsened.polyhedron
@@ -163,7 +163,7 @@ def test_that_the_facet_under_the_mouse_is_outlined_numbered_and_told(window):
 
 
 def test_that_one_view_after_the_other_gets_all_the_room(window):
-    frames = window.page.triptych.frames
+    frames = window.page.three_views.frames
     for seen in (["particle"], ["fit"], ["polyhedron"], ["particle", "fit", "polyhedron"]):
         switch(window, "enlarge")
         assert [name for name, frame in frames.items() if not frame.isHidden()] == seen
@@ -175,7 +175,7 @@ def test_that_one_view_after_the_other_gets_all_the_room(window):
 
 
 def test_that_the_picture_of_what_is_seen_has_bar_line_and_titles_at_any_scale(window):
-    views = window.page.triptych
+    views = window.page.three_views
     switch(window, "wipe")
     one, two = views.snapshot(1, False), views.snapshot(2, False)
     assert (two.width(), two.height()) == (2 * one.width(), 2 * one.height())
@@ -202,7 +202,7 @@ def test_that_another_theme_measures_no_distances_again(window, wait, settled, m
     wait(lambda: len(asked) == 1)
     settled(window)
     for theme in (DARK, LIGHT):
-        window.page.triptych.set_theme(theme)
+        window.page.three_views.set_theme(theme)
         edges = actor(window, "polyhedron", OUTLINE).prop.color
         assert edges.hex_rgb == theme.surroundings.outline
     assert len(asked) == 1

@@ -10,7 +10,7 @@ from regolith_studio.ui.app import open_window
 @pytest.mark.parametrize("method", ["quadric", "exact"])
 def test_that_polyhedra_are_seen_while_a_slider_never_rests(shown, preferences, wait, method):
     window = shown(open_window(views="image", preferences=preferences))
-    session, frame = window.session, window.page.triptych.frames["polyhedron"]
+    session, frame = window.session, window.page.three_views.frames["polyhedron"]
     wait(lambda: session.results.coarsened is not None and not session.tasks, 120.0)
     session.choose(method=method, level=2)
     seen, places = set(), cycle([*range(12, 40), *range(40, 12, -1)])

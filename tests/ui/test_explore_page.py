@@ -28,7 +28,7 @@ def window(shown, preferences, wait, settled):
 
 
 def seen(window, view, name):
-    actor = window.page.triptych.views[view]._plotter.actors.get(name)
+    actor = window.page.three_views.views[view]._plotter.actors.get(name)
     return actor if actor is not None and actor.GetVisibility() else None
 
 

@@ -140,7 +140,7 @@ def test_that_the_focus_is_framed_after_a_key_and_not_after_the_mouse(window, se
 
 
 def test_that_a_view_shows_that_it_has_the_keys_and_turns_with_them(window, settled):
-    frames = window.page.triptych.frames
+    frames = window.page.three_views.frames
     view = frames["fit"].view
     window.page.fit.l_max.field.setFocus()
     press(window, Qt.Key.Key_Tab)

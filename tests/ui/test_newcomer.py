@@ -185,7 +185,7 @@ def test_that_two_particles_are_compared_at_two_degrees(newcomer):
             name = window.session.choices.selected
             measured, fitted = column(window, "Particle"), column(window, "Fit")
             seen[name, degree] = abs(fitted["Surface area"] / measured["Surface area"] - 1)
-            assert f"{degree}" in window.page.triptych.frames["fit"]._title.text()
+            assert f"{degree}" in window.page.three_views.frames["fit"]._title.text()
     assert len({name for name, _degree in seen}) == 2
     for name in {name for name, _degree in seen}:
         assert seen[name, 10] < seen[name, 4], f"more of {name} is kept at a higher degree"
@@ -199,7 +199,7 @@ def test_that_a_polyhedron_keeps_volume_area_and_aspect_ratio(newcomer):
     for name in ("Volume", "Surface area", "Aspect ratio"):
         assert solid[name] == pytest.approx(fit[name], rel=1e-3), name
     assert newcomer.window.session.results.coarsened.n_facets == 20
-    assert "20 facets" in newcomer.window.page.triptych.frames["polyhedron"]._title.text()
+    assert "20 facets" in newcomer.window.page.three_views.frames["polyhedron"]._title.text()
 
 
 @pytest.mark.slow

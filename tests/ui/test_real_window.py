@@ -62,7 +62,7 @@ def drawn(wait, settled):
 
 
 def pictures(window):
-    return [view.picture().astype(int) for view in window.page.triptych.views.values()]
+    return [view.picture().astype(int) for view in window.page.three_views.views.values()]
 
 
 def difference(one, other):
@@ -198,7 +198,7 @@ def test_that_a_file_becomes_a_dataset_by_mouse_and_keys_alone(window, wait, dra
         True,
     ]
 
-    turn = window.page.triptych.views["fit"].widget.childAt(60, 60)
+    turn = window.page.three_views.views["fit"].widget.childAt(60, 60)
     QTest.mousePress(turn, Qt.MouseButton.LeftButton, pos=QPoint(60, 60))
     QTest.mouseMove(turn, QPoint(160, 90))
     QTest.mouseRelease(turn, Qt.MouseButton.LeftButton, pos=QPoint(160, 90))
@@ -233,9 +233,9 @@ def accented(picture):
 def test_that_the_tour_goes_on_with_return_and_leaves_no_frame_behind(window, wait, settled):
     activate(window)
     tour = start_tour(window, window.go, window.preferences)
-    triptych = window.page.triptych
-    corner = triptych.mapTo(window, QPoint(0, 0))
-    middle_of_the_left_edge = QRect(corner.x() - 3, corner.y() + triptych.height() // 2, 3, 40)
+    three_views = window.page.three_views
+    corner = three_views.mapTo(window, QPoint(0, 0))
+    middle_of_the_left_edge = QRect(corner.x() - 3, corner.y() + three_views.height() // 2, 3, 40)
     wait(lambda: accented(on_screen(window, middle_of_the_left_edge)) > 0.3)
     QTest.keyClick(tour.next, Qt.Key.Key_Return)
     assert tour.at == 1
@@ -253,7 +253,7 @@ def test_that_the_picture_of_the_documentation_can_be_taken(window, drawn):
     drawn(window)
     QTest.qWait(400)
     picture = window.grab().toImage()
-    for frame in window.page.triptych.frames.values():
+    for frame in window.page.three_views.frames.values():
         corner = frame.view.widget.mapTo(window, QPoint(0, 0))
         size = frame.view.widget.size()
         inside = picture.copy(corner.x(), corner.y(), size.width(), size.height())

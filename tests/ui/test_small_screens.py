@@ -104,7 +104,7 @@ def test_that_an_enlarged_view_shows_the_particle_as_large_as_it_can(shown, pref
     window = shown(MainWindow(session, preferences, "image"))
     session.open_sample()
     settled(window)
-    views = window.page.triptych.views
+    views = window.page.three_views.views
     window.menus.by_name["explore.reset"].trigger()
     usual = framed(views["particle"])
     for name in ("particle", "fit", "polyhedron"):
@@ -119,7 +119,7 @@ def test_that_bodies_are_framed_again_when_the_window_or_a_border_is_moved(shown
     session.open_sample()
     window.resize(1920, 1080)
     settled(window)
-    views = window.page.triptych.views
+    views = window.page.three_views.views
     window.menus.by_name["explore.reset"].trigger()
     usual = framed(views["particle"])
     for width, height in ((960, 540), (1280, 800), (1920, 1080)):
@@ -128,7 +128,7 @@ def test_that_bodies_are_framed_again_when_the_window_or_a_border_is_moved(shown
         settled(window)
         assert [framed(view) for view in views.values()] == pytest.approx([usual] * 3, rel=0.02)
     turned = views["fit"].pose
-    window.page.triptych.setSizes([200, 200, 700])
+    window.page.three_views.setSizes([200, 200, 700])
     settled(window)
     assert views["particle"].widget.width() < views["polyhedron"].widget.width() / 2
     assert [framed(view) for view in views.values()] == pytest.approx([usual] * 3, rel=0.02)

@@ -36,7 +36,7 @@ def window(shown, preferences, wait, settled):
 
 
 def pictures(window):
-    return [view.picture().astype(int) for view in window.page.triptych.views.values()]
+    return [view.picture().astype(int) for view in window.page.three_views.views.values()]
 
 
 def changed(before, after):
@@ -96,7 +96,7 @@ def test_that_l_max_changes_the_fit_and_the_polyhedron_but_not_the_particle(wind
     wait(lambda: window.session.results.coarsened is not None, SECONDS)
     settled(window)
     assert changed(before, pictures(window)) == [False, True, True]
-    assert "4" in window.page.triptych.frames["fit"]._title.text()
+    assert "4" in window.page.three_views.frames["fit"]._title.text()
 
 
 def test_that_a_dragged_slider_is_one_step_of_undo(window, wait):

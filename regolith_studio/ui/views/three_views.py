@@ -30,7 +30,7 @@ from regolith_studio.ui.views.view_frame import ViewFrame
 
 
 class ThreeViews(QSplitter):
-    """Three framed views under linked cameras; ``whispered`` tells what the mouse points at.
+    """Three framed views under linked cameras; ``hovered`` reports what the mouse points at.
 
     Parameters
     ----------
@@ -44,7 +44,7 @@ class ThreeViews(QSplitter):
 
     def __init__(self, kind: str, follow: Follow, parent: QWidget | None = None) -> None:
         super().__init__(Qt.Orientation.Horizontal, parent)
-        self.setObjectName("triptych")
+        self.setObjectName("three_views")
         self.setChildrenCollapsible(False)
         self._theme = current_theme()
         ink = self._theme.surroundings

@@ -42,20 +42,20 @@ class ExplorePage(PageWidget):
         self.particles, self.fit = ParticleListPanel(), FitPanel()
         self.coarsening, self.loss = CoarseningPanel(), LossPanel()
         measuring = LatestJob(context, tr("Measuring distances"), "distances")
-        self.triptych = ThreeViews(context.views, measuring.submit)
-        self.plots = PlotArea(self.triptych)
-        self.triptych.hovered.connect(self._show_status)
-        self.pictures = PictureExport(context, self.triptych, self)
+        self.three_views = ThreeViews(context.views, measuring.submit)
+        self.plots = PlotArea(self.three_views)
+        self.three_views.hovered.connect(self._show_status)
+        self.pictures = PictureExport(context, self.three_views, self)
         self._place()
         self._wire(context)
 
     def set_theme(self, theme: Theme) -> None:
-        for part in (self.particles, self.coarsening, self.triptych):
+        for part in (self.particles, self.coarsening, self.three_views):
             part.set_theme(theme)
         self.plots.set_theme(theme)
 
     def commands(self) -> Mapping[str, Callable[..., object]]:
-        views = self.triptych
+        views = self.three_views
         return {
             **{f"look_{key}": partial(views.link.look_from, key) for key in DIRECTIONS},
             "link": views.link.set_linked,
@@ -73,7 +73,7 @@ class ExplorePage(PageWidget):
         }
 
     def on_close(self) -> None:
-        self.triptych.release()
+        self.three_views.release()
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)
@@ -84,7 +84,7 @@ class ExplorePage(PageWidget):
 
     def _place(self) -> None:
         high_enough = max(PLOTS_HEIGHT, PLOTS_LINES * self.fontMetrics().height())
-        middle = self._rows = stacked([self.triptych, self.plots], [520, high_enough], stretch=0)
+        middle = self._rows = stacked([self.three_views, self.plots], [520, high_enough], stretch=0)
         middle.setObjectName("explore_rows")
         controls = scrolled_column([self.fit, self.coarsening, self.loss])
         parts = [padded(self.particles, 10, 10, 2, 8), padded(middle, 2, 10, 2, 8), controls]
@@ -105,7 +105,7 @@ class ExplorePage(PageWidget):
             "particles", lambda: self.particles.set_entries(session.particles), keeps_particles=True
         )
         bindings.refresh(
-            "particles choices", lambda: self.triptych.show_particle(session.selected), ("selected",)
+            "particles choices", lambda: self.three_views.show_particle(session.selected), ("selected",)
         )
         bindings.refresh("fit", self._show_star_point)
         bindings.refresh("fit choices", self._show_findings, ("l_max",), slow=True)
@@ -114,9 +114,9 @@ class ExplorePage(PageWidget):
         self.plots.wire(session, bindings)
 
     def _set_section(self, shown: bool) -> None:
-        self.triptych.sections.set_shown(shown)
+        self.three_views.sections.set_shown(shown)
         if shown:
-            self.triptych.cut_across(self.triptych.sections.direction)
+            self.three_views.cut_across(self.three_views.sections.direction)
         self.plots.show_section(shown)
 
     def _show_status(self, words: str) -> None:
@@ -130,12 +130,12 @@ class ExplorePage(PageWidget):
 
     def _show_star_point(self) -> None:
         fit = self._session.results.fit
-        self.triptych.show_star_point(fit.star_point if fit else None)
+        self.three_views.show_star_point(fit.star_point if fit else None)
 
     def _show_fit(self) -> None:
-        self.triptych.show_fit(self._session.results.surface, self._session.results.surface_l_max)
+        self.three_views.show_fit(self._session.results.surface, self._session.results.surface_l_max)
 
     def _show_coarsening(self) -> None:
         results = self._session.results
-        self.triptych.show_polyhedron(results)
+        self.three_views.show_polyhedron(results)
         self.coarsening.set_outcome(results.coarsened.reason if results.coarsened else None)

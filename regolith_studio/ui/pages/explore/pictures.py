@@ -46,13 +46,13 @@ class PictureExport(QObject):
     ----------
     context
         Of the page.
-    triptych
+    three_views
         The views.
     """
 
-    def __init__(self, context: PageContext, triptych: ThreeViews, parent: QWidget) -> None:
+    def __init__(self, context: PageContext, three_views: ThreeViews, parent: QWidget) -> None:
         super().__init__(parent)
-        self._context, self._triptych, self._window = context, triptych, parent
+        self._context, self._three_views, self._window = context, three_views, parent
         self._kind = ""
 
     def save_picture(self) -> None:
@@ -71,10 +71,10 @@ class PictureExport(QObject):
             return
         path = Path(name).with_suffix(".png")
         if kind == SCREENSHOT:
-            self._write(self._triptych.snapshot(scale, transparent), path)
+            self._write(self._three_views.snapshot(scale, transparent), path)
             return
         titles = view_titles(results.surface_l_max, results.coarsened)
-        pose = self._triptych.views["particle"].pose
+        pose = self._three_views.views["particle"].pose
         surfaces = (entry.particle.mesh, results.surface, results.coarsened)
         job = Job(draw_figure, (*surfaces, titles, path, scale, pose, transparent))
         self._context.start(tr("Drawing the figure"), job, self._saved_note("figure", path))
@@ -82,13 +82,13 @@ class PictureExport(QObject):
     def save_turntable(self) -> None:
         """Ask for a file and save an animation of one rotation, in the background."""
         entry = self._context.session.selected
-        if entry is None or not self._triptych.shapes:
+        if entry is None or not self._three_views.shapes:
             self._context.toast.problem(tr("Wait until the views are drawn."))
             return
         name, suffix = self._ask_animation(tr("Save turntable"), f"{entry.id}-turning")
         if name:
             path = Path(name).with_suffix(suffix)
-            job = Job(turn, (self._triptych.shapes, self._triptych.views["particle"].pose, path))
+            job = Job(turn, (self._three_views.shapes, self._three_views.views["particle"].pose, path))
             title = tr("Drawing the turntable")
             self._context.start(title, job, self._saved_note("turntable", path), lane="turntable")
 

@@ -23,13 +23,13 @@ LETTERS = 48
 class PlotArea(QSplitter):
     """Two groups of tabs side by side, or one group in narrow windows."""
 
-    def __init__(self, triptych: ThreeViews) -> None:
+    def __init__(self, three_views: ThreeViews) -> None:
         super().__init__(Qt.Orientation.Horizontal)
         self.setChildrenCollapsible(False)
         self.setHandleWidth(7)
         self.error_bars, self.table = ErrorBarsPanel(), DescriptorTablePanel()
         self.loss_curve, self.spectrum = LossCurvePanel(), SpectrumPanel()
-        self.section = SectionPanel(triptych)
+        self.section = SectionPanel(three_views)
         self.left = tabs(
             "plots_left",
             [(self.error_bars, tr("Errors")), (self.table, tr("Descriptors")), (self.section, tr("Section"))],

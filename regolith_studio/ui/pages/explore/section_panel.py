@@ -30,10 +30,10 @@ PLACE = NumberSpec(
 class SectionPanel(QWidget):
     """Controls of the section plane, and the outlines below."""
 
-    def __init__(self, triptych: ThreeViews) -> None:
+    def __init__(self, three_views: ThreeViews) -> None:
         super().__init__()
         self.setObjectName("section")
-        self._triptych, self._sections = triptych, triptych.sections
+        self._three_views, self._sections = three_views, three_views.sections
         self._theme = current_theme()
         self.direction = ChoiceBox("section_direction", tr("Direction of the section"), DIRECTIONS)
         self.direction.setMinimumContentsLength(7)
@@ -46,7 +46,7 @@ class SectionPanel(QWidget):
         self.plot.setAccessibleName(tr("Cross-section"))
         self.plot.canvas.setAspectLocked(True)
         self._place()
-        self.direction.currentIndexChanged.connect(lambda _: triptych.cut_across(self.direction.value()))
+        self.direction.currentIndexChanged.connect(lambda _: three_views.cut_across(self.direction.value()))
         self.flipped.toggled.connect(self._sections.set_flipped)
         self.place.valueChanged.connect(self._sections.set_position)
         self._sections.changed.connect(self.refresh)
