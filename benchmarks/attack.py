@@ -56,7 +56,7 @@ COMMANDS = {
     "extract": ("extract IN/labels.npy -o OUT/e --kind labels --voxel-size 2", "--voxel-size 3"),
     "gallery": ("gallery IN/meshes -o OUT/p --degrees 1,2", "--degrees 1"),
     "run": ("run IN/recipe.json -o OUT/r --jobs 2", "--seed 5"),
-    "study lmax": ("study lmax IN/meshes -o OUT/s --degrees 1-3 --level 2 --jobs 2", "--degrees 1-2"),
+    "study lmax": ("study lmax IN/meshes -o OUT/s --degrees 1-3 --jobs 2", "--degrees 1-2"),
     "study solids": (
         "study solids IN/meshes -o OUT/s --method quadric --loss all --facets 12",
         "--facets 8",

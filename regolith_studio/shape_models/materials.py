@@ -36,7 +36,6 @@ LOG_FIELD, HULL_FIELD = "log_field", "hull_field"
 HULL_DEGREE = 10
 N_JUDGED = 1000
 JUDGED = ("equivalent_radius", "aspect_ratio", "sphericity", "convexity")
-Positive = Annotated[float, Field(gt=0.0)]
 Amplitude = Annotated[float, Field(ge=0.0, le=1.0)]
 
 
@@ -50,7 +49,7 @@ class MaterialCard(BaseModel):
     origin: str = Field(min_length=1, description="Where the numbers come from, one sentence.")
     n_particles: int = Field(ge=2, description="Particles that the statistics were taken of.")
     unit: str = "um"
-    median_radius: Positive = Field(description="Median equivalent radius, by number.")
+    median_radius: Annotated[float, Field(ge=1e-12, le=1e12)] = Field(description="Median equivalent radius, by number.")
     log_deviation: Annotated[float, Field(gt=0.0, le=5.0)] = Field(description="Of ln r_eq.")
     relative_amplitudes: tuple[Amplitude, ...] = Field(
         min_length=2, description="sqrt(A_l) / mu for l = 1, 2, ..., mu the mean of c_00."

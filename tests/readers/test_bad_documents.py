@@ -194,7 +194,8 @@ def special(key: str, good: bytes) -> Iterator[Bad]:
         for number, values in enumerate(({}, {"mean": "x"}, {"mean": 1.0, "spectrum": 3})):
             yield f"numbers {number}", changed(document, "values", values), "make no model of its kind"
     if key == "card":
-        yield "negative", changed(document, "median_radius", -2.0), "radius must be more than 0, not -2"
+        yield "negative", changed(document, "median_radius", -2.0), "radius must be at least 1e-12, not -2"
+        yield "far", changed(document, "median_radius", 1e300), r"median_radius must be at most 1e\+12"
         yield "wide", changed(document, "log_deviation", 9), "log_deviation must be at most 5, not 9"
         yield "short", changed(document, "relative_amplitudes", [0.1]), "it has 1 of at least 2 entries"
         yield "extra", changed(document, "colour", "grey"), "colour is not known here"
