@@ -317,6 +317,8 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--only", nargs="*", default=[""], metavar="WORD")
     options = parser.parse_args()
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # the background of a shell ignores it, nohup
+    signal.signal(signal.SIGHUP, signal.SIG_DFL)  # this, and so would what is started here
     rows: Rows = {}
     with tempfile.TemporaryDirectory() as folder, suppress(KeyboardInterrupt):
         attack(Path(folder), options.only, options.share, options.seed, rows)

@@ -49,7 +49,7 @@ class MaterialCard(BaseModel):
     origin: str = Field(min_length=1, description="Where the numbers come from, one sentence.")
     n_particles: int = Field(ge=2, description="Particles that the statistics were taken of.")
     unit: str = "um"
-    median_radius: Annotated[float, Field(ge=1e-12, le=1e12)] = Field(description="Median equivalent radius, by number.")
+    median_radius: float = Field(ge=1e-12, le=1e12, description="Median equivalent radius, by number.")
     log_deviation: Annotated[float, Field(gt=0.0, le=5.0)] = Field(description="Of ln r_eq.")
     relative_amplitudes: tuple[Amplitude, ...] = Field(
         min_length=2, description="sqrt(A_l) / mu for l = 1, 2, ..., mu the mean of c_00."
