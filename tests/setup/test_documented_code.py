@@ -115,7 +115,7 @@ def test_that_a_study_and_a_pile_of_the_pages_run() -> None:
     for page, told in commands():
         words = told
         if words[0] == "repose":
-            words = [*words[: words.index("--particles")], "--particles", "12", "--coarse-graining", "12"]
+            words = [*words[: words.index("--particles")], "--particles", "150", "--coarse-graining", "12"]
         if page in SHORT and words[0] in ("study", "repose"):
             assert run(words) == 0, (page, words)
 
