@@ -342,8 +342,8 @@ def test_that_an_engine_does_not_outlive_a_program_that_was_killed(
     """Nobody is left to end it, so it must notice by itself."""
     command = [sys.executable, "-m", "regolith_studio", "repose", "run", str(boxes_folder), "-o"]
     parent = psutil.Popen([*command, str(tmp_path / "run"), *COMMAND, "--set", "time_step=0.001"])
-    while not list((tmp_path / "run" / "snapshots").glob("*.npz")):
-        assert parent.is_running()
+    while not list(tmp_path.rglob("snapshots/*.npz")):
+        assert parent.poll() is None
         time.sleep(0.05)
     workers = [each for each in parent.children() if "regolith_studio.dem.engine_process" in each.cmdline()]
     assert workers
