@@ -67,6 +67,8 @@ MeshLevel = Annotated[
     int | None,
     typer.Option(
         "--level",
+        min=0,
+        max=7,
         help="Subdivisions of the icosahedron that surfaces are drawn on.",
         metavar="N",
         show_default="4 up to l_max = 10, else 5",

@@ -86,6 +86,8 @@ DrawDegree = Annotated[
     int | None,
     typer.Option(
         "--l-max",
+        min=0,
+        max=30,
         help="Degree of drawn particles; they are compared with the particles with all their degrees.",
         metavar="L",
         show_default="all of the sample for sample_matched, 10 for the others",

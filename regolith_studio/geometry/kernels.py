@@ -172,7 +172,11 @@ def cache_folders() -> tuple[Path, Path]:
     """Folder for machine code, and the temporary one that takes its place where it cannot be written."""
     user = os.getuid() if hasattr(os, "getuid") else "kernels"
     wanted = Path(_CONFIG.CACHE_DIR or user_cache_path("regolith-studio", appauthor=False) / "kernels")
-    return wanted, Path(tempfile.gettempdir(), f"regolith-studio-{user}")
+    try:
+        temporary = tempfile.gettempdir()
+    except FileNotFoundError:  # nothing can be written, as in the process that reads untrusted files
+        return wanted, wanted
+    return wanted, Path(temporary, f"regolith-studio-{user}")
 
 
 @cache

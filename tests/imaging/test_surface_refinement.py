@@ -107,11 +107,11 @@ def test_that_a_surface_that_explains_all_stays_where_it_is() -> None:
     share = ndimage.gaussian_filter(coverage(ball, (EDGE,) * 3, 3), BLUR).astype(np.float32)
     total = float(np.sqrt(BLUR**2 + 1 / 12))
     told = np.ones(share.shape, dtype=bool)
-    same = refined_to_scan(ball, share, told, total, RefinementSettings(12, 20, 1.5))
+    same = refined_to_scan(ball, share, told, np.full(3, total), RefinementSettings(12, 20, 1.5))
     assert np.linalg.norm(same.vertices - CENTRE, axis=1) == pytest.approx(12.0, abs=0.1)
     assert same.volume == pytest.approx(ball.volume, rel=1e-3)
     small = Mesh(CENTRE + 11.0 * SPHERE.vertices, SPHERE.faces)
-    grown = refined_to_scan(small, share, told, total, RefinementSettings(12, 20, 1.5))
+    grown = refined_to_scan(small, share, told, np.full(3, total), RefinementSettings(12, 20, 1.5))
     assert grown.volume == pytest.approx(ball.volume, rel=5e-3)
 
 
@@ -121,7 +121,10 @@ def test_that_what_is_not_told_is_not_moved() -> None:
     share = coverage(Mesh(CENTRE + 12.0 * SPHERE.vertices, SPHERE.faces), (EDGE,) * 3, 3).astype(np.float32)
     told = np.zeros(share.shape, dtype=bool)
     told[:22] = True
-    found = refined_to_scan(small, share, told, 0.3, RefinementSettings(12, 20, 1.0)).vertices - CENTRE
+    found = (
+        refined_to_scan(small, share, told, np.full(3, 0.3), RefinementSettings(12, 20, 1.0)).vertices
+        - CENTRE
+    )
     radius = np.linalg.norm(found, axis=1)
     assert np.median(radius[found[:, 0] < -4]) == pytest.approx(12.0, abs=0.05)
     assert np.median(radius[found[:, 0] > 4]) == pytest.approx(11.5, abs=0.05)
