@@ -55,6 +55,7 @@ def check(folder: Path) -> None:
     assert len(re.findall("<h2>", page)) >= 4
 
 
+@pytest.mark.slow
 def test_that_the_demo_shows_the_whole_chain(
     command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

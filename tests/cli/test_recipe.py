@@ -3,6 +3,8 @@
 import json
 from pathlib import Path
 
+import pytest
+
 from regolith_studio.cli.entry import run
 
 
@@ -113,6 +115,7 @@ STANDING = {
 }
 
 
+@pytest.mark.slow
 def test_that_representatives_and_exports_are_those_of_the_dataset_commands(
     command, grains: Path, tmp_path: Path
 ) -> None:

@@ -81,6 +81,7 @@ def test_that_coarsening_writes_convex_bodies_that_another_program_reads(
         assert entry["n_facets"] == entry["n_facets_asked"] == 16
 
 
+@pytest.mark.slow
 def test_that_the_number_of_processes_changes_no_byte(command, grains: Path, tmp_path: Path) -> None:
     common = ("coarsen", grains, "--facets", 12, "--seed", 3, "--l-max", 4)
     assert command(*common, "-o", tmp_path / "one", "--jobs", 1).code == 0

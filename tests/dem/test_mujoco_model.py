@@ -135,6 +135,7 @@ def test_that_bad_settings_are_one_sentence() -> None:
         MujocoSettings(time_step=1.0)
 
 
+@pytest.mark.slow
 def test_that_the_memory_for_contacts_grows_with_the_number_and_not_with_its_square(boxes: Dataset) -> None:
     small, large = (
         build_model(prepare(boxes, ReposeCase(n_particles=n)), MujocoSettings()).model.narena

@@ -197,6 +197,7 @@ def scattered_grains(generator: np.random.Generator, size: int = 64, rim: int = 
     return Volume(field[(slice(rim, -rim),) * 3], (1, 1, 1), "labels", "t"), counts
 
 
+@pytest.mark.slow
 def test_that_weighted_grains_have_the_mean_volume_of_all() -> None:
     """Monte Carlo: 300 scans of a mixture of small and large grains."""
     generator = np.random.default_rng(0)

@@ -108,6 +108,7 @@ def test_that_settings_of_the_extraction_change_what_is_found(tmp_path: Path, sc
     assert by_file.tally.n_read == large.tally.n_read
 
 
+@pytest.mark.slow
 def test_that_a_run_given_up_while_grains_are_extracted_or_worked_on_ends_with_the_same_bytes(
     tmp_path: Path, scan: dict[str, Any]
 ) -> None:

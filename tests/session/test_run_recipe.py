@@ -123,6 +123,7 @@ def test_that_a_run_given_up_after_any_particle_goes_on_to_the_same_bytes(
     assert digests(tmp_path / "out") == alone[1]
 
 
+@pytest.mark.slow
 def test_that_a_study_given_up_within_a_run_goes_on_to_the_same_bytes(
     grains: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -266,6 +267,7 @@ def test_that_an_unknown_card_is_an_error_before_any_work(tmp_path: Path) -> Non
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(os.name == "nt", reason="signals are a matter of POSIX")
 def test_that_a_worker_killed_in_mid_run_changes_no_byte(
     grains: Path, tmp_path: Path, alone: tuple[RecipeRun, dict]

@@ -194,6 +194,7 @@ def test_that_drawn_particles_have_the_outer_numbers_of_real_ones(cement: Sample
     assert abs(_mean_share_of_hull(plain) - real) > 0.02
 
 
+@pytest.mark.slow
 def test_that_the_faceting_follows_the_sample() -> None:
     soft = materials()["ma165"].model(10).draw(200, 0)
     rows = np.stack([soft.particle(i).values for i in range(200)])

@@ -36,6 +36,7 @@ def test_that_a_material_draws_particles_with_its_sizes_and_amplitudes(name: str
     assert amplitude == pytest.approx(card.relative_amplitudes[1], rel=0.15)
 
 
+@pytest.mark.slow
 def test_that_the_card_of_drawn_particles_is_the_card_that_drew_them() -> None:
     card = materials()["ma165"]
     draws = card.model(6).draw(800, 0)

@@ -3,6 +3,8 @@
 import subprocess
 import sys
 
+import pytest
+
 SCRIPT = r"""
 import hashlib, sys, tempfile
 from concurrent.futures import ThreadPoolExecutor
@@ -41,6 +43,7 @@ assert together == alone * 4, "two threads got each other's letters"
 """
 
 
+@pytest.mark.slow
 def test_that_threads_that_draw_at_once_get_what_each_gets_alone() -> None:
     ran = subprocess.run([sys.executable, "-c", SCRIPT], capture_output=True, text=True, check=False)
     assert ran.returncode == 0, ran.stderr

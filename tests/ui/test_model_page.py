@@ -174,6 +174,7 @@ def test_that_models_are_judged_on_the_sample_that_was_fitted(page):
     assert tables["energies"].rowCount() == 10
 
 
+@pytest.mark.slow
 def test_that_the_parts_of_a_mixture_are_named(page):
     take(page, rough_sample())
     page.source.model.setCurrentIndex(page.source.model.findData("mixture_field"))
@@ -262,6 +263,7 @@ def test_that_stop_answers_before_the_work_has_ended(shown):
     assert panel.frame.stop.text() == words
 
 
+@pytest.mark.slow
 def test_that_what_is_fitted_drawn_and_judged_goes_through_the_translation(opened, speaking):
     speaking("brackets")
     page = opened()

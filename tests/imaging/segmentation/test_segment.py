@@ -77,6 +77,7 @@ def dense_balls(shape: int = 96, seed: int = 0) -> tuple[np.ndarray, np.ndarray]
     return truth, radii
 
 
+@pytest.mark.slow
 def test_that_touching_balls_of_many_sizes_are_parted_whether_in_tiles_or_not() -> None:
     truth, radii = dense_balls()
     assert ndimage.label(truth > 0)[1] < len(radii) / 4
