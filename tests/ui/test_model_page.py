@@ -297,8 +297,8 @@ def test_that_the_outcome_of_a_judgement_is_told_in_german(opened, speaking):
     page.evaluation.setValue({"splits": 1, "repeats": 2, "all_models": False})
     page.judge()
     words = page.evaluation.notes.text()
-    assert words.startswith("30 gemessene Partikel bei l<sub>max</sub> = 4, 0 ausgelassen;")
-    assert words.endswith("1 Teilung, 2-mal 20 Ziehungen je Fit, Startwert 0.")
+    assert words.startswith("30 gemessene Partikel mit Graden bis 4, 0 ausgelassen;")
+    assert words.endswith("1 Teilung, je Anpassung 2 Mal 20 gezogen, Startwert 0.")
     wanted = {page.evaluation.tables["targets"].item(row, 3).text().split()[0] for row in range(3)}
     assert wanted <= {"mindestens", "höchstens"}
     values = {"name": Message("Mixture of fields"), "split": 2, "draw": 3}
