@@ -15,7 +15,7 @@ from regolith_studio.geometry.kernels import machine_code_folder
 from regolith_studio.io.output_lock import lock_file
 from regolith_studio.jobs.events import Progress, Started, Steps
 from regolith_studio.jobs.progress_rate import ProgressRate, format_duration
-from regolith_studio.messages import N_
+from regolith_studio.messages import N_, Message
 
 TASKS = {"read": 9, "fit": 27, "describe": 31, "quadric": 14, "annealing": 12, "exact": 71}
 """What can be compiled, in the order in which the window needs it, and the files of machine code that each
@@ -48,9 +48,8 @@ def compile_first(*tasks: str) -> Steps:
     missing = [task for task in tasks if not is_compiled(task)]
     if not missing:
         return
-    compiled = _count_files()
-    total = compiled + sum(TASKS[task] for task in missing)
-    rate = ProgressRate(total, compiled)
+    before, total = _count_files(), sum(TASKS[task] for task in missing)
+    rate = ProgressRate(total)
     yield Started(N_("Compiling, once after an installation"), total)
     process: subprocess.Popen[bytes] | None = None
     lock = -1
@@ -61,9 +60,10 @@ def compile_first(*tasks: str) -> Steps:
                 process = _compile_in_process(missing) if lock >= 0 else None
             elif process.poll() is not None:
                 break
-            rate.advance(min(_count_files(), total) - rate.done)
+            rate.advance(min(_count_files() - before, total) - rate.done)
             left = rate.seconds_left
-            yield Progress(rate.done, total, "" if left is None else f"{format_duration(left)} left")
+            text = "" if left is None else Message(N_("{duration} left"), duration=format_duration(left))
+            yield Progress(rate.done, total, text)
             time.sleep(_POLL_SECONDS)
     finally:
         if process is not None:

@@ -6416,6 +6416,10 @@
         <translation>{count}, als STL-Dateien mit Einheitsvolumen, zusammen {size:,.0f} KiB</translation>
     </message>
     <message>
+        <source>{duration} left</source>
+        <translation>noch {duration}</translation>
+    </message>
+    <message>
         <source>{edges} voxels, {dtype}.</source>
         <translation>{edges} Voxel, {dtype}.</translation>
     </message>

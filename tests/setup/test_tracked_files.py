@@ -63,6 +63,6 @@ def test_that_the_constraints_are_sorted_pins_and_nothing_else() -> None:
     assert names == sorted(names)
 
 
-def test_that_no_tracked_file_is_made_by_running_the_program() -> None:
-    suffixes = {".pyc", ".nbc", ".nbi", ".log", ".egg-info"}
+def test_that_no_tracked_file_is_made_by_running_the_program_or_left_by_a_merge() -> None:
+    suffixes = {".pyc", ".nbc", ".nbi", ".log", ".egg-info", ".orig", ".rej"}
     assert not [path for path in tracked_files() if suffixes & set(path.suffixes)]

@@ -105,7 +105,7 @@ def summary_page(recipe: Recipe, summary: Summary, studies: Sequence[str], probl
 
 
 def _lead(recipe: Recipe, summary: Summary) -> str:
-    target = f"surface at l_max = {recipe.l_max}" if recipe.target == "fit" else "measured surface"
+    target = f"surface at l_max = {recipe.l_max}" if recipe.target == "fit" else "particle itself"
     criterion = recipe.choices().coarsening_request.stopping_criterion
     return (
         f"<p>{summary.n_particles:,} particles; {summary.n_coarse:,} convex polyhedra "
