@@ -9,6 +9,8 @@ from regolith_studio.messages import N_, Message
 
 MAX_FACETS = 100_000
 """Sphericities that ask for more facets count as unreachable."""
+PREMISE_TOLERANCE = 1e-5
+"""Relative error up to which V or CH counts as exact."""
 
 
 def max_sphericity(n_facets: int) -> float:
@@ -69,6 +71,20 @@ def attainable_errors(
         "aspect_ratio": 0.0,
         "convex_hull_volume": 1.0 - solidity if keep_volume else 0.0,
     }
+
+
+def bounds_in_force(bounds: Mapping[str, float], errors: Mapping[str, float]) -> dict[str, float]:
+    """The bounds whose premise a polyhedron with these errors meets; the others are 0.
+
+    V and CH are bounded together: the bound of the one holds where the other is exact, that of the Jaccard
+    distance where CH is. A polyhedron that is smaller than the preferred volume may be below them.
+    """
+    held = dict(bounds)
+    if errors["volume"] > PREMISE_TOLERANCE:
+        held["convex_hull_volume"] = 0.0
+    if errors["convex_hull_volume"] > PREMISE_TOLERANCE:
+        held["volume"] = held[JACCARD] = 0.0
+    return held
 
 
 def min_loss(descriptors: Mapping[str, float], n_facets: int, weights: LossWeights) -> float:

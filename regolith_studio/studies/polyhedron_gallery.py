@@ -6,6 +6,7 @@ from typing import Any, Self
 
 import numpy as np
 
+from regolith_studio.coarsening.lower_bounds import bounds_in_force
 from regolith_studio.coarsening.result import CoarseningResult
 from regolith_studio.coarsening.weights import JACCARD
 from regolith_studio.descriptors.catalogue import LOSS_KEYS
@@ -106,7 +107,8 @@ def _numbers(found: GalleryPolyhedron | str) -> tuple[Cell, ...]:
     if isinstance(found, str):
         return (*(None,) * (4 + 2 * (len(LOSS_KEYS) + 1) + 1), found)
     errors = [100 * found.errors[key] for key in LOSS_KEYS]
-    bounds = [100 * found.bounds[key] for key in (*LOSS_KEYS, JACCARD)]
+    held = bounds_in_force(found.bounds, found.errors)
+    bounds = [100 * held[key] for key in (*LOSS_KEYS, JACCARD)]
     solid = found.polyhedron
     counts = (found.method, solid.n_facets, solid.n_vertices, solid.n_triangles)
     return (*counts, *errors, 100 * found.jaccard_distance, *bounds, found.loss, found.reason)

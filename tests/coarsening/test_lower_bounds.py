@@ -5,6 +5,7 @@ import pytest
 
 from regolith_studio.coarsening.lower_bounds import (
     attainable_errors,
+    bounds_in_force,
     max_sphericity,
     min_facets,
     min_loss,
@@ -49,9 +50,24 @@ def test_that_volume_and_hull_cannot_both_be_met() -> None:
     assert hull["volume"] == pytest.approx(0.25)
 
 
+@pytest.mark.parametrize("volume", [0.5, 0.8, 0.87, 0.999, 1.0, 1.1])
+@pytest.mark.parametrize("of_hull", [1.0, 3.0])
+def test_that_no_convex_polyhedron_is_better_than_a_bound_in_force(volume: float, of_hull: float) -> None:
+    weights = LossWeights.of(volume=1.0, convex_hull_volume=of_hull)
+    errors = {"volume": abs(volume / 0.8 - 1.0), "convex_hull_volume": abs(volume - 1.0)}
+    held = bounds_in_force(attainable_errors(SHAPE, 20, weights), errors)
+    for key, error in errors.items():
+        assert error >= held[key] - 1e-12
+
+
 @pytest.mark.parametrize(("of_volume", "of_hull"), [(1, 1), (1, 3), (2, 1), (0, 1)])
 def test_that_the_bound_is_the_least_of_the_loss_over_all_volumes(of_volume: float, of_hull: float) -> None:
     volumes = np.linspace(0.5, 1.5, 200_001)
     losses = of_volume * abs(volumes - 0.8) / 0.8 + of_hull * abs(volumes - 1.0)
     weights = LossWeights.of(volume=of_volume, convex_hull_volume=of_hull)
     assert min_loss(SHAPE, 20, weights) == pytest.approx(losses.min(), abs=1e-5)
+
+
+def test_that_the_bound_of_the_hull_is_in_force_where_the_volume_is_exact() -> None:
+    bounds = attainable_errors(SHAPE, 20, LossWeights.from_preset("all"))
+    assert bounds_in_force(bounds, {"volume": 1e-7, "convex_hull_volume": 0.2}) == bounds

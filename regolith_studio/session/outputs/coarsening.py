@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from regolith_studio.coarsening.exact.constraint_selection import EXACT
+from regolith_studio.coarsening.lower_bounds import bounds_in_force
 from regolith_studio.coarsening.result import CoarseningResult
 from regolith_studio.coarsening.weights import JACCARD
 from regolith_studio.descriptors.catalogue import CATALOGUE, LOSS_KEYS
@@ -67,11 +68,12 @@ def error_table(done: Sequence[CoarsenedParticle]) -> Table:
             coarse.n_facets,
             coarse.n_vertices,
             coarse.n_triangles,
-            *[_per_cent(coarse.errors[key], coarse.bounds[key]) for key in LOSS_KEYS],
-            _per_cent(coarse.jaccard_distance, coarse.bounds[JACCARD]),
+            *[_per_cent(coarse.errors[key], bounds[key]) for key in LOSS_KEYS],
+            _per_cent(coarse.jaccard_distance, bounds[JACCARD]),
         )
         for each in done
         if (coarse := each.coarsened)
+        for bounds in (bounds_in_force(coarse.bounds, coarse.errors),)
     ]
     return Table("", (*columns, Column("Jaccard", "%")), tuple(rows))
 

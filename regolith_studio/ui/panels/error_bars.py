@@ -4,6 +4,7 @@ import math
 
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 
+from regolith_studio.coarsening.lower_bounds import bounds_in_force
 from regolith_studio.coarsening.weights import JACCARD
 from regolith_studio.descriptors.catalogue import CATALOGUE, LOSS_KEYS
 from regolith_studio.session.choices import Choices
@@ -41,7 +42,7 @@ class ErrorBarsPanel(QWidget):
         done = results.coarsened
         if done is not None:
             self._polyhedron = {**done.errors, JACCARD: done.jaccard_distance}
-            self._bounds = dict(done.bounds)
+            self._bounds = bounds_in_force(done.bounds, done.errors)
         theme = self.plot.theme
         imitating_fit = choices.target == "fit"
         series = [
