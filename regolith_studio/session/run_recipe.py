@@ -1,8 +1,9 @@
 """Run a recipe: from files to all results that it asks for, in one folder.
 
 Every particle is processed independently, and its results go to disk at once (``journal/`` in the folder,
-see :mod:`regolith_studio.jobs.batch`); the result files are written from there in the end. So an interrupted
-run can be resumed, and the size of a run is limited by the disk and not by the memory.
+see :mod:`regolith_studio.jobs.batch`); the result files are written from there in the end, under a hidden
+name, and take the places of those of an earlier run together. So an interrupted run can be resumed and leaves
+the earlier results as they were, and the size of a run is limited by the disk and not by the memory.
 """
 
 import contextlib
@@ -69,6 +70,8 @@ class RecipeRun:
     ----------
     folder
         Folder of the results.
+    stage
+        Hidden folder that they are written to before they take their places.
     tally
         Sums over all particles.
     summary
@@ -88,6 +91,7 @@ class RecipeRun:
     studies: list[str] = field(default_factory=list)
     problems: list[str] = field(default_factory=list)
     resume: bool = False
+    stage: Path = field(init=False)
 
     @property
     def files(self) -> list[str]:
@@ -106,8 +110,8 @@ def run_recipe(
 ) -> Steps:
     """Compute and write all outputs of `recipe`; returns :class:`RecipeRun`.
 
-    Particles that fail are listed in ``problems`` and do not stop the others. Each part of the output is
-    written completely or not at all.
+    Particles that fail are listed in ``problems`` and do not stop the others. The output is written
+    completely or not at all.
 
     Parameters
     ----------
@@ -155,12 +159,15 @@ def run_recipe(
                 run.problems = ended
                 return run
             yield from _process_particles(run, batch, executor)
-            yield from _write_results(run, batch)
-            _write_volume_documents(run, prepared)
-            yield from _process_sample(run, executor)
-            if recipe.outputs.summary:
-                write_summary(folder, run.recipe, run.summary, run.studies, run.problems)
-            write_bytes(folder / "recipe.json", recipe.to_json().encode("utf-8"))
+            _count_results(run, batch)
+            with staged_folder(folder, "run") as run.stage:
+                yield from _write_results(run, batch)
+                _write_volume_documents(run, prepared)
+                yield from _process_sample(run, executor)
+                run.problems = [each.replace(str(run.stage), str(folder)) for each in run.problems]
+                if recipe.outputs.summary:
+                    write_summary(run.stage, run.recipe, run.summary, run.studies, run.problems)
+                write_bytes(run.stage / "recipe.json", recipe.to_json().encode("utf-8"))
             batch.checkpoint.remove_records(**{ENDED: run.problems})
             clear_prepared_inputs(prepared)
     return run
@@ -223,21 +230,20 @@ def _write_results(run: RecipeRun, batch: Batch) -> Part:
     """Write the output files from the checkpoint."""
     outputs = run.recipe.outputs
     yield Started(N_("Writing the results"), batch.n_items)
-    _count_results(run, batch)
     with contextlib.ExitStack() as stack:
         writers: list[ResultWriter] = [
             run.summary,
-            stack.enter_context(failure_writer(run.folder)),
+            stack.enter_context(failure_writer(run.stage)),
             stack.enter_context(time_writer(run.folder / JOURNAL_FOLDER / "times.csv")),
         ]
         if outputs.descriptors:
-            writers.append(stack.enter_context(descriptor_writer(run.folder)))
+            writers.append(stack.enter_context(descriptor_writer(run.stage)))
         if outputs.meshes:
             writers.append(
-                stack.enter_context(mesh_writer(run.folder / "meshes", run.choices.coarsening_request))
+                stack.enter_context(mesh_writer(run.stage / "meshes", run.choices.coarsening_request))
             )
         if outputs.fits:
-            writers.append(stack.enter_context(fit_writer(run.folder / "fit.json")))
+            writers.append(stack.enter_context(fit_writer(run.stage / "fit.json")))
         for record in _records(run, batch):
             for writer in writers:
                 writer.add(record)
@@ -273,16 +279,16 @@ def _write_volume_documents(run: RecipeRun, prepared: PreparedInputs) -> None:
     """Write how the grains of each volume were extracted, and which were left out."""
     taken: set[str] = set()
     if run.recipe.volumes:
-        (run.folder / "volumes").mkdir(exist_ok=True)
+        (run.stage / "volumes").mkdir()
     for entry, source in zip(run.recipe.volumes, prepared.volumes, strict=True):
         name = unique_name(Path(entry.file).stem, "", taken)
-        write_bytes(run.folder / "volumes" / f"{name}.json", (source / EXTRACTION).read_bytes())
+        write_bytes(run.stage / "volumes" / f"{name}.json", (source / EXTRACTION).read_bytes())
 
 
 def _write_dataset(run: RecipeRun, batch: Batch) -> None:
     try:
         write_stored(
-            run.folder / "dataset",
+            run.stage / "dataset",
             lambda: shapes_of(batch),
             run.tally.n_coarse,
             name=run.folder.resolve().name,
@@ -308,7 +314,7 @@ def _process_sample(run: RecipeRun, executor: Executor) -> Part:
         yield from _run_studies(run, particles, executor)
     if recipe.exports is not None and has_dataset:
         try:
-            yield from export_dataset_step(recipe.exports, recipe.seed, run.folder)
+            yield from export_dataset_step(recipe.exports, recipe.seed, run.stage)
         except RegolithError as error:
             run.problems.append(str(error))
 
@@ -319,7 +325,13 @@ def _build_dataset(
     """Write the dataset of the representatives; returns whether that was possible."""
     try:
         built = yield from build_dataset_step(
-            run.recipe, outputs, particles, run.choices.coarsening_request, _preset(run), run.folder, executor
+            run.recipe,
+            outputs.model_copy(update={"name": outputs.name or run.folder.resolve().name}),
+            particles,
+            run.choices.coarsening_request,
+            _preset(run),
+            run.stage,
+            executor,
         )
     except RegolithError as error:
         run.problems.append(f"There is no dataset. ({error})")
@@ -361,5 +373,5 @@ def _run_study(run: RecipeRun, name: str, study: Callable[..., Steps]) -> Part:
             run.problems.append(str(error))
             return
         run.studies.append(name)
-        with staged_folder(run.folder / "studies", name) as stage:
+        with staged_folder(run.stage / "studies", name) as stage:
             STUDIES[name].write(result, stage)

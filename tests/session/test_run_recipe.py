@@ -123,6 +123,22 @@ def test_that_a_run_given_up_after_any_particle_goes_on_to_the_same_bytes(
     assert digests(tmp_path / "out") == alone[1]
 
 
+def test_that_a_run_given_up_while_it_writes_leaves_the_earlier_results(
+    grains: Path, tmp_path: Path, alone: tuple[RecipeRun, dict]
+) -> None:
+    done(recipe(grains), grains, tmp_path / "out")
+    steps = run_recipe(recipe(grains, n_facets=8), grains, tmp_path / "out")
+    writing = False
+    for step in steps:
+        writing = writing or step == Started("Writing the results", 10)
+        if writing and isinstance(step, Progress) and step.done == 10:
+            break
+    steps.close()
+    assert writing
+    assert digests(tmp_path / "out") == alone[1]
+    assert not [*tmp_path.glob(".*")]
+
+
 @pytest.mark.slow
 def test_that_a_study_given_up_within_a_run_goes_on_to_the_same_bytes(
     grains: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

@@ -62,10 +62,8 @@ def build_dataset_step(
     RegolithError
         As :func:`regolith_studio.jobs.dataset_jobs.build_dataset_folder`.
     """
-    name = request.name or folder.resolve().name
-    options = DatasetOptions(
-        name, preset, True, workers, representatives_request(request, recipe.seed), sizes=request.sizes
-    )
+    chosen = representatives_request(request, recipe.seed)
+    options = DatasetOptions(request.name, preset, True, workers, chosen, sizes=request.sizes)
     return (yield from build_dataset_folder(particles, coarsening, folder / DATASET, options))
 
 
