@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QFileDialog, QInputDialog, QWidget
 from regolith_studio.dataset.folder_io import write_dataset
 from regolith_studio.dataset.parameters import ContactParameters, LiftingCylinderTest
 from regolith_studio.dem.evaluation.profile import Discs
-from regolith_studio.dem.run_io import read_run
+from regolith_studio.dem.run_io import FORMAT, read_run, save_result
 from regolith_studio.dem.snapshot import ParticleState, particle_state_bytes
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
@@ -195,6 +195,15 @@ def test_that_what_is_no_pile_says_so(page, tmp_path, monkeypatch, wait):
     assert page.x_z.is_empty()
     page.export_run()
     assert "no measured pile" in page._context.toast.sentence.text()
+
+
+def test_that_the_player_refuses_the_final_state_of_another_run(page, tmp_path):
+    save_result(tmp_path, {"format": FORMAT}, pile_of(30.0), 1.0)
+    page.player.show_run([tmp_path / "final.npz"], "run")
+    assert len(page.player.pile) == 700
+    (tmp_path / "final.npz").write_bytes(particle_state_bytes(pile_of(20.0)))
+    page.player.show_run([tmp_path / "final.npz"], "run")
+    assert "not the final state of the run" in page.player.clock.text()
 
 
 def test_that_wishes_without_a_dataset_are_one_sentence(page):

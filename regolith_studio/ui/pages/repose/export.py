@@ -6,7 +6,8 @@ import numpy as np
 from PySide6.QtWidgets import QFileDialog, QInputDialog, QWidget
 
 from regolith_studio.dem.angle_of_repose import ReposeMeasurement, measurement_document
-from regolith_studio.dem.snapshot import ParticleState, read_particle_state
+from regolith_studio.dem.run_io import read_final_state
+from regolith_studio.dem.snapshot import ParticleState
 from regolith_studio.errors import RegolithError
 from regolith_studio.io.atomic import staged_folder
 from regolith_studio.io.json_text import json_bytes
@@ -48,7 +49,7 @@ def read_other(parent: QWidget, toast: Toast) -> ParticleState | None:
         return None
     try:
         if name.endswith(".npz"):
-            return read_particle_state(Path(name))
+            return read_final_state(Path(name))
         unit, sure = QInputDialog.getItem(parent, tr("Unit"), tr("Length unit of the file:"), UNITS, 0, False)
         if not sure:
             return None

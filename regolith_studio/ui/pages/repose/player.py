@@ -8,7 +8,8 @@ from PySide6.QtCore import QSignalBlocker, Qt, QTimer
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QSlider, QVBoxLayout, QWidget
 
 from regolith_studio.dataset.parameters import LiftingCylinderTest
-from regolith_studio.dem.snapshot import ParticleState, read_particle_state
+from regolith_studio.dem.run_io import read_final_state
+from regolith_studio.dem.snapshot import ParticleState
 from regolith_studio.errors import FileError
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.scene import instancing
@@ -136,7 +137,7 @@ class RunPlayer(QWidget):
 
     def _show_file(self, number: int) -> None:
         try:
-            self._show(read_particle_state(self._files[number]))
+            self._show(read_final_state(self._files[number]))
         except FileError as error:
             self.stop()
             self.clock.setText(str(error))
