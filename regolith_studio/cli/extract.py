@@ -8,7 +8,7 @@ import typer
 
 from regolith_studio.cli.dataclass_options import with_dataclass_options
 from regolith_studio.cli.options import Folder, Jobs, Json, Seed, usage_errors
-from regolith_studio.cli.terminal import print_json, run_with_progress
+from regolith_studio.cli.terminal import print_errors, print_json, run_with_progress
 
 if TYPE_CHECKING:
     from regolith_studio.imaging.segmentation.thresholding import ThresholdSettings
@@ -291,6 +291,13 @@ def extract(
         folder = ExtractionFolder(stage)
         done = run_with_progress(extract_measured(given, settings, output.parent, folder.add, jobs))
         document = folder.finish(given, settings, done)
+    if done.facts is not None and done.facts.n_not_finite:
+        print_errors(
+            [
+                f"{volume.name}: {done.facts.n_not_finite:,} voxels hold no finite number (NaN or infinity) "
+                "and are in no grain."
+            ]
+        )
     if json:
         print_json(document)
     else:

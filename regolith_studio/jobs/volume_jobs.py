@@ -222,6 +222,7 @@ class SegmentationSummary:
     n_bodies: int
     n_grains: int
     n_small: int
+    n_not_finite: int
 
 
 @dataclass(frozen=True)
@@ -425,7 +426,11 @@ def _working_bytes(volume: SliceSource) -> int:
 
 def _summary_of(segmentation: Segmentation) -> SegmentationSummary:
     return SegmentationSummary(
-        segmentation.level, segmentation.n_bodies, segmentation.n_grains, segmentation.n_small
+        segmentation.level,
+        segmentation.n_bodies,
+        segmentation.n_grains,
+        segmentation.n_small,
+        segmentation.n_not_finite,
     )
 
 

@@ -6296,6 +6296,10 @@
         <translation>{counts} beim Grauwert {level}; {small} zu klein.</translation>
     </message>
     <message>
+        <source>{counts} at grey level {level}; {small} too small. {voxels} voxels hold no finite number (NaN or infinity) and are in no grain.</source>
+        <translation>{counts} beim Grauwert {level}; {small} zu klein. {voxels} Voxel enthalten keine endliche Zahl (NaN oder unendlich) und liegen in keinem Korn.</translation>
+    </message>
+    <message>
         <source>{count} faces are there twice.</source>
         <translation>{count} Flächen sind doppelt vorhanden.</translation>
     </message>

@@ -37,6 +37,16 @@ def rows_of(folder: Path) -> list[dict[str, str]]:
     return list(csv.DictReader((folder / "particles.csv").read_text(encoding="utf-8").splitlines()))
 
 
+def test_that_voxels_without_a_finite_number_are_reported(command, tmp_path: Path) -> None:
+    balls = two_balls().astype(np.float32)
+    balls[0, 0, 0], balls[0, 0, 1] = np.inf, np.nan
+    np.save(tmp_path / "balls.npy", balls)
+    result = command("extract", tmp_path / "balls.npy", "-o", tmp_path / "x", "--voxel-size", 1)
+    assert result.code == 0
+    assert result.err == "balls.npy: 2 voxels hold no finite number (NaN or infinity) and are in no grain.\n"
+    assert len(rows_of(tmp_path / "x")) == 2
+
+
 @pytest.mark.parametrize("surface", ["grey", "mask"])
 def test_that_a_grey_scan_becomes_particles_with_a_recipe(command, tmp_path: Path, surface: str) -> None:
     scan, x = part_of_scan(tmp_path, "grey"), tmp_path / "x"

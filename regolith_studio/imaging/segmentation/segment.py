@@ -71,6 +71,8 @@ class Segmentation:
         Connected bodies before they were parted, the small ones left out.
     n_small
         ConnectedComponents and grains that were dropped for their size.
+    n_not_finite
+        Voxels without a finite number (NaN, infinities), which are in no grain.
     """
 
     labels: Volume
@@ -79,6 +81,7 @@ class Segmentation:
     seen: Histogram
     n_bodies: int
     n_small: int
+    n_not_finite: int = 0
 
     @property
     def n_grains(self) -> int:
@@ -101,7 +104,18 @@ class Segmentation:
     def summary(self) -> str:
         """One sentence for the user."""
         template = N_("{counts} at grey level {level}; {small} too small.")
-        return Message(template, counts=self.counts, level=f"{self.level:g}", small=self.n_small)
+        if self.n_not_finite:
+            template = N_(
+                "{counts} at grey level {level}; {small} too small. {voxels} voxels hold no finite number "
+                "(NaN or infinity) and are in no grain."
+            )
+        return Message(
+            template,
+            counts=self.counts,
+            level=f"{self.level:g}",
+            small=self.n_small,
+            voxels=f"{self.n_not_finite:,}",
+        )
 
 
 Steps = Generator[SegmentationProgress, None, Segmentation]
@@ -139,7 +153,7 @@ def segmentation_steps(
     """
     settings, scratch = settings or SegmentationSettings(), scratch or ScratchArrays()
     edges = np.asarray(source.voxel_size, dtype=np.float64)
-    values, seen = yield from _denoised(source, settings, scratch)
+    values, seen, n_not_finite = yield from _denoised(source, settings, scratch)
     level = level_of(seen, settings.threshold, source.dtype)
     numbers: NDArray[np.int32] = scratch.zeros(source.shape, np.int32)
     bodies = yield from _numbered(values, level, settings, numbers)
@@ -157,7 +171,8 @@ def segmentation_steps(
         )
     small = int((bodies.sizes < least).sum()) + splitter.n_grains - len(sizes)
     labels = Volume(numbers, edges, "labels", f"{source.name}, labels")
-    return Segmentation(labels, sizes, level, seen, int((bodies.sizes >= least).sum()), small)
+    n_bodies = int((bodies.sizes >= least).sum())
+    return Segmentation(labels, sizes, level, seen, n_bodies, small, n_not_finite)
 
 
 def preview(
@@ -178,14 +193,14 @@ def preview(
     return segment(part, settings)
 
 
-_Values = Generator[SegmentationProgress, None, tuple[SliceSource, Histogram]]
+_Values = Generator[SegmentationProgress, None, tuple[SliceSource, Histogram, int]]
 
 
 def _denoised(source: SliceSource, settings: SegmentationSettings, scratch: ScratchArrays) -> _Values:
-    """Grey values without noise, and their histogram; probabilities are taken as they are."""
+    """Grey values without noise (probabilities as they are), their histogram, and how many are not finite."""
     how = settings.denoise
     ranges = slab_ranges(source.shape)
-    edges, noise = _first_look(source)
+    edges, noise, n_not_finite = _first_look(source)
     keep = how.method == "none" or settings.threshold.method == "probability"
     values = None if keep else scratch.zeros(source.shape, source.dtype)
     seen = Histogram(np.zeros(len(edges) - 1, dtype=np.int64), edges)
@@ -197,21 +212,22 @@ def _denoised(source: SliceSource, settings: SegmentationSettings, scratch: Scra
         seen = seen + histogram(smooth, edges)
         yield SegmentationProgress(N_("Denoising"), done, len(ranges))
     if values is None:
-        return source, seen
-    return Volume(values, np.asarray(source.voxel_size), "grey", source.name), seen
+        return source, seen, n_not_finite
+    return Volume(values, np.asarray(source.voxel_size), "grey", source.name), seen, n_not_finite
 
 
-def _first_look(source: SliceSource) -> tuple[FloatArray, float]:
-    """Edges of the histogram's bins, and the noise of the middle slice."""
-    middle, noise, spans = source.shape[2] // 2, 0.0, []
+def _first_look(source: SliceSource) -> tuple[FloatArray, float, int]:
+    """Edges of the histogram's bins, the noise of the middle slice, and the number of voxels not finite."""
+    middle, noise, spans, n_not_finite = source.shape[2] // 2, 0.0, [], 0
     for first, stop in slab_ranges(source.shape):
         slab = source.read(first, stop)
         if first <= middle < stop:
             noise = noise_of(slab[:, :, middle - first : middle - first + 1])
         if (known := finite(slab)).size:
             spans.append(span(known))
+        n_not_finite += slab.size - known.size
     lowest, highest = span(np.array(spans))
-    return bins_between(lowest, highest, source.dtype), noise
+    return bins_between(lowest, highest, source.dtype), noise, n_not_finite
 
 
 def _numbered(

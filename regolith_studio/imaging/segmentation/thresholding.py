@@ -188,5 +188,9 @@ def level_of(seen: Histogram, settings: ThresholdSettings, dtype: np.dtype[Any])
 
 
 def grain_voxels(values: NDArray[Any], level: float, settings: ThresholdSettings) -> NDArray[np.bool_]:
-    """Whether each voxel is grain: at or above the level, or below it where grains are dark."""
-    return np.asarray(values < level if settings.dark else values >= level)
+    """Whether each voxel is grain: at or above the level, or below it where grains are dark.
+
+    Values that are no finite numbers are none.
+    """
+    grain = np.asarray(values < level if settings.dark else values >= level)
+    return grain & np.isfinite(values) if values.dtype.kind == "f" else grain

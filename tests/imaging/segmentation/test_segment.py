@@ -206,6 +206,21 @@ def test_that_pores_are_filled_or_left_and_small_bodies_dropped() -> None:
     assert segment(grey(mask), left).sizes.tolist() == [15**3 - 27, 8]
 
 
+def test_that_values_that_are_not_finite_are_counted_and_in_no_grain() -> None:
+    mask = np.zeros((30, 30, 30), dtype=bool)
+    mask[5:20, 5:20, 5:20] = True
+    values = np.where(mask, 1.0, 0.0).astype(np.float32)
+    values[5, 5, 5], values[25, 25, 25], values[26, 26, 26] = np.nan, np.inf, -np.inf
+    volume = Volume(values, (1, 1, 1), "grey", "floats")
+    settings = SegmentationSettings(
+        DenoiseSettings("none"), cleaning=CleaningSettings(fill_pores=False, min_voxels=1)
+    )
+    found = segment(volume, settings)
+    assert found.sizes.tolist() == [15**3 - 1]
+    assert found.n_not_finite == 3
+    assert "3 voxels hold no finite number" in str(found.summary)
+
+
 def test_that_a_volume_without_grains_is_refused_with_a_hint() -> None:
     mask = np.zeros((20, 20, 20), dtype=bool)
     mask[3:5, 3:5, 3:5] = True
