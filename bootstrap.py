@@ -7,7 +7,7 @@ python3 bootstrap.py demo -o DIR     runs the whole chain on the shipped sample,
 python3 bootstrap.py COMMAND ...     runs any other command of the program (describe, coarsen, check, ...)
 python3 bootstrap.py setup           sets up everything that work on the program needs, starts nothing
 
---no-system   leaves the packages of the operating system alone
+--no-system   leaves the packages of the operating system alone; without python3-venv, pip or uv installs
 
 The first call installs missing system libraries (on Debian and Ubuntu), makes the folder .venv with the
 versions of constraints.txt. pip's own configuration is respected.
@@ -109,7 +109,7 @@ def missing_from_system(needs_xvfb: bool) -> "list[tuple[str, str]]":
     if needs_xvfb and not shutil.which("Xvfb"):
         missing.append(("xvfb", "Xvfb"))
     importlib.invalidate_caches()
-    if not VENV.exists() and importlib.util.find_spec("ensurepip") is None:
+    if not VENV.exists() and not has_ensurepip():
         missing.append(("python3-venv", "ensurepip"))
     return missing
 
@@ -248,7 +248,9 @@ def usable_venv() -> bool:
     """Whether .venv runs this version of Python from this folder; a moved or half-made one does not."""
     if UNFINISHED.exists() or not venv_python().exists():
         return False
-    question = "import pip, sys; print('%d.%d' % sys.version_info[:2], sys.prefix)"
+    question = "import sys; print('%d.%d' % sys.version_info[:2], sys.prefix)"
+    if has_ensurepip():
+        question = "import pip; " + question
     answer = subprocess.run(
         [str(venv_python()), "-c", question], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, check=False
     )
@@ -264,8 +266,37 @@ def make_venv() -> None:
     VENV.mkdir()
     UNFINISHED.touch()
     base = getattr(sys, "_base_executable", None) or sys.executable
-    if subprocess.call([base, "-m", "venv", str(VENV)]):
+    without_pip = [] if has_ensurepip() else ["--without-pip"]
+    if subprocess.call([base, "-m", "venv", *without_pip, str(VENV)]):
         raise SetupStopped("Python could not make a virtual environment; on Debian it needs python3-venv.")
+
+
+def has_ensurepip() -> bool:
+    """Whether this Python can put pip into a virtual environment; Debian's needs python3-venv."""
+    return importlib.util.find_spec("ensurepip") is not None
+
+
+def installer() -> "list[str]":
+    """Command that installs into .venv: by its pip, else by the pip of this Python or by uv.
+
+    Raises
+    ------
+    SetupStopped
+        If there is none of them.
+    """
+    pip = ["install", "--quiet", "--prefer-binary", "--no-input", "--disable-pip-version-check"]
+    if not sys.dont_write_bytecode:
+        pip.append("--no-compile")  # half of pip's time goes into modules that nobody imports
+    if has_ensurepip():
+        return [str(venv_python()), "-m", "pip", *pip]
+    if importlib.util.find_spec("pip") is not None:
+        return [sys.executable, "-m", "pip", "--python", str(venv_python()), *pip]
+    if shutil.which("uv"):
+        return ["uv", "pip", "install", "--quiet", "--python", str(venv_python())]
+    raise SetupStopped(
+        "Nothing here can install Python packages: install python3-venv, or python3-pip, or uv "
+        "(the last two need no administrator), and run this again."
+    )
 
 
 def set_up(extra: str) -> None:
@@ -280,19 +311,20 @@ def set_up(extra: str) -> None:
         return
     started = time.monotonic()
     extra = extra or read_stamp()[1]
+    install = installer()
     if not usable_venv():
         make_venv()
     UNFINISHED.touch()
     say("installing the Python packages into .venv (1.8 GB on disk, about a minute)")
     target = ".[" + extra + "]" if extra else "."
-    command = [str(venv_python()), "-m", "pip", "install", "--quiet", "--prefer-binary", "--no-input"]
-    if not sys.dont_write_bytecode:
-        command.append("--no-compile")  # half of pip's time goes into modules that nobody imports
-    command += ["--disable-pip-version-check", "-c", "constraints.txt", "-e", target]
+    command = [*install, "-c", "constraints.txt", "-e", target]
     failed = subprocess.call(command, cwd=str(ROOT), env=dict(os.environ, PIP_USER="0"))
     UNFINISHED.unlink()  # pip undoes what it could not finish; only an interruption leaves the mark
     if failed:
-        raise SetupStopped("pip could not install the packages; run this again when it can reach them.")
+        raise SetupStopped(
+            ("uv" if install[0] == "uv" else "pip")
+            + " could not install the packages; run this again when it can reach them."
+        )
     STAMP.write_text(fingerprint() + " " + extra + "\n", encoding="utf-8")
     say("set up in %.0f s" % (time.monotonic() - started))
 
@@ -352,6 +384,8 @@ def start(words: "list[str]") -> int:
         with virtual_display() as display:
             environment.pop("WAYLAND_DISPLAY", None)
             return run_program(command, dict(environment, DISPLAY=display), folder)
+    if words[:1] == ["demo"] and not display_answers():
+        environment.pop("DISPLAY", None)  # so that VTK draws by EGL or OSMesa and asks no X server
     if os.name == "nt":
         return run_program(command, environment, folder)
     os.chdir(folder)
@@ -365,7 +399,7 @@ def parallel(words: "list[str]") -> "tuple[str, ...]":
 
 def draws_in_memory(words: "list[str]") -> bool:
     """Whether these words need a screen, may use one in memory, and there is no other."""
-    return words[:1] in (["test"], ["demo"]) and not display_answers()
+    return words[:1] == ["test"] and not display_answers()
 
 
 def run(words: "list[str]", leave_system: bool) -> int:

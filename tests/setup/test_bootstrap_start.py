@@ -48,9 +48,9 @@ def test_that_a_screen_in_memory_lives_as_long_as_it_is_needed(
 
 @pytest.mark.parametrize(
     ("words", "in_memory"),
-    [(["test"], True), (["demo", "-o", "x"], True), ([], False), (["open"], False), (["describe"], False)],
+    [(["test"], True), (["demo", "-o", "x"], False), ([], False), (["open"], False), (["describe"], False)],
 )
-def test_that_only_tests_and_demo_draw_in_memory(
+def test_that_only_tests_need_a_screen_in_memory(
     bootstrap: ModuleType, monkeypatch: pytest.MonkeyPatch, words: list[str], in_memory: bool
 ) -> None:
     monkeypatch.setattr(bootstrap, "display_answers", lambda: False)
@@ -140,6 +140,24 @@ def test_that_the_second_call_sets_nothing_up_and_hands_on_words_and_exit_code(
     assert done.returncode == 7
     assert done.stdout == "-m regolith_studio describe two words.stl\n"
     assert done.stderr == ""
+
+
+@linux
+@pytest.mark.parametrize(("answers", "display"), [(False, None), (True, ":54321")])
+def test_that_the_demo_asks_no_x_server_that_does_not_answer(
+    bootstrap: ModuleType, monkeypatch: pytest.MonkeyPatch, answers: bool, display: str | None
+) -> None:
+    monkeypatch.chdir(Path.cwd())
+    monkeypatch.setenv("DISPLAY", ":54321")
+    monkeypatch.setattr(bootstrap, "display_answers", lambda: answers)
+
+    def replace(_path: str, _command: list[str], environment: dict[str, str]) -> None:
+        assert environment.get("DISPLAY") == display
+        raise Replaced
+
+    monkeypatch.setattr(bootstrap.os, "execve", replace)
+    with pytest.raises(Replaced):
+        bootstrap.start(["demo", "-o", "x"])
 
 
 def start_child(bootstrap: ModuleType, code: str) -> "subprocess.Popen[str]":

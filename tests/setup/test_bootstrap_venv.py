@@ -1,6 +1,8 @@
 """The virtual environment: when it is ready, half-made, or somebody else's."""
 
 import os
+import subprocess
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
@@ -130,6 +132,60 @@ def test_that_a_failing_pip_is_reported_and_tried_again_without_starting_over(
         bootstrap.set_up("")
     assert not bootstrap.UNFINISHED.exists()
     assert not bootstrap.STAMP.exists()
+
+
+def lacking(bootstrap: ModuleType, monkeypatch: pytest.MonkeyPatch, *missing: str) -> None:
+    """Let Python be without some modules and programs."""
+    monkeypatch.setattr(
+        bootstrap.importlib.util, "find_spec", lambda name: None if name in missing else object()
+    )
+    monkeypatch.setattr(
+        bootstrap.shutil, "which", lambda name: None if name in missing else f"/usr/bin/{name}"
+    )
+
+
+@pytest.mark.parametrize(
+    ("missing", "beginning"),
+    [
+        ([], ["VENV", "-m", "pip", "install"]),
+        (["ensurepip"], [sys.executable, "-m", "pip", "--python", "VENV", "install"]),
+        (["ensurepip", "pip"], ["uv", "pip", "install", "--quiet", "--python", "VENV"]),
+    ],
+)
+def test_that_packages_are_installed_without_ensurepip(
+    bootstrap: ModuleType, monkeypatch: pytest.MonkeyPatch, missing: list[str], beginning: list[str]
+) -> None:
+    pip = installing(bootstrap, monkeypatch, 0)
+    lacking(bootstrap, monkeypatch, *missing)
+    bootstrap.set_up("")
+    expected = [str(bootstrap.venv_python()) if word == "VENV" else word for word in beginning]
+    assert pip.commands[0][: len(expected)] == expected
+    assert pip.commands[0][-4:] == ["-c", "constraints.txt", "-e", "."]
+
+
+def test_that_python_without_any_installer_names_three_before_making_anything(
+    bootstrap: ModuleType, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    lacking(bootstrap, monkeypatch, "ensurepip", "pip", "uv")
+    with pytest.raises(bootstrap.SetupStopped, match="python3-venv, or python3-pip, or uv"):
+        bootstrap.set_up("")
+    assert not bootstrap.VENV.exists()
+
+
+@pytest.mark.slow
+def test_that_a_venv_without_pip_is_filled_by_the_pip_of_this_python(
+    bootstrap: ModuleType, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pytest.importorskip("pip")
+    real = bootstrap.importlib.util.find_spec
+    monkeypatch.setattr(
+        bootstrap.importlib.util, "find_spec", lambda name: None if name == "ensurepip" else real(name)
+    )
+    bootstrap.make_venv()
+    bootstrap.UNFINISHED.unlink()
+    assert bootstrap.usable_venv()
+    listed = [*bootstrap.installer()[:5], "list", "--format=freeze"]
+    assert subprocess.run(listed, capture_output=True, text=True, check=True).stdout.strip() == ""
 
 
 @pytest.mark.slow
