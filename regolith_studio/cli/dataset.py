@@ -23,6 +23,9 @@ from regolith_studio.cli.options import (
 )
 from regolith_studio.cli.terminal import CommandGroup, print_errors, print_json, run_with_progress
 
+DRAW_BYTES, ROW_BYTES = 150, 1500
+"""Memory that a drawn particle takes as numbers, and as an entry of JSON."""
+
 DatasetFolder = Annotated[Path, typer.Argument(metavar="FOLDER", help="A dataset folder.")]
 
 app = typer.Typer(
@@ -204,17 +207,21 @@ def sample(
     """Draw particles of a dataset: class, equivalent diameter and orientation."""
     from regolith_studio.dataset.folder_io import read_dataset
     from regolith_studio.dataset.sampling import drawn_csv, drawn_rows, sample_dataset
-    from regolith_studio.io.atomic import write_bytes
+    from regolith_studio.io.atomic import staged_file
+    from regolith_studio.io.machine_memory import check_memory
 
     del jobs  # taken by every command
+    check_memory(count * (ROW_BYTES if json else DRAW_BYTES), f"{count:,} drawn particles")
     dataset = read_dataset(folder)
     drawn = sample_dataset(dataset, count, seed)
     if output is not None:
-        write_bytes(output, drawn_csv(dataset, drawn))
+        with staged_file(output) as stream:
+            stream.writelines(drawn_csv(dataset, drawn))
     if json:
         print_json(drawn_rows(dataset, drawn))
     elif output is None:
-        typer.echo(drawn_csv(dataset, drawn).decode("utf-8"), nl=False)
+        for block in drawn_csv(dataset, drawn):
+            typer.echo(block.decode("utf-8"), nl=False)
     else:
         typer.echo(f"{count} particles in {output}")
 

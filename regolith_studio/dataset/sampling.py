@@ -1,5 +1,6 @@
 """Draw particles from a dataset: class by weight, size (section 2.5), and uniform orientation."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,6 +13,8 @@ from regolith_studio.io.tables import csv_bytes
 
 COLUMNS = ("class", "name", "diameter_um", "scale_um", "qw", "qx", "qy", "qz")
 """Of the table of drawn particles; `scale_um` is the factor from the unit-volume shape."""
+BLOCK = 100_000
+"""Particles whose rows are in memory at a time."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,6 +84,10 @@ def drawn_rows(dataset: Dataset, drawn: DrawnParticles) -> list[dict[str, object
     ]
 
 
-def drawn_csv(dataset: Dataset, drawn: DrawnParticles) -> bytes:
-    """The same as comma-separated values."""
-    return csv_bytes([COLUMNS, *(tuple(row.values()) for row in drawn_rows(dataset, drawn))])
+def drawn_csv(dataset: Dataset, drawn: DrawnParticles) -> Iterator[bytes]:
+    """The same as comma-separated values, in blocks of :data:`BLOCK` particles."""
+    yield csv_bytes([COLUMNS])
+    for first in range(0, len(drawn.diameter), BLOCK):
+        block = slice(first, first + BLOCK)
+        part = DrawnParticles(drawn.class_index[block], drawn.diameter[block], drawn.orientation[block])
+        yield csv_bytes(tuple(row.values()) for row in drawn_rows(dataset, part))

@@ -25,7 +25,7 @@ from regolith_studio.jobs.particle_jobs import (
 )
 from regolith_studio.messages import N_
 from regolith_studio.readers.shape_files import ShapeSource, radius_of
-from regolith_studio.shape_models.chunked_sampling import joined
+from regolith_studio.shape_models.chunked_sampling import check_draws, joined
 from regolith_studio.shape_models.materials import MaterialCard
 from regolith_studio.shape_models.models import DEFAULT_MODEL, MODELS, model_settings
 from regolith_studio.shape_models.protocol import FittedModel, SizeRange
@@ -155,7 +155,14 @@ def make_card(sample: Sample, name: str, label: str, origin: str) -> Steps:
 
 
 def draw(model: FittedModel, request: GenerationRequest) -> Steps:
-    """Draw the particles of a request, chunk by chunk; returns :class:`Realizations`."""
+    """Draw the particles of a request, chunk by chunk; returns :class:`Realizations`.
+
+    Raises
+    ------
+    InputError
+        If the particles need more memory than there is, or as the model's ``draw_chunks``.
+    """
+    check_draws(request.n, model.l_max)
     yield Started(N_("Drawing"), request.n)
     parts: list[Realizations] = []
     for part in model.draw_chunks(request.n, request.seed, request.size_range):

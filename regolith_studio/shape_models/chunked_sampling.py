@@ -15,6 +15,7 @@ import numpy as np
 
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray
+from regolith_studio.io.machine_memory import check_memory
 from regolith_studio.shape_models.log_radius import sized
 from regolith_studio.shape_models.protocol import SizeRange
 from regolith_studio.shape_models.realizations import Realizations, Scale, acceptable, positive_rows
@@ -43,8 +44,25 @@ def chunks(n: int, seed: int) -> Iterator[tuple[np.random.Generator, int]]:
         yield np.random.default_rng(sequence), min(CHUNK, n - first)
 
 
+def check_draws(n: int, l_max: int) -> None:
+    """Check that the coefficients of `n` particles, and a copy of them, can be held.
+
+    Raises
+    ------
+    InputError
+        If this machine has less memory.
+    """
+    check_memory(2 * 8 * n * (l_max + 1) ** 2, f"{n:,} particles of l_max = {l_max}")
+
+
 class ChunkedSampler(ABC):
     """Base of fitted models that draw chunk by chunk: long draws report progress and can be cancelled."""
+
+    if TYPE_CHECKING:  # a property, or a field of a dataclass
+
+        @property
+        def l_max(self) -> int:
+            """Degree of the particles."""
 
     @abstractmethod
     def draw_chunks(self, n: int, seed: int, size_range: SizeRange | None = None) -> Iterator[Realizations]:
@@ -62,8 +80,9 @@ class ChunkedSampler(ABC):
         Raises
         ------
         InputError
-            As :meth:`draw_chunks`.
+            As :meth:`draw_chunks`, or if the particles need more memory than there is.
         """
+        check_draws(n, self.l_max)
         found = list(self.draw_chunks(n, seed, size_range))
         return joined(found) if found else replace(next(self.draw_chunks(1, seed)).chosen([]), rejected=0)
 

@@ -9,6 +9,7 @@ import pytest
 import typer
 
 from regolith_studio.cli.commands import app
+from regolith_studio.shape_models.materials import materials
 from tests.cli.conftest import Said
 
 
@@ -63,6 +64,20 @@ def test_that_a_number_out_of_range_is_bad_use(
         done = command(*words, *required(sub, tmp_path), f"{option}={value}")
         assert done.code == 2
         assert f"'{option}'" in done.err
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    "words", [("generate", "CARD", "--l-max", 10, "-n"), ("dataset", "sample", "D", "--json", "-n")]
+)
+def test_that_more_particles_than_the_memory_holds_are_refused_before_they_are_drawn(
+    words: tuple[Any, ...], tmp_path: Path, command: Callable[..., Said], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("regolith_studio.io.machine_memory.machine_memory", lambda: 2 * 10**9)
+    given = [min(materials()) if word == "CARD" else word for word in words]
+    done = command(*given, 10_000_000, "-o", tmp_path / "out")
+    assert done.code == 1
+    assert "GB of memory, and this machine has 2" in done.err
     assert not list(tmp_path.iterdir())
 
 

@@ -89,7 +89,7 @@ def test_that_a_volume_of_more_than_half_the_memory_is_left_to_slabs(tmp_path, m
     with h5py.File(path, "w") as file:
         file.create_dataset("a", (EDGE,) * 3, "u1", chunks=(16, 64, 64), compression="gzip")
     assert path.stat().st_size < 10_000
-    monkeypatch.setattr("regolith_studio.readers.volumes.read._memory", lambda: 512 * 1024**2)
+    monkeypatch.setattr("regolith_studio.readers.volumes.read.machine_memory", lambda: 512 * 1024**2)
     with pytest.raises(FileError, match=r"has 1 GiB of voxels, more than half of this machine's memory"):
         read_volume(path, voxel_size=1.0, kind="grey")
     part = read_volume(path, voxel_size=1.0, kind="grey", bounds=((0, 8), (0, 8), (1000, 1008)))

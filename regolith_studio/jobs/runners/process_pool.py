@@ -13,6 +13,7 @@ from dataclasses import dataclass, field
 from multiprocessing.connection import Connection, wait
 from typing import Any
 
+from regolith_studio.io.machine_memory import machine_memory
 from regolith_studio.jobs.events import Failed, Finished, Job, JobResult, Listener, Stopped
 from regolith_studio.jobs.runners.worker import SLOTS, STARTED, run_jobs
 
@@ -32,11 +33,7 @@ def cores() -> int:
 
 def memory_limit(workers: int) -> int:
     """Bytes that a worker may hold on to between two jobs, so that all of them fit into the machine."""
-    try:
-        machine = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
-    except (AttributeError, ValueError, OSError):
-        machine = 8 * 1024**3
-    return int(min(max(_MEMORY_FRACTION * machine / workers, _MIN_MEMORY), _MAX_MEMORY))
+    return int(min(max(_MEMORY_FRACTION * machine_memory() / workers, _MIN_MEMORY), _MAX_MEMORY))
 
 
 @dataclass(eq=False)

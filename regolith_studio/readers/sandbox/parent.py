@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from regolith_studio.errors import FileError, MissingRequirement, os_error_reason
+from regolith_studio.io.machine_memory import machine_memory
 from regolith_studio.readers.error_messages import message_about
 from regolith_studio.readers.sandbox.messages import SandboxMessage, receive, send
 
@@ -232,11 +233,7 @@ def checked_size(path: Path, largest: int | None = MAX_FILE_BYTES) -> int:
 
 
 def _memory_limit() -> int:
-    try:
-        machine = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
-    except (AttributeError, ValueError, OSError):
-        return MAX_MEMORY
-    return min(MAX_MEMORY, int(machine * MAX_MEMORY_SHARE)) if machine > 0 else MAX_MEMORY
+    return min(MAX_MEMORY, int(machine_memory() * MAX_MEMORY_SHARE))
 
 
 def _launch(memory: int) -> subprocess.Popen[bytes]:

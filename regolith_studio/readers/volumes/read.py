@@ -1,6 +1,5 @@
 """Read volumes of voxels: their header, all voxels, a box, or slab by slab."""
 
-import os
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,6 +10,7 @@ from numpy.typing import NDArray
 
 from regolith_studio.errors import FileError, InputError
 from regolith_studio.imaging.volume import Volume, VolumeKind
+from regolith_studio.io.machine_memory import machine_memory
 from regolith_studio.readers.error_messages import message_about, printable
 from regolith_studio.readers.sandbox.parent import Sandbox
 from regolith_studio.readers.volumes.header import (
@@ -236,7 +236,7 @@ def _check_memory(file: SlabReader, box: Bounds) -> None:
     for first, last in box:
         voxels *= last - first
     size = voxels * file.header.dtype.itemsize
-    limit = _memory() * MAX_MEMORY_SHARE
+    limit = machine_memory() * MAX_MEMORY_SHARE
     if size > limit:
         raise FileError(
             message_about(
@@ -245,13 +245,6 @@ def _check_memory(file: SlabReader, box: Bounds) -> None:
                 "choose a part of it, or have it read in slabs.",
             )
         )
-
-
-def _memory() -> float:
-    try:
-        return float(os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"))
-    except (AttributeError, ValueError, OSError):
-        return 8.0 * 1024**3
 
 
 def _read_box(file: SlabReader, box: Bounds, on_progress: SliceListener | None) -> NDArray[Any]:
