@@ -1,7 +1,5 @@
 """Many facets on rough particles: grown out of few, all real, all descriptors met."""
 
-import itertools
-
 import numpy as np
 import pytest
 from scipy.spatial import ConvexHull, HalfspaceIntersection
@@ -10,7 +8,6 @@ from regolith_studio.coarsening.coarsen import coarsen
 from regolith_studio.coarsening.exact.facet_growth import (
     more_surface_than_hull,
     numbers_to_grow_from,
-    stages,
     with_waiting,
 )
 from regolith_studio.coarsening.result import CoarseningResult
@@ -92,13 +89,6 @@ def test_that_the_number_asked_for_is_always_among_those_to_start_with() -> None
     assert numbers_to_grow_from(rough, 100, True)[0] < 100
     assert numbers_to_grow_from(rough, 100, False)[0] == 100
     assert numbers_to_grow_from(round_ball, 100, True) == (100,)
-
-
-@pytest.mark.parametrize(("few", "many"), [(20, 51), (20, 100), (50, 100), (20, 300)])
-def test_that_stages_rise_to_the_number_asked_for(few: int, many: int) -> None:
-    sizes = [few, *stages(few, many)]
-    assert sizes[-1] == many
-    assert all(below < above <= 3 * below for below, above in itertools.pairwise(sizes))
 
 
 def test_that_waiting_half_spaces_leave_a_cube_a_cube() -> None:

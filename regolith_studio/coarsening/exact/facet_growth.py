@@ -96,38 +96,33 @@ def with_more_facets(
 ) -> Iterator[Candidate]:
     """Polyhedra with ever more cuts, each number of them projected and followed by a descent of `steps`.
 
-    Only those of `n_facets` half-spaces come. Where cuts cannot be kept, the last exact polyhedron comes with
-    its half-spaces that bound nothing.
+    Only those of `n_facets` half-spaces come. Where so many cuts at once cannot be kept, half of them are
+    tried; where not even one can, the last exact polyhedron comes with its half-spaces that bound nothing.
     """
-    for size in stages(len(few.offsets), n_facets):
-        normals, offsets = with_waiting(few.normals, few.offsets, size)
+    size, cuts = len(few.offsets), n_facets
+    while size < n_facets:
+        cuts = min(cuts, int((FACTOR - 1.0) * size), n_facets - size)
+        normals, offsets = with_waiting(few.normals, few.offsets, size + cuts)
         point = measure(problem, normals, offsets)
         more: Candidate | None = None
         for found in restore_lost_facets(target, problem, point, steps):
-            if size == n_facets:
+            if size + cuts == n_facets:
                 yield found
             if found.better_than(more):
                 more = found
-        if more is None or not more.exact:
-            break
-        few = more
-    else:
-        return
-    yield waiting(problem, few, n_facets)
+        if more is not None and more.exact:
+            few, size = more, size + cuts
+        elif cuts == 1:
+            yield waiting(problem, few, n_facets)
+            return
+        else:
+            cuts //= 2
 
 
 def waiting(problem: Problem, few: Candidate, n_facets: int) -> Candidate:
     """The same polyhedron with half-spaces that bound nothing, `n_facets` in all."""
     normals, offsets = with_waiting(few.normals, few.offsets, n_facets)
     return candidate_of(problem, measure(problem, normals, offsets))
-
-
-def stages(few_facets: int, n_facets: int) -> Iterator[int]:
-    """Numbers of facets on the way, the last of them `n_facets`."""
-    size = few_facets
-    while size < n_facets:
-        size = min(int(FACTOR * size), n_facets)
-        yield size
 
 
 def with_waiting(normals: FloatArray, offsets: FloatArray, n_facets: int) -> tuple[FloatArray, FloatArray]:

@@ -22,7 +22,7 @@ from regolith_studio.coarsening.exact.facet_growth import (
     with_waiting,
 )
 from regolith_studio.coarsening.exact.initial_planes import start_planes
-from regolith_studio.coarsening.exact.record import AS_GOOD_AS_MET, Record
+from regolith_studio.coarsening.exact.record import Record
 from regolith_studio.coarsening.exact.relaxation import relax, with_facets_back
 from regolith_studio.coarsening.exact.single_start import (
     Candidate,
@@ -67,7 +67,7 @@ ROUND_STARTS = 2
 SIZED = np.arange(5) == VOLUME
 """The volume is held while the sphericity is sought, asked for or not: less surface would shrink the body."""
 OUT_OF_REACH = 4e-3
-"""Where they miss the sphericity by more (in logarithms, added up), no further start is tried."""
+"""Where all polyhedra miss a constraint by more (in logarithms), no further start is tried."""
 STARTS_FOR_FACETS = 3
 """Further starts where all constraints are met, but a half-space bounds no facet."""
 
@@ -245,7 +245,7 @@ class Search:
     def _out_of_reach(self) -> bool:
         """Whether the sphericity is missed by so much that other starts would miss it too."""
         best = self._record.best
-        nearly_met = best is not None and best.worst < AS_GOOD_AS_MET
+        nearly_met = best is not None and best.worst < OUT_OF_REACH
         enough = self._hopeless or self._tried >= len(FEW_FACETS)
         return enough and sum(self._misses) > OUT_OF_REACH and not nearly_met
 
