@@ -63,6 +63,7 @@ def lunar_mesh(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
+@pytest.mark.slow
 def test_that_a_reader_a_method_and_an_exporter_of_another_package_work_together(
     installed: dict[str, str], lunar_mesh: Path, tmp_path: Path
 ) -> None:
@@ -99,6 +100,7 @@ assert list(bar.buttons)[-1] == "lunar_page"
     run(installed, "-c", script)
 
 
+@pytest.mark.slow
 def test_that_a_broken_or_clashing_plug_in_costs_one_sentence_and_nothing_else(
     installed: dict[str, str],
 ) -> None:

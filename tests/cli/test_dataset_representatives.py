@@ -60,6 +60,7 @@ def test_that_two_representatives_stand_for_balls_and_needles(command, crowd: Pa
     assert errors[1] < 0.7 * errors[0]
 
 
+@pytest.mark.slow
 def test_that_a_shape_does_not_depend_on_how_many_are_chosen(command, crowd: Path, tmp_path: Path) -> None:
     build(command, crowd, tmp_path / "all")
     build(command, crowd, tmp_path / "two", "--representatives", 2)

@@ -48,6 +48,7 @@ def test_that_voxels_without_a_finite_number_are_reported(command, tmp_path: Pat
 
 
 @pytest.mark.parametrize("surface", ["grey", "mask"])
+@pytest.mark.slow
 def test_that_a_grey_scan_becomes_particles_with_a_recipe(command, tmp_path: Path, surface: str) -> None:
     scan, x = part_of_scan(tmp_path, "grey"), tmp_path / "x"
     asked = ["--denoise", "gaussian", "--voxel-size", 2.3, "--surface", surface, "--json"]

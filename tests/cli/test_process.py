@@ -37,6 +37,7 @@ def test_that_help_lists_every_command_and_imports_nothing_heavy() -> None:
     assert not heavy & set(modules.stdout.split())
 
 
+@pytest.mark.slow
 def test_that_describe_imports_no_more_than_it_computes_with(grains: Path) -> None:
     code = (
         "import sys; from regolith_studio.cli.entry import run;"
@@ -90,6 +91,7 @@ def test_that_the_version_is_printed() -> None:
     assert start("--version").stdout.strip() == "0.1.0"
 
 
+@pytest.mark.slow
 def test_that_check_answers_without_a_display_and_survives_a_broken_opengl() -> None:
     blind = {key: value for key, value in os.environ.items() if key not in ("DISPLAY", "WAYLAND_DISPLAY")}
     result = start("check", "--json", env=blind)
@@ -148,7 +150,14 @@ def test_that_check_survives_a_library_that_crashes_and_ends_with_1(
 
 
 @pytest.mark.skipif(os.name == "nt", reason="signals are a matter of POSIX")
-@pytest.mark.parametrize(("name", "code_of_end"), [("SIGINT", 130), ("SIGTERM", 143), ("SIGHUP", 129)])
+@pytest.mark.parametrize(
+    ("name", "code_of_end"),
+    [
+        ("SIGINT", 130),
+        pytest.param("SIGTERM", 143, marks=pytest.mark.slow),
+        pytest.param("SIGHUP", 129, marks=pytest.mark.slow),
+    ],
+)
 def test_that_a_signal_ends_a_command_without_a_traceback_or_half_an_output(
     grains: Path, tmp_path: Path, name: str, code_of_end: int
 ) -> None:

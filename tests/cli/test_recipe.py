@@ -36,6 +36,7 @@ def test_that_the_recipe_in_the_results_repeats_them(command, grains: Path, tmp_
         assert (tmp_path / "one" / name).read_bytes() == (tmp_path / "two" / name).read_bytes()
 
 
+@pytest.mark.slow
 def test_that_a_recipe_stops_at_an_error_as_the_commands_do(command, grains: Path, tmp_path: Path) -> None:
     grain = grains / "grain-c.stl"
     entries = {"target": "particle", "method": "exact", "stop_at": "error", "largest_error": 0.02}

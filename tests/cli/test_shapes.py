@@ -148,6 +148,7 @@ def test_that_a_budget_of_triangles_is_kept(command, grains: Path, tmp_path: Pat
     assert len(trimesh.load_mesh(tmp_path / "grain-b.stl").faces) == 56
 
 
+@pytest.mark.slow
 def test_that_the_fewest_facets_below_an_error_are_found(command, grains: Path, tmp_path: Path) -> None:
     common = ("coarsen", grains / "grain-c.stl", "--target", "particle", "--json")
     result = command(*common, "-o", tmp_path / "few", "--max-error", 1)

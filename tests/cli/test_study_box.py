@@ -7,6 +7,7 @@ import pytest
 
 
 @pytest.mark.parametrize(("box", "met"), [("exact", True), ("trimesh", False)])
+@pytest.mark.slow
 def test_that_only_the_exact_box_is_kept_to_rounding(command, grains: Path, tmp_path: Path, box, met) -> None:
     result = command(
         "study", "coarsening", grains / "grain-a.stl", "-o", tmp_path, "--target", "particle",

@@ -52,6 +52,7 @@ def test_that_the_same_seed_gives_the_same_hundred_facets() -> None:
     assert np.array_equal(one.half_spaces.equations, two.half_spaces.equations)
 
 
+@pytest.mark.slow
 def test_that_medium_numbers_of_facets_are_met_and_cost_no_overlap() -> None:
     overlap = dict.fromkeys((20, 30, 50), 0.0)
     for seed in range(6):

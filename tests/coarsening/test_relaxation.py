@@ -47,7 +47,12 @@ def test_that_a_ball_becomes_nearly_as_round_as_goldberg_allows(n_facets: int) -
 
 
 @pytest.mark.parametrize(
-    ("axes", "n_facets"), [((1.25, 1.1, 1.0), 20), ((1.3, 1.0, 0.9), 30), ((1.0, 0.9, 0.8), 30)]
+    ("axes", "n_facets"),
+    [
+        ((1.25, 1.1, 1.0), 20),
+        pytest.param((1.3, 1.0, 0.9), 30, marks=pytest.mark.slow),
+        pytest.param((1.0, 0.9, 0.8), 30, marks=pytest.mark.slow),
+    ],
 )
 def test_that_no_box_is_overlooked_where_the_sphericity_cannot_be_met(
     axes: tuple[float, float, float], n_facets: int
@@ -67,6 +72,7 @@ def test_that_a_ball_is_given_up_after_one_start() -> None:
     assert coarsen(egg(1.0, 0.95, 0.9), 20, "exact").steps["starts"] == 1
 
 
+@pytest.mark.slow
 def test_that_an_egg_whose_sphericity_can_just_be_reached_is_met() -> None:
     found = coarsen(egg(1.0, 0.8, 0.6), 100, "exact")
     assert max(found.errors[key] for key in (*REST, "sphericity")) <= 1e-6
@@ -81,7 +87,14 @@ def test_that_what_cannot_be_met_ends_at_the_least_loss_that_was_shown() -> None
     assert found.loss == pytest.approx(min(found.loss_history), abs=2e-3)
 
 
-@pytest.mark.parametrize(("n_facets", "seed"), [(12, 0), (12, 1), (20, 1), (30, 0), (30, 2), (50, 2)])
+@pytest.mark.parametrize(
+    ("n_facets", "seed"),
+    [
+        (12, 0),
+        *(pytest.param(*each, marks=pytest.mark.slow) for each in ((12, 1), (20, 1), (30, 0), (30, 2))),
+        (50, 2),
+    ],
+)
 def test_that_an_urchin_keeps_volume_and_length_and_all_that_is_missed_is_named(
     n_facets: int, seed: int
 ) -> None:

@@ -31,6 +31,7 @@ def test_that_triangles_are_counted_in_whole_numbers(triangles: float) -> None:
         facets_for_triangles(triangles)  # type: ignore[arg-type]
 
 
+@pytest.mark.slow
 def test_that_the_fewest_facets_meet_the_limit_and_one_less_does_not(particle: Mesh) -> None:
     steps = fewest_facets(particle, 0.01, settings={"retries": 1})
     tried, counted = [], []

@@ -222,6 +222,7 @@ def test_that_a_kill_at_every_step_leaves_the_old_dataset_or_the_new_one(
 
 
 @needs_fork
+@pytest.mark.slow
 def test_that_a_few_kills_at_any_moment_leave_the_old_dataset_or_the_new_one(tmp_path, make_dataset) -> None:
     report = drive(tmp_path, make_dataset, 12, "time", "swap")
     assert report["killed"] == 12

@@ -21,7 +21,9 @@ from regolith_studio.errors import InputError
 from tests.dem.packings import cone, packing
 
 
-@pytest.mark.parametrize("angle", [15, 25, 35, 45])
+@pytest.mark.parametrize(
+    "angle", [15, *(pytest.param(each, marks=pytest.mark.slow) for each in (25, 35, 45))]
+)
 def test_that_a_cone_of_a_thousand_grains_is_measured_within_half_a_degree(angle: int) -> None:
     found = [measure_repose(cone(angle, 1000, seed), 1.0) for seed in range(5)]
     assert abs(np.mean([each.angle for each in found]) - angle) < 0.5
@@ -40,6 +42,7 @@ def test_that_the_paper_s_letter_reads_a_coarse_cone_too_flat() -> None:
 
 
 @pytest.mark.parametrize("angle", [20, 30, 40])
+@pytest.mark.slow
 def test_that_a_cut_off_top_does_not_change_the_angle(angle: int) -> None:
     found = [measure_repose(cone(angle, 1500, seed, plateau=0.7), 1.0).angle for seed in range(4)]
     assert np.mean(found) == pytest.approx(angle, abs=1.0)
@@ -194,6 +197,7 @@ def test_that_the_interval_of_equal_flanks_has_no_width_and_of_noise_that_of_eig
 
 
 @pytest.mark.parametrize(("n", "bias"), [(300, 1.5), (1000, 0.4)])
+@pytest.mark.slow
 def test_that_the_interval_holds_the_angle_of_rough_heaps_with_loose_grains(n: int, bias: float) -> None:
     """Flanks that end where the surface crosses the cuts are 2.4 and 1.0 degrees too flat here."""
     kind = HeapKind(roughness=0.3, loose=0.05)

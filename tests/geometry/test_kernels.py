@@ -182,6 +182,7 @@ ROOT = Path(kernels.__file__).resolve().parents[2]
 NUMBERS = re.compile(r"None|(int|float|bool)|tuple\[(int|float|bool)(, (int|float|bool))*\]")
 
 
+@pytest.mark.slow
 def test_that_kernels_called_by_python_return_numbers_only() -> None:
     """See :func:`regolith_studio.geometry.kernels.kernel`; kernels called by kernels may return anything."""
     trees = {

@@ -214,6 +214,7 @@ def test_that_a_scan_with_every_fault_at_once_keeps_its_volume(seed):
     assert result.mesh.surface_area == pytest.approx(whole.surface_area, rel=0.02)
 
 
+@pytest.mark.slow
 def test_that_a_rim_of_many_corners_is_closed_about_its_middle():
     """Half a sphere is refused, a sphere without its cap above 0.9 is closed by a disc."""
     sphere = icosphere(6)

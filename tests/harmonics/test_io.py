@@ -108,6 +108,7 @@ def test_that_documents_and_arrays_of_two_samples_do_not_mix():
 
 
 @pytest.mark.real_data
+@pytest.mark.slow
 def test_that_volume_and_area_of_real_particles_are_the_published_ones(real_data):
     """300 of 3,338, within 0.5 percent: coefficients against an independent program's volume and area.
 

@@ -219,6 +219,7 @@ def test_that_voxel_diameter_is_that_of_a_ball() -> None:
     assert voxel_diameter(1000) == pytest.approx(2 * (3000 / 4 / np.pi) ** (1 / 3))
 
 
+@pytest.mark.slow
 def test_that_slabs_give_the_particles_of_the_whole(monkeypatch: pytest.MonkeyPatch) -> None:
     volume = sample_volume("labels")
     whole = extract_particles(volume)
@@ -249,6 +250,7 @@ def test_that_the_shipped_scan_gives_47_closed_particles() -> None:
         assert (np.unique(edges, axis=0, return_counts=True)[1] == 2).all()
 
 
+@pytest.mark.slow
 def test_that_the_real_label_volume_comes_in(real_data) -> None:
     array = tifffile.imread(real_data("cement140/labels_256.tif"))
     extraction = extract_particles(Volume(array.T, (1, 1, 1), "labels", "cement"))

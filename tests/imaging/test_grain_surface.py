@@ -243,6 +243,7 @@ def test_that_grey_values_of_another_shape_and_unknown_surfaces_are_refused() ->
         ExtractionSettings(surface="voxels")  # type: ignore[arg-type]
 
 
+@pytest.mark.slow
 def test_that_every_grain_of_the_shipped_scan_has_its_volume_within_two_percent() -> None:
     """Three minerals, one threshold: masks of the dark one are up to a fifth too small, others too large."""
     truth, grey = sample_volume("labels"), sample_volume("grey")

@@ -64,6 +64,7 @@ def result_of(steps: Steps) -> Any:
 
 
 @pytest.mark.parametrize("workers", [1, 2])
+@pytest.mark.slow
 def test_that_the_study_has_the_polyhedra_of_the_gallery(
     coarsening_request: CoarseningRequest, workers: int
 ) -> None:

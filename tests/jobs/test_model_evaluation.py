@@ -24,6 +24,7 @@ def job_steps() -> tuple[list[Step], ModelEvaluationResult]:
             return steps, end.value
 
 
+@pytest.mark.slow
 def test_that_a_judgement_has_its_figures(job_steps: tuple[list[Step], ModelEvaluationResult]) -> None:
     _, judged = job_steps
     assert set(judged.pictures) == {"number", "volume", "pairs", "quantiles"}

@@ -106,6 +106,7 @@ def test_that_measured_particles_are_handed_over_and_not_kept(part: VolumeInput)
         assert facts.health.sound
 
 
+@pytest.mark.slow
 def test_that_segmentation_and_extraction_can_be_run_one_after_the_other() -> None:
     _, segmentation = played(segment_volume(sample_volume("grey"), QUICK.segmentation))
     _, extraction = played(extract_labels(segmentation.labels, ExtractionSettings(), sample_file("grey")))

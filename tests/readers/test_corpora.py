@@ -22,6 +22,7 @@ def meshes_below(folder):
         ("bad/winding", 39, "mm"),
     ],
 )
+@pytest.mark.slow
 def test_that_every_real_scan_comes_in_facing_outwards(folder, count, unit, real_data):
     problems = []
     particles = read_particles(

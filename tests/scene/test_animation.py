@@ -53,6 +53,7 @@ def test_that_an_animation_of_an_unknown_kind_is_refused(tmp_path):
 
 
 @pytest.mark.parametrize("scale", [1, 3])
+@pytest.mark.slow
 def test_that_the_scale_bar_of_a_figure_is_true_at_any_scale(ball, cube, scale):
     picture = three_views(ball, ball, cube, ("a", "b", "c"), scale=scale, direction="front")
     width, height = (scale * each for each in VIEW_SIZE)

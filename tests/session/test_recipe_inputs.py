@@ -165,6 +165,7 @@ def test_that_a_volume_that_gives_no_grains_is_a_sentence_and_leaves_nothing(
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.slow
 def test_that_particles_are_drawn_like_measured_ones_with_the_model_named(
     tmp_path: Path, grains: Path
 ) -> None:
@@ -192,6 +193,7 @@ def test_that_a_model_file_a_card_and_its_file_draw_the_same_particles(tmp_path:
     assert volumes[1:] == [volumes[0]] * 3
 
 
+@pytest.mark.slow
 def test_that_tables_of_coefficients_are_particles_and_make_a_model(tmp_path: Path, grains: Path) -> None:
     folder = tmp_path / "tables"
     folder.mkdir()

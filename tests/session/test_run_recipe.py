@@ -106,7 +106,14 @@ def test_that_four_workers_change_no_byte(
     assert digests(done(recipe(grains), grains, tmp_path / "out", 4).folder) == alone[1]
 
 
-@pytest.mark.parametrize("after", range(0, 12, 3))
+@pytest.mark.parametrize(
+    "after",
+    [
+        pytest.param(0, marks=pytest.mark.slow),
+        3,
+        *(pytest.param(each, marks=pytest.mark.slow) for each in (6, 9)),
+    ],
+)
 def test_that_a_run_given_up_after_any_particle_goes_on_to_the_same_bytes(
     grains: Path, tmp_path: Path, alone: tuple[RecipeRun, dict], after: int
 ) -> None:
@@ -195,6 +202,7 @@ def killed(given_recipe: Path, folder: Path, records: int) -> None:
 
 
 @pytest.mark.skipif(os.name == "nt", reason="signals are a matter of POSIX")
+@pytest.mark.slow
 def test_that_a_run_killed_again_and_again_ends_with_the_same_bytes(
     grains: Path, tmp_path: Path, alone: tuple[RecipeRun, dict]
 ) -> None:

@@ -231,7 +231,14 @@ def test_that_particles_of_an_edited_card_are_the_same_in_a_run(session: Session
     assert (tmp_path / "recipe-model.json").is_file()
 
 
-@pytest.mark.parametrize("model", ["sample_matched", "gaussian_field", "mixture_field"])
+@pytest.mark.parametrize(
+    "model",
+    [
+        "sample_matched",
+        pytest.param("gaussian_field", marks=pytest.mark.slow),
+        pytest.param("mixture_field", marks=pytest.mark.slow),
+    ],
+)
 def test_that_particles_of_a_fitted_model_are_the_same_in_a_run(
     session: Session, tmp_path: Path, model: str
 ) -> None:

@@ -175,6 +175,7 @@ def test_that_outer_numbers_of_ellipsoids_are_the_ratios_of_their_axes() -> None
     np.testing.assert_allclose(found[:, 0], form.sum(axis=1), atol=0.02)
 
 
+@pytest.mark.slow
 def test_that_drawn_particles_have_the_outer_numbers_of_real_ones(cement: Sample) -> None:
     cut = cement.truncated(10).coefficients
     measured, aim = features_and_target(cut)

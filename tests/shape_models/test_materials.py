@@ -58,6 +58,7 @@ def test_that_a_card_read_back_is_the_card_that_was_written(
     np.testing.assert_allclose(card.model(4).spectrum, field.spectrum, rtol=0.02, atol=1e-12)
 
 
+@pytest.mark.slow
 def test_that_the_card_of_a_sample_draws_its_shapes_and_says_how_well() -> None:
     """Half ellipsoids of 2 : 1.4 : 1, half spheres: no field with random phases has such aspect ratios."""
     drawn = materials()["ma165"].field(6).draw(120, 0)

@@ -144,6 +144,7 @@ def test_that_particles_of_one_size_are_drawn_at_that_size(
 
 
 @keys
+@pytest.mark.slow
 def test_that_only_gaussian_fields_of_the_radius_throw_draws_of_real_particles_away(
     key: str, cement: Sample
 ) -> None:

@@ -97,6 +97,7 @@ def test_that_turning_within_the_ellipsoid_keeps_the_share_of_the_hull(cement: S
     assert ks_2samp(own, theirs).statistic < 0.1
 
 
+@pytest.mark.slow
 def test_that_mirror_images_are_as_new_as_measured_particles_are_to_each_other(cement: Sample) -> None:
     """Without mirroring nearly all draws are nearest to their own parents, at half of that distance."""
     measured = canonical(cement.truncated(10).coefficients)

@@ -144,6 +144,7 @@ def test_that_a_study_of_nothing_is_refused(particles):
             finished(lmax_study(*arguments))
 
 
+@pytest.mark.slow
 def test_that_a_process_pool_gives_the_same_numbers(particles):
     with ProcessPoolExecutor(1, get_context("spawn")) as pool:
         _, result = finished(lmax_study(particles, (1, 4), mapper=pool.map))

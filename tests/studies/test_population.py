@@ -56,6 +56,7 @@ def small() -> tuple[list[StudyProgress], PopulationStudy]:
     return run(rough_sample(60), SMALL_MODELS, **SMALL)
 
 
+@pytest.mark.slow
 def test_that_progress_rises_to_the_end(small: tuple[list[StudyProgress], PopulationStudy]) -> None:
     steps, _ = small
     done = [step.done for step in steps]

@@ -25,6 +25,7 @@ def assert_closed(mesh) -> None:
 
 
 @pytest.mark.parametrize("grain", GRAINS, ids=lambda grain: grain.name)
+@pytest.mark.slow
 def test_that_every_shipped_grain_is_closed_outward_and_of_the_stated_size(grain: SampleGrain) -> None:
     mesh = grain.mesh()
     assert_closed(mesh)
@@ -35,6 +36,7 @@ def test_that_every_shipped_grain_is_closed_outward_and_of_the_stated_size(grain
     assert 40 <= grain.recipe.diameter <= 150
 
 
+@pytest.mark.slow
 def test_that_the_kinds_can_be_told_apart_by_their_moments() -> None:
     ratios = {}
     for grain in GRAINS:
@@ -46,6 +48,7 @@ def test_that_the_kinds_can_be_told_apart_by_their_moments() -> None:
     assert all(long < 1.3 and thin > 0.9 for long, thin in ratios["bead"])
 
 
+@pytest.mark.slow
 def test_that_agglutinates_are_not_star_shaped_and_far_from_convex() -> None:
     for grain in GRAINS:
         if grain.kind != "agglutinate":
@@ -57,12 +60,14 @@ def test_that_agglutinates_are_not_star_shaped_and_far_from_convex() -> None:
 
 
 @pytest.mark.parametrize("recipe", [StarRecipe(80.0), AgglutinateRecipe(80.0)], ids=["star", "agglutinate"])
+@pytest.mark.slow
 def test_that_one_seed_gives_one_grain_and_another_seed_another(recipe) -> None:
     first, again, other = (recipe.make(np.random.default_rng(seed)) for seed in (1, 1, 2))
     assert first.content_hash == again.content_hash
     assert first.content_hash != other.content_hash
 
 
+@pytest.mark.slow
 def test_that_the_radius_function_and_the_mesh_are_the_same_surface() -> None:
     recipe = StarRecipe(80.0, stretch=(1.5, 1.0, 0.6))
     mesh = recipe.make(np.random.default_rng(5))

@@ -15,6 +15,7 @@ def scan() -> SyntheticScan:
     return synthetic_scan(SMALL, 1)
 
 
+@pytest.mark.slow
 def test_that_every_grain_is_one_connected_body(scan: SyntheticScan) -> None:
     for label in range(1, 7):
         _, bodies = ndimage.label(scan.labels.array == label)
@@ -39,6 +40,7 @@ def test_that_brightness_tells_grains_from_resin(scan: SyntheticScan) -> None:
     assert grey[resin].std() == pytest.approx(SMALL.noise, rel=0.15)
 
 
+@pytest.mark.slow
 def test_that_half_brightness_lies_at_the_grains_surface() -> None:
     clean = ScanRecipe(**{**SMALL.__dict__, "noise": 0.0, "rings": 0.0, "cupping": 0.0})
     again = synthetic_scan(clean, 1)
@@ -47,6 +49,7 @@ def test_that_half_brightness_lies_at_the_grains_surface() -> None:
     assert wrong.sum() < 0.05 * (again.labels.array > 0).sum()
 
 
+@pytest.mark.slow
 def test_that_one_seed_gives_one_scan(scan: SyntheticScan) -> None:
     again, other = synthetic_scan(SMALL, 1), synthetic_scan(SMALL, 2)
     assert np.array_equal(scan.grey.array, again.grey.array)

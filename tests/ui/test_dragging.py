@@ -8,6 +8,7 @@ from regolith_studio.ui.app import open_window
 
 
 @pytest.mark.parametrize("method", ["quadric", "exact"])
+@pytest.mark.slow
 def test_that_polyhedra_are_seen_while_a_slider_never_rests(shown, preferences, wait, method):
     window = shown(open_window(views="image", preferences=preferences))
     session, frame = window.session, window.page.three_views.frames["polyhedron"]

@@ -147,6 +147,7 @@ def silent_commands(window, monkeypatch, unseen=(*NOTHING_TO_SEE, *WITH_PARTICLE
     return silent
 
 
+@pytest.mark.slow
 def test_that_every_command_answers_where_nothing_is_open(shown, preferences, monkeypatch):
     window = shown(MainWindow(Session(HoldingRunner()), preferences, "image"))
     monkeypatch.setattr(window.session, "open_sample", lambda: None)

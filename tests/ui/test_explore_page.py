@@ -53,6 +53,7 @@ def test_that_box_star_point_and_overlay_come_and_go(window):
         assert not any(seen(window, view, each) for each in (overlays.BOX, overlays.STAR_POINT, VEIL))
 
 
+@pytest.mark.slow
 def test_that_the_picture_is_written_at_its_scale_and_without_background(window, tmp_path, monkeypatch, wait):
     target = tmp_path / "views"
     monkeypatch.setattr(ASKED, lambda *_: (str(target), ""))

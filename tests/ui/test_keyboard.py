@@ -110,6 +110,7 @@ def framed(window):
     return [each for each in window.findChildren(QWidget) if each.property("focused")]
 
 
+@pytest.mark.slow
 def test_that_the_focus_is_framed_after_a_key_and_not_after_the_mouse(window, settled):
     window.go("lecture")
     settled(window)

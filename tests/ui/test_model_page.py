@@ -151,6 +151,7 @@ def test_that_particles_are_drawn_in_the_range_shown_and_taken_over(page, wait):
     wait(lambda: page.source.source.itemText(0) == "Open particles (4)")
 
 
+@pytest.mark.slow
 def test_that_models_are_judged_on_the_sample_that_was_fitted(page):
     take(page, rough_sample())
     page.source.model.setCurrentIndex(page.source.model.findData("gaussian_field"))

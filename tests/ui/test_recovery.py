@@ -34,6 +34,7 @@ QUICK = "quadric"
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="there is no such signal")
+@pytest.mark.slow
 def test_that_what_a_killed_window_knew_is_offered_and_brought_back(shown, preferences, wait, tmp_path):
     surroundings = os.environ | {"QT_QPA_PLATFORM": "offscreen"}
     killed = subprocess.Popen([sys.executable, "-c", WORK], env=surroundings, stderr=subprocess.DEVNULL)

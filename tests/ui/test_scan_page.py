@@ -231,6 +231,7 @@ def test_that_a_raw_file_that_is_gone_costs_one_sentence(page, tmp_path, wait):
 
 
 @pytest.mark.parametrize("suffix", ["npy", "tif"])
+@pytest.mark.slow
 def test_that_a_large_volume_stays_on_the_disk_and_gives_the_same_grains(
     suffix, page, tmp_path, monkeypatch, wait
 ):

@@ -96,6 +96,7 @@ def test_that_a_brick_has_one_least_box() -> None:
 
 
 @pytest.mark.parametrize("seed", range(12))
+@pytest.mark.slow
 def test_that_tracked_boxes_are_those_that_a_search_finds(seed: int) -> None:
     normals, offsets = random_planes((12, 20, 50)[seed % 3], seed)
     solid, triples = solid_of(normals, offsets)

@@ -105,6 +105,7 @@ def test_that_one_rough_grain_is_not_split() -> None:
         assert segment(grey(crop == number), PLAIN).n_grains == 1
 
 
+@pytest.mark.slow
 def test_that_h_trades_grains_apart_for_grains_together() -> None:
     volume = sample_volume("grey")
     counts = [
@@ -122,6 +123,7 @@ def thin_slabs(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.usefixtures("thin_slabs")
+@pytest.mark.slow
 def test_that_slabs_on_disk_give_the_same_grains_as_memory(tmp_path) -> None:
     volume = sample_volume("grey")
     settings = SegmentationSettings(DenoiseSettings("gaussian"), cleaning=CleaningSettings(1, 1))
