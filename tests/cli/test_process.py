@@ -78,6 +78,7 @@ def test_that_lines_of_help_are_wrapped_and_not_cut() -> None:
         assert all(len(line) <= 80 for line in result.splitlines())
 
 
+@pytest.mark.slow
 def test_that_the_doors_of_the_package_lead_to_their_folders() -> None:
     code = (
         "import regolith_studio as rs, sys; names = set(rs.__all__) - {'__version__'};"

@@ -226,6 +226,7 @@ def test_that_a_broken_volume_is_one_sentence(command, tmp_path: Path, content: 
     assert not (tmp_path / "x").exists()
 
 
+@pytest.mark.slow
 def test_that_a_study_of_l_max_leaves_tables_and_pictures(command, grains: Path, tmp_path: Path) -> None:
     result = command("study", "lmax", grains, "-o", tmp_path / "s", "--degrees", "1,4", "--json")
     assert result.code == 0

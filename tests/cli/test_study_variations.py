@@ -24,6 +24,7 @@ def test_that_errors_against_faces_are_written(command, grains: Path, tmp_path: 
     assert volume[0] > volume[1] > 0  # fewer faces, larger error
 
 
+@pytest.mark.slow
 def test_that_the_trade_off_begins_with_the_best_overlap(command, grains: Path, tmp_path: Path) -> None:
     result = command("study", "tradeoff", grains / "grain-a.stl", "-o", tmp_path / "s", "--facets", 30, *ONE)
     assert result.code == 0, result.err

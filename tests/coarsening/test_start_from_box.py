@@ -54,6 +54,7 @@ def test_that_a_coin_is_met(n_facets: int) -> None:
     assert errors_by_scipy(Target.of(coin(2.0)), n_facets).max() <= 1e-6
 
 
+@pytest.mark.slow
 def test_that_a_smooth_needle_is_met_with_twelve_facets_or_has_a_reason() -> None:
     ball = icosphere(4)
     for thick in (1.0, 1.3, 1.7):

@@ -48,6 +48,7 @@ def test_that_a_cut_off_top_does_not_change_the_angle(angle: int) -> None:
     assert np.mean(found) == pytest.approx(angle, abs=1.0)
 
 
+@pytest.mark.slow
 def test_that_a_leaning_cone_has_its_two_flanks_in_the_asymmetric_model() -> None:
     sections = [measure_repose(cone(30, 2000, seed, lean=0.3), 1.0).sections[0] for seed in range(2)]
     slope = np.tan(np.radians(30.0))
@@ -208,6 +209,7 @@ def test_that_the_interval_holds_the_angle_of_rough_heaps_with_loose_grains(n: i
     assert (np.abs(errors) <= halves).sum() >= 10
 
 
+@pytest.mark.slow
 def test_that_a_tip_rounded_within_a_fifth_of_the_base_does_not_count() -> None:
     found = [measure_repose(*heap(30, 3000, seed, HeapKind(tip=0.2))).angle for seed in range(4)]
     assert np.mean(found) == pytest.approx(30.0, abs=0.25)

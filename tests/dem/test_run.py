@@ -180,6 +180,7 @@ def test_that_a_wish_of_the_window_is_the_same_study(
     }
 
 
+@pytest.mark.slow
 def test_that_shapes_are_varied_from_particles(tmp_path: Path) -> None:
     """A dataset a value, coarsened to it; the runs are not waited for."""
     ball = icosphere(2)
@@ -240,6 +241,7 @@ def test_that_a_cancelled_run_ends_its_process_and_says_so(boxes_folder: Path, t
     assert [summary.angle for summary in find_runs(tmp_path)] == [None]
 
 
+@pytest.mark.slow
 def test_that_a_run_that_cannot_write_says_so(boxes_folder: Path, tmp_path: Path) -> None:
     prepared = prepare(read_dataset(boxes_folder), CASE)
     steps = simulate_prepared(

@@ -217,6 +217,7 @@ def _crosses(one, other):
     return False
 
 
+@pytest.mark.slow
 def test_that_crossing_triangles_are_counted_as_a_plain_search_counts_them():
     rng = np.random.default_rng(5)
     corners = rng.integers(0, 40, (150, 1, 3)) + rng.integers(-9, 10, (150, 3, 3))

@@ -39,6 +39,7 @@ for k, values in enumerate(found):
 """
 
 
+@pytest.mark.slow
 def test_that_four_threads_get_what_one_gets_and_nothing_crashes() -> None:
     """In its own process: what this looks for kills the one that it happens in."""
     subprocess.run([sys.executable, "-c", THREADS], check=True, timeout=120)

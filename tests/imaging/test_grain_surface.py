@@ -141,6 +141,7 @@ def test_that_two_balls_that_touch_are_parted_where_their_masks_are() -> None:
         assert each.particle.mesh.volume == pytest.approx(4 / 3 * np.pi * 12**3 - cap + moved, rel=0.01)
 
 
+@pytest.mark.slow
 def test_that_a_ball_that_touches_six_others_is_no_larger_than_one_alone() -> None:
     """With all brightness about the contacts counted for both sides it came out 2.5 % too large."""
     centre, radius = np.full(3, 34.3), 11.0

@@ -40,6 +40,7 @@ def test_that_spheres_have_their_radii_by_number_and_by_volume():
     assert measured.mean == pytest.approx(1.0, abs=0.01)
 
 
+@pytest.mark.slow
 def test_that_a_model_without_particles_has_drawn_ones_only():
     compared = outcome(compare_distributions(None, Realizations(spheres(RADII), "radius", "x", 0)))
     measured, drawn = compared.distributions("aspect_ratio")

@@ -69,6 +69,7 @@ def test_that_the_copied_command_is_understood_and_coarsens(
 @pytest.mark.parametrize(
     "criterion", [{"stop_at": "triangles", "n_triangles": 59}, {"stop_at": "error", "largest_error": 0.035}]
 )
+@pytest.mark.slow
 def test_that_what_is_copied_stops_where_the_window_does(
     session: Session, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, criterion: dict[str, object]
 ) -> None:

@@ -98,6 +98,7 @@ def test_that_the_grains_of_a_volume_are_those_that_extract_finds(
     assert "labels.npy" in (tmp_path / "out" / "summary.html").read_text()
 
 
+@pytest.mark.slow
 def test_that_settings_of_the_extraction_change_what_is_found(tmp_path: Path, scan: dict[str, Any]) -> None:
     small = run(tmp_path / "a", volumes=[{**scan, "extraction": {"min_voxels": 100}}])
     large = run(tmp_path / "b", volumes=[{**scan, "extraction": {"min_voxels": 4000}}])

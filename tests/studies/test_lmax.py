@@ -168,6 +168,7 @@ def test_that_the_tables_hold_a_row_for_each_group_degree_and_descriptor(study):
     assert len(particle_table(study).rows) == 3 * len(DEGREES)
 
 
+@pytest.mark.slow
 def test_that_tables_and_figures_are_written_and_readable(study, tmp_path):
     paths = {path.name: path for path in write_lmax_study(study, tmp_path)}
     assert len(json.loads(paths["lmax_rmsre.json"].read_text())["rows"]) == 36

@@ -122,6 +122,7 @@ def test_that_the_same_seed_gives_the_same_study() -> None:
     np.testing.assert_array_equal(one.intervals.wasserstein, two.intervals.wasserstein)
 
 
+@pytest.mark.slow
 def test_that_a_study_becomes_tables_and_pictures(
     small: tuple[list[StudyProgress], PopulationStudy], tmp_path: Path
 ) -> None:

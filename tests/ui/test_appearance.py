@@ -61,6 +61,7 @@ def sizes_of_letters(window):
 
 @pytest.mark.usefixtures("usual_looks")
 @pytest.mark.parametrize("first", [100, 200])
+@pytest.mark.slow
 def test_that_letters_of_another_size_reach_every_widget_at_the_start_and_later(
     shown, preferences, app, first
 ):
@@ -83,6 +84,7 @@ def test_that_letters_of_another_size_reach_every_widget_at_the_start_and_later(
 
 
 @pytest.mark.usefixtures("usual_looks")
+@pytest.mark.slow
 def test_that_large_letters_leave_the_views_their_room(shown, preferences, app, settled):
     usual = app.font()
     preferences.window = {LETTERS: 200}
@@ -165,6 +167,7 @@ def pictures_of_pages(window, keys, wait, settled):
 
 
 @pytest.mark.usefixtures("usual_looks")
+@pytest.mark.slow
 def test_that_a_theme_chosen_later_looks_as_one_from_the_start(shown, preferences, wait, settled):
     keys = ("explore", "studies")
 

@@ -103,6 +103,7 @@ def test_that_the_section_draws_and_measures_what_the_plane_cuts(window):
     assert window.page.plots.left.currentIndex() == 0, "what was in front before is in front again"
 
 
+@pytest.mark.slow
 def test_that_the_fit_says_its_size_again_when_the_distances_go(window, wait):
     frame = window.page.three_views.frames["fit"]
     before = frame.detail.text()
@@ -113,6 +114,7 @@ def test_that_the_fit_says_its_size_again_when_the_distances_go(window, wait):
     assert frame.detail.text() == before
 
 
+@pytest.mark.slow
 def test_that_the_place_of_the_section_can_be_read_in_a_narrow_panel(window):
     field = window.page.plots.section.place.field
     line = field.lineEdit()
@@ -125,6 +127,7 @@ def test_that_the_place_of_the_section_can_be_read_in_a_narrow_panel(window):
     )
 
 
+@pytest.mark.slow
 def test_that_the_frame_of_the_section_is_dragged_in_a_view(window):
     views = window.page.three_views
     switch(window, "section")
@@ -162,6 +165,7 @@ def test_that_the_facet_under_the_mouse_is_outlined_numbered_and_told(window):
     assert window.statusBar().currentMessage() == ""
 
 
+@pytest.mark.slow
 def test_that_one_view_after_the_other_gets_all_the_room(window):
     frames = window.page.three_views.frames
     for seen in (["particle"], ["fit"], ["polyhedron"], ["particle", "fit", "polyhedron"]):
@@ -174,6 +178,7 @@ def test_that_one_view_after_the_other_gets_all_the_room(window):
     assert not any(frame.isHidden() for frame in frames.values())
 
 
+@pytest.mark.slow
 def test_that_the_picture_of_what_is_seen_has_bar_line_and_titles_at_any_scale(window):
     views = window.page.three_views
     switch(window, "wipe")
@@ -190,6 +195,7 @@ def test_that_the_picture_of_what_is_seen_has_bar_line_and_titles_at_any_scale(w
     assert max(inked) == 255  # the title
 
 
+@pytest.mark.slow
 def test_that_another_theme_measures_no_distances_again(window, wait, settled, monkeypatch):
     asked = []
 

@@ -181,6 +181,7 @@ def test_that_a_folder_of_others_is_told_and_left_alone(chosen, tmp_path) -> Non
     assert [path.name for path in tmp_path.iterdir()] == ["thesis.txt"]
 
 
+@pytest.mark.slow
 def test_that_a_dataset_can_be_opened_without_any_particle(page, chosen, tmp_path, wait) -> None:
     chosen.build_in(tmp_path / "set")
     wait(lambda: chosen.targets.export.isEnabled())
@@ -192,6 +193,7 @@ def test_that_a_dataset_can_be_opened_without_any_particle(page, chosen, tmp_pat
     page.validate()
 
 
+@pytest.mark.slow
 def test_that_other_particles_forget_the_choice(chosen, wait) -> None:
     chosen.session.adopt(grains(5, first=30))
     wait(lambda: not chosen.gallery.shown)
@@ -232,12 +234,14 @@ def test_that_what_was_set_comes_back(page) -> None:
     assert page.state()["sizes"] == state["sizes"]
 
 
+@pytest.mark.slow
 def test_that_themes_reach_every_part(chosen) -> None:
     for theme in (DARK, LIGHT):
         chosen.set_theme(theme)
     assert chosen.gallery.shown
 
 
+@pytest.mark.slow
 def test_that_the_library_lists_datasets_with_what_came_from_them(chosen, tmp_path, wait) -> None:
     chosen.build_in(tmp_path / "set")
     wait(lambda: chosen.targets.export.isEnabled())
@@ -263,6 +267,7 @@ def test_that_the_library_lists_datasets_with_what_came_from_them(chosen, tmp_pa
     assert library.tree.topLevelItemCount() == 0
 
 
+@pytest.mark.slow
 def test_that_the_first_dataset_opens_the_library_with_its_simulations(chosen, tmp_path, wait) -> None:
     """Nobody chose a folder: what was built is listed, and what was simulated elsewhere with it."""
     runs = tmp_path / "elsewhere"
@@ -303,6 +308,7 @@ def tree(folder):
     return {p.relative_to(folder).as_posix(): p.read_bytes() for p in folder.rglob("*") if p.is_file()}
 
 
+@pytest.mark.slow
 def test_that_a_saved_recipe_makes_the_dataset_and_the_exports_of_the_page(
     page, wait, tmp_path, monkeypatch
 ) -> None:
@@ -366,6 +372,7 @@ def test_that_a_recipe_that_is_opened_sets_the_controls(page, wait, tmp_path) ->
     assert page.folder.name.text() == "mine", "a recipe is taken once"
 
 
+@pytest.mark.slow
 def test_that_a_format_that_may_not_change_shapes_is_in_no_recipe(chosen) -> None:
     altering = next(key for key, each in EXPORTERS.items() if each.alters)
     chosen.targets.setValue({"targets": [altering]})

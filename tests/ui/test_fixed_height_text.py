@@ -84,6 +84,7 @@ def watched(window, settled):
     return Watched(window, settled)
 
 
+@pytest.mark.slow
 def test_that_no_control_of_explore_moves_with_particle_degree_method_and_outcome(window, watched):
     page, session = watched.go("explore"), window.session
     for entry in session.particles[:4]:
@@ -103,6 +104,7 @@ def test_that_no_control_of_sample_moves_with_a_filter_that_is_wrong(watched):
         watched.does(text, page.filter.setText, text)
 
 
+@pytest.mark.slow
 def test_that_no_control_of_dataset_moves_while_one_is_made(window, watched, tmp_path):
     page = watched.go("dataset")
     watched.does("find", page.find_representatives)
@@ -128,6 +130,7 @@ def test_that_no_control_of_scan_moves_from_volume_to_particles(watched):
     watched.does("particles", page.make_particles)
 
 
+@pytest.mark.slow
 def test_that_no_control_of_the_shape_model_moves_with_source_fit_and_draws(watched):
     page = watched.go("model")
     for at in [*range(page.source.source.count()), 1]:
@@ -138,6 +141,7 @@ def test_that_no_control_of_the_shape_model_moves_with_source_fit_and_draws(watc
         watched.does(page.source.model.itemText(at), page.source.model.setCurrentIndex, at)
 
 
+@pytest.mark.slow
 def test_that_no_control_of_studies_moves_with_a_study(window, watched):
     window.session.keep([entry.id for entry in window.session.particles[:2]])
     page = watched.go("studies")
@@ -145,6 +149,7 @@ def test_that_no_control_of_studies_moves_with_a_study(window, watched):
     watched.does("other choices", lambda: window.session.choose(n_facets=12))
 
 
+@pytest.mark.slow
 def test_that_no_control_of_the_angle_of_repose_moves_with_consequences_and_problems(watched):
     page = watched.go("repose")
     watched.does("a dataset", page.make_dataset)

@@ -83,6 +83,7 @@ def test_that_the_guide_shows_the_page_as_it_is(page, window, wait, settled, tmp
             assert drift(now, before) < DRIFT
 
 
+@pytest.mark.slow
 def test_that_a_page_that_has_changed_is_told_from_one_that_has_not():
     with Image.open(IMAGES / "page_sample.png") as one, Image.open(IMAGES / "page_model.png") as other:
         assert drift(one, other) > DRIFT

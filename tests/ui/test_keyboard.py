@@ -76,6 +76,7 @@ def walked(window):
     raise AssertionError(f"Tab is caught by {type(seen[-1]).__name__} {seen[-1].objectName()}")
 
 
+@pytest.mark.slow
 def test_that_every_control_of_every_page_is_named_and_reached_by_tab(window, settled):
     for page in PAGES.values():
         widget = window.go(page.key)
@@ -245,6 +246,7 @@ def chord(window, key, modifiers=Qt.KeyboardModifier.NoModifier):
     QApplication.processEvents()
 
 
+@pytest.mark.slow
 def test_that_undo_and_redo_work_while_a_number_box_has_the_keys(window, settled):
     page, session = window.page, window.session
     control, shift = Qt.KeyboardModifier.ControlModifier, Qt.KeyboardModifier.ShiftModifier
@@ -270,6 +272,7 @@ def test_that_undo_and_redo_work_while_a_number_box_has_the_keys(window, settled
     assert session.choices.l_max == 15
 
 
+@pytest.mark.slow
 def test_that_a_typed_number_is_undone_by_the_window_once_it_counts(window, settled):
     field, session = window.page.coarsening.seed, window.session
     before = session.choices.seed

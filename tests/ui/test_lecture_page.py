@@ -111,6 +111,7 @@ def test_that_it_plays_by_itself_pauses_and_steps_back(page, wait):
     assert not playback.playing
 
 
+@pytest.mark.slow
 def test_that_another_seed_is_another_run_and_a_project_remembers_it(page):
     before = page.annealing._lesson.steps
     page.commands()["another"]()
@@ -122,6 +123,7 @@ def test_that_another_seed_is_another_run_and_a_project_remembers_it(page):
     assert [s.evaluation.loss for s in page.annealing._lesson.steps] == [s.evaluation.loss for s in after]
 
 
+@pytest.mark.slow
 def test_that_the_lesson_follows_the_particle_and_the_choices(page, wait):
     page.particle.setCurrentIndex(1)
     assert page._session.choices.selected == "cigar"
@@ -132,6 +134,7 @@ def test_that_the_lesson_follows_the_particle_and_the_choices(page, wait):
     wait(lambda: "at most 2,000" in page.annealing.sentence.text())
 
 
+@pytest.mark.slow
 def test_that_the_degrees_grow_from_a_sphere(page):
     page.tabs.setCurrentIndex(1)
     playback = page.degrees.playback
@@ -165,6 +168,7 @@ def test_that_a_dragged_bar_changes_the_field_and_a_button_draws_it_anew(page):
     assert field.drawn.values.std() == pytest.approx(spread)
 
 
+@pytest.mark.slow
 def test_that_letters_and_formulas_grow_and_the_theme_changes(page, wait):
     wait(lambda: page.annealing.rule.sizeHint().height() > page.annealing.rule.fontMetrics().height())
     before, high = page.annealing.sentence.fontMetrics().height(), page.annealing.rule.sizeHint().height()
@@ -176,6 +180,7 @@ def test_that_letters_and_formulas_grow_and_the_theme_changes(page, wait):
     assert page._context.recall("letters") > 1.5
 
 
+@pytest.mark.slow
 def test_that_letters_that_are_large_everywhere_are_not_enlarged_twice(page, app):
     sentence = page.annealing.sentence
     usual = sentence.font().pointSizeF()
@@ -190,6 +195,7 @@ def test_that_letters_that_are_large_everywhere_are_not_enlarged_twice(page, app
     assert sentence.font().pointSizeF() == pytest.approx(usual)
 
 
+@pytest.mark.slow
 def test_that_a_formula_has_its_height_beside_a_plot_that_is_asked_to_be_higher(page, wait):
     """Its legend wraps, so Qt took the height that it likes for the least that it needs."""
     page.tabs.setCurrentWidget(page.field)
@@ -272,6 +278,7 @@ def test_that_the_height_of_a_fraction_is_that_of_its_outline(app):  # noqa: ARG
     assert outline(r"$\frac{1}{2}$").boundingRect().height() > outline("$1$").boundingRect().height()
 
 
+@pytest.mark.slow
 def test_that_a_stopped_lesson_says_so_and_begins_again_at_the_next_visit(page):
     page._stopped()
     assert "Stopped" in page.annealing.sentence.text()
@@ -280,6 +287,7 @@ def test_that_a_stopped_lesson_says_so_and_begins_again_at_the_next_visit(page):
     assert "start" in page.annealing.sentence.text()
 
 
+@pytest.mark.slow
 def test_that_plots_of_annealing_are_high_enough_for_their_letters_in_a_low_window(page, app):
     page.resize(900, 420)
     for _ in range(3):

@@ -191,6 +191,7 @@ def test_that_two_particles_are_compared_at_two_degrees(newcomer):
         assert seen[name, 10] < seen[name, 4], f"more of {name} is kept at a higher degree"
 
 
+@pytest.mark.slow
 def test_that_a_polyhedron_keeps_volume_area_and_aspect_ratio(newcomer):
     newcomer.choose("preset", presets()["volume_sphericity_aspect_ratio"].label)
     newcomer.tab("plots_left", "Descriptors")

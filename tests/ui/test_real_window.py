@@ -248,6 +248,7 @@ def test_that_the_tour_goes_on_with_return_and_leaves_no_frame_behind(window, wa
     settled(window)
 
 
+@pytest.mark.slow
 def test_that_the_picture_of_the_documentation_can_be_taken(window, drawn):
     window.session.select("angular-1")
     drawn(window)

@@ -231,6 +231,7 @@ def test_that_gravity_can_be_chosen_by_name_and_the_state_comes_back(page, datas
     page.restore({"setup": 3})
 
 
+@pytest.mark.slow
 def test_that_runs_are_compared(page, dataset, wait):
     small(page, dataset)
     page.run_test()
@@ -279,6 +280,7 @@ def test_that_the_open_particles_become_a_dataset(page, wait):
     assert not page._context.toast.sentence.text()
 
 
+@pytest.mark.slow
 def test_that_a_study_grows_is_stopped_and_goes_on(page, dataset, wait):
     small(page, dataset)
     panel = page.study

@@ -110,6 +110,7 @@ def test_that_the_exported_table_has_the_rows_that_are_seen_with_units(page, tmp
     assert QApplication.clipboard().text().splitlines()[1].split("\t")[0] == "bead-1"
 
 
+@pytest.mark.slow
 def test_that_only_the_chosen_particles_can_be_kept(window, page, wait):
     page.table.choose([])
     choose(page, "bead-1", "bead-2")
@@ -118,6 +119,7 @@ def test_that_only_the_chosen_particles_can_be_kept(window, page, wait):
     wait(lambda: len(page.table.visible_entries()) == 2)
 
 
+@pytest.mark.slow
 def test_that_what_a_project_keeps_of_the_page_comes_back(page):
     page.filter.setText("flat")
     page.scatter.set_axes("volume", "sphericity")

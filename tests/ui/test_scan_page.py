@@ -78,6 +78,7 @@ def grains_seen(view):
     return np.mean([colour.hsvSaturation() > 60 for colour in colours])
 
 
+@pytest.mark.slow
 def test_that_a_new_user_gets_from_the_sample_scan_to_particles(page, wait):
     assert not page.workflow.search.isEnabled()
     assert not page.workflow.convert.isEnabled()
@@ -101,6 +102,7 @@ def test_that_a_new_user_gets_from_the_sample_scan_to_particles(page, wait):
     assert page.visited == ["sample"]
 
 
+@pytest.mark.slow
 def test_that_a_dragged_threshold_is_a_manual_one_and_changes_the_preview(page, part, wait):
     page.open(part)
     wait(lambda: page.findChild(VolumeDialog) is not None, SECONDS)

@@ -4,6 +4,8 @@ import os
 import subprocess
 import sys
 
+import pytest
+
 from regolith_studio.ui.startup import make_splash
 
 START = """
@@ -57,6 +59,7 @@ startup.run()
 """
 
 
+@pytest.mark.slow
 def test_that_the_process_ends_soon_after_its_window_whatever_runs(tmp_path):
     surroundings = os.environ | {"QT_QPA_PLATFORM": "offscreen", "REGOLITH_STUDIO_CONFIG": str(tmp_path)}
     ended = subprocess.run(

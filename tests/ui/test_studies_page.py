@@ -47,6 +47,7 @@ def test_that_the_gallery_fills_row_by_row_and_can_be_stopped(window, wait):
     wait(lambda: not window.session.tasks, SECONDS)
 
 
+@pytest.mark.slow
 def test_that_the_gallery_has_a_row_for_each_loss_that_is_chosen(window, wait, settled):
     page = window.go("studies")
     window.session.choose(method="annealing", settings=(("iterations", 2),))
@@ -83,6 +84,7 @@ def test_that_one_loss_always_stays(shown):
     assert bar.names() == paper_names()
 
 
+@pytest.mark.slow
 def test_that_studies_say_how_many_facets_they_take_where_polyhedra_stop_at_an_error(window, settled):
     page = window.go("studies")
     window.session.choose(n_facets=24)
@@ -127,6 +129,7 @@ def test_that_errors_against_facets_are_drawn_told_and_saved(window, wait, settl
     }
 
 
+@pytest.mark.slow
 def test_that_the_gallery_is_saved_as_a_picture_and_as_numbers(window, wait, settled, monkeypatch, tmp_path):
     page = window.go("studies")
     page.gallery.frame.start.click()
@@ -157,6 +160,7 @@ def test_that_a_variation_can_be_stopped_and_another_is_refused_with_a_reason(wi
     assert not page.variations["facets"].frame.stop.isVisibleTo(page)
 
 
+@pytest.mark.slow
 def test_that_trade_and_sensitivity_follow_the_method(window, wait, settled):
     page = window.go("studies")
     window.session.choose(method="annealing", settings=(("iterations", 2),))
@@ -184,6 +188,7 @@ def test_that_trade_and_sensitivity_follow_the_method(window, wait, settled):
     assert table.rowCount() == 0
 
 
+@pytest.mark.slow
 def test_that_the_page_is_kept_with_the_project(window):
     page = window.go("studies")
     page.bar.set_names(["only_volume", "overlap"])
@@ -215,6 +220,7 @@ def test_that_both_studies_are_computed_and_saved(window, wait, settled, tmp_pat
     assert {path.suffix for path in folder.iterdir()} == {".csv", ".json", ".png", ".svg"}
 
 
+@pytest.mark.slow
 def test_that_saving_before_computing_is_told(window):
     window.go("studies").save()
     assert window.toast.sentence.text() == "Compute a study first."

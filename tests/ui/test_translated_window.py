@@ -65,6 +65,7 @@ def dialogs_of(window):
     yield BatchDialog(7, 7, folder, window)
 
 
+@pytest.mark.slow
 def test_that_nothing_on_the_translated_part_of_the_window_goes_past_the_translation(
     opened, speaking, preferences, monkeypatch
 ):
@@ -135,6 +136,7 @@ def test_that_no_words_on_the_way_from_a_scan_to_particles_go_past_the_translati
         dialog.deleteLater()
 
 
+@pytest.mark.slow
 def test_that_what_a_scan_holds_is_told_in_german_and_nothing_of_it_is_cut(scanned, speaking, assert_fits):
     speaking("de")
     page = scanned()
@@ -213,6 +215,7 @@ def test_that_no_label_is_cut_in_a_small_window(opened, speaking, language, asse
 
 
 @pytest.mark.parametrize("key", PAGES)
+@pytest.mark.slow
 def test_that_nothing_is_cut_on_a_page_in_a_small_german_window(key, opened, speaking, assert_fits):
     speaking("de")
     window = opened()

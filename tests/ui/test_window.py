@@ -116,6 +116,7 @@ def test_that_a_dragged_slider_is_one_step_of_undo(window, wait):
     wait(lambda: window.page.coarsening.value()["n_facets"] == 30)
 
 
+@pytest.mark.slow
 def test_that_another_particle_fills_all_three_views(window, wait, settled):
     before = pictures(window)
     table = window.page.particles.table
@@ -142,6 +143,7 @@ def test_that_dropped_files_are_opened_in_the_unit_that_is_answered(window, wait
     assert window.preferences.recent == (str(path),)
 
 
+@pytest.mark.slow
 def test_that_meshes_are_left_as_they_are_where_the_menu_says_so(window, wait, tmp_path):
     path = stl(tmp_path / "egg.stl", inverted=True)
     mend = window.menus.by_name["repair"]
@@ -159,8 +161,8 @@ def test_that_meshes_are_left_as_they_are_where_the_menu_says_so(window, wait, t
     ("name", "words"),
     [
         (("thesis.docx",), "thesis.docx is nothing"),
-        (("a.stl", "b.tif"), "several kinds"),
-        (("a.tif", "b.tif"), "2 files"),
+        pytest.param(("a.stl", "b.tif"), "several kinds", marks=pytest.mark.slow),
+        pytest.param(("a.tif", "b.tif"), "2 files", marks=pytest.mark.slow),
     ],
 )
 def test_that_what_cannot_be_opened_is_said_without_a_question(window, tmp_path, name, words):
@@ -196,6 +198,7 @@ def test_that_a_broken_file_costs_one_sentence_and_nothing_else(window, wait, tm
     assert len(window.page.particles.entries()) == 12
 
 
+@pytest.mark.slow
 def test_that_bad_files_among_good_ones_are_told_and_the_good_ones_open(window, wait, tmp_path):
     stl(tmp_path / "egg.stl")
     (tmp_path / "broken.stl").write_bytes(b"\x00" * 90)
@@ -208,6 +211,7 @@ def test_that_bad_files_among_good_ones_are_told_and_the_good_ones_open(window, 
     assert "Traceback" not in said
 
 
+@pytest.mark.slow
 def test_that_one_bad_file_among_good_ones_is_its_sentence(window, wait, tmp_path):
     stl(tmp_path / "egg.stl")
     (tmp_path / "empty.ply").touch()
@@ -274,6 +278,7 @@ def test_that_the_export_tells_what_it_will_write_and_refuses_a_used_folder(wind
     dialog.reject()
 
 
+@pytest.mark.slow
 def test_that_the_window_follows_dark_and_light(window, wait):
     light = [picture.mean() for picture in pictures(window)]
     window.menus.by_name["theme_dark"].trigger()
@@ -286,6 +291,7 @@ def test_that_the_window_follows_dark_and_light(window, wait):
     window.menus.by_name["theme_system"].trigger()
 
 
+@pytest.mark.slow
 def test_that_closed_particles_are_released_when_work_has_ended(monkeypatch, shown, preferences, wait):
     busy = []
     monkeypatch.setattr("regolith_studio.ui.app.IDLE", 20)

@@ -56,6 +56,7 @@ def answer(name):
     return timer
 
 
+@pytest.mark.slow
 def test_that_the_palette_finds_commands_of_the_window_and_of_hidden_pages(window, wait):
     window.menus.by_name["palette"].trigger()
     palette = window.findChild(CommandPalette)
@@ -137,12 +138,14 @@ def test_that_a_crash_leaves_a_state_that_can_be_brought_back(window, wait):
     wait(lambda: not window.session.tasks, SECONDS)
 
 
+@pytest.mark.slow
 def test_that_a_proper_close_leaves_nothing_to_bring_back(window):
     window.projects._autosave()
     window.close()
     assert not list(autosave_path().parent.glob("autosave-*"))
 
 
+@pytest.mark.slow
 def test_that_every_stop_of_the_tour_shows_something_that_is_there(window):
     tour = start_tour(window, window.go, window.preferences)
     for number, step in enumerate(steps()):
@@ -166,6 +169,7 @@ def test_that_escape_ends_the_tour(window):
     assert all(not each.isVisible() for each in window.findChildren(Tour))
 
 
+@pytest.mark.slow
 def test_that_the_log_keeps_what_was_said_with_its_details(window):
     window.menus.by_name["log"].trigger()
     assert window.activity.isVisible()
@@ -216,6 +220,7 @@ def test_that_a_task_is_held_back_and_goes_on_from_the_list(window, wait):
     wait(lambda: panel.findChild(QPushButton, f"pause_task_{number}") is None)
 
 
+@pytest.mark.slow
 def test_that_a_task_that_is_held_back_can_be_left(window):
     session = window.session
     number = session.run("export", "Counting", Job(wait_for_ever), lambda _value: None)
@@ -234,6 +239,7 @@ def test_that_the_time_left_follows_from_the_time_gone(done, total, seconds, wor
     assert time_left(done, total, seconds) == words
 
 
+@pytest.mark.slow
 def test_that_the_borders_between_parts_are_remembered(window, shown, wait):
     columns = window.page.findChild(QSplitter, "explore_columns")
     total = sum(columns.sizes())
@@ -248,6 +254,7 @@ def test_that_the_borders_between_parts_are_remembered(window, shown, wait):
     assert all(abs(one - other) <= 8 for one, other in zip(found, wanted, strict=True))
 
 
+@pytest.mark.slow
 def test_that_closing_asks_while_a_study_runs(window):
     window.session.start_study("lmax_study")
     assert worth_asking(window.session.tasks, [])

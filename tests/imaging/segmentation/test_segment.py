@@ -42,7 +42,7 @@ def grey(mask: np.ndarray, name: str = "test") -> Volume:
 @pytest.mark.parametrize(
     "method",
     [
-        pytest.param(method, marks=[pytest.mark.slow] if method == "non-local-means" else [])
+        pytest.param(method, marks=[] if method == "median" else pytest.mark.slow)
         for method in DENOISE_METHODS
     ],
 )
