@@ -4,6 +4,7 @@ import subprocess
 import sys
 
 import numpy as np
+import pytest
 from numpy.polynomial.legendre import leggauss
 
 from regolith_studio.harmonics import shtools
@@ -24,6 +25,7 @@ assert pyshtools.backends.preferred_backend() in ("shtools", "ducc0")
 THREADS = """
 from concurrent.futures import ThreadPoolExecutor
 import numpy as np
+import pytest
 from regolith_studio.harmonics.coefficients import ShCoefficients
 from regolith_studio.harmonics.transform import analyse, evaluate_on_grid, ray_grid
 
