@@ -47,6 +47,7 @@ def test_that_scipy_finds_the_same_facets_and_volume(rough: CoarseningResult) ->
     assert ConvexHull(corners).volume == pytest.approx(rough.target["volume"], rel=1e-6)
 
 
+@pytest.mark.slow
 def test_that_the_same_seed_gives_the_same_hundred_facets() -> None:
     one, two = (coarsen(bumpy(5, roughness=0.3), 100, "exact", seed=3) for _ in range(2))
     assert np.array_equal(one.half_spaces.equations, two.half_spaces.equations)

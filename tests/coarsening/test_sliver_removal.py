@@ -60,6 +60,7 @@ def test_that_facet_areas_change_as_differences_by_scipy(seed: int) -> None:
 
 
 @pytest.mark.parametrize("n_facets", [35, pytest.param(50, marks=pytest.mark.slow)])
+@pytest.mark.slow
 def test_that_small_facets_grow_and_nothing_is_lost(n_facets: int, monkeypatch: pytest.MonkeyPatch) -> None:
     small = {True: [], False: []}
     for seed in range(3):

@@ -21,6 +21,7 @@ def pile_file(tmp_path: Path) -> Path:
     return path
 
 
+@pytest.mark.slow
 def test_that_a_saved_pile_is_measured_and_drawn(
     pile_file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -26,6 +26,7 @@ def outcome(steps):
             return end.value
 
 
+@pytest.mark.slow
 def test_that_spheres_have_their_radii_by_number_and_by_volume():
     assert ShCoefficients(spheres(RADII)[1]).mean_radius == pytest.approx(2.0)
     compared = outcome(

@@ -130,6 +130,7 @@ def test_that_a_run_given_up_after_any_particle_goes_on_to_the_same_bytes(
     assert digests(tmp_path / "out") == alone[1]
 
 
+@pytest.mark.slow
 def test_that_a_run_given_up_while_it_writes_leaves_the_earlier_results(
     grains: Path, tmp_path: Path, alone: tuple[RecipeRun, dict]
 ) -> None:

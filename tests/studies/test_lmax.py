@@ -66,6 +66,7 @@ def made_up():
     return LmaxStudy((2, 5), ("volume",), ("a", "b", "c", "d"), ("x", "x", "y", "y"), errors)
 
 
+@pytest.mark.slow
 def test_that_the_rmsre_is_equation_ten_of_the_same_fits(study, particles):
     fits = [fit_harmonics(particle.mesh, 8) for particle in particles]
     wanted = [describe(particle.mesh, LOSS_KEYS) for particle in particles]

@@ -19,6 +19,7 @@ def opened(shown, preferences, settled):
     return run
 
 
+@pytest.mark.slow
 def test_that_preferences_hold_at_once_or_at_the_next_start(opened, wait):
     window = opened()
     app, before = QApplication.instance(), QApplication.font().pointSizeF()

@@ -230,6 +230,7 @@ def accented(picture):
     return sum(picture.pixel(x, y) == accent for x, y in dots) / len(dots)
 
 
+@pytest.mark.slow
 def test_that_the_tour_goes_on_with_return_and_leaves_no_frame_behind(window, wait, settled):
     activate(window)
     tour = start_tour(window, window.go, window.preferences)

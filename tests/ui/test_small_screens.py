@@ -31,7 +31,7 @@ def usual_letters(app):
 
 
 @pytest.mark.usefixtures("usual_letters")
-@pytest.mark.parametrize("letters", [100, 150, 200])
+@pytest.mark.parametrize("letters", [100, pytest.param(150, marks=pytest.mark.slow), 200])
 def test_that_the_window_fits_a_small_screen_at_any_size_of_letters(shown, preferences, letters, app):
     preferences.window = preferences.window | {LETTERS: letters}
     window = shown(MainWindow(Session(InlineRunner()), preferences, "image"))
@@ -136,8 +136,8 @@ def test_that_bodies_are_framed_again_when_the_window_or_a_border_is_moved(shown
 
 
 @pytest.mark.usefixtures("usual_letters")
-@pytest.mark.parametrize("letters", [100, 200])
-@pytest.mark.parametrize("width", [1280, 1920])
+@pytest.mark.parametrize("letters", [100, pytest.param(200, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("width", [1280, pytest.param(1920, marks=pytest.mark.slow)])
 def test_that_boxes_and_legends_of_explore_are_whole(shown, preferences, settled, app, letters, width):
     preferences.window = preferences.window | {LETTERS: letters}
     session = Session(InlineRunner(), Choices(method="quadric"))

@@ -88,7 +88,7 @@ def test_that_nothing_on_the_translated_part_of_the_window_goes_past_the_transla
     assert asked == [[]]
 
 
-@pytest.mark.parametrize("key", READ)
+@pytest.mark.parametrize("key", [READ[0], *(pytest.param(each, marks=pytest.mark.slow) for each in READ[1:])])
 def test_that_no_words_on_a_page_go_past_the_translation(key, opened, speaking, settled):
     speaking("brackets")
     window = opened()
@@ -191,7 +191,7 @@ def assert_fits(wait):
     return check
 
 
-@pytest.mark.parametrize("language", ["en", "de"])
+@pytest.mark.parametrize("language", [pytest.param("en", marks=pytest.mark.slow), "de"])
 def test_that_no_label_is_cut_in_a_small_window(opened, speaking, language, assert_fits):
     speaking(language)
     window = opened()
