@@ -6,8 +6,9 @@ import pytest
 from scipy.spatial.distance import pdist, squareform
 
 from regolith_studio.dataset.dataset import Dataset
-from regolith_studio.dataset.parameters import ContactParameters
+from regolith_studio.dataset.parameters import ContactParameters, LiftingCylinderTest
 from regolith_studio.dem.case import ReposeCase, prepare
+from regolith_studio.dem.engines.mujoco import simulation
 from regolith_studio.dem.engines.mujoco.model import (
     ADHESION_GAP,
     N_WALLS,
@@ -143,3 +144,52 @@ def test_that_the_memory_for_contacts_grows_with_the_number_and_not_with_its_squ
     )
     assert large < 4 * small
     assert 100_000 * 2000 < large < 1e9
+
+
+def friction_of_sliding_grains(boxes: Dataset, degrees: float) -> tuple[float, simulation.MujocoRun]:
+    """Mean of tan(slope) - a / (g cos(slope)) over 12 time units of 40 boxes on the tilted plate."""
+    test = LiftingCylinderTest(mass=0.003, plate_friction=0.8)
+    prepared, settings = prepare(boxes, ReposeCase(test, n_particles=40, seed=2)), MujocoSettings()
+    built = build_model(prepared, settings)
+    run = simulation.MujocoRun(prepared, settings, built, mujoco.MjData(built.model), Units.of(prepared))
+    run.phase = "rest"
+    half = np.array([shape[:, 2].max() for shape in prepared.shapes])[prepared.class_index]
+    rows = run.data.qpos.reshape(-1, 7)
+    rows[:, :3] = np.column_stack(
+        [np.zeros(40), 4.0 * np.arange(40), half * prepared.scales / run.units.length]
+    )
+    rows[:, 3:] = (1.0, 0.0, 0.0, 0.0)
+    run.data.mocap_pos[0] = (0.0, 0.0, 1e3)
+    slope = np.radians(degrees)
+    built.model.opt.gravity = (np.sin(slope), 0.0, -np.cos(slope))
+    for _ in simulation.advance(run, None, lambda _: False, 12.0):
+        pass
+    speed = run.data.qvel.reshape(-1, 6)[:, 0]
+    return float(np.tan(slope) - speed.mean() / run.time / np.cos(slope)), run
+
+
+@pytest.mark.slow
+def test_that_grains_which_slide_fast_feel_the_friction_that_is_set(
+    boxes: Dataset, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Coulomb's law on a slope of 50 degrees; with one step for all speeds they bounce and feel less."""
+    felt, run = friction_of_sliding_grains(boxes, 50.0)
+    assert felt == pytest.approx(0.8, abs=0.03)
+    assert min(run.times) < max(run.times) == MujocoSettings().time_step
+    assert sum(run.times.values()) == pytest.approx(run.time)
+    monkeypatch.setattr(simulation, "MAX_MOVE", 1.0)
+    assert friction_of_sliding_grains(boxes, 50.0)[0] < 0.77
+
+
+def test_that_a_run_says_which_steps_it_took(boxes: Dataset) -> None:
+    prepared, settings = prepare(boxes, ReposeCase(n_particles=120, seed=2)), MujocoSettings()
+    built = build_model(prepared, settings)
+    run = simulation.MujocoRun(prepared, settings, built, mujoco.MjData(built.model), Units.of(prepared))
+    run.data.qvel.reshape(-1, 6)[:, 0] = 0.5
+    assert simulation.time_step(run) == settings.time_step  # a fall
+    run.phase = "lift"
+    assert simulation.time_step(run) == settings.time_step / 2
+    run.data.qvel.reshape(-1, 6)[:, 0] = 1e3
+    assert simulation.time_step(run) == settings.time_step / 8
+    run.times = {0.025: 3.0, 0.0125: 1.0}
+    assert "0.025 for 75.0 %, 0.0125 for 25.0 %" in simulation.steps_in_words(run)
