@@ -274,6 +274,16 @@ def export(
             metavar="N",
         ),
     ] = 200,
+    max_error: Annotated[
+        float,
+        typer.Option(
+            "--max-error",
+            min=0.0,
+            max=0.9,
+            help="Largest mismatch (Jaccard distance) of shapes made of spheres; takes as many as needed.",
+            metavar="E",
+        ),
+    ] = 0.0,
     set_: Annotated[
         list[str] | None,
         typer.Option(
@@ -295,7 +305,9 @@ def export(
     with usage_errors():
         chosen = chosen_exporters([key.strip() for key in to.split(",") if key.strip()])
         changes: dict[str, object] = dict(values(set_, "setting"))
-        settings = ExportOptions(coarse_graining_factor=coarse_graining, n_particles=particles, seed=seed)
+        settings = ExportOptions(
+            coarse_graining_factor=coarse_graining, n_particles=particles, max_error=max_error, seed=seed
+        )
         settings = settings.replaced(**changes)
     keys = [each.key for each in chosen]
     done = run_with_progress(export_dataset_folder(folder, keys, output, settings, lossy))

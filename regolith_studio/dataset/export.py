@@ -43,6 +43,9 @@ class ExportOptions:
         for formats that need rounded edges.
     n_spheres
         Spheres per shape, for formats that have only spheres.
+    max_error
+        Largest Jaccard distance between a shape and its spheres; the fewest spheres that reach it take the
+        place of `n_spheres`. 0: `n_spheres`.
     """
 
     contact: ContactParameters = field(default_factory=ContactParameters)
@@ -53,6 +56,7 @@ class ExportOptions:
     seed: int = 0
     rounding: float = 0.02
     n_spheres: int = 20
+    max_error: float = 0.0
 
     def __post_init__(self) -> None:
         if not 0.0 < self.coarse_graining_factor <= 1e6:
@@ -65,6 +69,10 @@ class ExportOptions:
             raise InputError(f"The rounding must be between 0 and 0.5, got {self.rounding}.")
         if not 1 <= self.n_spheres <= 500:
             raise InputError(f"Between 1 and 500 spheres can be fitted, got {self.n_spheres}.")
+        if not 0.0 <= self.max_error < 1.0:
+            raise InputError(
+                f"The error of the spheres must be at least 0 and below 1, got {self.max_error}."
+            )
 
     def replaced(self, **changes: Any) -> "ExportOptions":
         """A copy with other values; fields of `contact`, `test` and `times` by their own names.

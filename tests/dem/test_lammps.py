@@ -1,7 +1,9 @@
 """LAMMPS: clumps against exact volume and inertia, its input, and a whole run where the program is."""
 
 import re
+from collections.abc import Generator
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,26 +13,41 @@ from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.parameters import ContactParameters, LiftingCylinderTest
 from regolith_studio.dem.case import CohesionKind, ReposeCase, ShapeKind, prepare
 from regolith_studio.dem.engine import SimulationResult
-from regolith_studio.dem.engines.lammps import ENGINE
+from regolith_studio.dem.engines.lammps import ENGINE, simulation
 from regolith_studio.dem.engines.lammps.clumps import clump_shape, clumps_of
 from regolith_studio.dem.engines.lammps.program import LammpsSettings
 from regolith_studio.dem.engines.lammps.script import schedule, script, stiffness, viscosity
-from regolith_studio.dem.engines.lammps.simulation import kinetic_energies, last_words, read_bodies
+from regolith_studio.dem.engines.lammps.simulation import early_end, kinetic_energies, read_bodies
+from regolith_studio.dem.snapshot import Snapshot
 from regolith_studio.errors import InputError, RegolithError
+from regolith_studio.geometry.arrays import FloatArray
+
+
+def result_of(
+    steps: Generator[Snapshot, None, SimulationResult],
+) -> tuple[list[Snapshot], SimulationResult]:
+    """Snapshots and result of a whole run."""
+    moments = []
+    while True:
+        try:
+            moments.append(next(steps))
+        except StopIteration as end:
+            return moments, end.value
+
 
 SMALL = ReposeCase(LiftingCylinderTest(mass=0.003, lift_speed=0.3), n_particles=40, seed=2)
 
 
-def test_that_the_spheres_of_a_clump_lie_inside_and_carry_the_polyhedron_s_inertia(boxes: Dataset) -> None:
+def test_that_a_clump_has_the_polyhedron_s_volume_and_carries_its_inertia(boxes: Dataset) -> None:
     brick = clump_shape(boxes.representatives[1].shape.vertices, 8)
     half = np.array([3, 2, 1.5]) / 9 ** (1 / 3) / 2
-    assert ((np.abs(brick.spheres[:, :3]) + brick.spheres[:, 3:]) <= half + 1e-9).all()
+    assert ((np.abs(brick.spheres[:, :3]) + brick.spheres[:, 3:]) <= half + 0.2).all()
     squares = (2 * half) ** 2
     assert brick.inertia == pytest.approx(np.diag((squares.sum() - squares) / 12), abs=1e-9)
-    assert -0.4 < brick.errors.volume < -0.1
+    assert brick.errors.volume == pytest.approx(0.0, abs=1e-3)
+    assert brick.errors.jaccard < 0.25
     cube = clump_shape(boxes.representatives[0].shape.vertices, 1)
-    assert cube.spheres[0, 3] == pytest.approx(0.5, abs=1e-6)
-    assert cube.errors.volume == pytest.approx(np.pi / 6 - 1, abs=0.01)
+    assert cube.spheres[0] == pytest.approx([0, 0, 0, (3 / (4 * np.pi)) ** (1 / 3)], abs=5e-3)
 
 
 def test_that_clumps_turn_with_their_particles(boxes: Dataset) -> None:
@@ -75,10 +92,29 @@ def test_that_the_phases_follow_each_other(boxes: Dataset) -> None:
     plan = schedule(prepare(boxes, SMALL), LammpsSettings(), 30.0)
     phases = [plan.phase(step) for step in range(0, plan.steps, plan.picture)]
     assert list(dict.fromkeys(phases)) == ["fill", "settle", "lift", "rest"]
-    lift = plan.steps_of(plan.fill) + plan.steps_of(plan.settle)
+    lift = plan.steps_left("fill") + plan.steps_left("settle")
     assert plan.rim(lift) == 0.0
     assert plan.rim(lift + 100) == pytest.approx(100 * plan.step * plan.speed)
     assert plan.rim(plan.steps) == float("inf")
+
+
+def test_that_a_restart_does_the_rest_of_the_test_in_steps_half_as_long(boxes: Dataset) -> None:
+    prepared = prepare(boxes, SMALL)
+    plan = schedule(prepared, LammpsSettings(), 30.0)
+    late = plan.fill + plan.settle + 0.25 * plan.lift
+    rest = plan.restarted(late)
+    assert (rest.steps_left("fill"), rest.steps_left("settle")) == (0, 0)
+    assert rest.steps_left("lift") * rest.step == pytest.approx(0.75 * plan.lift, abs=2 * rest.step)
+    assert rest.rim(0) == pytest.approx(0.25 * plan.lift * plan.speed)
+    assert (rest.phase(0), rest.phase(rest.steps)) == ("lift", "rest")
+    assert rest.time(rest.steps) == pytest.approx(plan.total, abs=4 * rest.step)
+    assert rest.picture * rest.step == pytest.approx(plan.picture * plan.step)
+    text = script(prepared, LammpsSettings(), rest, 4.0, 30.0)
+    assert text.count("region tube cylinder") == 1
+    assert f"variable up equal {rest.raised!r}+" in text
+    over = plan.restarted(plan.total - 1.0)
+    assert "tube" not in script(prepared, LammpsSettings(), over, 4.0, 30.0)
+    assert over.rim(0) == float("inf")
 
 
 def test_that_the_script_says_the_paper_s_contact_laws(boxes: Dataset) -> None:
@@ -117,7 +153,7 @@ def test_that_what_lammps_writes_is_read_and_losses_are_noticed(tmp_path) -> Non
     [
         (
             "Step 1\nERROR on proc 0: Rigid body atoms 410 110 missing on proc 0 at step 42807 (f.cpp:3418)",
-            r"^The particles flew apart; take a smaller step than 0\.15 .*: ERROR .* missing on proc 0",
+            r"^The particles flew apart; take a smaller step than 0\.15 .*: LAMMPS said: ERROR .* missing on",
         ),
         ("ERROR: Lost atoms: original 99 current 98 (src/thermo.cpp:494)", "flew apart; take a smaller step"),
         ("ERROR: Unknown fix style (src/modify.cpp:9)", "^LAMMPS ended before its time: ERROR: Unknown fix"),
@@ -125,12 +161,50 @@ def test_that_what_lammps_writes_is_read_and_losses_are_noticed(tmp_path) -> Non
     ],
 )
 def test_that_the_message_says_what_to_do_when_lammps_loses_its_particles(output, expected) -> None:
-    assert re.search(expected, last_words(output, 0.15))
+    assert re.search(expected, str(early_end(output, 0.15)))
 
 
 def test_that_bad_settings_are_one_sentence() -> None:
     with pytest.raises(InputError, match="spheres"):
         LammpsSettings(spheres=0)
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not ENGINE.find().there, reason="LAMMPS or its MPI library is not here")
+@pytest.mark.parametrize("lost_at", [8, 20])
+def test_that_a_run_goes_on_from_its_last_snapshot_where_particles_fly_apart(
+    boxes: Dataset, monkeypatch: pytest.MonkeyPatch, lost_at: int
+) -> None:
+    """Particles are lost once, in the fall or under the rising cylinder."""
+    settings = LammpsSettings(spheres=4, rest=15.0, snapshots=30)
+    read, count = simulation.read_bodies, iter(range(1000))
+
+    def read_or_lose(path: Path) -> FloatArray:
+        if next(count) == lost_at:
+            raise simulation.FlewApartError("lost")
+        return read(path)
+
+    monkeypatch.setattr(simulation, "read_bodies", read_or_lose)
+    moments, ending = result_of(ENGINE.simulate(prepare(boxes, SMALL), settings))
+    times = [moment.particles.time for moment in moments]
+    assert np.diff(times) == pytest.approx(np.full(len(times) - 1, times[1]), rel=1e-2)
+    assert f"went on from its snapshots at {times[lost_at - 1]:.2f} s" in ending.notes[-1]
+    heights = [moment.particles.points[:, 2].mean() for moment in moments]
+    before, after = heights[lost_at - 2] - heights[lost_at - 1], heights[lost_at - 1] - heights[lost_at]
+    assert after == pytest.approx(before, abs=0.1 * heights[0])  # what falls goes on falling
+    assert ending.checks.particles_out == 40
+    assert ending.checks.energy_gain < 0.05
+    assert ending.particles.time == pytest.approx(times[-1])
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not ENGINE.find().there, reason="LAMMPS or its MPI library is not here")
+def test_that_particles_faster_than_a_fall_end_a_run_without_restarts(
+    boxes: Dataset, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(simulation, "MAX_SPEED", 0.3)
+    with pytest.raises(RegolithError, match=r"flew apart.*faster than any fall"):
+        result_of(ENGINE.simulate(prepare(boxes, SMALL), LammpsSettings(spheres=4, restarts=0)))
 
 
 @pytest.mark.slow
@@ -142,15 +216,7 @@ def test_that_lammps_fills_lifts_and_comes_to_rest(
     boxes: Dataset, cohesion: CohesionKind, shapes: ShapeKind
 ) -> None:
     prepared = prepare(boxes, replace(SMALL, cohesion=cohesion, shapes=shapes))
-    steps = ENGINE.simulate(prepared, LammpsSettings(spheres=4, rest=15.0, snapshots=30))
-    moments = []
-    while True:
-        try:
-            moments.append(next(steps))
-        except StopIteration as end:
-            ending = end.value
-            break
-    assert isinstance(ending, SimulationResult)
+    moments, ending = result_of(ENGINE.simulate(prepared, LammpsSettings(spheres=4, rest=15.0, snapshots=30)))
     assert ending.checks.particles_out == 40
     assert ending.checks.max_overlap < 0.05
     assert ending.checks.energy_gain < 0.05

@@ -13,7 +13,7 @@ SECONDS_PER_SPHERE_AND_STEP = 0.7e-6
 """Measured on one core."""
 REPRESENTS = EngineCapabilities(
     shape=N_(
-        "rigid clumps of inscribed spheres (8 by default) with the polyhedra's mass and inertia: rounder"
+        "rigid clumps of overlapping spheres (12 by default) with the polyhedra's volume, mass and inertia"
     ),
     normal=N_("Hertz from Young's modulus (softened, recorded) with restitution, approximate with cohesion"),
     tangential=N_("Mindlin with history and Coulomb friction, one coefficient (the static one)"),

@@ -1,4 +1,4 @@
-"""Rigid clumps of inscribed spheres with the mass and inertia of the polyhedra."""
+"""Rigid clumps of spheres with the mass and inertia of the polyhedra."""
 
 from dataclasses import dataclass
 
@@ -6,7 +6,12 @@ import numpy as np
 from scipy.spatial import ConvexHull
 from scipy.spatial.transform import Rotation
 
-from regolith_studio.dataset.multisphere import SphereFitErrors, fit_spheres, sphere_fit_errors
+from regolith_studio.dataset.multisphere import (
+    SphereFitErrors,
+    fit_spheres,
+    fit_spheres_within,
+    sphere_fit_errors,
+)
 from regolith_studio.dem.case import PreparedCase
 from regolith_studio.dem.initial_packing import loose_column
 from regolith_studio.geometry.arrays import FloatArray, IntArray
@@ -91,12 +96,14 @@ class Clumps:
         return np.asarray(matrix @ own @ matrix.transpose(0, 2, 1) * (self.scales**5)[:, None, None])
 
 
-def clumps_of(prepared: PreparedCase, count: int) -> Clumps:
-    """The particles of a case as clumps of at most `count` spheres."""
+def clumps_of(prepared: PreparedCase, count: int, max_error: float = 0.0) -> Clumps:
+    """The particles of a case as clumps of at most `count` spheres, or as many as `max_error` needs."""
     length = prepared.mean_diameter
     column = loose_column(prepared)
     ball = prepared.case.shapes == "spheres"
-    shapes = tuple(_ball() if ball else clump_shape(vertices, count) for vertices in prepared.shapes)
+    shapes = tuple(
+        _ball() if ball else clump_shape(vertices, count, max_error) for vertices in prepared.shapes
+    )
     return Clumps(
         shapes,
         column.points / length,
@@ -106,16 +113,16 @@ def clumps_of(prepared: PreparedCase, count: int) -> Clumps:
     )
 
 
-def clump_shape(vertices: FloatArray, count: int) -> ClumpShape:
-    """A convex unit-volume shape as spheres."""
+def clump_shape(vertices: FloatArray, count: int, max_error: float = 0.0) -> ClumpShape:
+    """A convex unit-volume shape as spheres: `count`, or as many as a Jaccard distance above 0 needs."""
     hull = ConvexHull(vertices)
     planes = np.unique(np.round(hull.equations, 10), axis=0)
     solid = ConvexPolyhedron.from_half_spaces(HalfSpaces(planes[:, :3], -planes[:, 3]))
-    spheres = fit_spheres(solid, count)
+    spheres = fit_spheres_within(solid, max_error) if max_error else fit_spheres(solid, count)
     return ClumpShape(spheres, np.asarray(solid.mesh.inertia), sphere_fit_errors(solid, spheres))
 
 
 def _ball() -> ClumpShape:
     return ClumpShape(
-        np.array([[0.0, 0.0, 0.0, BALL]]), np.eye(3) * 0.4 * BALL**2, SphereFitErrors(0.0, 0.0, 0.0)
+        np.array([[0.0, 0.0, 0.0, BALL]]), np.eye(3) * 0.4 * BALL**2, SphereFitErrors(0.0, 0.0, 0.0, 0.0)
     )

@@ -20,7 +20,10 @@ class LammpsSettings:
     Parameters
     ----------
     spheres
-        Inscribed spheres per polyhedron.
+        Overlapping spheres per polyhedron.
+    max_error
+        Largest Jaccard distance between a polyhedron and its spheres; the fewest spheres that reach it take
+        the place of `spheres`. 0: `spheres`.
     max_stiffness
         Maximum of Young's modulus over rho g d: the real one would need millions of steps. 0: no limit.
     step_share
@@ -29,6 +32,8 @@ class LammpsSettings:
         Time after the lift.
     snapshots
         Number of snapshots of a run.
+    restarts
+        Restarts from a snapshot with half the step, where particles fly apart.
 
     Raises
     ------
@@ -36,7 +41,12 @@ class LammpsSettings:
         If a value is out of its range.
     """
 
-    spheres: int = field(default=8, metadata={"label": N_("Spheres a particle"), "minimum": 1, "maximum": 64})
+    spheres: int = field(
+        default=12, metadata={"label": N_("Spheres a particle"), "minimum": 1, "maximum": 64}
+    )
+    max_error: float = field(
+        default=0.0, metadata={"label": N_("Error of the spheres"), "minimum": 0.0, "maximum": 0.9}
+    )
     max_stiffness: float = field(
         default=2e4, metadata={"label": N_("Young's modulus / ρgd"), "minimum": 0.0, "maximum": 1e12}
     )
@@ -45,6 +55,7 @@ class LammpsSettings:
     )
     rest: float = field(default=25.0, metadata={"label": N_("Rest: time"), "minimum": 1.0, "maximum": 1e5})
     snapshots: int = field(default=80, metadata={"label": N_("Snapshots"), "minimum": 2, "maximum": 10_000})
+    restarts: int = field(default=4, metadata={"label": N_("Restarts"), "minimum": 0, "maximum": 20})
 
     def __post_init__(self) -> None:
         check_limits(self, "LAMMPS setting")

@@ -4,7 +4,7 @@ Units: mean diameter, density and gravity are 1. The contact laws are those of t
 parameters and restitution (or Johnson-Kendall-Roberts), Mindlin with Coulomb's limit, rolling resistance.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -12,11 +12,13 @@ from regolith_studio.dem.case import PreparedCase
 from regolith_studio.dem.engines.lammps.clumps import Clumps
 from regolith_studio.dem.engines.lammps.program import LammpsSettings
 from regolith_studio.dem.scaling_report import rayleigh_time
+from regolith_studio.geometry.arrays import FloatArray
 
 TANGENTIAL_DAMPING = 1.0
 TYPICAL_OVERLAP = 0.005
 """Mean diameters, where the two laws of damping are made equal."""
 SETTLE = 8.0
+PHASES = ("fill", "settle", "lift", "rest")
 
 
 @dataclass(frozen=True)
@@ -33,6 +35,8 @@ class Schedule:
         Of the cylinder, in sqrt(g d).
     picture
         Steps between two snapshots.
+    start
+        Time that earlier attempts have done; steps count from there.
     """
 
     step: float
@@ -42,6 +46,7 @@ class Schedule:
     rest: float
     speed: float
     picture: int
+    start: float = 0.0
 
     @property
     def total(self) -> float:
@@ -50,25 +55,40 @@ class Schedule:
 
     @property
     def steps(self) -> int:
-        """Number of steps of the test."""
-        return sum(self.steps_of(each) for each in (self.fill, self.settle, self.lift, self.rest))
+        """Number of steps from the start on."""
+        return sum(self.steps_left(phase) for phase in PHASES)
 
-    def steps_of(self, duration: float) -> int:
-        """Number of steps of a phase."""
-        return int(np.ceil(duration / self.step))
+    @property
+    def raised(self) -> float:
+        """Height of the cylinder's lower rim at the start."""
+        return max(0.0, self.start - self.fill - self.settle) * self.speed
+
+    def steps_left(self, phase: str) -> int:
+        """Number of steps of a phase from the start on."""
+        durations = [self.fill, self.settle, self.lift, self.rest][: PHASES.index(phase) + 1]
+        left = min(durations[-1], sum(durations) - self.start)
+        return int(np.ceil(max(0.0, left) / self.step))
+
+    def time(self, step: int) -> float:
+        """Since the beginning of the test."""
+        return self.start + step * self.step
 
     def phase(self, step: int) -> str:
         """What is going on at a step."""
-        for name, duration in (("fill", self.fill), ("settle", self.settle), ("lift", self.lift)):
-            step -= self.steps_of(duration)
-            if step <= 0:
+        for name in PHASES[:-1]:
+            step -= self.steps_left(name)
+            if step <= 0 < self.steps_left(name):
                 return name
-        return "rest"
+        return PHASES[-1]
 
     def rim(self, step: int) -> float:
         """Height of the cylinder's lower rim at a step; infinite once it is gone."""
-        late = (step - self.steps_of(self.fill) - self.steps_of(self.settle)) * self.step
-        return float("inf") if self.phase(step) == "rest" else max(0.0, late * self.speed)
+        late = (step - self.steps_left("fill") - self.steps_left("settle")) * self.step
+        return float("inf") if self.phase(step) == "rest" else max(0.0, self.raised + late * self.speed)
+
+    def restarted(self, start: float) -> "Schedule":
+        """The rest of the test in steps half as long."""
+        return replace(self, step=self.step / 2, picture=2 * self.picture, start=start)
 
 
 def stiffness(prepared: PreparedCase, settings: LammpsSettings) -> float:
@@ -114,14 +134,18 @@ def data_file(clumps: Clumps, reach: float, top: float) -> str:
     return "\n".join(lines) + "\n"
 
 
-def bodies_file(clumps: Clumps) -> str:
-    """Mass, centre and inertia of the polyhedra, in place of those of overlapping spheres."""
+def bodies_file(clumps: Clumps, motion: FloatArray) -> str:
+    """Mass, centre and inertia of the polyhedra, in place of those of overlapping spheres.
+
+    `motion` holds velocity and angular momentum, shape (n, 6).
+    """
     inertias, lines = clumps.inertias(), [str(len(clumps.scales))]
     for k in range(len(clumps.scales)):
         i = inertias[k]
         numbers = (*clumps.centres[k], i[0, 0], i[1, 1], i[2, 2], i[0, 1], i[0, 2], i[1, 2])
         text = " ".join(repr(float(number)) for number in (clumps.scales[k] ** 3, *numbers))
-        lines.append(f"{k + 1} {text} 0 0 0 0 0 0 0 0 0")
+        moving = " ".join(repr(float(number)) for number in motion[k])
+        lines.append(f"{k + 1} {text} {moving} 0 0 0")
     return "\n".join(lines) + "\n"
 
 
@@ -133,6 +157,15 @@ def script(
     friction = case.contact.static_friction
     plate, wall = (
         _contact(prepared, settings, mu) for mu in (case.test.plate_friction, case.test.wall_friction)
+    )
+    tube = f"region tube cylinder z 0 0 {radius!r} 0 {top!r} side in open 1 open 2"
+    hold = f"fix tube all wall/gran/region granular {wall} region tube"
+    still, lift = plan.steps_left("fill") + plan.steps_left("settle"), plan.steps_left("lift")
+    filling = f"{tube}\n{hold}\nrun {still}\nunfix tube\nregion tube delete\n" if still else ""
+    lifting = (
+        f"variable begin equal $(step)\n"
+        f"variable up equal {plan.raised!r}+(step-v_begin)*{plan.step!r}*{plan.speed!r}\n"
+        f"{tube} move NULL NULL v_up\n{hold}\nrun {lift}\nunfix tube\n"
     )
     return f"""units lj
 atom_style hybrid sphere bond
@@ -147,30 +180,19 @@ pair_coeff * * {_contact(prepared, settings, friction)}
 timestep {plan.step!r}
 fix down all gravity 1.0 vector 0 0 -1
 fix bodies all rigid/small molecule infile bodies.txt gravity down
-variable lifted equal 0.0
-region tube cylinder z 0 0 {radius!r} 0 {top!r} side in open 1 open 2
 fix plate all wall/gran granular {plate} zplane 0 NULL
-fix tube all wall/gran/region granular {wall} region tube
-compute place all rigid/local bodies mol x y z quatw quati quatj quatk
+compute place all rigid/local bodies mol x y z quatw quati quatj quatk &
+ vx vy vz angmomx angmomy angmomz
 compute motion all ke/rigid bodies
 compute spin all erotate/rigid bodies
 dump place all local {plan.picture} body.*.dump c_place[1] c_place[2] c_place[3] c_place[4] &
- c_place[5] c_place[6] c_place[7] c_place[8]
+ c_place[5] c_place[6] c_place[7] c_place[8] c_place[9] c_place[10] c_place[11] &
+ c_place[12] c_place[13] c_place[14]
 dump_modify place format float %.10g
 thermo {plan.picture}
 thermo_style custom step c_motion c_spin
 thermo_modify lost warn flush yes norm no
-run {plan.steps_of(plan.fill)}
-run {plan.steps_of(plan.settle)}
-unfix tube
-region tube delete
-variable begin equal $(step)
-variable up equal (step-v_begin)*{plan.step!r}*{plan.speed!r}
-region tube cylinder z 0 0 {radius!r} 0 {top!r} side in open 1 open 2 move NULL NULL v_up
-fix tube all wall/gran/region granular {wall} region tube
-run {plan.steps_of(plan.lift)}
-unfix tube
-run {plan.steps_of(plan.rest)}
+{filling}{lifting if lift else ""}run {plan.steps_left("rest")}
 """
 
 

@@ -4,7 +4,7 @@ import subprocess
 import tempfile
 import time
 from collections.abc import Generator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -33,19 +33,52 @@ _LOST_ATOMS_ERRORS = ("missing on proc", "Lost atoms", "Out of range atoms", "No
 """Error messages of LAMMPS for particles that moved too far in one step."""
 POLL_INTERVAL = 0.1
 """Seconds between two checks for a new snapshot."""
+MAX_SPEED = 2.0
+"""Largest speed of a particle, in that of a fall from the top of the column."""
 REST_ENERGY = 1e-3
 """Mean kinetic energy in m g d at which a heap is at rest."""
+
+
+class FlewApartError(RegolithError):
+    """Particles moved faster or further than they can; a smaller step may help."""
+
+
+@dataclass(frozen=True, eq=False)
+class _State:
+    """All bodies at one time: to go on from.
+
+    Parameters
+    ----------
+    time
+        In sqrt(d/g).
+    points, turns
+        Centres, shape (n, 3), and rotations.
+    motion
+        Velocity and angular momentum, shape (n, 6).
+    """
+
+    time: float
+    points: FloatArray
+    turns: Rotation
+    motion: FloatArray
 
 
 @dataclass(eq=False)
 class _Run:
     prepared: PreparedCase
+    settings: LammpsSettings
     clumps: Clumps
     plan: Schedule
+    top: float
+    states: list[_State]
     first: Rotation | None = None
     last: ParticleState | None = None
     fill: tuple[float, float] = (0.0, 0.0)
     potential: dict[int, float] = field(default_factory=dict)
+    kinetic: dict[int, float] = field(default_factory=dict)
+    energy_gain: float = 0.0
+    restarts: list[float] = field(default_factory=list)
+    steps: int = 0
 
     @property
     def units(self) -> tuple[float, float]:
@@ -53,47 +86,91 @@ class _Run:
         length = self.prepared.mean_diameter
         return length, float(np.sqrt(length / self.prepared.case.test.gravity))
 
+    @property
+    def step_share(self) -> float:
+        """Of the steps as they are now, in Rayleigh's time."""
+        return float(self.settings.step_share * 0.5 ** len(self.restarts))
+
 
 def simulate(prepared: PreparedCase, settings: LammpsSettings) -> Generator[Snapshot, None, SimulationResult]:
-    """Write the input, run the program, read its snapshots.
+    """Write the input, run the program, read its snapshots; go on from the last where particles fly apart.
 
     Raises
     ------
     RegolithError
-        If LAMMPS ends before its time, with its own last error.
+        If LAMMPS ends before its time, with its own last error, or particles fly apart too often.
     """
-    clumps = clumps_of(prepared, settings.spheres)
+    clumps = clumps_of(prepared, settings.spheres, settings.max_error)
     length = prepared.mean_diameter
     top = float((clumps.centres[:, 2] + enclosing_radii(prepared) / length).max()) + 2.0
-    radius = prepared.case.test.diameter / 2 / length
-    run = _Run(prepared, clumps, schedule(prepared, settings, top))
+    begin = _State(0.0, clumps.centres, clumps.turns, np.zeros((len(prepared), 6)))
+    run = _Run(prepared, settings, clumps, schedule(prepared, settings, top), top, [begin])
     with tempfile.TemporaryDirectory(prefix="regolith-lammps-") as name:
-        folder = Path(name)
-        (folder / "clumps.data").write_text(data_file(clumps, 12.0 * radius, top))
-        (folder / "bodies.txt").write_text(bodies_file(clumps))
-        (folder / "in.repose").write_text(script(prepared, settings, run.plan, radius, top))
-        words, environment = command()
-        with (folder / "output.txt").open("wb") as output:
-            child = subprocess.Popen(
-                [*words, "-in", "in.repose", "-log", "log.lammps"],
-                cwd=folder,
-                env=environment,
-                stdin=subprocess.DEVNULL,
-                stdout=output,
-                stderr=subprocess.STDOUT,
-            )
-        try:
-            yield from _follow(run, child, folder)
-        finally:
-            child.kill()
-            child.wait()
-        if child.returncode or run.last is None:
-            words_said = (folder / "output.txt").read_text(errors="replace")
-            raise RegolithError(last_words(words_said, settings.step_share))
-        energies = kinetic_energies((folder / "log.lammps").read_text(errors="replace"))
+        while True:
+            folder = Path(name) / f"attempt-{len(run.restarts)}"
+            folder.mkdir()
+            known = len(run.states)
+            try:
+                yield from _attempt(run, folder)
+                break
+            except FlewApartError:
+                if len(run.restarts) == settings.restarts:
+                    raise
+                _go_back(run, stuck=len(run.states) == known)
     _, second = run.units
-    notes = (_fit_in_words(clumps), _softness_in_words(prepared, settings))
-    return SimulationResult(run.last, _checks(run, energies), run.plan.steps, run.plan.total * second, notes)
+    assert run.last is not None
+    steps, simulated = run.steps + run.plan.steps, run.plan.total * second
+    return SimulationResult(run.last, _checks(run), steps, simulated, _notes(run))
+
+
+def _attempt(run: _Run, folder: Path) -> Generator[Snapshot, None, None]:
+    """One process of LAMMPS from the last state on."""
+    length, state = run.prepared.mean_diameter, run.states[-1]
+    radius = run.prepared.case.test.diameter / 2 / length
+    run.clumps = replace(run.clumps, centres=state.points, turns=state.turns)
+    run.first = None
+    (folder / "clumps.data").write_text(data_file(run.clumps, 12.0 * radius, run.top))
+    (folder / "bodies.txt").write_text(bodies_file(run.clumps, state.motion))
+    (folder / "in.repose").write_text(script(run.prepared, run.settings, run.plan, radius, run.top))
+    words, environment = command()
+    with (folder / "output.txt").open("wb") as output:
+        child = subprocess.Popen(
+            [*words, "-in", "in.repose", "-log", "log.lammps"],
+            cwd=folder,
+            env=environment,
+            stdin=subprocess.DEVNULL,
+            stdout=output,
+            stderr=subprocess.STDOUT,
+        )
+    try:
+        yield from _follow(run, child, folder)
+    finally:
+        child.kill()
+        child.wait()
+        _note_energies(run, folder)
+    if child.returncode or run.last is None:
+        raise early_end((folder / "output.txt").read_text(errors="replace"), run.step_share)
+
+
+def _go_back(run: _Run, *, stuck: bool) -> None:
+    """To the last state, or the one before where an attempt came no further; halve the step."""
+    if stuck and len(run.states) > 1:
+        run.states.pop()
+    run.restarts.append(run.states[-1].time)
+    run.steps += round((run.states[-1].time - run.plan.start) / run.plan.step)
+    run.plan = run.plan.restarted(run.states[-1].time)
+
+
+def _notes(run: _Run) -> tuple[str, ...]:
+    notes = (_fit_in_words(run.clumps), _softness_in_words(run.prepared, run.settings))
+    if not run.restarts:
+        return notes
+    times = ", ".join(f"{each * run.units[1]:.2f} s" for each in run.restarts)
+    return (
+        *notes,
+        f"Particles flew apart; the run went on from its snapshots at {times} with steps half as long each "
+        f"time, {run.step_share:g} of Rayleigh's time at the end.",
+    )
 
 
 def _fit_in_words(clumps: Clumps) -> str:
@@ -104,10 +181,10 @@ def _fit_in_words(clumps: Clumps) -> str:
 
     errors = [shape.errors for shape in clumps.shapes]
     return (
-        f"The spheres fill {span([1 + each.volume for each in errors])} of the polyhedra's volume and have "
-        f"{span([1 + each.area for each in errors])} of their area; their own moments of inertia would be up "
-        f"to {100 * max(each.inertia for each in errors):.0f} % off, so mass, centre and inertia are set to "
-        "those of the polyhedra."
+        "The spheres have the polyhedra's volume and "
+        f"{span([1 + each.area for each in errors])} of their area; "
+        f"{span([each.jaccard for each in errors])} of the volume of both together is not shared (Jaccard "
+        "distance). Mass, centre and inertia are set to those of the polyhedra."
     )
 
 
@@ -123,11 +200,13 @@ def _follow(run: _Run, child: "subprocess.Popen[bytes]", folder: Path) -> Genera
     step = 0
     while True:
         ended = child.poll() is not None
-        while (folder / f"body.{step}.dump").exists():
+        while (path := folder / f"body.{step}.dump").exists():
             following = (folder / f"body.{step + run.plan.picture}.dump").exists()
             if not (following or ended):
                 break
-            yield _snapshot(run, folder / f"body.{step}.dump", step)
+            snapshot = _snapshot(run, path, step)
+            if step or not run.restarts:
+                yield snapshot
             step += run.plan.picture
         if ended:
             return
@@ -137,16 +216,20 @@ def _follow(run: _Run, child: "subprocess.Popen[bytes]", folder: Path) -> Genera
 def _snapshot(run: _Run, path: Path, step: int) -> Snapshot:
     length, second = run.units
     rows = read_bodies(path)
+    if np.linalg.norm(rows[:, 8:11], axis=1).max() > MAX_SPEED * np.sqrt(2.0 * run.top):
+        raise FlewApartError(_flew_apart(run.step_share, "a particle is faster than any fall makes it"))
     turns = Rotation.from_quat(rows[:, 4:8], scalar_first=True)
     if run.first is None:
         run.first = turns  # principal axes of LAMMPS, of which only the change counts
     turned = turns * run.first.inv() * run.clumps.turns
+    if step:
+        run.states.append(_State(run.plan.time(step), rows[:, 1:4], turned, rows[:, 8:14]))
     particles = ParticleState(
         points=rows[:, 1:4] * length,
         diameters=run.prepared.diameters,
         orientations=turned.as_quat(scalar_first=True),
         class_index=run.prepared.class_index,
-        time=step * run.plan.step * second,
+        time=run.plan.time(step) * second,
         wall=run.plan.rim(step) * length,
         phase=run.plan.phase(step),
     )
@@ -155,26 +238,28 @@ def _snapshot(run: _Run, path: Path, step: int) -> Snapshot:
     run.last = particles
     run.potential[step] = float(run.clumps.scales**3 @ rows[:, 3])
     return Snapshot(
-        particles, min(0.99, step / run.plan.steps), f"{particles.phase}, {particles.time:.2f} s simulated"
+        particles,
+        min(0.99, run.plan.time(step) / run.plan.total),
+        f"{particles.phase}, {particles.time:.2f} s simulated",
     )
 
 
 def read_bodies(path: Path) -> FloatArray:
-    """Rows of a dump of bodies: number, x, y, z, quaternion, in the order of the numbers.
+    """Rows of a dump of bodies: number, x, y, z, quaternion, velocity, angular momentum; by their numbers.
 
     Raises
     ------
-    RegolithError
+    FlewApartError
         If bodies are missing.
     """
     lines = path.read_text().splitlines()
     count = int(lines[3])
     rows = (
-        np.array([line.split() for line in lines[-count:]], dtype=np.float64) if count else np.empty((0, 8))
+        np.array([line.split() for line in lines[-count:]], dtype=np.float64) if count else np.empty((0, 14))
     )
     rows = rows[np.argsort(rows[:, 0])]
     if len(rows) == 0 or not np.array_equal(rows[:, 0], np.arange(1, len(rows) + 1)):
-        raise RegolithError("LAMMPS lost particles; take a smaller step (step_share).")
+        raise FlewApartError("LAMMPS lost particles; take a smaller step (step_share).")
     return rows
 
 
@@ -191,45 +276,51 @@ def kinetic_energies(log: str) -> dict[int, float]:
     return found
 
 
-def last_words(output: str, step_share: float) -> str:
+def early_end(output: str, step_share: float) -> RegolithError:
     """Why LAMMPS has ended before its time, by its own first error."""
     lines = output.splitlines()
     errors = [line for line in lines if "ERROR" in line] or lines[-1:] or ["it said nothing"]
     own = errors[0].strip()
     if any(sign in own for sign in _LOST_ATOMS_ERRORS):
-        return (
-            f"The particles flew apart; take a smaller step than {step_share:g} of Rayleigh's time "
-            f"(step_share). LAMMPS said: {own}"
-        )
-    return f"LAMMPS ended before its time: {own}"
+        return FlewApartError(_flew_apart(step_share, f"LAMMPS said: {own}"))
+    return RegolithError(f"LAMMPS ended before its time: {own}")
 
 
-def _energy_gain(run: _Run, kinetic: dict[int, float]) -> float:
-    """Largest rise of motion and height between two pictures, in m g d a particle.
+def _flew_apart(step_share: float, sign: str) -> str:
+    return (
+        f"The particles flew apart; take a smaller step than {step_share:g} of Rayleigh's time (step_share): "
+        f"{sign}."
+    )
+
+
+def _note_energies(run: _Run, folder: Path) -> None:
+    """Largest rise of motion and height between two snapshots of an attempt, in m g d a particle.
 
     Only where no wall moves and nothing falls fast: what contacts store for a moment is not in the sum.
     """
-    gain, before = 0.0, float("inf")
+    log = folder / "log.lammps"
+    run.kinetic = kinetic_energies(log.read_text(errors="replace")) if log.is_file() else {}
+    before = float("inf")
     for step, potential in run.potential.items():
         if run.plan.phase(step) in ("fill", "lift"):
             before = float("inf")
-        elif step in kinetic:
-            total = (kinetic[step] + potential) / len(run.prepared)
-            gain, before = max(gain, total - before), total
-    return gain
+        elif step in run.kinetic:
+            total = (run.kinetic[step] + potential) / len(run.prepared)
+            run.energy_gain, before = max(run.energy_gain, total - before), total
+    run.potential.clear()
 
 
-def _checks(run: _Run, energies: dict[int, float]) -> RunChecks:
+def _checks(run: _Run) -> RunChecks:
     assert run.last is not None
     length, _ = run.units
     points = run.last.points / length
     turns = Rotation.from_quat(run.last.orientations, scalar_first=True)
     overlaps = _overlaps(*run.clumps.atoms(points, turns))
-    kinetic = energies[max(energies)] / len(points) if energies else float("inf")
+    kinetic = run.kinetic[max(run.kinetic)] / len(points) if run.kinetic else float("inf")
     return check_run(
         points[:, 2],
         overlaps,
-        energy_gain=_energy_gain(run, energies),
+        energy_gain=run.energy_gain,
         kinetic_energy=kinetic,
         at_rest=bool(kinetic < REST_ENERGY),
         filling=run.fill,
