@@ -1,0 +1,142 @@
+"""Numbers in docs/repose.md and docs/exporters.md against the code and the results of the benchmarks."""
+
+import json
+import re
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from benchmarks.repose_intervals import ANGLES, line, measured
+from regolith_studio.dataset.export import ExportOptions
+from regolith_studio.dataset.multisphere import COUNTS
+from regolith_studio.dataset.parameters import ContactParameters, LiftingCylinderTest
+from regolith_studio.dem.angle_of_repose import NEIGHBOURHOOD
+from regolith_studio.dem.case import ReposeCase
+from regolith_studio.dem.engines.lammps.program import LammpsSettings
+from regolith_studio.dem.engines.mujoco.simulation import MAX_MOVE, SMALLEST_SHARE
+from regolith_studio.dem.engines.yade.program import YadeSettings
+from regolith_studio.dem.evaluation.settings import MAX_CURVATURE, EvaluationSettings
+from regolith_studio.dem.run_checks import MAX_OVERLAP
+
+ROOT = Path(__file__).parents[2]
+REPOSE, EXPORTERS = ((ROOT / "docs" / name).read_text("utf-8") for name in ("repose.md", "exporters.md"))
+
+
+def rows_of(text: str, header: str) -> list[list[str]]:
+    """Cells of the rows of the table with this header."""
+    rows = text.partition(header)[2].partition("\n\n")[0].splitlines()
+    return [[cell.strip() for cell in row.strip("|").split("|")] for row in rows[2:]]
+
+
+def results(name: str) -> list[dict[str, Any]]:
+    return list(json.loads((ROOT / "benchmarks" / "results" / name).read_text("utf-8")))
+
+
+def one_line(text: str) -> str:
+    return " ".join(text.split())
+
+
+def test_that_the_table_of_the_evaluation_has_the_default_settings() -> None:
+    said = {row[1]: row[2] for row in rows_of(REPOSE, "| step | setting | default |")}
+    defaults = asdict(EvaluationSettings())
+    assert len(said) == 8
+    for keys, text in said.items():
+        for key in re.findall(r"`(\w+)`", keys):
+            value = {True: "on", False: "off"}.get(defaults[key]) if text == "on" else defaults[key]
+            assert text.partition(":")[0] == (value if isinstance(value, str) else f"{value:g}")
+
+
+def test_that_the_table_of_choices_has_the_default_parameters() -> None:
+    said = {row[0]: row[1] for row in rows_of(REPOSE, "| not given | chosen |")}
+    contact, test = ContactParameters(), LiftingCylinderTest()
+    assert said == {
+        "restitution": f"{contact.restitution:g}",
+        "rolling resistance": f"{contact.rolling_friction:g}",
+        "speed of the cylinder": f"{100 * test.lift_speed:g} cm/s",
+        "friction at the wall, on the plate": f"{test.wall_friction:g}, {test.plate_friction:g}",
+        "gravity": f"{test.gravity:g} m/s²",
+    }
+
+
+def test_that_sentences_have_the_limits_of_the_code() -> None:
+    lammps, words = LammpsSettings(), one_line(REPOSE)
+    for sentence in (
+        f"--particles {ReposeCase().n_particles}",
+        f"rigid clumps of {lammps.spheres} overlapping spheres",
+        f"(`restarts`, {lammps.restarts} times at most)",
+        f"(`restarts`, {YadeSettings().restarts} times at most)",
+        f"at most {100 * MAX_OVERLAP:g} % of the mean diameter",
+        f"flanks within {NEIGHBOURHOOD:g} degrees counted as one",
+        f"fewer than {EvaluationSettings().min_particles} particles",
+    ):
+        assert sentence in words
+    assert "by more than half of itself between foot and top" in words
+    assert MAX_CURVATURE == 0.5
+    assert (
+        "halved, up to three times, while one particle in a hundred moves further than a hundredth" in words
+    )
+    assert (SMALLEST_SHARE, MAX_MOVE) == (0.5**3, 0.01)
+    assert f"({ExportOptions().n_spheres} by default" in one_line(EXPORTERS)
+    assert f"{', '.join(map(str, COUNTS[:9]))} ... {COUNTS[-1]}" in one_line(EXPORTERS)
+
+
+def test_that_the_sentence_on_both_engines_has_the_results_of_its_runs() -> None:
+    by_seed = results("repose_engines.json")
+    angles = [
+        np.mean([row["angle_deg"] for row in by_seed if row["engine"] == e]) for e in ("mujoco", "lammps")
+    ]
+    heights = np.array([row["fill_height_cm"] for row in by_seed]).reshape(2, 3)
+    low, high = np.sort(100 * (1 - heights[1] / heights[0]))[[0, -1]]
+    words = one_line(REPOSE)
+    assert f"{angles[0]:.1f} and {angles[1]:.1f} degrees in the mean" in words
+    assert f"fill the cylinder {low:.0f} to {high:.0f} % less high" in words
+    assert [row["seed"] for row in by_seed if "flew apart" in row["notes"][-1]] == [2]
+
+
+@pytest.mark.parametrize("engine", ["mujoco", "lammps"])
+def test_that_the_table_of_engines_has_the_results_of_its_runs(engine: str) -> None:
+    column = {"mujoco": 1, "lammps": 3}[engine]
+    rows = rows_of(REPOSE, "| seed | MuJoCo: filled to, packed | angle | LAMMPS: filled to, packed | angle |")
+    found = [row for row in results("repose_engines.json") if row["engine"] == engine]
+    assert len(rows) == len(found) == 3
+    for row, run in zip(rows, found, strict=True):
+        low, high = run["interval_deg"]
+        assert row[0] == str(run["seed"])
+        assert row[column] == f"{run['fill_height_cm']:.2f} cm, {run['solid_fraction']:.2f}"
+        assert row[column + 1] == f"{run['angle_deg']:.1f} ({low:.1f} to {high:.1f})"
+
+
+def test_that_the_table_of_spheres_has_the_results_of_its_benchmark() -> None:
+    found = results("clumps.json")
+    counts = (8, 12, 20, 50)
+    rows = rows_of(EXPORTERS, "| shape | 8 spheres | 12 | 20 | up to 50 |")
+    assert len(rows) == 7
+    for name, *cells in rows:
+        family, *numbers = re.findall(r"[a-z]+|\d", name)
+        shapes = [f"{family}-{number}" for number in numbers]
+        for count, cell in zip(counts, cells, strict=True):
+            measured = [row for row in found if row["shape"] in shapes and row["asked"] == count]
+            said = [float(text) for text in re.findall(r"\.\d{3}\b", cell)]
+            assert said == pytest.approx([row["jaccard"] for row in measured], abs=6e-4)
+            percent = re.findall(r"([\d.]+) %", cell)
+            worst = max(row["inertia"] for row in measured)
+            if percent:
+                assert 100 * worst == pytest.approx(float(percent[0]), abs=0.06)
+            else:
+                assert worst < 1e-3
+    assert np.abs([row["volume"] for row in found]).max() < 1e-4
+    assert min(row["area"] for row in found if row["asked"] == 20) > -0.045
+
+
+@pytest.mark.slow
+def test_that_a_row_of_the_table_of_intervals_is_measured_again() -> None:
+    header = "| heaps | grains | bias | spread | half width | covered, % | refused |"
+    said = next(row for row in rows_of(REPOSE, header) if row[:2] == ["equal, clean", "300"])
+    cases = [("equal, clean", 300, angle, 9000 + k) for angle in ANGLES for k in range(8)]
+    found = line("equal, clean", 300, np.array([measured(case) for case in cases])).strip("|").split("|")
+    tolerances = (0.1, 0.1, 0.1, 4.0, 0.5)
+    for stated, again, tolerance in zip(said[2:], found[2:], tolerances, strict=True):
+        assert float(again) == pytest.approx(float(stated), abs=tolerance)
