@@ -4,15 +4,20 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from regolith_studio.errors import FileError
+import numpy as np
+
+from regolith_studio.errors import FileError, GeometryError
 from regolith_studio.harmonics.coefficients import CONVENTION
 from regolith_studio.io.atomic import write_bytes
 from regolith_studio.io.json_arrays import arrays_document, arrays_from
 from regolith_studio.io.json_text import json_bytes
 from regolith_studio.shape_models.models import MODELS
 from regolith_studio.shape_models.protocol import FittedModel
+from regolith_studio.shape_models.realizations import virtual_mesh
 
 FORMAT = "regolith-studio model"
+N_TRIED, RADII = 50, (1e-9, 1e12)
+"""Particles that are drawn of a model that is read, and the limits of their equivalent radii."""
 
 
 def write_model(path: Path, model: FittedModel, provenance: Mapping[str, Any] | None = None) -> None:
@@ -49,12 +54,27 @@ def model_from(document: Mapping[str, Any]) -> FittedModel:
     Raises
     ------
     FileError
-        If it is damaged, or holds no model.
+        If it is damaged, or holds no model, or one that draws particles of no finite size.
     """
     try:
         key, values, arrays = document["model"], document["values"], arrays_from(document["arrays"])
         if key not in MODELS:
             raise FileError(f"There is no model called {key!r}, only {', '.join(MODELS)}.")
-        return MODELS[key].restored(values, arrays)
-    except (KeyError, TypeError, ValueError, AttributeError, LookupError, OverflowError) as error:
+        model = MODELS[key].restored(values, arrays)
+        with np.errstate(all="ignore"):
+            draws = model.draw(N_TRIED, 0)
+            radii = draws.equivalent_radii()
+            virtual_mesh(draws, 0, level=1)
+        if not ((radii > RADII[0]) & (radii < RADII[1])).all():
+            raise ValueError("the sizes overflow")
+        return model
+    except (
+        KeyError,
+        TypeError,
+        ValueError,
+        AttributeError,
+        LookupError,
+        OverflowError,
+        GeometryError,
+    ) as error:
         raise FileError("The numbers in it make no model of its kind; fit it again.") from error

@@ -1,13 +1,15 @@
 """What holds for every model."""
 
+import json
 import pickle
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
-from regolith_studio.errors import InputError
+from regolith_studio.errors import FileError, InputError
 from regolith_studio.geometry.mesh_health import inspect
 from regolith_studio.readers.shape_files import read_shape_source
 from regolith_studio.shape_models.io import write_model
@@ -113,6 +115,27 @@ def test_that_a_model_read_back_draws_the_same_bytes(
     assert again.draw(20, 5).coefficients.tobytes() == fitted[key].draw(20, 5).coefficients.tobytes()
     write_model(second, again, {"sample": "synthetic"})
     assert first.read_bytes() == second.read_bytes()
+
+
+@pytest.mark.parametrize(
+    ("key", "name", "value"),
+    [
+        ("gaussian_field", "mean", 1e300),
+        ("gaussian_field", "mean", 10**400),
+        ("hull_field", "faceting", 1e300),
+        ("mixture_field", "spectra", [[0.0, 1e6, 0.0, 0.0, 0.0]]),
+    ],
+)
+def test_that_a_model_whose_particles_overflow_is_refused_in_one_sentence(
+    key: str, name: str, value: Any, fitted: dict[str, FittedModel], tmp_path: Path
+) -> None:
+    write_model(tmp_path / "m.json", fitted[key])
+    document = json.loads((tmp_path / "m.json").read_text())
+    kept = document["values"][name]
+    document["values"][name] = value * len(kept) if isinstance(value, list) else value
+    (tmp_path / "m.json").write_text(json.dumps(document))
+    with pytest.raises(FileError, match="is a broken model"):
+        read_shape_source(str(tmp_path / "m.json"))
 
 
 @keys
