@@ -33,8 +33,10 @@ import time
 import uuid
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass, replace
+from dataclasses import astuple, dataclass, replace
 from pathlib import Path
+
+import numpy as np
 
 from benchmarks.sample_inputs import write_inputs
 
@@ -44,9 +46,16 @@ SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGKILL)
 NOT_COMPARED = {"times.json", "journal"}
 """Durations differ, and a journal is there to be resumed."""
 PATIENCE = 300.0
+BLOCK = 4096
+"""Bytes in which a file system in memory counts."""
 GRACE = 2.0
 """Seconds after its end in which a command's processes must be gone."""
 
+QUICK = (
+    "-n 40 --measure min_particles=40 --test mass=0.003 --test lift_speed=0.15 --set time_step=0.04 "
+    "--set iterations=15 --set rest_energy=2e-3 --set snapshots=12"
+)
+"""A heap in about a second, of too few particles for an angle that means anything."""
 COMMANDS = {
     "fit": ("fit IN/meshes -o OUT/f.json --l-max 6", "--l-max 4"),
     "fit surfaces": ("fit IN/meshes -o OUT/f.json --surfaces OUT/surfaces --l-max 6 --level 2", "--l-max 4"),
@@ -54,26 +63,53 @@ COMMANDS = {
     "generate npz": ("generate IN/fit.json -o OUT/g -n 6 --format npz --save-model OUT/m.json", "-n 4"),
     "coarsen": ("coarsen IN/meshes -o OUT/c --method quadric --facets 12 --jobs 2", "--facets 8"),
     "extract": ("extract IN/labels.npy -o OUT/e --kind labels --voxel-size 2", "--voxel-size 3"),
-    "gallery": ("gallery IN/meshes -o OUT/p --degrees 1,2", "--degrees 1"),
+    "gallery": ("gallery IN/meshes/grain-0.stl -o OUT/p --degrees 1 --no-animation", "--degrees 2"),
     "run": ("run IN/recipe.json -o OUT/r --jobs 2", "--seed 5"),
-    "study lmax": ("study lmax IN/meshes -o OUT/s --degrees 1-3 --jobs 2", "--degrees 1-2"),
+    "demo": ("demo -o OUT/d", "--seed 5"),
+    "study lmax": ("study lmax IN/meshes/grain-0.stl -o OUT/s --degrees 1-2 --jobs 2", "--degrees 1"),
+    "study coarsening": (
+        "study coarsening IN/meshes -o OUT/s --method quadric --loss all --facets 12",
+        "--facets 8",
+    ),
     "study solids": (
         "study solids IN/meshes -o OUT/s --method quadric --loss all --facets 12",
+        "--facets 8",
+    ),
+    "study population": (
+        "study population IN/many.json -o OUT/s --models gaussian_field --l-max 3 --splits 1 --repeats 1 "
+        "--descriptors equivalent_radius,sphericity",
+        "--seed 1",
+    ),
+    "study facets": ("study facets IN/meshes -o OUT/s --method quadric --facets 8", "--facets 12"),
+    "study tradeoff": (
+        "study tradeoff IN/meshes/grain-0.stl -o OUT/s --factors 1 --method annealing --set iterations=100",
+        "--facets 8",
+    ),
+    "study sensitivity": (
+        "study sensitivity IN/meshes/grain-0.stl -o OUT/s --factors 4 --method annealing "
+        "--set iterations=100",
         "--facets 8",
     ),
     "dataset build": (
         "dataset build IN/meshes -o OUT/d --method quadric --facets 12 --overwrite --name d",
         "--facets 8",
     ),
-    "dataset sample": ("dataset sample IN/dataset -o OUT/d.csv -n 300000", "-n 200000"),
-    "dataset export": (
-        "dataset export IN/dataset -o OUT/x --to lammps,gltf --particles 40",
-        "--particles 30",
-    ),
+    "dataset sample": ("dataset sample IN/dataset -o OUT/d.csv -n 100000", "-n 50000"),
+    "dataset export": ("dataset export IN/dataset -o OUT/x --to rocky,gltf --particles 40", "--particles 30"),
     "repose measure": ("repose measure IN/heap.csv -o OUT/m", "--base 0.0001"),
-    "repose run": ("repose run IN/dataset -o OUT/run -n 300 --spheres --overwrite", "--seed 1"),
+    "repose run": (
+        f"repose run IN/dataset -o OUT/run --overwrite {QUICK}",
+        "--seed 1",
+    ),
+    "repose study": (
+        f"repose study IN/dataset -o OUT/t --vary plate_friction=0.8 {QUICK}",
+        "--measure confidence=0.8",
+    ),
 }
 """What is run, and what its earlier run had instead."""
+
+ONE_IN = {"demo": 5}
+"""Of a long command's attacks one in so many is made."""
 
 Tree = dict[str, str]
 
@@ -215,7 +251,7 @@ def prepared(arena: Arena, name: str) -> Prepared:
             earlier = arena.kept / name.replace(" ", "-")
             shutil.copytree(arena.place, earlier)
     new = tree(arena.place)
-    size = sum(path.stat().st_size for path in arena.place.rglob("*") if path.is_file())
+    size = sum(-(-path.stat().st_size // BLOCK) * BLOCK for path in arena.place.rglob("*") if path.is_file())
     return Prepared(name, words, earlier, tree(earlier), new, time.monotonic() - begun, size)
 
 
@@ -269,32 +305,37 @@ def kill(arena: Arena, case: Prepared, row: Row, number: signal.Signals, moment:
 
 
 @contextmanager
-def small_disk(folder: Path, n_bytes: int) -> Iterator[None]:
-    """A file system of this size at `folder`."""
-    subprocess.run(
-        ["mount", "-t", "tmpfs", "-o", f"size={max(n_bytes, 65536)}", "tmpfs", str(folder)], check=True
-    )
+def small_disk(folder: Path) -> Iterator[None]:
+    """A file system of its own at `folder`."""
+    subprocess.run(["mount", "-t", "tmpfs", "-o", "size=256m", "tmpfs", str(folder)], check=True)
     try:
         yield
     finally:
         subprocess.run(["umount", "--lazy", str(folder)], check=True)
 
 
+def remount(folder: Path, option: str) -> None:
+    """Change an option of the file system at `folder`."""
+    subprocess.run(["mount", "-o", f"remount,{option}", str(folder)], check=True)
+
+
 def fill_disk(arena: Arena, case: Prepared, row: Row, moment: int) -> None:
-    """The disk is full after a share of what the command writes."""
+    """The disk is full after a share of what the command writes, at the first moment after nothing."""
     arena.reset(None)
-    stored = sum(path.stat().st_size + 4096 for path in case.earlier.rglob("*"))
-    with small_disk(arena.place, stored + case.n_bytes * (moment + 1) // (DISK_MOMENTS + 1)):
+    with small_disk(arena.place):
         arena.reset(case.earlier)
+        found = os.statvfs(arena.place)
+        used = (found.f_blocks - found.f_bfree) * found.f_frsize
+        remount(arena.place, f"size={used + case.n_bytes * moment // DISK_MOMENTS // BLOCK * BLOCK}")
         judge(arena, case, arena.start(case.words).end(), row)
 
 
 def forbid(arena: Arena, case: Prepared, row: Row) -> None:
     """Nothing can be written."""
     arena.reset(None)
-    with small_disk(arena.place, 64 * 2**20):
+    with small_disk(arena.place):
         arena.reset(case.earlier)
-        subprocess.run(["mount", "-o", "remount,ro", str(arena.place)], check=True)
+        remount(arena.place, "ro")
         judge(arena, case, arena.start(case.words).end(), row)
 
 
@@ -320,15 +361,20 @@ def main() -> None:
     signal.signal(signal.SIGINT, signal.default_int_handler)  # the background of a shell ignores it, nohup
     signal.signal(signal.SIGHUP, signal.SIG_DFL)  # this, and so would what is started here
     rows: Rows = {}
+    print(HEAD, flush=True)
     with tempfile.TemporaryDirectory() as folder, suppress(KeyboardInterrupt):
-        attack(Path(folder), options.only, options.share, options.seed, rows)
-    print(table(rows))
+        for name in attack(Path(folder), options.only, options.share, options.seed, rows):
+            print("\n".join(lines(rows, name)), flush=True)
+    print(total(rows))
     if any(each.lost or each.mixed or each.left or each.unclear for each in rows.values()):
         raise SystemExit(1)
 
 
-def attack(folder: Path, only: Sequence[str], share: float, seed: int, rows: Rows) -> None:
-    """All attacks on the commands whose name contains a word of `only`, or a seeded share of them."""
+def attack(folder: Path, only: Sequence[str], share: float, seed: int, rows: Rows) -> Iterator[str]:
+    """All attacks on the commands whose name contains a word of `only`, or a seeded share of them.
+
+    Yields the name of each command once its rows are complete.
+    """
     arena, rng = Arena(folder), random.Random(seed)
     write_inputs(arena.inputs)
     is_root = os.geteuid() == 0
@@ -337,25 +383,29 @@ def attack(folder: Path, only: Sequence[str], share: float, seed: int, rows: Row
         attacks += [("full disk", fill_disk, (k,)) for k in range(DISK_MOMENTS)] if is_root else []
         attacks += [("read-only", forbid, ())] if is_root else []
         attacks += [("two writers", race, ())]
+        attacks = attacks[:: ONE_IN.get(name, 1)]
         if chosen := [each for each in attacks if rng.random() < share]:
             case = prepared(arena, name)
             for kind, act, arguments in chosen:
                 act(arena, case, rows.setdefault((name, kind), Row()), *arguments)
-            print(f"{name}: {len(chosen)} runs", file=sys.stderr, flush=True)
+            yield name
 
 
-def table(rows: Rows) -> str:
-    """The rows in Markdown, with their sums."""
-    lines = [
-        "| command | attack | runs | sentences | unclear ends | lost | mixed | left behind |",
-        "| --- | --- | --- | --- | --- | --- | --- | --- |",
-    ]
-    total = [0] * 6
-    for (name, kind), row in rows.items():
-        numbers = [row.runs, row.sentences, row.unclear, row.lost, row.mixed, row.left]
-        total = [one + other for one, other in zip(total, numbers, strict=True)]
-        lines.append(f"| {name} | {kind} | {' | '.join(map(str, numbers))} |")
-    return "\n".join([*lines, f"| all | | {' | '.join(map(str, total))} |"])
+HEAD = """\
+| command | attack | runs | sentences | unclear ends | lost | mixed | left behind |
+| --- | --- | --- | --- | --- | --- | --- | --- |"""
+
+
+def lines(rows: Rows, name: str) -> list[str]:
+    """The rows of a command in Markdown."""
+    found = ((kind, row) for (command, kind), row in rows.items() if command == name)
+    return [f"| {name} | {kind} | {' | '.join(map(str, astuple(row)))} |" for kind, row in found]
+
+
+def total(rows: Rows) -> str:
+    """The sums of all rows in Markdown."""
+    sums = np.sum([astuple(row) for row in rows.values()] or [astuple(Row())], axis=0)
+    return f"| all | | {' | '.join(map(str, sums))} |"
 
 
 if __name__ == "__main__":

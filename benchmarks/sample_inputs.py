@@ -1,4 +1,4 @@
-"""Small inputs for every command: meshes, labels, a fit, a recipe, a dataset, a heap."""
+"""Small inputs for every command: meshes, labels, fits, a recipe, a dataset, a heap."""
 
 import json
 from pathlib import Path
@@ -13,12 +13,9 @@ from regolith_studio.io.stl import stl_bytes
 
 def write_inputs(folder: Path) -> None:
     """Fill a folder."""
-    (folder / "meshes").mkdir()
-    ball, rng = icosphere(3), np.random.default_rng(0)
-    for k in range(6):
-        axes = rng.uniform(10.0, 40.0, 3)
-        mesh = Mesh(ball.vertices * axes, ball.faces)
-        (folder / "meshes" / f"grain-{k}.stl").write_bytes(stl_bytes(mesh.triangles, "grain"))
+    rng = np.random.default_rng(0)
+    _write_ellipsoids(folder / "meshes", 3, rng)
+    _write_ellipsoids(folder / "many", 20, rng)  # as few as models are judged by
     np.save(folder / "labels.npy", _labels())
     recipe = {"inputs": ["meshes"], "method": "quadric", "n_facets": 12, "outputs": {"summary": True}}
     (folder / "recipe.json").write_text(json.dumps(recipe))
@@ -26,15 +23,24 @@ def write_inputs(folder: Path) -> None:
     meshes = str(folder / "meshes")
     for words in (
         ["fit", meshes, "-o", str(folder / "fit.json"), "--l-max", "6"],
+        ["fit", str(folder / "many"), "-o", str(folder / "many.json"), "--l-max", "3"],
         ["dataset", "build", meshes, "-o", str(folder / "dataset"), "--method", "quadric", "--facets", "8"],
     ):
         if run(words):
             raise SystemExit(f"{' '.join(words)} failed")
 
 
+def _write_ellipsoids(folder: Path, count: int, rng: np.random.Generator) -> None:
+    folder.mkdir()
+    ball = icosphere(2)
+    for k in range(count):
+        mesh = Mesh(ball.vertices * rng.uniform(10.0, 40.0, 3), ball.faces)
+        (folder / f"grain-{k}.stl").write_bytes(stl_bytes(mesh.triangles, "grain"))
+
+
 def _labels() -> np.ndarray:
     """Balls of 16 voxels in a grid."""
-    z, y, x = np.indices((60, 60, 60))
+    z, y, x = np.indices((20, 40, 40))
     inside = (z % 20 - 10) ** 2 + (y % 20 - 10) ** 2 + (x % 20 - 10) ** 2 < 64
     number = 1 + z // 20 + 3 * (y // 20) + 9 * (x // 20)
     return (inside * number).astype(np.uint8)

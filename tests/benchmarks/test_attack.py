@@ -5,17 +5,17 @@ from pathlib import Path
 
 import pytest
 
-from benchmarks.attack import Arena, Ended, Prepared, Row, Rows, attack, judge, table, tree
+from benchmarks.attack import Arena, Ended, Prepared, Row, Rows, attack, judge, lines, tree
 
 
 @pytest.mark.slow
 @pytest.mark.skipif(sys.platform != "linux", reason="processes are found in /proc")
 def test_that_an_attack_leaves_an_earlier_result_or_a_new_one(tmp_path: Path) -> None:
     rows: Rows = {}
-    attack(tmp_path, ["fit", "sample", "generate npz"], 0.1, 1, rows)
+    commands = list(attack(tmp_path, ["fit", "sample", "generate npz"], 0.1, 1, rows))
     assert sum(row.runs for row in rows.values()) >= 10
     bad = {key for key, row in rows.items() if row.lost or row.mixed or row.left or row.unclear}
-    assert not bad, table(rows)
+    assert not bad, [line for name in commands for line in lines(rows, name)]
 
 
 @pytest.mark.parametrize(
