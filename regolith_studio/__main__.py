@@ -2,6 +2,7 @@
 
 import signal
 import sys
+import threading
 from typing import Any
 
 
@@ -17,7 +18,17 @@ def main() -> None:
         asked.append(number)
         raise KeyboardInterrupt
 
+    def stop_again(ignored: Any) -> None:
+        """Repeat a signal that arrived in a callback of a library (llvmlite's), which cannot raise."""
+        if isinstance(ignored.exc_value, KeyboardInterrupt):
+            number = asked[-1] if asked else signal.SIGINT
+            threading.Timer(0.05, signal.pthread_kill, (threading.main_thread().ident, number)).start()
+        else:
+            sys.__unraisablehook__(ignored)
+
     if sys.argv[1:2] not in ([], ["open"]):
+        if hasattr(signal, "pthread_kill"):  # not on Windows
+            sys.unraisablehook = stop_again
         for name in ("SIGTERM", "SIGHUP"):
             number = getattr(signal, name, None)  # Windows has no SIGHUP, and nohup ignores it
             if number is not None and signal.getsignal(number) is not signal.SIG_IGN:

@@ -125,6 +125,29 @@ def test_that_a_signal_while_modules_are_loaded_is_no_traceback() -> None:
     assert (ended.returncode, ended.stderr) == (143, "Stopped.\n")
 
 
+@pytest.mark.skipif(os.name == "nt", reason="Windows has no SIGTERM")
+@pytest.mark.parametrize(("name", "code"), [("SIGTERM", 143), ("SIGINT", 130)])
+def test_that_a_signal_in_a_callback_of_a_library_is_not_lost(name: str, code: int) -> None:
+    question = (
+        "import ctypes, os, signal, sys, time\n"
+        "from regolith_studio import __main__ as program\n"
+        "from regolith_studio.cli import entry\n"
+        "@ctypes.CFUNCTYPE(None)\n"
+        "def callback():\n"
+        f"    os.kill(os.getpid(), signal.{name})\n"
+        "    time.sleep(1)\n"
+        "def run(words):\n"
+        "    callback()\n"
+        "    time.sleep(60)\n"
+        "entry.run, sys.argv = run, ['regolith-studio', 'fit']\n"
+        "program.main()\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", question], capture_output=True, text=True, cwd=ROOT, timeout=50, check=False
+    )
+    assert (done.returncode, done.stderr) == (code, "Stopped.\n")
+
+
 def test_that_a_library_that_is_missing_is_named_with_its_packages(
     monkeypatch: pytest.MonkeyPatch, command: Callable[..., Said]
 ) -> None:
