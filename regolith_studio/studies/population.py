@@ -371,6 +371,8 @@ def _check_arguments(
     wrong = [key for key in keys if key not in CATALOGUE]
     if wrong or not keys:
         raise InputError(f"The descriptors are {', '.join(CATALOGUE)}; got {', '.join(wrong) or 'none'}.")
+    if len(keys) < 2:
+        raise InputError(f"The study compares descriptors in pairs too; name two, got only {keys[0]}.")
     n_draws, n_splits, n_repeats = counts
     if len(sample) < MIN_PARTICLES:
         raise InputError(

@@ -142,6 +142,7 @@ def test_that_a_study_becomes_tables_and_pictures(
         ({"n_splits": 0}, "one split"),
         ({"n_repeats": 0}, "one split"),
         ({"keys": ["charm"]}, "got charm"),
+        ({"keys": ["sphericity"]}, "name two, got only sphericity"),
         ({"l_max": 9}, "no l_max = 9"),
     ],
 )
