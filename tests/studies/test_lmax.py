@@ -14,13 +14,16 @@ from regolith_studio.descriptors.comparison import rmsre
 from regolith_studio.descriptors.describe import describe
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.oriented_box import minimum_volume_box
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.harmonics.fit import fit_harmonics
+from regolith_studio.harmonics.fit_options import FitOptions
 from regolith_studio.harmonics.surface import reconstruct
 from regolith_studio.readers.particles import sample_particles
 from regolith_studio.studies.figures.lmax import lmax_figure, write_lmax_study
 from regolith_studio.studies.lmax import (
+    BOX_NOTE,
     LmaxStudy,
     enough_degrees,
     lmax_errors,
@@ -180,6 +183,27 @@ def test_that_tables_and_figures_are_written_and_readable(study, tmp_path):
     assert drawing.rstrip().endswith("</svg>")
     write_lmax_study(study, tmp_path / "again")
     assert (tmp_path / "again" / "lmax_rmsre.svg").read_text() == drawing
+
+
+def test_that_figure_and_table_say_why_diameters_step(study):
+    assert BOX_NOTE in rmsre_table(study).notes
+    caption = lmax_figure(study).get_supxlabel()
+    assert caption.split() == BOX_NOTE.split()
+
+
+@pytest.mark.slow
+def test_that_the_smallest_diameter_steps_where_the_box_turns_and_the_surface_does_not():
+    particle = next(each for each in sample_particles() if each.name == "agglutinate-1")
+    own = minimum_volume_box(particle.mesh)
+    fit = FitOptions().fit(particle.mesh, 30)
+    boxes, extents = [], []
+    for degree in (15, 18):
+        surface = reconstruct(fit, degree, 5)
+        boxes.append(minimum_volume_box(surface))
+        extents.append(np.ptp(surface.vertices @ own.axes.T, axis=0).min() / own.min_diameter - 1)
+    errors = [box.min_diameter / own.min_diameter - 1 for box in boxes]
+    assert errors == pytest.approx([-0.046, 0.038], abs=0.01)
+    assert extents == pytest.approx([-0.021, -0.026], abs=0.01)
 
 
 def test_that_the_figure_has_a_panel_a_group_and_a_line_a_descriptor(study):

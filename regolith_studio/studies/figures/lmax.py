@@ -2,6 +2,7 @@
 
 from math import ceil
 from pathlib import Path
+from textwrap import fill
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -9,7 +10,7 @@ from matplotlib.figure import Figure
 from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.io.tables import write_table
 from regolith_studio.studies.figures.files import with_subscript, write_figure
-from regolith_studio.studies.lmax import LmaxStudy, particle_table, rmsre_table
+from regolith_studio.studies.lmax import BOX_NOTE, LmaxStudy, particle_table, rmsre_table
 
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000")
 """Okabe and Ito's palette, which most colour-blind people can tell apart."""
@@ -32,6 +33,8 @@ def lmax_figure(study: LmaxStudy) -> Figure:
         axis.set_ylabel("RMSRE (%)")
     handles, labels = axes[0, 0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside right upper", frameon=False)
+    if "min_diameter" in study.keys:
+        figure.supxlabel(fill(BOX_NOTE, 22 + 50 * columns), fontsize="x-small", x=0.02, ha="left")
     return figure
 
 
