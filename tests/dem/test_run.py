@@ -68,6 +68,10 @@ COMMAND += [
 COMMAND += ["--set", "rest_time=1", "--set", "snapshots=20"]
 
 
+NO_ANGLE = ("layer", "no flanks")
+"""What forty particles form: which of them depends on the last bits of the simulation."""
+
+
 @pytest.fixture(scope="module")
 def finished(boxes_folder: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("runs") / "small"
@@ -86,7 +90,7 @@ def test_that_a_run_leaves_everything_that_it_followed_from(finished: Path, boxe
     assert document["checks"]["particles_out"] == 40
     assert document["checks"]["max_overlap"] < 0.05
     assert document["checks"]["energy_gain"] < 0.05
-    assert document["measurement"]["status"] == "layer"
+    assert document["measurement"]["status"] in NO_ANGLE
     assert "restitution" in document["not_given_in_the_paper"]
 
 
@@ -150,7 +154,8 @@ def test_that_a_study_goes_on_where_it_was(finished: Path, boxes_folder: Path, t
     events = list(steps)
     assert not [step for step in events if isinstance(step, Progress) and "simulated" in step.message]
     study = events[-1].value
-    assert [each.document["measurement"]["status"] for each in study.runs] == ["layer"]
+    [found] = [each.document["measurement"]["status"] for each in study.runs]
+    assert found in NO_ANGLE
     files = {path.name for path in write_repose_study(study, tmp_path / "figures")}
     assert files == {f"repose_study.{kind}" for kind in ("csv", "json", "png", "svg")}
     other = replace(ORDER, case=replace(CASE, contact=ContactParameters(static_friction=0.1)))
