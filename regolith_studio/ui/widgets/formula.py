@@ -35,8 +35,8 @@ _outlines: dict[str, QPainterPath] = {}
 class FormulaLabel(QWidget):
     """Lines of mathtext from top to bottom, scaled with the font of the widget.
 
-    An outline takes up to 40 ms to make: missing ones are made by a thread, one at a time, and the previous
-    lines stay visible until all are there.
+    An outline takes up to 40 ms to make: missing ones are made by a thread, one at a time, and nothing is
+    drawn until all are there; :func:`prepare` makes them ahead.
 
     Parameters
     ----------
@@ -66,6 +66,7 @@ class FormulaLabel(QWidget):
         if all(line in _outlines for line in lines):
             self.take()
         else:
+            self.update()
             _outline_maker().want(self)
 
     def missing(self) -> str | None:
@@ -87,7 +88,7 @@ class FormulaLabel(QWidget):
         return QSize(40, round(MIN_HEIGHT * self.sizeHint().height()))
 
     def paintEvent(self, event: QPaintEvent) -> None:  # noqa: ARG002
-        if not self._lines:
+        if not self._lines or self._lines != self._asked:
             return
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
@@ -126,12 +127,19 @@ class _OutlineMaker(QObject):
     def __init__(self, parent: QObject | None) -> None:
         super().__init__(parent)
         self._labels: WeakKeyDictionary[FormulaLabel, None] = WeakKeyDictionary()
+        self._ahead: tuple[str, ...] = ()
         self._busy = False
         self._ended.connect(self._go_on, Qt.ConnectionType.QueuedConnection)
 
     def want(self, label: FormulaLabel) -> None:
         """Make the outlines that a label lacks."""
         self._labels[label] = None
+        if not self._busy:
+            self._begin()
+
+    def prepare(self, lines: tuple[str, ...]) -> None:
+        """Make the outlines of other lines once no label lacks any; replaces what was to be prepared."""
+        self._ahead = lines
         if not self._busy:
             self._begin()
 
@@ -143,12 +151,18 @@ class _OutlineMaker(QObject):
     def _begin(self) -> None:
         for label in list(self._labels):
             if shiboken6.isValid(label) and (line := label.missing()) is not None:
-                self._busy = True
-                Thread(target=self._set, args=(line,), daemon=True, name=THREAD_NAME).start()
+                self._start(line)
                 return
             del self._labels[label]
             if shiboken6.isValid(label):
                 label.take()
+        self._ahead = tuple(each for each in self._ahead if each not in _outlines)
+        if self._ahead:
+            self._start(self._ahead[0])
+
+    def _start(self, line: str) -> None:
+        self._busy = True
+        Thread(target=self._set, args=(line,), daemon=True, name=THREAD_NAME).start()
 
     def _set(self, line: str) -> None:
         """Run in the thread; the signal has no receiver if the program has ended meanwhile."""
@@ -163,12 +177,21 @@ class _OutlineMaker(QObject):
         if line not in _outlines:  # the thread has raised
             for label in [each for each in self._labels if line in each.lines()]:
                 del self._labels[label]
+            self._ahead = tuple(each for each in self._ahead if each != line)
         self._begin()
 
 
 @cache
 def _outline_maker() -> _OutlineMaker:
     return _OutlineMaker(QCoreApplication.instance())
+
+
+def prepare(lines: tuple[str, ...]) -> bool:
+    """Whether the outlines of these lines are made; if not, they are being made."""
+    if all(line in _outlines for line in lines):
+        return True
+    _outline_maker().prepare(lines)
+    return False
 
 
 def all_outlines() -> bool:

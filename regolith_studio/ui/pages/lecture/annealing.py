@@ -22,7 +22,7 @@ from regolith_studio.ui.translation import tr
 from regolith_studio.ui.views.camera_link import CameraLink
 from regolith_studio.ui.views.factory import make_view
 from regolith_studio.ui.views.view_frame import ViewFrame
-from regolith_studio.ui.widgets.formula import FormulaLabel
+from regolith_studio.ui.widgets.formula import FormulaLabel, prepare
 from regolith_studio.ui.widgets.labels import WrappedLabel
 from regolith_studio.ui.widgets.plots.bars import BarPlot, BarSeries
 from regolith_studio.ui.widgets.plots.base import Plot
@@ -71,7 +71,7 @@ class AnnealingView(QWidget):
             plot.setObjectName(f"annealing_{name}")
         self.frames["annealing"].set_texts(tr("Annealing"))
         self.frames["exact"].set_texts(tr("Exact method"))
-        self.playback = PlaybackBar("annealing", N_("step"))
+        self.playback = PlaybackBar("annealing", N_("step"), self._is_ready)
         self.playback.stepChanged.connect(self._show_step)
         self._arrange()
 
@@ -120,6 +120,14 @@ class AnnealingView(QWidget):
             texts.outcome_of(step), theme.muted
         )
 
+    def _is_ready(self, number: int) -> bool:
+        """Whether the formulas of a step are set, so that it shows one step everywhere."""
+        lesson = self._lesson
+        if lesson is None or number >= len(lesson.steps):
+            return True
+        step = lesson.steps[number]
+        return prepare((*texts.loss_lines(lesson.weights, step.evaluation), *texts.rule_lines(step, lesson)))
+
     def _show_step(self, number: int) -> None:
         lesson = self._lesson
         if lesson is None:
@@ -127,11 +135,7 @@ class AnnealingView(QWidget):
         step = lesson.steps[number]
         self.sentence.setText(texts.sentence_of(step, lesson))
         self.loss_formula.set_lines(*texts.loss_lines(lesson.weights, step.evaluation))
-        self.rule.set_lines(
-            texts.proposal_line(step, lesson),
-            texts.temperature_line(lesson.settings, step.number),
-            texts.decision_line(step),
-        )
+        self.rule.set_lines(*texts.rule_lines(step, lesson))
         self.frames["annealing"].view.draw(partial(self._fill_step, step))
         solid = step.polyhedron
         self.frames["annealing"].set_texts(

@@ -16,7 +16,7 @@ from regolith_studio.ui.translation import tr, tr_count
 from regolith_studio.ui.views.camera_link import CameraLink
 from regolith_studio.ui.views.factory import make_view
 from regolith_studio.ui.views.view_frame import ViewFrame
-from regolith_studio.ui.widgets.formula import FormulaLabel
+from regolith_studio.ui.widgets.formula import FormulaLabel, prepare
 from regolith_studio.ui.widgets.labels import remark
 from regolith_studio.ui.widgets.plots.curves import CurvePlot, PlotCurve
 
@@ -51,7 +51,7 @@ class DegreesView(QWidget):
         self.formula = FormulaLabel(tr("Eq. 4 with its numbers"))
         self.errors = CurvePlot(tr("Degree l<sub>max</sub>"), tr("Error [%]"), tr(WAIT), log_y=True)
         self.errors.setObjectName("degrees_errors")
-        self.playback = PlaybackBar("degrees", N_("degree"))
+        self.playback = PlaybackBar("degrees", N_("degree"), self._is_ready)
         self.playback.stepChanged.connect(self._show_step)
         self._arrange()
 
@@ -90,6 +90,10 @@ class DegreesView(QWidget):
         self.playback.pause()
         for frame in self.frames.values():
             frame.view.release()
+
+    def _is_ready(self, number: int) -> bool:
+        """Whether the formulas of a degree are set."""
+        return number >= len(self._steps) or prepare(texts.degree_lines(self._steps[number]))
 
     def _show_step(self, number: int) -> None:
         if number >= len(self._steps):

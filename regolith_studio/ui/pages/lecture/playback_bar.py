@@ -1,5 +1,7 @@
 """Playback controls of a lesson: play, pause, single steps, speed."""
 
+from collections.abc import Callable
+
 from PySide6.QtCore import QEvent, QSignalBlocker, Qt, QTimer, Signal
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QSlider, QWidget
 
@@ -28,12 +30,15 @@ class PlaybackBar(QWidget):
         Prefix of the object names.
     noun
         What one step is called, such as ``step``.
+    is_ready
+        Whether a step can be shown at once; while it plays, it waits for that.
     """
 
     stepChanged = Signal(int)  # noqa: N815
 
-    def __init__(self, name: str, noun: str) -> None:
+    def __init__(self, name: str, noun: str, is_ready: Callable[[int], bool] = lambda _step: True) -> None:
         super().__init__()
+        self._is_ready = is_ready
         self._noun = noun
         self.back, self.play, self.forward = QPushButton("◀"), QPushButton(tr("Play")), QPushButton("▶")
         self.first = QPushButton("|◀")
@@ -120,7 +125,7 @@ class PlaybackBar(QWidget):
     def _next(self) -> None:
         if self.step >= self.slider.maximum():
             self.pause()
-        else:
+        elif self._is_ready(self.step + 1):
             self.slider.setValue(self.step + 1)
 
     def _changed(self, step: int) -> None:

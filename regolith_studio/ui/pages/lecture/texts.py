@@ -77,6 +77,12 @@ def proposal_line(step: AnnealingStep, lesson: AnnealingLesson) -> str:
     )
 
 
+def rule_lines(step: AnnealingStep, lesson: AnnealingLesson) -> tuple[str, ...]:
+    """Proposal, T(k) and decision of a step with their numbers."""
+    temperature = temperature_line(lesson.settings, step.number)
+    return (proposal_line(step, lesson), temperature, decision_line(step))
+
+
 def decision_line(step: AnnealingStep) -> str:
     """The acceptance criterion with its numbers."""
     move = step.move
