@@ -12,10 +12,12 @@ from regolith_studio.dataset.folder_io import write_dataset
 from regolith_studio.dataset.parameters import ContactParameters, LiftingCylinderTest
 from regolith_studio.dem.evaluation.profile import Discs
 from regolith_studio.dem.run_io import FORMAT, read_run, save_result
-from regolith_studio.dem.snapshot import ParticleState, particle_state_bytes
+from regolith_studio.dem.snapshot import ParticleState, Snapshot, particle_state_bytes
+from regolith_studio.errors import JobCancelled
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
+from regolith_studio.jobs.events import Partial
 from regolith_studio.jobs.runners.run_job import InlineRunner
 from regolith_studio.session.session import Session
 from regolith_studio.studies.repose import runs_from
@@ -71,6 +73,25 @@ def pile_of(angle, n=700):
     return ParticleState(points, np.full(n, 2e-3), turns, np.zeros(n, dtype=int), 1.0, float("inf"), "rest")
 
 
+def import_positions(page, monkeypatch, tmp_path, pile):
+    path = tmp_path / "pile.npz"
+    path.write_bytes(particle_state_bytes(pile))
+    monkeypatch.setattr(QFileDialog, "getOpenFileName", lambda *_: (str(path), ""))
+    page.open_positions()
+
+
+def watch_moments(page, monkeypatch):
+    """Title of each picture, whether it shows spheres, and the corners of its first shape."""
+    drawn, show = [], page.player.show_moment
+
+    def watch(pile, title, detail=""):
+        drawn.append((title, page.player._spheres, len(page.player._shapes[0])))
+        show(pile, title, detail)
+
+    monkeypatch.setattr(page.player, "show_moment", watch)
+    return drawn
+
+
 def test_that_tables_are_edited_in_the_paper_s_units_and_missing_values_are_marked(shown):
     form = shown(ParameterForm(ContactParameters, "contact"))
     assert form._editors["youngs_modulus"].value() == pytest.approx(30.0)
@@ -98,10 +119,18 @@ def test_that_a_dataset_is_previewed_with_the_consequences(page, dataset, wait):
     assert not page.setup.run.isEnabled()
 
 
-def test_that_a_test_is_run_listed_and_replayed(page, dataset, wait):
+def test_that_a_test_is_run_listed_and_replayed(page, dataset, wait, monkeypatch, tmp_path):
     small(page, dataset)
+    import_positions(page, monkeypatch, tmp_path, pile_of(30.0))
+    wait(lambda: page._measured is not None)
+    drawn = watch_moments(page, monkeypatch)
     page.run_test()
     wait(lambda: page.runs.table.rowCount() == 1)
+    running = [scene for title, *scene in drawn if title == "Running"]
+    assert running
+    assert all(
+        scene == [False, 8] for scene in running
+    )  # the boxes of the dataset, not the spheres of the file
     run = page.runs.current()
     assert run.document["state"] == "finished"
     assert run.document["case"]["n_particles"] == 40
@@ -116,6 +145,42 @@ def test_that_a_test_is_run_listed_and_replayed(page, dataset, wait):
     page.player.slider.setValue(page.player.slider.maximum())
     np.testing.assert_array_equal(page.player.pile.points, last)
     assert not page.busy()
+
+
+def test_that_a_stopped_run_and_changed_values_leave_no_earlier_angle(
+    page, dataset, wait, monkeypatch, tmp_path
+):
+    small(page, dataset)
+    import_positions(page, monkeypatch, tmp_path, pile_of(30.0))
+    wait(lambda: page._measured is not None)
+    assert "30" in page.verdict.text()
+
+    def stopped(*_):
+        yield Partial(Snapshot(pile_of(20.0, 40), 0.5, "lift"))
+        raise JobCancelled("stopped")
+
+    monkeypatch.setattr("regolith_studio.ui.pages.repose.page.simulate_repose", stopped)
+    page.run_test()
+    wait(lambda: not page.busy())
+    assert "stopped" in page.verdict.text()
+    assert page.x_z.is_empty()
+    assert "Stopped" in page.player.frame.title
+    assert page.setup.run.isEnabled()
+    page.setup.particles.setValue(60)
+    wait(lambda: len(page.player.pile) == 60)
+    assert "Not run yet" in page.verdict.text()
+
+
+def test_that_numbers_that_cannot_be_run_are_refused_in_the_form(page, dataset, wait):
+    page.setup.set_dataset(dataset)
+    for number in (100, 99_999):
+        page.setup.particles.setValue(number)
+        wait(lambda: page.setup.problem.text() != "")
+        assert not page.setup.run.isEnabled()
+        assert page.setup.run.toolTip() == page.setup.problem.text()
+        page.setup.particles.setValue(300)
+        wait(lambda: page.setup.problem.text() == "")
+        assert page.setup.run.isEnabled()
 
 
 def test_that_positions_are_measured_and_a_dragged_cut_changes_the_angle(page, tmp_path, monkeypatch, wait):

@@ -1,6 +1,6 @@
 """Page "Angle of repose": set-up, player, sections, runs, study and engines."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -24,9 +24,16 @@ from regolith_studio.dem.run_io import (
 from regolith_studio.dem.scaling_report import scaling_report
 from regolith_studio.dem.snapshot import ParticleState, Snapshot
 from regolith_studio.errors import RegolithError
+from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.jobs.dataset_jobs import DatasetOptions, build_dataset_folder
 from regolith_studio.jobs.events import Failed, Job
-from regolith_studio.jobs.repose_jobs import ReposeRun, preview_repose, remeasure, simulate_repose
+from regolith_studio.jobs.repose_jobs import (
+    ReposeRequest,
+    ReposeRun,
+    preview_repose,
+    remeasure,
+    simulate_repose,
+)
 from regolith_studio.ui.dialogs.folder import FolderDialog
 from regolith_studio.ui.layout import padded, scrolled_column, side_by_side, stacked, tabs
 from regolith_studio.ui.page import PageContext, PageWidget
@@ -43,7 +50,8 @@ from regolith_studio.ui.widgets.labels import remark
 
 PREVIEW_DELAY = 250
 """Milliseconds from the last change to the preview."""
-MAX_PREVIEWED = 20_000
+MAX_PARTICLES = 20_000
+"""More are for programs that run on many cores."""
 RUN, PREVIEW, MEASURE, BUILD = "run", "preview", "measure", "build"
 
 
@@ -58,6 +66,8 @@ class ReposePage(PageWidget):
         self._pile: ParticleState | None = None
         self._measured: ReposeMeasurement | None = None
         self._running = False
+        self._live_scene: tuple[Sequence[FloatArray], bool, LiftingCylinderTest] | None = None
+        self._live_pile: ParticleState | None = None
 
     def build(self) -> None:
         self.setup = SetupPanel()
@@ -150,9 +160,11 @@ class ReposePage(PageWidget):
             self._context.toast.problem(str(error))
             return
         self._later.stop()
-        self._context.stop(PREVIEW)
+        self._live_scene = self._live_pile = None
+        self._show_nothing(tr("The angle is measured when the particles have come to rest."))
         folder = self._new_folder(f"{dataset.name}-{request.case.n_particles}")
         self._set_running(True)
+        self._start_preview(dataset, request)
         self._context.start(
             tr("Angle of repose, {count:,} particles", count=request.case.n_particles),
             Job(simulate_repose, (dataset, folder, request)),
@@ -211,25 +223,28 @@ class ReposePage(PageWidget):
             self.setup.set_dataset(written)
 
     def _ask_preview(self) -> None:
-        if not self._running:
-            self._later.start()
+        self._later.start()
 
     def _preview(self) -> None:
         dataset = self.setup.dataset
-        if dataset is None or self._running:
+        if dataset is None:
             return
         try:
             request = self.setup.request()
         except RegolithError as error:
             self.setup.show_consequences([], str(error))
             return
-        if request.case.n_particles > MAX_PREVIEWED:
+        if request.case.n_particles > MAX_PARTICLES:
             words = tr(
                 "More than {count:,} particles are for other programs: export the dataset.",
-                count=MAX_PREVIEWED,
+                count=MAX_PARTICLES,
             )
-            self.setup.show_consequences([words])
+            self.setup.show_consequences([], words)
             return
+        self._start_preview(dataset, request)
+
+    def _start_preview(self, dataset: Path, request: ReposeRequest) -> None:
+        """Draw the particles of a request: its consequences, and the shapes that a run shows."""
 
         def show(drawn: tuple[PreparedCase, ParticleState]) -> None:
             self._show_preview(request, *drawn)
@@ -243,11 +258,20 @@ class ReposePage(PageWidget):
             lane=PREVIEW,
         )
 
-    def _show_preview(self, request: Any, prepared: PreparedCase, pile: ParticleState) -> None:
+    def _show_preview(self, request: ReposeRequest, prepared: PreparedCase, pile: ParticleState) -> None:
         seconds = engine_named(request.engine).seconds(prepared, request.settings)
-        time = tr("About {time} on one core.", time=duration_text(seconds))
+        time = tr(
+            "About {time} on one core, up to {longer} while other work runs.",
+            time=duration_text(seconds),
+            longer=duration_text(2 * seconds),
+        )
         self.setup.show_consequences([time, *scaling_report(prepared).sentences])
-        self.player.set_scene(prepared.shapes, request.case.shapes == "spheres", request.case.test)
+        scene = (prepared.shapes, request.case.shapes == "spheres", request.case.test)
+        if self._running:
+            self._live_scene = self._live_scene or scene
+            return
+        self._show_nothing(tr("Not run yet with these values."))
+        self.player.set_scene(*scene)
         self.player.show_moment(
             pile,
             tr("Before the fall"),
@@ -257,7 +281,9 @@ class ReposePage(PageWidget):
     # --- a run ---------------------------------------------------------------------------------
 
     def _show_moment(self, moment: Any) -> None:
-        if isinstance(moment, Snapshot):
+        if isinstance(moment, Snapshot) and self._live_scene is not None:
+            self._live_pile = moment.particles
+            self.player.set_scene(*self._live_scene)
             self.player.show_moment(moment.particles, tr("Running"), moment.message)
 
     def _finished(self, run: ReposeRun) -> None:
@@ -270,16 +296,20 @@ class ReposePage(PageWidget):
     def _failed(self, failure: Failed) -> None:
         self._set_running(False)
         self._list_runs()
+        self._show_nothing(failure.sentence)
         self._context.toast.problem(failure.sentence, failure.details)
 
     def _stopped(self) -> None:
         self._set_running(False)
         self._list_runs()
+        self._show_nothing(tr("The run was stopped before it was measured."))
+        if self._live_pile is not None and self._live_scene is not None:
+            self.player.set_scene(*self._live_scene)
+            self.player.show_moment(self._live_pile, tr("Stopped"), tr("the particles as they were then"))
 
     def _set_running(self, running: bool) -> None:
         self._running = running
-        self.setup.run.setText(tr("Running …") if running else tr("Run the test"))
-        self.setup.run.setEnabled(not running and self.setup.dataset is not None)
+        self.setup.set_running(running)
 
     # --- what a run left -----------------------------------------------------------------------
 
@@ -338,6 +368,14 @@ class ReposePage(PageWidget):
         self.verdict.setText(angle_text(measured))
         self.x_z.show_section(self._pile, measured.sections[0])
         self.y_z.show_section(self._pile, measured.sections[1])
+
+    def _show_nothing(self, sentence: str) -> None:
+        """Show that there is no measurement of what is seen, and why."""
+        self._context.stop(MEASURE)
+        self._pile = self._measured = None
+        self.verdict.setText(sentence)
+        for plot in (self.x_z, self.y_z):
+            plot.show_nothing(sentence)
 
     def _take_cut(self, name: str, share: float) -> None:
         if name == "low":

@@ -59,6 +59,7 @@ class SetupPanel(QWidget):
         super().__init__()
         self.setObjectName("repose_setup")
         self._dataset: Path | None = None
+        self._running = False
         self.dataset_label = ElidedLabel(tr("No dataset yet"))
         self.open_button = _button(tr("Open …"), "repose_open", tr("Choose a dataset folder"))
         self.sample_button = _button(
@@ -155,7 +156,19 @@ class SetupPanel(QWidget):
         self.scaling_report.setText("<br>".join(sentences))
         self.problem.setText(problem)
         self.problem.setVisible(bool(problem))
-        self.run.setEnabled(self._dataset is not None and not problem)
+        self._enable_run()
+
+    def set_running(self, running: bool) -> None:
+        """Whether a run is under way, so that no other can be started."""
+        self._running = running
+        self.run.setText(tr("Running …") if running else tr("Run the test"))
+        self._enable_run()
+
+    def _enable_run(self) -> None:
+        """Let the test be run, or say at the button why it cannot."""
+        problem = self.problem.text() if not self.problem.isHidden() else ""
+        self.run.setEnabled(self._dataset is not None and not problem and not self._running)
+        self.run.setToolTip(problem or tr("Fill, lift, measure"))
 
     def state(self) -> dict[str, Any]:
         """The values as plain JSON."""
