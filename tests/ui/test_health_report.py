@@ -57,7 +57,7 @@ def panel(shown):
 def test_that_the_report_tells_the_mesh_as_it_came_and_as_it_is(panel):
     panel.show_entry(entry(ugly()))
     found = cells(panel)
-    assert found["Bodies"] == ("2", "1")
+    assert found["Connected parts"] == ("2", "1")
     assert found["Closed"] == ("no", "yes")
     assert found["Open edges"] == ("3", "0")
     assert found["Euler number"] == ("3", "2")
@@ -91,6 +91,13 @@ def test_that_the_legend_names_what_was_found_with_its_number(panel):
     panel.show_legend({kind: len(triangles) for kind, triangles in found.items()})
     words = panel.legend.text().replace("&nbsp;", " ")
     assert "closed holes (1)" in words
+    assert "Before the repair" not in words  # of no particle
+    panel.show_entry(ours)
+    panel.show_legend({kind: len(triangles) for kind, triangles in found.items()})
+    assert panel.legend.text().startswith("Before the repair")
+    panel.show_entry(entry(BALL, mended=False))
+    panel.show_legend({"hidden": 3})
+    assert "Before the repair" not in panel.legend.text()
     assert f"bodies left out ({len(SMALL.faces)})" in words
     panel.show_legend({})
     assert "no faults" in panel.legend.text()

@@ -115,6 +115,8 @@ def test_that_a_weight_that_is_moved_marks_the_preset_as_modified_and_reset_unma
     wait(lambda: heard)
     assert heard[-1]["weights"]["volume"] == pytest.approx(1.05)
     assert "(modified)" in panel.preset.currentText()
+    assert "weight 1" not in panel.origin.text()
+    assert panel.origin.text().startswith("Changed from")
     QTest.mouseClick(panel.reset, Qt.MouseButton.LeftButton)
     assert heard[-1] == {"weights": presets()["all"].weights, "preset": "all"}
     assert "(modified)" not in panel.preset.currentText()

@@ -177,4 +177,10 @@ class LossPanel(QWidget):
 
     def _show_mark(self) -> None:
         self.bar.show_state(self._chosen, self.is_modified())
-        self.origin.setText(tr(self._known[self._chosen].origin) + ".")
+        preset = self._known[self._chosen]
+        own = self._chosen.startswith(OWN)
+        self.origin.setText(
+            tr("Changed from {preset}.", preset=preset.label if own else tr(preset.label))
+            if self.is_modified()
+            else tr(preset.origin) + "."
+        )

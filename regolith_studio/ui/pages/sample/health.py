@@ -29,29 +29,35 @@ from regolith_studio.ui.widgets.labels import WrappedLabel, short_number
 from regolith_studio.ui.widgets.table import FontRowHeight
 
 FINDINGS = (
-    ("bodies", N_("Bodies"), N_("Parts that hang together; a particle has one")),
+    ("bodies", N_("Connected parts"), N_("Connected parts of the surface; a particle has one")),
     ("watertight", N_("Closed"), N_("Every edge belongs to exactly two triangles")),
-    ("consistent_winding", N_("Wound alike"), N_("Neighbouring triangles look the same way")),
+    (
+        "consistent_winding",
+        N_("Consistent orientation"),
+        N_("Neighbouring triangles have normals on the same side"),
+    ),
     ("volume", N_("V [µm³]"), N_("Negative where the mesh is inside out")),
     ("euler_number", N_("Euler number"), N_("2 for a closed body without tunnels")),
     ("handles", N_("Tunnels"), N_("Through the body, of a closed mesh")),
     ("open_edges", N_("Open edges"), N_("Edges of one triangle: the rims of holes")),
-    ("self_intersections", N_("Crossing pairs"), N_("Pairs of triangles that cross each other")),
+    ("self_intersections", N_("Intersecting pairs"), N_("Pairs of triangles that intersect each other")),
     ("degenerate_faces", N_("Faces without area"), N_("Triangles that are a line or a point")),
 )
 """Fields of :class:`MeshHealth` with label and explanation."""
 KINDS = {
     "filled": N_("closed holes"),
     "open": N_("rims of holes"),
-    "crossing": N_("faces that cross"),
-    "turned": N_("faces turned round"),
+    "crossing": N_("intersecting faces"),
+    "turned": N_("reoriented faces"),
     "small bodies": N_("bodies left out"),
     "non-manifold": N_("edges of more than two faces"),
-    "double": N_("faces there twice"),
+    "double": N_("duplicate faces"),
     "degenerate": N_("faces without area"),
     "hidden": N_("hidden from the star point"),
 }
 """Labels of the faults, in the order of :data:`FAULT_COLOURS`."""
+NOW = ("filled", "hidden")
+"""Kinds that are looked for in the repaired mesh."""
 DASH = "–"
 
 
@@ -71,6 +77,7 @@ class HealthPanel(QWidget):
     def __init__(self) -> None:
         super().__init__()
         self.setObjectName("health_report")
+        self._repaired = False
         self.table = self._make_table()
         self.words = WrappedLabel()
         self.words.setObjectName("health_words")
@@ -78,7 +85,7 @@ class HealthPanel(QWidget):
         self.where = QCheckBox(tr("Show where"))
         self.where.setObjectName("health_where")
         self.where.setToolTip(
-            tr("Colours the faults in the picture, as they were before the mesh was mended")
+            tr("Colours the faults in the picture, as they were before the mesh was repaired")
         )
         self.where.setChecked(True)
         self.legend = QLabel()
@@ -91,6 +98,7 @@ class HealthPanel(QWidget):
     def show_entry(self, entry: ParticleEntry | None) -> None:
         """Show the report of a particle; the legend follows when its faults are located."""
         self.legend.clear()
+        self._repaired = entry is not None and entry.particle.repair is not None
         rows = () if entry is None or entry.health is None else _rows(entry, entry.health)
         self.table.setRowCount(len(rows))
         for at, row in enumerate(rows):
@@ -104,20 +112,26 @@ class HealthPanel(QWidget):
 
     def show_legend(self, counts: Mapping[str, int]) -> None:
         """Show the legend of the faults with their numbers of triangles."""
-        found = [(kind, counts[kind]) for kind in FAULT_COLOURS if counts.get(kind)]
+        found = [kind for kind in FAULT_COLOURS if counts.get(kind)]
+        repaired = [kind for kind in found if self._repaired and kind not in NOW]
+        groups = [
+            (tr("Before the repair:") + " ", repaired),
+            ("", [kind for kind in found if kind not in repaired]),
+        ]
+        lines = [
+            html.escape(title) + "&nbsp; ".join(_legend_entry(kind, counts[kind]) for kind in kinds)
+            for title, kinds in groups
+            if kinds
+        ]
         self.legend.setText(
-            "&nbsp; ".join(
-                f'<span style="color:{FAULT_COLOURS[kind]}">&#9632;</span>&nbsp;'
-                + html.escape(f"{tr(KINDS[kind])} ({count:,})")
-                for kind, count in found
-            )
+            "<br>".join(lines)
             or tr("Nothing to show: no faults, and all of the surface is seen from the star point.")
         )
 
     def _make_table(self) -> QTableWidget:
         table = QTableWidget(0, 3)
         table.setAccessibleName(tr("Health of the mesh"))
-        table.setHorizontalHeaderLabels([tr("Mesh"), tr("as it came"), tr("now")])
+        table.setHorizontalHeaderLabels([tr("Mesh"), tr("in the file"), tr("repaired")])
         table.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
         table.setSelectionMode(QAbstractItemView.SelectionMode.NoSelection)
         table.setShowGrid(False)
@@ -151,6 +165,11 @@ class HealthPanel(QWidget):
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(self.table, 3)
         layout.addWidget(scrolled, 2)
+
+
+def _legend_entry(kind: str, count: int) -> str:
+    mark = f'<span style="color:{FAULT_COLOURS[kind]}">&#9632;</span>&nbsp;'
+    return mark + html.escape(f"{tr(KINDS[kind])} ({count:,})")
 
 
 def translated_health(entry: ParticleEntry) -> list[str]:

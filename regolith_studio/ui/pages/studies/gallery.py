@@ -25,7 +25,7 @@ from regolith_studio.ui.widgets.heat_table import centred_remark
 from regolith_studio.ui.widgets.study_frame import StudyFrame
 from regolith_studio.ui.widgets.thumbnails import thumbnail
 
-SIZE = 96
+SIZE = 120
 LETTERS = 22
 """Pixels below a picture."""
 WAITING = N_("The polyhedra of six particles as each loss function makes them, as in Fig. 7 of the paper.")
@@ -101,11 +101,11 @@ class GalleryPanel(QWidget):
             item.setToolTip(cell.outcome.problem or "")
             return item
         item.setIcon(QIcon(thumbnail(found.mesh, self._colour, SIZE)))
-        item.setText(f"J {found.jaccard_distance:.3f}")
+        item.setText(f"J {found.jaccard_distance:.1%}")
         worst = "\n".join(f"{tr(CATALOGUE[key].label)}: {error:.2%}" for key, error in found.errors.items())
         item.setToolTip(
             tr(
-                "{count} facets, Jaccard distance J = {distance:.3f}, loss of this row {loss:.3g}",
+                "{count} facets, Jaccard distance J = {distance:.1%}, loss of this row {loss:.3g}",
                 count=found.n_facets,
                 distance=found.jaccard_distance,
                 loss=found.loss,
