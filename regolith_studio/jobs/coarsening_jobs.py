@@ -1,7 +1,7 @@
 """Jobs that coarsen one particle, with every improved polyhedron as a partial result, or a sample."""
 
 import time
-from collections.abc import Generator, Sequence
+from collections.abc import Generator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any
@@ -12,14 +12,18 @@ from regolith_studio.coarsening.result import CoarseningResult
 from regolith_studio.coarsening.stopping_criteria import Trial, fewest_facets
 from regolith_studio.coarsening.target import Target
 from regolith_studio.coarsening.weights import LossWeights
+from regolith_studio.descriptors.catalogue import LOSS_KEYS
+from regolith_studio.descriptors.comparison import relative_errors
+from regolith_studio.descriptors.describe import Descriptors, describe
 from regolith_studio.errors import JobCancelled
+from regolith_studio.geometry.jaccard import jaccard_distance
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.harmonics.coefficients import ShCoefficients
 from regolith_studio.harmonics.fit import HarmonicFit
 from regolith_studio.harmonics.fit_options import DEFAULT_FIT_OPTIONS, FitOptions
 from regolith_studio.harmonics.surface import reconstruct
-from regolith_studio.jobs.compile_kernels import compile_first_for, is_compiled
+from regolith_studio.jobs.compile_kernels import compile_first, compile_first_for, is_compiled
 from regolith_studio.jobs.events import (
     Failed,
     Finished,
@@ -118,6 +122,39 @@ def coarsen_one(mesh: Mesh, request: CoarseningRequest, particle_index: int = 0)
         yield from compile_first_for(request.method)
     yield Started(N_("Coarsening"))
     return (yield from _run_coarsening(mesh, request, particle_index))
+
+
+@dataclass(frozen=True)
+class ParticleComparison:
+    """A polyhedron against the particle itself, where it imitates the particle's fit.
+
+    Parameters
+    ----------
+    errors
+        Relative error of each descriptor of the loss (Eq. 8).
+    jaccard_distance
+        Eq. 7.
+    """
+
+    errors: Mapping[str, float]
+    jaccard_distance: float
+
+
+def compare_with_particle(
+    mesh: Mesh, descriptors: Descriptors, coarsened: CoarseningResult, box_metric: str = "exact"
+) -> Steps:
+    """Compare a polyhedron with a particle in whose frame it lies; returns :class:`ParticleComparison`.
+
+    Parameters
+    ----------
+    descriptors
+        Of `mesh`, with the same box metric.
+    """
+    yield from compile_first("describe")
+    yield Started(N_("Comparing with the particle"))
+    achieved = describe(coarsened.polyhedron, LOSS_KEYS, box_metric)
+    overlap = jaccard_distance(mesh.moved(shift=-coarsened.centre), coarsened.polyhedron)
+    return ParticleComparison(relative_errors(descriptors, achieved), overlap)
 
 
 def coarsen_particle(

@@ -178,21 +178,24 @@ class Kind(StrEnum):
     SURFACE = "surface"
     DESCRIPTORS = "descriptors"
     COARSENING = "coarsening"
+    COMPARISON = "comparison"
     LMAX_STUDY = "lmax_study"
     COARSENING_STUDY = "coarsening_study"
 
 
-LIVE = (Kind.FIT, Kind.SURFACE, Kind.DESCRIPTORS, Kind.COARSENING)
+LIVE = (Kind.FIT, Kind.SURFACE, Kind.DESCRIPTORS, Kind.COARSENING, Kind.COMPARISON)
 """Kinds that are recomputed after every change of a choice."""
 STUDIES = (Kind.LMAX_STUDY, Kind.COARSENING_STUDY)
 """Kinds that are computed on demand."""
 
 _FIT_OPTIONS = tuple(each.name for each in fields(FitOptions))
+_COARSENING = ("selected", "target", "stopping_criterion", "method", "settings", "weights", "seed")
 DEPENDS_ON: Mapping[Kind, tuple[str, ...]] = {
     Kind.FIT: ("selected", *_FIT_OPTIONS),
     Kind.SURFACE: ("selected", *_FIT_OPTIONS, "l_max", "level"),
     Kind.DESCRIPTORS: ("selected", *_FIT_OPTIONS, "l_max", "level", "box_metric"),
-    Kind.COARSENING: ("selected", "target", "stopping_criterion", "method", "settings", "weights", "seed"),
+    Kind.COARSENING: _COARSENING,
+    Kind.COMPARISON: (*_COARSENING, "box_metric"),
     Kind.LMAX_STUDY: (*_FIT_OPTIONS, "level"),
     Kind.COARSENING_STUDY: ("target", "facet_count", "method", "settings", "seed"),
 }
@@ -203,6 +206,7 @@ _UPSTREAM: Mapping[Kind, tuple[Kind, ...]] = {
     Kind.SURFACE: (Kind.FIT,),
     Kind.DESCRIPTORS: (Kind.SURFACE,),
     Kind.COARSENING: (Kind.SURFACE,),
+    Kind.COMPARISON: (Kind.DESCRIPTORS, Kind.COARSENING),
 }
 
 
@@ -231,13 +235,15 @@ def plan(
     due = [kind for kind in LIVE if before is None or depends(kind, before, after)]
     if after.selected in fitted and Kind.FIT in due:
         due.remove(Kind.FIT)
+    if after.target == "particle" and Kind.COMPARISON in due:  # it is what the coarsening measures
+        due.remove(Kind.COMPARISON)
     return tuple(ComputationRequest(kind, needs(kind, after)) for kind in due)
 
 
 def depends(kind: Kind, before: Choices, after: Choices) -> bool:
     """Whether a result of `kind` for `before` is not the result for `after`."""
     names = DEPENDS_ON[kind]
-    if kind in (Kind.COARSENING, Kind.COARSENING_STUDY) and after.target == "fit":
+    if kind in (Kind.COARSENING, Kind.COMPARISON, Kind.COARSENING_STUDY) and after.target == "fit":
         names += _COARSENING_OF_FIT
     return any(getattr(before, name) != getattr(after, name) for name in names)
 

@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, Protocol
 
 from regolith_studio.descriptors.comparison import relative_errors
-from regolith_studio.jobs.coarsening_jobs import coarsen_one
+from regolith_studio.jobs.coarsening_jobs import coarsen_one, compare_with_particle
 from regolith_studio.jobs.events import Failed, Job
 from regolith_studio.jobs.particle_jobs import FitRequest, describe_meshes, draw_surface, fit_one
 from regolith_studio.messages import N_
@@ -25,12 +25,14 @@ TITLES = {
     Kind.SURFACE: N_("Drawing the fit"),
     Kind.DESCRIPTORS: N_("Measuring the fit"),
     Kind.COARSENING: N_("Coarsening"),
+    Kind.COMPARISON: N_("Comparing with the particle"),
 }
 _EMPTY: Mapping[Kind, Mapping[str, Any]] = {
     Kind.FIT: {"fit": None},
     Kind.SURFACE: {"surface": None, "surface_l_max": 0},
     Kind.DESCRIPTORS: {"particle_descriptors": None, "fit_descriptors": None, "fit_errors": {}},
     Kind.COARSENING: {"best": None, "coarsening_progress": None, "coarsened": None, "loss_history": ()},
+    Kind.COMPARISON: {"against_particle": None},
 }
 """Fields of the results of each kind while there is none."""
 MAX_CACHED_FITS = 256
@@ -190,7 +192,9 @@ class LiveResults:
         target = self._session.results.surface if choices.target == "fit" else entry.particle.mesh
         self._has_shown = False
         self._losses = []
-        self._session.update("coarsening", coarsened=None, coarsening_progress=None, loss_history=())
+        self._session.update(
+            "coarsening", coarsened=None, coarsening_progress=None, loss_history=(), against_particle=None
+        )
         job = Job(coarsen_one, (target, choices.coarsening_request, self._session.particles.index(entry)))
         return job, self._keep_coarsened, self._keep_progress
 
@@ -207,6 +211,12 @@ class LiveResults:
     def _keep_coarsened(self, done: "CoarseningResult") -> None:
         history = tuple(enumerate(done.loss_history))
         self._session.update("coarsening", coarsened=done, best=done, loss_history=history)
+
+    def _comparison(self) -> "_JobWithReactions":
+        results, metric = self._session.results, self._session.choices.box_metric
+        particle = self._entry().particle.mesh
+        job = Job(compare_with_particle, (particle, results.particle_descriptors, results.coarsened, metric))
+        return job, lambda found: self._session.update("comparison", against_particle=found), _ignore
 
 
 _JobWithReactions = tuple[Job, Callable[[Any], None], Callable[[Any], None]]

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from regolith_studio.geometry.mesh_health import MeshHealth
     from regolith_studio.harmonics.fit import HarmonicFit
     from regolith_studio.harmonics.visibility import StarPointVisibility
+    from regolith_studio.jobs.coarsening_jobs import ParticleComparison
     from regolith_studio.session.provenance import ParticleRef
     from regolith_studio.studies.coarsening import CoarseningStudy
     from regolith_studio.studies.lmax import LmaxStudy
@@ -64,6 +65,8 @@ class Results:
         The finished coarsening for the present choices; ``None`` while it runs.
     loss_history
         (step, loss) pairs: thinned out while it runs, complete in the end.
+    against_particle
+        The finished polyhedron of a fit against the particle itself; ``None`` where it imitates the particle.
     lmax_study, coarsening_study
         Of all particles that are open; `outdated` names those that no longer fit the choices.
     """
@@ -78,6 +81,7 @@ class Results:
     coarsening_progress: "CoarseningProgress | None" = None
     coarsened: "CoarseningResult | None" = None
     loss_history: Sequence[tuple[int, float]] = ()
+    against_particle: "ParticleComparison | None" = None
     lmax_study: "LmaxStudy | None" = None
     coarsening_study: "CoarseningStudy | None" = None
     outdated: frozenset[str] = frozenset()
@@ -116,6 +120,7 @@ class SessionEvents:
     surface = Signal()
     descriptors = Signal()
     coarsening = Signal()
+    comparison = Signal()
     lmax_study = Signal()
     coarsening_study = Signal()
     tasks = Signal()

@@ -9,7 +9,7 @@ from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.session.choices import LIVE, Choices, Kind, depends, needs, plan
 
 HERE = Choices(selected="a", target="fit")
-FIT, SURFACE, DESCRIPTORS, COARSENING = LIVE
+FIT, SURFACE, DESCRIPTORS, COARSENING, COMPARISON = LIVE
 
 
 def kinds(before: Choices | None, after: Choices, fitted: tuple[str, ...] = ("a",)) -> list[Kind]:
@@ -31,26 +31,31 @@ def test_that_equal_choices_make_nothing_necessary() -> None:
 
 def test_that_a_particle_is_not_fitted_twice() -> None:
     assert kinds(HERE, HERE.replaced(selected="b"), ("a",)) == list(LIVE)
-    assert kinds(HERE, HERE.replaced(selected="b"), ("a", "b")) == [SURFACE, DESCRIPTORS, COARSENING]
+    assert kinds(HERE, HERE.replaced(selected="b"), ("a", "b")) == [
+        SURFACE,
+        DESCRIPTORS,
+        COARSENING,
+        COMPARISON,
+    ]
 
 
 @pytest.mark.parametrize(
     ("changes", "expected"),
     [
-        ({"l_max": 4}, [SURFACE, DESCRIPTORS, COARSENING]),
+        ({"l_max": 4}, [SURFACE, DESCRIPTORS, COARSENING, COMPARISON]),
         ({"star_point": "kernel_centre"}, list(LIVE)),
         ({"rule": "outermost"}, list(LIVE)),
         ({"reference": "ellipsoid"}, list(LIVE)),
-        ({"level": 3}, [SURFACE, DESCRIPTORS, COARSENING]),
-        ({"box_metric": "trimesh"}, [DESCRIPTORS]),
-        ({"n_facets": 30}, [COARSENING]),
+        ({"level": 3}, [SURFACE, DESCRIPTORS, COARSENING, COMPARISON]),
+        ({"box_metric": "trimesh"}, [DESCRIPTORS, COMPARISON]),
+        ({"n_facets": 30}, [COARSENING, COMPARISON]),
         ({"n_triangles": 30}, []),
         ({"stop_at": "triangles", "n_triangles": 71}, []),  # 20 facets, as before
-        ({"stop_at": "triangles", "n_triangles": 72}, [COARSENING]),
-        ({"stop_at": "error"}, [COARSENING]),
+        ({"stop_at": "triangles", "n_triangles": 72}, [COARSENING, COMPARISON]),
+        ({"stop_at": "error"}, [COARSENING, COMPARISON]),
         ({"largest_error": 0.5}, []),
-        ({"seed": 7}, [COARSENING]),
-        ({"weights": LossWeights.of(volume=3.0)}, [COARSENING]),
+        ({"seed": 7}, [COARSENING, COMPARISON]),
+        ({"weights": LossWeights.of(volume=3.0)}, [COARSENING, COMPARISON]),
         ({"target": "particle"}, [COARSENING]),
         ({"unit": "mm"}, []),
     ],
@@ -81,6 +86,11 @@ def test_that_requests_come_after_what_they_need() -> None:
 def test_that_the_particle_itself_is_coarsened_without_waiting_for_a_fit() -> None:
     assert needs(COARSENING, HERE) == (SURFACE,)
     assert needs(COARSENING, HERE.replaced(target="particle")) == ()
+
+
+def test_that_a_polyhedron_of_the_fit_is_compared_with_the_particle_when_both_are_measured() -> None:
+    assert set(needs(COMPARISON, HERE)) == {DESCRIPTORS, COARSENING}
+    assert COMPARISON not in kinds(None, HERE.replaced(target="particle"))
 
 
 def test_that_studies_know_which_choices_they_were_made_for() -> None:

@@ -111,6 +111,21 @@ def test_that_the_particle_itself_can_be_imitated(opened: Session) -> None:
     assert opened.results.coarsened is not None
     target = opened.results.coarsened.target
     assert target["volume"] == pytest.approx(opened.selected.particle.mesh.volume)
+    assert opened.results.against_particle is None
+
+
+def test_that_a_polyhedron_of_the_fit_is_compared_with_the_particle(opened: Session) -> None:
+    """At l_max = 0 the fit is a sphere: what the polyhedron meets of it says nothing of the particle."""
+    opened.choose(l_max=0, method="quadric")
+    found, coarsened = opened.results.against_particle, opened.results.coarsened
+    assert found is not None
+    assert coarsened is not None
+    mesh = opened.selected.particle.mesh if opened.selected else None
+    assert mesh is not None
+    volume = coarsened.achieved["volume"]
+    assert found.errors["volume"] == pytest.approx(abs(1.0 - volume / mesh.volume), rel=1e-6)
+    assert found.errors["aspect_ratio"] > 0.4  # axes of 60 x 40 x 30: 2 against about 1
+    assert found.jaccard_distance > 0.2
 
 
 def test_that_going_back_to_a_particle_finds_its_fit_again(opened: Session) -> None:
