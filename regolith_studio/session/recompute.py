@@ -1,10 +1,11 @@
 """Recompute the results of the selected particle when choices change."""
 
+import dataclasses
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, Protocol
 
 from regolith_studio.descriptors.comparison import relative_errors
-from regolith_studio.jobs.coarsening_jobs import coarsen_one, compare_with_particle
+from regolith_studio.jobs.coarsening_jobs import CoarseningRequest, coarsen_one, compare_with_particle
 from regolith_studio.jobs.events import Failed, Job
 from regolith_studio.jobs.particle_jobs import FitRequest, describe_meshes, draw_surface, fit_one
 from regolith_studio.messages import N_
@@ -31,7 +32,13 @@ _EMPTY: Mapping[Kind, Mapping[str, Any]] = {
     Kind.FIT: {"fit": None},
     Kind.SURFACE: {"surface": None, "surface_l_max": 0},
     Kind.DESCRIPTORS: {"particle_descriptors": None, "fit_descriptors": None, "fit_errors": {}},
-    Kind.COARSENING: {"best": None, "coarsening_progress": None, "coarsened": None, "loss_history": ()},
+    Kind.COARSENING: {
+        "best": None,
+        "coarsening_progress": None,
+        "coarsened": None,
+        "loss_history": (),
+        "fewer_facets": None,
+    },
     Kind.COMPARISON: {"against_particle": None},
 }
 """Fields of the results of each kind while there is none."""
@@ -62,11 +69,13 @@ class LiveResults:
         self._fits: dict[tuple[str, FitOptions], HarmonicFit] = {}
         self._particle_descriptors: dict[tuple[str, str], Descriptors] = {}
         self._losses: list[tuple[int, float]] = []
+        self._tried: dict[tuple[str, CoarseningRequest], dict[int, float]] = {}
         self._has_shown = False
 
     def clear_cache(self) -> None:
         """Drop cached results, because ids refer to other particles now."""
         self._fits.clear()
+        self._tried.clear()
         self._particle_descriptors.clear()
 
     def follow(self, before: Choices | None, after: Choices) -> None:
@@ -193,7 +202,12 @@ class LiveResults:
         self._has_shown = False
         self._losses = []
         self._session.update(
-            "coarsening", coarsened=None, coarsening_progress=None, loss_history=(), against_particle=None
+            "coarsening",
+            coarsened=None,
+            coarsening_progress=None,
+            loss_history=(),
+            fewer_facets=None,
+            against_particle=None,
         )
         job = Job(coarsen_one, (target, choices.coarsening_request, self._session.particles.index(entry)))
         return job, self._keep_coarsened, self._keep_progress
@@ -210,7 +224,26 @@ class LiveResults:
 
     def _keep_coarsened(self, done: "CoarseningResult") -> None:
         history = tuple(enumerate(done.loss_history))
-        self._session.update("coarsening", coarsened=done, best=done, loss_history=history)
+        fewer = self._fewer_facets(done)
+        self._session.update(
+            "coarsening", coarsened=done, best=done, loss_history=history, fewer_facets=fewer
+        )
+
+    def _fewer_facets(self, done: "CoarseningResult") -> tuple[int, float] | None:
+        """The fewest facets tried with these choices whose loss is no larger, with that loss."""
+        request = self._session.choices.coarsening_request
+        if request.largest_error is not None or self._board.is_running(Kind.SURFACE):
+            return None
+        tried = self._tried.setdefault((self._entry().id, dataclasses.replace(request, n_facets=0)), {})
+        tried[done.n_facets_asked] = done.loss
+        return next(
+            (
+                each
+                for each in sorted(tried.items())
+                if each[0] < done.n_facets_asked and each[1] <= done.loss
+            ),
+            None,
+        )
 
     def _comparison(self) -> "_JobWithReactions":
         results, metric = self._session.results, self._session.choices.box_metric

@@ -67,6 +67,9 @@ class Results:
         (step, loss) pairs: thinned out while it runs, complete in the end.
     against_particle
         The finished polyhedron of a fit against the particle itself; ``None`` where it imitates the particle.
+    fewer_facets
+        The fewest facets, tried with otherwise the same choices, that gave no larger loss; and that
+        loss; ``None`` if there are none.
     lmax_study, coarsening_study
         Of all particles that are open; `outdated` names those that no longer fit the choices.
     """
@@ -82,6 +85,7 @@ class Results:
     coarsened: "CoarseningResult | None" = None
     loss_history: Sequence[tuple[int, float]] = ()
     against_particle: "ParticleComparison | None" = None
+    fewer_facets: tuple[int, float] | None = None
     lmax_study: "LmaxStudy | None" = None
     coarsening_study: "CoarseningStudy | None" = None
     outdated: frozenset[str] = frozenset()

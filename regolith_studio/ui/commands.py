@@ -20,9 +20,10 @@ from regolith_studio.session.project import SessionRecipe, input_shown, inputs_o
 from regolith_studio.session.provenance import MAX_RESTORED
 from regolith_studio.session.recipe import DatasetRequest, read_recipe
 from regolith_studio.session.session import Session
+from regolith_studio.session.verdict import cost_of_imitating_the_fit
 from regolith_studio.ui.dialogs.export import ExportDialog, ExportRequest
 from regolith_studio.ui.dialogs.unit import UnitDialog
-from regolith_studio.ui.translation import tr
+from regolith_studio.ui.translation import tr, translate
 from regolith_studio.ui.widgets.toast import Toast
 
 MESH_FILTERS = (
@@ -33,6 +34,8 @@ MESH_FILTERS = (
     N_("All files (*)"),
 )
 T = TypeVar("T")
+EXPORT_FOLDER = "export_folder"
+"""In the preferences of the window: the folder that the last dataset was written into."""
 
 
 def without(session_recipe: SessionRecipe) -> tuple[str, ...]:
@@ -142,8 +145,10 @@ class Commands(QObject):
         if not count:
             self._toast.problem(tr("There is nothing to export: open a particle first."))
             return
-        folder = Path(self._folder()) / "dataset"
-        dialog = self._export = ExportDialog(count, self._session.choices, folder, self._window)
+        folder = Path(str(self._preferences.window.get(EXPORT_FOLDER, Path.home()))) / "dataset"
+        found = self._session.results.against_particle
+        cost = translate(cost_of_imitating_the_fit(found)) if found else ""
+        dialog = self._export = ExportDialog(count, self._session.choices, folder, self._window, cost)
         dialog.started.connect(self._start_export)
         dialog.stopped.connect(lambda: self._session.cancel(self._export_task))
         dialog.finished.connect(self._forget_export)
@@ -192,6 +197,7 @@ class Commands(QObject):
         return self._session.open_recipe(recipe, path.parent)
 
     def _start_export(self, request: ExportRequest) -> None:
+        self._preferences.window[EXPORT_FOLDER] = str(request.folder.parent)
         task = self._try(lambda: self._session.export_dataset(request.folder, request.options))
         self._export_task = task or 0
         if task is None and self._export:

@@ -37,8 +37,14 @@ class ExportRequest:
     options: DatasetOptions
 
 
-def summary(count: int, choices: Choices) -> list[tuple[str, str]]:
-    """What will be written, as pairs of a word and rich text."""
+def summary(count: int, choices: Choices, cost: str = "") -> list[tuple[str, str]]:
+    """What will be written, as pairs of a word and rich text.
+
+    Parameters
+    ----------
+    cost
+        What imitating the fit costs the particle on screen, as a sentence.
+    """
     weights = ", ".join(
         f"{'Jaccard' if key == JACCARD else rich_symbol(CATALOGUE[key].symbol)}&nbsp;{value:g}"
         for key, value in choices.weights.items()
@@ -52,6 +58,8 @@ def summary(count: int, choices: Choices) -> list[tuple[str, str]]:
         target = tr(
             "the surface of the spherical-harmonics fit at l<sub>max</sub> = {l_max}", l_max=choices.l_max
         )
+        if cost:
+            target += f"<br>{choices.selected}: {cost}"
     size = count * (84 + 50 * (4 * choices.facet_count - 12)) / 1024
     files = tr("{count}, as unit-volume STL files, {size:,.0f} KiB in all", count=count, size=size)
     if choices.stop_at == "error":
@@ -73,7 +81,9 @@ class ExportDialog(QDialog):
     started = Signal(object)
     stopped = Signal()
 
-    def __init__(self, count: int, choices: Choices, folder: Path, parent: QWidget | None = None) -> None:
+    def __init__(
+        self, count: int, choices: Choices, folder: Path, parent: QWidget | None = None, cost: str = ""
+    ) -> None:
         super().__init__(parent)
         self.setWindowTitle(tr("Export dataset"))
         self.setObjectName("export_dialog")
@@ -96,7 +106,7 @@ class ExportDialog(QDialog):
         self.cancel = buttons.button(QDialogButtonBox.StandardButton.Cancel)
         self.go = buttons.addButton(tr("Export"), QDialogButtonBox.ButtonRole.AcceptRole)
         self.go.setObjectName("export_go")
-        self._arrange(summary(count, choices), buttons)
+        self._arrange(summary(count, choices, cost), buttons)
         self.go.setDefault(True)
         buttons.accepted.connect(self._start)
         buttons.rejected.connect(self.reject)

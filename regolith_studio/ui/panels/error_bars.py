@@ -15,6 +15,8 @@ from regolith_studio.ui.widgets.labels import plain_symbol
 from regolith_studio.ui.widgets.plots.bars import BarPlot, BarSeries
 
 KEYS = (*LOSS_KEYS, JACCARD)
+CHAIN = "#aa4499"
+"""Colour of the whole chain, from particle to polyhedron; of Tol's palette for colour-blind readers."""
 
 
 class ErrorBarsPanel(QWidget):
@@ -32,17 +34,21 @@ class ErrorBarsPanel(QWidget):
         self._shown: tuple[Results, Choices] | None = None
         self._polyhedron: dict[str, float] = {}
         self._bounds: dict[str, float] = {}
+        self._against_particle: dict[str, float] = {}
         self._polyhedron_of = ""
 
     def show_results(self, results: Results, choices: Choices) -> None:
         """Draw the errors of these results."""
         self._shown = (results, choices)
         if choices.selected != self._polyhedron_of:
-            self._polyhedron, self._bounds, self._polyhedron_of = {}, {}, choices.selected
+            self._polyhedron, self._bounds, self._against_particle = {}, {}, {}
+            self._polyhedron_of = choices.selected
         done = results.coarsened
         if done is not None:
             self._polyhedron = {**done.errors, JACCARD: done.jaccard_distance}
             self._bounds = bounds_in_force(done.bounds, done.errors)
+        if found := results.against_particle:
+            self._against_particle = {**found.errors, JACCARD: found.jaccard_distance}
         theme = self.plot.theme
         imitating_fit = choices.target == "fit"
         series = [
@@ -55,9 +61,12 @@ class ErrorBarsPanel(QWidget):
                 _percent(self._bounds) if self._bounds else (),
             ),
         ]
+        if imitating_fit:
+            label = tr("Polyhedron vs. particle")
+            stale = results.against_particle is None
+            series.append(BarSeries(label, CHAIN, _percent(self._against_particle), stale))
         symbols = [plain_symbol(CATALOGUE[key].symbol) for key in LOSS_KEYS]
         self.plot.set_bars([*symbols, "Jaccard"], series, short=[*symbols, "J"])
-        self.plot.set_remark("" if done is None else tr("loss (Eq. 9): {loss:.4g}", loss=done.loss))
 
     def set_theme(self, theme: Theme) -> None:
         """Take the colours of a theme."""

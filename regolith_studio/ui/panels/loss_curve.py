@@ -42,9 +42,7 @@ class LossCurvePanel(QWidget):
         progress = results.coarsening_progress
         running = results.coarsened is None and progress is not None
         self.plot.set_remark(
-            tr("step {at} of {total}", at=progress.step, total=progress.steps)
-            if running and progress
-            else tr("lowest {loss:.3g}", loss=min(losses))
+            tr("step {at} of {total}", at=progress.step, total=progress.steps) if running and progress else ""
         )
 
     def set_theme(self, theme: Theme) -> None:

@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from functools import partial
 
 from PySide6.QtGui import QResizeEvent
-from PySide6.QtWidgets import QHBoxLayout, QMainWindow
+from PySide6.QtWidgets import QHBoxLayout, QMainWindow, QVBoxLayout, QWidget
 
 from regolith_studio.scene.cameras import DIRECTIONS
 from regolith_studio.ui.latest_job import LatestJob
@@ -16,6 +16,7 @@ from regolith_studio.ui.panels.coarsening import CoarseningPanel
 from regolith_studio.ui.panels.fit import FitPanel
 from regolith_studio.ui.panels.loss import LossPanel
 from regolith_studio.ui.panels.particle_list import ParticleListPanel
+from regolith_studio.ui.panels.verdict import VerdictPanel
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.views.three_views import ThreeViews
@@ -44,6 +45,7 @@ class ExplorePage(PageWidget):
         measuring = LatestJob(context, tr("Measuring distances"), "distances")
         self.three_views = ThreeViews(context.views, measuring.submit)
         self.plots = PlotArea(self.three_views)
+        self.verdict = VerdictPanel()
         self.three_views.hovered.connect(self._show_status)
         self.pictures = PictureExport(context, self.three_views, self)
         self._place()
@@ -84,7 +86,12 @@ class ExplorePage(PageWidget):
 
     def _place(self) -> None:
         high_enough = max(PLOTS_HEIGHT, PLOTS_LINES * self.fontMetrics().height())
-        middle = self._rows = stacked([self.three_views, self.plots], [520, high_enough], stretch=0)
+        below = QWidget()
+        column = QVBoxLayout(below)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.addWidget(self.verdict)
+        column.addWidget(self.plots, 1)
+        middle = self._rows = stacked([self.three_views, below], [520, high_enough], stretch=0)
         middle.setObjectName("explore_rows")
         controls = scrolled_column([self.fit, self.coarsening, self.loss])
         parts = [padded(self.particles, 10, 10, 2, 8), padded(middle, 2, 10, 2, 8), controls]
@@ -111,6 +118,9 @@ class ExplorePage(PageWidget):
         bindings.refresh("fit choices", self._show_findings, ("l_max",), slow=True)
         bindings.refresh("surface", self._show_fit)
         bindings.refresh("coarsening", self._show_coarsening)
+        bindings.refresh(
+            "coarsening comparison", lambda: self.verdict.show_results(session.results, session.choices)
+        )
         self.plots.wire(session, bindings)
 
     def _set_section(self, shown: bool) -> None:

@@ -16,7 +16,7 @@ from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.views.three_views import ThreeViews
 
-LETTERS = 48
+LETTERS = 84
 """Width in digits below which both groups become one."""
 
 
@@ -87,7 +87,9 @@ class PlotArea(QSplitter):
         def spectrum() -> None:
             self.spectrum.show_results(session.results, session.choices)
 
-        bindings.refresh("descriptors coarsening choices", errors, ("selected", "target"), slow=True)
+        bindings.refresh(
+            "descriptors coarsening comparison choices", errors, ("selected", "target"), slow=True
+        )
         bindings.refresh(
             "descriptors coarsening", lambda: self.table.show_results(session.results), slow=True
         )

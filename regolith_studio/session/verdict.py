@@ -1,0 +1,102 @@
+"""The errors of a polyhedron in three numbers and a sentence."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from regolith_studio.coarsening.lower_bounds import bounds_in_force
+from regolith_studio.coarsening.result import CoarseningResult
+from regolith_studio.coarsening.weights import LossWeights
+from regolith_studio.descriptors.catalogue import CATALOGUE, LOSS_KEYS
+from regolith_studio.jobs.coarsening_jobs import ParticleComparison
+from regolith_studio.messages import N_, Message, join_messages
+
+CLOSE = 1e-3
+"""Relative error up to which a descriptor counts as met."""
+
+
+@dataclass(frozen=True)
+class PolyhedronVerdict:
+    """How well a polyhedron stands for what it imitates.
+
+    Parameters
+    ----------
+    loss
+        Eq. 9.
+    rmsre
+        Root of the mean squared relative error (Eq. 10) over the weighted descriptors; NaN if there are none.
+    jaccard_distance
+        Eq. 7.
+    sentence
+        Which descriptors are met, and how far the polyhedron is from the particle itself.
+    """
+
+    loss: float
+    rmsre: float
+    jaccard_distance: float
+    sentence: str
+
+
+def polyhedron_verdict(
+    coarsened: CoarseningResult,
+    weights: LossWeights,
+    against_particle: ParticleComparison | None = None,
+    fewer: tuple[int, float] | None = None,
+) -> PolyhedronVerdict:
+    """The verdict on a finished coarsening.
+
+    Parameters
+    ----------
+    weights
+        Those of its loss.
+    against_particle
+        The polyhedron of a fit against the particle itself.
+    fewer
+        Number of facets and loss of a polyhedron with fewer facets and no larger loss.
+    """
+    chosen = [key for key in LOSS_KEYS if weights[key]]
+    errors = np.array([coarsened.errors[key] for key in chosen])
+    parts = [_met(coarsened, chosen)]
+    if fewer is not None:
+        template = N_("More facets do not help here: {count} facets had a loss of {loss}.")
+        parts.append(Message(template, count=fewer[0], loss=f"{fewer[1]:.4g}"))
+    if against_particle is not None:
+        parts.append(cost_of_imitating_the_fit(against_particle))
+    return PolyhedronVerdict(
+        coarsened.loss,
+        float(np.sqrt(np.mean(errors**2))) if chosen else float("nan"),
+        coarsened.jaccard_distance,
+        join_messages(parts),
+    )
+
+
+def cost_of_imitating_the_fit(found: ParticleComparison) -> str:
+    """The largest error of a fit's polyhedron against the particle itself, as a sentence."""
+    worst = max(LOSS_KEYS, key=lambda key: found.errors[key])
+    template = N_("Against the particle itself {symbol} is {error} off, Jaccard distance {distance}.")
+    distance = _percent(found.jaccard_distance)
+    return Message(template, symbol=_symbol(worst), error=_percent(found.errors[worst]), distance=distance)
+
+
+def _met(coarsened: CoarseningResult, chosen: list[str]) -> str:
+    if not chosen:
+        return N_("Only the overlap has a weight.")
+    held = bounds_in_force(coarsened.bounds, coarsened.errors)
+    excess = {key: coarsened.errors[key] - held[key] for key in chosen}
+    if max(excess.values()) > CLOSE:
+        worst = max(chosen, key=lambda key: coarsened.errors[key])
+        template = N_("The largest error of a weighted descriptor is {error}, of {symbol}.")
+        return Message(template, symbol=_symbol(worst), error=_percent(coarsened.errors[worst]))
+    bound = max(chosen, key=lambda key: held[key])
+    if held[bound] > CLOSE:
+        template = N_("All weighted descriptors are met but {symbol}: no convex polyhedron is below {error}.")
+        return Message(template, symbol=_symbol(bound), error=_percent(held[bound]))
+    return N_("All weighted descriptors are met within 0.1 %.")
+
+
+def _symbol(key: str) -> str:
+    return CATALOGUE[key].symbol.replace("_", "")
+
+
+def _percent(share: float) -> str:
+    return f"{100 * share:.3g} %"
