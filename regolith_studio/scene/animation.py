@@ -84,7 +84,7 @@ def _pictures(
         off_screen=True, shape=(1, len(shapes)), window_size=[len(shapes) * width, height], border=False
     )
     try:
-        whole = cameras.framing_pose(np.vstack([shape.mesh.vertices for shape in shapes]))
+        whole = cameras.framing_pose(np.vstack([shape.mesh.vertices for shape in shapes]), turning=True)
         now = _about(pose, whole) if pose is not None else whole
         bars = []
         for column, shape in enumerate(shapes):

@@ -49,8 +49,8 @@ DIRECTIONS: Mapping[str, Direction] = MappingProxyType(
     }
 )
 
-MARGIN = 1.16
-"""Half the shorter side of the picture over the radius of what it frames."""
+FILLED = 0.85
+"""Share of the shorter side of a picture that is filled by what it frames."""
 
 
 @dataclass(frozen=True)
@@ -96,29 +96,44 @@ def apply_pose(plotter: Any, pose: CameraPose) -> None:
 
 
 def framing_pose(
-    points: ArrayLike, direction: str = "isometric", aspect: float = 1.0, margin: float = MARGIN
+    points: ArrayLike, direction: str | Direction = "isometric", aspect: float = 1.0, *, turning: bool = False
 ) -> CameraPose:
-    """The pose that shows points whole, whichever way they are turned.
+    """The pose that fills the shorter side of a picture with points.
 
     Parameters
     ----------
     points
         Vertices, or corners of a box, shape (n, 3).
     direction
-        A key of :data:`DIRECTIONS`.
+        A key of :data:`DIRECTIONS`, or another direction.
     aspect
         Width of the picture over its height.
-    margin
-        Half the shorter side of the picture over the radius of the sphere about all points.
+    turning
+        Whether the points stay in the picture however they are turned; they are smaller then.
     """
     places = np.asarray(points, dtype=np.float64)
     centre = (places.min(axis=0) + places.max(axis=0)) / 2
     radius = max(float(np.linalg.norm(places - centre, axis=1).max()), 1e-12)
-    view = DIRECTIONS[direction]
+    view = DIRECTIONS[direction] if isinstance(direction, str) else direction
     towards = np.asarray(view.towards_eye) / np.linalg.norm(view.towards_eye)
-    eye = centre + 4.0 * radius * towards
-    scale = radius * margin / min(1.0, max(aspect, 1e-3))
-    return CameraPose(_vector(eye), _vector(centre), view.up, scale)
+    side = np.cross(view.up, towards)
+    side /= np.linalg.norm(side)
+    seen = np.column_stack([(places - centre) @ side, (places - centre) @ np.cross(towards, side)])
+    middle = (seen.min(axis=0) + seen.max(axis=0)) / 2
+    half = max(float(np.ptp(seen, axis=0).max()) / 2, 1e-12)
+    if turning:
+        middle, half = np.zeros(2), radius
+    focus = centre + middle[0] * side + middle[1] * np.cross(towards, side)
+    scale = half / FILLED / min(1.0, max(aspect, 1e-3))
+    return CameraPose(_vector(focus + 4.0 * radius * towards), _vector(focus), view.up, scale)
+
+
+def filled(pose: CameraPose, points: ArrayLike, aspect: float) -> CameraPose:
+    """The pose that fills width or height of a picture, whichever is filled first, with points."""
+    focus, _, upward, side = _frame(pose)
+    seen = np.asarray(points, dtype=np.float64) - focus
+    half = max(float(np.abs(seen @ upward).max()), float(np.abs(seen @ side).max()) / max(aspect, 1e-3))
+    return replace(pose, parallel_scale=max(half, 1e-12) / FILLED)
 
 
 def turned(pose: CameraPose, direction: str) -> CameraPose:

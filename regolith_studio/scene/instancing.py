@@ -115,9 +115,13 @@ def show_apparatus(
 
 def framing_corners(diameter: float, height: float) -> FloatArray:
     """Corners of what a view should show of a test, in micrometres, shape (8, 3)."""
-    reach = 1.7 * diameter * MICROMETRES
-    top = height * MICROMETRES
-    return np.array([(x, y, z) for x in (-reach, reach) for y in (-reach, reach) for z in (0.0, top)])
+    return box_corners(1.7 * diameter, height)
+
+
+def box_corners(reach: float, top: float) -> FloatArray:
+    """Corners of a box on the ground, of metres, in micrometres, shape (8, 3)."""
+    sides, heights = (-reach, reach), (0.0, top)
+    return MICROMETRES * np.array([(x, y, z) for x in sides for y in sides for z in heights])
 
 
 def _instances(pile: ParticleState, n_shapes: int) -> pv.PolyData:

@@ -90,7 +90,7 @@ ROWS: tuple[ActionSpec, ...] = (
     ActionSpec(N_("&View"), "tasks", N_("&Tasks"), "", "Ctrl+T", N_("What is running")),
     ActionSpec(N_("&View"), "log", N_("L&og"), "", "Ctrl+Shift+L", N_("What was said")),
     ActionSpec(
-        N_("&View"), "standard_layout", N_("Standard la&yout"), "", "", N_("Forget sizes and borders")
+        N_("&View"), "standard_layout", N_("Standard la&yout"), "", "", N_("Restore sizes and borders")
     ),
     ActionSpec(N_("&View"), BREAK, ""),
     ActionSpec(N_("&Help"), "tour", N_("&Tour"), "tour", "", N_("A walk through the window")),

@@ -1,6 +1,6 @@
 """Layouts: splitters, columns and tabs."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from PySide6.QtCore import QEvent, QObject, QSize, Qt
 from PySide6.QtGui import QResizeEvent
@@ -13,19 +13,92 @@ FOLDED = 32
 """Pixels of height that are kept for buttons which find no room beside a box."""
 
 
-def side_by_side(parts: Sequence[QWidget], sizes: Sequence[int], stretch: int) -> QSplitter:
+class Splitter(QSplitter):
+    """Parts with movable borders, which can go back to where they stood at first.
+
+    Parameters
+    ----------
+    direction
+        Of the row or column.
+    parts, sizes
+        With their sizes at first.
+    stretch
+        Number of the part that takes what room is left.
+
+    Attributes
+    ----------
+    fit
+        Where given, places the borders for the present size, until the user moves one.
+    moved
+        Whether the user has moved a border.
+    """
+
+    def __init__(
+        self, direction: Qt.Orientation, parts: Sequence[QWidget], sizes: Sequence[int], stretch: int
+    ) -> None:
+        super().__init__(direction)
+        self._standard = list(sizes)
+        self.fit: Callable[[], None] | None = None
+        self.moved = False
+        self._unscaled: tuple[float, list[int]] | None = None
+        self.splitterMoved.connect(self._note_move)
+        self.setChildrenCollapsible(False)
+        self.setHandleWidth(7)
+        for number, part in enumerate(parts):
+            self.addWidget(part)
+            self.setStretchFactor(number, 1 if number == stretch else 0)
+        self._parts = tuple(parts)
+        self.setSizes(self._standard)
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        if self.fit is not None and not self.moved:
+            self.fit()
+
+    def restore_standard(self) -> None:
+        """Put the borders where they stood at first."""
+        self.moved, self._unscaled = False, None
+        if self.fit is not None:
+            self.fit()
+        else:
+            self._place(self._standard)
+
+    def scale_fixed(self, before: float, after: float) -> None:
+        """Scale the parts that do not stretch with letters of other points; back again, they are as before."""
+        points, sizes = self._unscaled = self._unscaled or (before, self.sizes())
+        self._place([round(after / points * size) for size in sizes])
+
+    def _note_move(self) -> None:
+        self.moved, self._unscaled = True, None
+
+    def _place(self, sizes: Sequence[int]) -> None:
+        """Set the sizes of the fixed parts; the others share the rest."""
+        stretched = [number for number in range(self.count()) if self._stretches(number)]
+        fixed = sum(size for number, size in enumerate(sizes) if number not in stretched)
+        rest = max(1, sum(self.sizes()) - fixed) / max(1, sum(sizes[number] for number in stretched))
+        self.setSizes(
+            [round(rest * size) if number in stretched else size for number, size in enumerate(sizes)]
+        )
+
+    def _stretches(self, number: int) -> bool:
+        policy = self._parts[number].sizePolicy()
+        across = self.orientation() is Qt.Orientation.Horizontal
+        return bool(policy.horizontalStretch() if across else policy.verticalStretch())
+
+
+def side_by_side(parts: Sequence[QWidget], sizes: Sequence[int], stretch: int) -> Splitter:
     """Parts in a row with movable borders; the one numbered `stretch` takes what room is left."""
-    return _splitter(Qt.Orientation.Horizontal, parts, sizes, stretch)
+    return Splitter(Qt.Orientation.Horizontal, parts, sizes, stretch)
 
 
-def stacked(parts: Sequence[QWidget], sizes: Sequence[int], stretch: int) -> QSplitter:
+def stacked(parts: Sequence[QWidget], sizes: Sequence[int], stretch: int) -> Splitter:
     """Parts in a column with movable borders."""
-    return _splitter(Qt.Orientation.Vertical, parts, sizes, stretch)
+    return Splitter(Qt.Orientation.Vertical, parts, sizes, stretch)
 
 
-def equal_parts(direction: Qt.Orientation, parts: Sequence[QWidget]) -> QSplitter:
+def equal_parts(direction: Qt.Orientation, parts: Sequence[QWidget]) -> Splitter:
     """Parts of the same size with movable borders, which all take their share of what room is left."""
-    made = _splitter(direction, parts, [1000] * len(parts), 0)
+    made = Splitter(direction, parts, [1000] * len(parts), 0)
     for number in range(len(parts)):
         made.setStretchFactor(number, 1)
     return made
@@ -110,16 +183,3 @@ def padded(part: QWidget, left: int, top: int, right: int, bottom: int) -> QWidg
     layout.setContentsMargins(left, top, right, bottom)
     layout.addWidget(part)
     return frame
-
-
-def _splitter(
-    direction: Qt.Orientation, parts: Sequence[QWidget], sizes: Sequence[int], stretch: int
-) -> QSplitter:
-    made = QSplitter(direction)
-    made.setChildrenCollapsible(False)
-    made.setHandleWidth(7)
-    for number, part in enumerate(parts):
-        made.addWidget(part)
-        made.setStretchFactor(number, 1 if number == stretch else 0)
-    made.setSizes(list(sizes))
-    return made

@@ -22,6 +22,7 @@ from regolith_studio.ui.dialogs.closing import may_close, worth_asking
 from regolith_studio.ui.dialogs.command_palette import CommandPalette
 from regolith_studio.ui.dialogs.help import about_dialog
 from regolith_studio.ui.dialogs.shortcuts import ShortcutsDialog
+from regolith_studio.ui.layout import Splitter
 from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.page_stack import PageStack
 from regolith_studio.ui.pages import PAGES
@@ -30,9 +31,8 @@ from regolith_studio.ui.project_files import ProjectFiles
 from regolith_studio.ui.shortcuts import Shortcuts
 from regolith_studio.ui.theme import THEMES, apply_theme, current_theme
 from regolith_studio.ui.tour import start_tour
-from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.toast import Toast, report_file_problems
-from regolith_studio.ui.window_state import WindowState
+from regolith_studio.ui.window_state import STANDARD_SIZE, WindowState
 
 
 class MainWindow(QMainWindow):
@@ -74,7 +74,7 @@ class MainWindow(QMainWindow):
         self.shortcuts = Shortcuts(self.menus.by_name, tuple(self.pages.pages), preferences)
         self.pages.changed.connect(self.menus.show_page)
         self._apply_theme()
-        self.resize(1480, 900)
+        self.resize(*STANDARD_SIZE)
         self.window_state.restore_window(self)
         self.go(str(preferences.window.get("page", "")) or next(iter(self.pages.pages)))
         self._wire()
@@ -150,8 +150,7 @@ class MainWindow(QMainWindow):
         CommandPalette(self.menus.palette(self.pages.pages, self.pages.run), self).open()
 
     def _standard_layout(self) -> None:
-        self.window_state.forget()
-        self.toast.note(tr("The next window stands as a new one."))
+        self.window_state.restore_standard(self)
 
     def _choose_repair(self, repair: bool) -> None:
         self.session.choose(repair=repair)
@@ -167,10 +166,13 @@ class MainWindow(QMainWindow):
             self.menus.recent.addAction(name, partial(self.commands.open_paths, [Path(name)]))
 
     def _apply_theme(self) -> None:
-        theme = current_theme()
+        theme, before = current_theme(), QApplication.font().pointSizeF()
         apply_theme(cast(QApplication, QApplication.instance()), theme, self, self.pages.scroll_areas)
         for part in (self.menus, self.pages, self.tasks):
             part.set_theme(theme)
+        if (after := QApplication.font().pointSizeF()) != before:
+            for splitter in self.findChildren(Splitter):
+                splitter.scale_fixed(before, after)
 
     def dragEnterEvent(self, event: QDragEnterEvent) -> None:
         if any(url.isLocalFile() for url in event.mimeData().urls()):

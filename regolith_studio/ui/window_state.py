@@ -4,12 +4,16 @@ import base64
 import binascii
 from typing import Any
 
-from PySide6.QtCore import QByteArray
+from PySide6.QtCore import QByteArray, QSize
 from PySide6.QtWidgets import QMainWindow, QSplitter, QWidget
 
 from regolith_studio.session.preferences import Preferences
+from regolith_studio.ui.layout import Splitter
 
 LAYOUT = "layout"
+STANDARD_SIZE = (1480, 900)
+"""Of a new window in pixels, where the screen is large enough."""
+EQUAL = 1000
 
 
 class WindowState:
@@ -39,19 +43,31 @@ class WindowState:
             sizes = kept.get(splitter.objectName())
             if splitter.objectName() and isinstance(sizes, list) and len(sizes) == splitter.count():
                 splitter.setSizes([int(size) for size in sizes])
+                if isinstance(splitter, Splitter):
+                    splitter.moved = True
 
     def keep(self, window: QMainWindow) -> None:
         """Note down how everything stands now."""
         kept: dict[str, Any] = self._kept()
         kept["window"] = base64.b64encode(window.saveGeometry().data()).decode("ascii")
         for splitter in window.findChildren(QSplitter):
-            if splitter.objectName() and sum(splitter.sizes()):
-                kept[splitter.objectName()] = splitter.sizes()
+            name = splitter.objectName()
+            if isinstance(splitter, Splitter) and splitter.fit is not None and not splitter.moved:
+                kept.pop(name, None)
+            elif name and sum(splitter.sizes()):
+                kept[name] = splitter.sizes()
         self._preferences.window = self._preferences.window | {LAYOUT: kept}
 
-    def forget(self) -> None:
-        """Let the next window stand as a new one."""
+    def restore_standard(self, window: QMainWindow) -> None:
+        """Give window and borders the places of a new window, and forget others."""
         self._preferences.window = self._preferences.window | {LAYOUT: {}}
+        window.showNormal()
+        window.resize(QSize(*STANDARD_SIZE).boundedTo(window.screen().availableSize()))
+        for splitter in window.findChildren(QSplitter):
+            if isinstance(splitter, Splitter):
+                splitter.restore_standard()
+            else:
+                splitter.setSizes([EQUAL] * splitter.count())
 
     def _kept(self) -> dict[str, Any]:
         kept = self._preferences.window.get(LAYOUT)

@@ -58,6 +58,11 @@ def test_that_every_point_is_in_the_picture_from_every_direction(direction, aspe
     seen = points - pose.focal_point
     assert np.abs(seen @ up).max() <= pose.parallel_scale
     assert np.abs(seen @ side).max() <= pose.parallel_scale * aspect
+    shorter = pose.parallel_scale * min(1.0, aspect)
+    assert max(np.abs(seen @ up).max(), np.abs(seen @ side).max()) == pytest.approx(0.85 * shorter)
+    free = framing_pose(points, direction, aspect, turning=True)
+    middle = (points.min(axis=0) + points.max(axis=0)) / 2
+    assert np.linalg.norm(points - middle, axis=1).max() <= free.parallel_scale * min(1.0, aspect)
 
 
 def test_that_a_standard_direction_keeps_point_and_scale():

@@ -325,7 +325,11 @@ def test_that_a_saved_recipe_makes_the_dataset_and_the_exports_of_the_page(
     page.representatives.setValue({"count": 3, "weighting": "volume"})
     page.find_representatives()
     wait(lambda: len(page.gallery.shown) == 3)
+    page.sizes.set_text("classes:abc, -5")
+    assert not page.folder.build.isEnabled()
+    assert page.folder.build.toolTip() == page.sizes.problem.text() != ""
     page.sizes.set_text("classes:30,60,120")
+    assert page.folder.build.isEnabled()
     page.folder.name.setText("three")
     page.targets.setValue(
         {"targets": ["yade"], "coarse_graining": 4.0, "particles": 7, "contact": {"density": 2500.0}}

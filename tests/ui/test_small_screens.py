@@ -42,14 +42,18 @@ def test_that_the_window_fits_a_small_screen_at_any_size_of_letters(shown, prefe
     assert all(button.isVisible() for button in window.pages.buttons.values())
 
 
-@pytest.mark.parametrize(("height", "least"), [(900, 280), (500, 120)])
-def test_that_views_take_room_from_plots_in_low_windows_only(shown, preferences, app, height, least):
-    window = MainWindow(Session(InlineRunner()), preferences, "image")
-    window.resize(1480, height)
-    shown(window)
-    app.processEvents()
-    views, plots = window.page.findChild(QSplitter, "explore_rows").sizes()
-    assert views > plots >= least
+def test_that_views_are_as_high_as_wide_where_plots_have_enough(shown, preferences, app, wait):
+    window = shown(MainWindow(Session(InlineRunner()), preferences, "image"))
+    rows = window.page.findChild(QSplitter, "explore_rows")
+    for width, height, least in ((1480, 900, 280), (1280, 800, 280), (1480, 500, 120)):
+        window.resize(width, height)
+        wait(lambda width=width, height=height: (window.width(), window.height()) == (width, height))
+        app.processEvents()
+        view = window.page.three_views.views["particle"].widget
+        assert rows.sizes()[1] >= least
+        assert rows.sizes()[0] >= 0.38 * sum(rows.sizes())
+        if height > 500:
+            assert 0.7 <= view.height() / view.width() <= 1.6
 
 
 def test_that_the_sidebar_gives_up_room_before_words(shown):

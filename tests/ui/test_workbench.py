@@ -20,6 +20,7 @@ from regolith_studio.ui.dialogs.closing import worth_asking
 from regolith_studio.ui.dialogs.command_palette import CommandPalette
 from regolith_studio.ui.project_files import autosave_path, stale_autosaves
 from regolith_studio.ui.shortcuts import plain
+from regolith_studio.ui.theme import choose_letters
 from regolith_studio.ui.tour import TOUR_SEEN, Tour, start_tour, steps
 
 SECONDS = 120.0
@@ -252,6 +253,29 @@ def test_that_the_borders_between_parts_are_remembered(window, shown, wait):
     wait(lambda: again.size() == window.size())
     found = again.page.findChild(QSplitter, "explore_columns").sizes()
     assert all(abs(one - other) <= 8 for one, other in zip(found, wanted, strict=True))
+
+
+def test_that_the_standard_layout_acts_at_once_and_stays(window, monkeypatch):
+    monkeypatch.setattr(window, "resize", lambda *_: None)  # to what a screen for tests has room for
+    columns = window.findChild(QSplitter, "explore_columns")
+    window.window_state.restore_standard(window)
+    standard = columns.sizes()
+    columns.setSizes([500, 300, 500])
+    columns.splitterMoved.emit(500, 1)
+    assert columns.sizes() != standard
+    window.window_state.keep(window)
+    window.menus.by_name["standard_layout"].trigger()
+    assert columns.sizes() == standard
+    window.window_state.keep(window)
+    assert window.preferences.window["layout"]["explore_columns"] == standard
+    assert "explore_rows" not in window.preferences.window["layout"]  # they follow the size of the window
+    try:  # larger letters and back leave the borders where they were
+        window.appearance.choose(letters=150)
+        assert columns.sizes()[2] > standard[2]
+        window.appearance.choose(letters=100)
+        assert columns.sizes() == pytest.approx(standard, abs=6)
+    finally:
+        choose_letters(None)
 
 
 @pytest.mark.slow

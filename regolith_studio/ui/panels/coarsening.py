@@ -162,7 +162,6 @@ class CoarseningPanel(QWidget):
 
     def _arrange(self) -> None:
         amount = QHBoxLayout()
-        amount.addWidget(self.stop_at)
         for slider in self._amounts.values():
             amount.addWidget(slider, 1)
         seed = QHBoxLayout()
@@ -171,13 +170,14 @@ class CoarseningPanel(QWidget):
         form = self._form = QFormLayout()
         form.setContentsMargins(0, 0, 0, 0)
         form.addRow(tr("Method"), self.method)
-        form.addRow(tr("Imitate"), self.target)
+        form.addRow(tr("Target"), self.target)
         form.addRow(tr("Seed"), seed)
+        form.addRow(tr("Stop at"), self.stop_at)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(heading(tr("Coarsened polyhedron")))
-        layout.addLayout(amount)
         layout.addLayout(form)
+        layout.addLayout(amount)
         layout.addWidget(self.more)
         layout.addWidget(FixedHeightText((self.outcome,), LINES))
 

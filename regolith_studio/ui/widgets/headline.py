@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from PySide6.QtCore import QEvent, Qt
-from PySide6.QtWidgets import QFrame, QGridLayout, QHBoxLayout, QLabel
+from PySide6.QtWidgets import QFrame, QGridLayout, QHBoxLayout, QLabel, QWidget
 
 from regolith_studio.ui.widgets.fixed_height_text import FixedHeightText
 from regolith_studio.ui.widgets.labels import remark
@@ -41,7 +41,7 @@ class Headline(QFrame):
             figure.setAccessibleName(caption.text())
             grid.addWidget(figure, 0, column, Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignBottom)
             grid.addWidget(caption, 1, column)
-        row = QHBoxLayout(self)
+        row = self._row = QHBoxLayout(self)
         row.setContentsMargins(12, 5, 10, 5)
         row.setSpacing(24)
         row.addLayout(grid)
@@ -54,6 +54,10 @@ class Headline(QFrame):
             label.setText(text)
             label.setEnabled(fresh)
         self.sentence.setText(sentence)
+
+    def add(self, part: QWidget) -> None:
+        """Put a button at the end."""
+        self._row.addWidget(part)
 
     def caption(self, place: int, text: str, tip: str = "") -> None:
         """Set the caption of a figure, and what it means."""

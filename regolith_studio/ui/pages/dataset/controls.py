@@ -179,6 +179,10 @@ class SizesPanel(QWidget):
         self.problem.setText(sentence)
         self.problem.setVisible(bool(sentence))
 
+    def reason(self) -> str:
+        """Why the numbers are invalid; empty where they are not."""
+        return "" if self.problem.isHidden() else self.problem.text()
+
     def _show_kind(self) -> None:
         key = self.kind.currentData()
         example = SIZES[key][1]

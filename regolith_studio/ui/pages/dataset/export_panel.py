@@ -33,7 +33,14 @@ from regolith_studio.ui.widgets.presets import PresetForm
 
 FIRST = ("rocky", "yade")
 NARROW = 84
-COARSE_GRAINING = NumberSpec("", N_("Coarse-graining factor"), 1, 20, limit=1000, tip=N_("The paper has 10."))
+COARSE_GRAINING = NumberSpec(
+    "",
+    N_("Coarse-graining factor"),
+    1,
+    20,
+    limit=1000,
+    tip=N_("1 keeps the size of the particles; the paper uses 10."),
+)
 PARTICLES = NumberSpec(
     "", N_("Particles drawn"), 1, 5000, limit=1_000_000, tip=N_("For formats that list single bodies.")
 )
@@ -56,7 +63,7 @@ class ExportPanel(QWidget):
         self.contact = PresetForm(ContactParameters, "export_contact", tr("Table 1 of the paper"))
         self.test = PresetForm(LiftingCylinderTest, "export_test", tr("Table 2 of the paper"))
         self.times = ParameterForm(ScriptTimes, "export")
-        self.lossy = QCheckBox(tr("Shapes may be changed"))
+        self.lossy = QCheckBox(tr("Allow formats that change shapes"))
         self.lossy.setObjectName("dataset_lossy")
         self.export = QPushButton(tr("Export …"))
         self.export.setObjectName("dataset_export")
@@ -80,7 +87,7 @@ class ExportPanel(QWidget):
         last.addWidget(self.lossy)
         last.addWidget(self.export, 1)
         layout.addLayout(last)
-        self.coarse_graining.setValue(10)
+        self.coarse_graining.setValue(1)
         self.particles.setValue(200)
         for slider in (self.coarse_graining, self.particles):
             slider.valueChanged.connect(lambda _: self.optionsChanged.emit())
@@ -142,7 +149,7 @@ class ExportPanel(QWidget):
         wanted = set(value.get("targets", FIRST))
         for key, box in self.boxes.items():
             box.setChecked(key in wanted)
-        self.coarse_graining.setValue(float(value.get("coarse_graining", 10.0)))
+        self.coarse_graining.setValue(float(value.get("coarse_graining", 1.0)))
         self.particles.setValue(int(value.get("particles", 200)))
         self.lossy.setChecked(bool(value.get("lossy", False)))
         changes: dict[str, Any] = {}

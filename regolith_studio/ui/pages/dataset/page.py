@@ -5,8 +5,9 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QFileDialog, QHBoxLayout, QMessageBox
+from PySide6.QtCore import Qt, QUrl
+from PySide6.QtGui import QDesktopServices
+from PySide6.QtWidgets import QFileDialog, QHBoxLayout, QMessageBox, QPushButton, QVBoxLayout, QWidget
 
 from regolith_studio.dataset.build import ShapeClass, singleton_class
 from regolith_studio.dataset.dataset import Dataset
@@ -32,7 +33,7 @@ from regolith_studio.jobs.representatives_jobs import (
 from regolith_studio.messages import N_
 from regolith_studio.session.recipe import DatasetRequest
 from regolith_studio.ui.dialogs.folder import FolderDialog
-from regolith_studio.ui.layout import equal_parts, padded, scrolled_column, side_by_side, stacked, tabs
+from regolith_studio.ui.layout import equal_parts, scrolled_column, side_by_side, stacked, tabs
 from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.pages.dataset.controls import (
     DatasetControls,
@@ -53,6 +54,7 @@ from regolith_studio.ui.pages.dataset.view_data import (
 )
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import tr, tr_count
+from regolith_studio.ui.widgets.headline import Headline
 
 FIND, BUILD, EXPORT = "find", "build", "export"
 MAX_MEASURED = 200
@@ -78,6 +80,12 @@ class DatasetPage(PageWidget):
     def build(self) -> None:
         self.representatives, self.sizes = RepresentativesPanel(), SizesPanel()
         self.folder, self.targets = FolderPanel(), ExportPanel()
+        self.result = Headline("dataset_result", (tr("Representatives"), tr("Formats written")))
+        self.result.show_values(("–", "–"), tr("No dataset has been written yet."))
+        self.open_written = QPushButton(tr("Open the folder"))
+        self.open_written.setObjectName("dataset_open_written")
+        self.open_written.setEnabled(False)
+        self.result.add(self.open_written)
         self._controls = DatasetControls(self.representatives, self.sizes, self.folder, self.targets)
         self.quality, self.distribution = QualityPlot(), SizesPlot()
         self.library = LibraryPanel(self._context)
@@ -142,8 +150,8 @@ class DatasetPage(PageWidget):
 
     def build_dataset(self) -> None:
         """Ask for a folder and build the dataset in a new folder below it."""
-        if self._chosen is None:
-            self._context.toast.problem(tr("There are no representatives yet: press Find first."))
+        if not self.folder.build.isEnabled():  # asked for by its key or from the palette
+            self._context.toast.problem(self.folder.build.toolTip())
             return
         name = FolderDialog.ask(self, tr("Build the dataset in this folder"), self._place_before())
         if not name:
@@ -291,7 +299,6 @@ class DatasetPage(PageWidget):
         shown = chosen_particles(self._particles, self._chosen) if self._chosen is not None else []
         title = tr_count(N_("1 representative"), N_("{count} representatives"), len(shown))
         self.gallery.show_shapes(title if shown else tr("Representatives"), shown)
-        self.folder.build.setEnabled(bool(shown))
         self._show_sizes()
         self._update_request()
 
@@ -304,6 +311,15 @@ class DatasetPage(PageWidget):
             self.sizes.show_problem(str(error))
             made = []
         self.distribution.show_classes(made)
+        self._enable_build()
+
+    def _enable_build(self) -> None:
+        """Let the dataset be built, or say at the button why it cannot."""
+        reason = self.sizes.reason()
+        if self._chosen is None:
+            reason = tr("There are no representatives yet: press Find first.")
+        self.folder.build.setEnabled(not reason)
+        self.folder.build.setToolTip(reason)
 
     def _classes(self) -> Sequence[ShapeClass]:
         if self._dataset is not None:
@@ -334,8 +350,25 @@ class DatasetPage(PageWidget):
         title = dataset_title(dataset)
         self.gallery.show_shapes(title, shapes(dataset))
         self.folder.show_dataset(f"{title}\n{folder}")
+        self._exports = []
+        self._show_result()
         self.distribution.show_classes(self._classes())
         self.targets.set_ready(True)
+
+    def _show_result(self) -> None:
+        """What has been written, and where."""
+        if self._dataset is None or self._folder is None:
+            return
+        written = tr("The dataset is in {folder}.", folder=self._folder)
+        if self._exports:
+            place = self._exports[0].folder.parent
+            written += " " + tr("The exports are in {folder}.", folder=place)
+        self.result.show_values((str(len(self._dataset)), str(len(self._exports))), written)
+        self.open_written.setEnabled(True)
+
+    def _open_written(self) -> None:
+        folder = self._exports[0].folder.parent if self._exports else self._folder
+        QDesktopServices.openUrl(QUrl.fromLocalFile(str(folder)))
 
     def _report_problems(self, problems: Sequence[str]) -> None:
         if problems:
@@ -348,11 +381,13 @@ class DatasetPage(PageWidget):
     def _add_export(self, one: ExportResult) -> None:
         self._exports.append(one)
         self.exports.show_exports(self._exports)
+        self._show_result()
         self._lower.setCurrentWidget(self.exports)
 
     def _take_exports(self, done: Sequence[ExportResult]) -> None:
         self._exports = list(done)
         self.exports.show_exports(done)
+        self._show_result()
         self._context.toast.note(
             tr_count(N_("1 format is written."), N_("{count} formats are written."), len(done))
         )
@@ -387,6 +422,7 @@ class DatasetPage(PageWidget):
         self.sizes.sizesChanged.connect(self._show_sizes)
         self.folder.buildRequested.connect(self.build_dataset)
         self.folder.openRequested.connect(self.open_dataset)
+        self.open_written.clicked.connect(self._open_written)
         self.library.openRequested.connect(self._use)
         self.targets.exportRequested.connect(self.export)
         self.targets.chosenChanged.connect(self._show_losses)
@@ -398,12 +434,17 @@ class DatasetPage(PageWidget):
         left = scrolled_column((self.representatives, self.sizes, self.folder, self.targets))
         upper = equal_parts(Qt.Orientation.Horizontal, (self.quality, self.distribution))
         upper.setObjectName("dataset_upper")
-        lower = [(self.losses, tr("What formats lose")), (self.exports, tr("Exported"))]
+        lower = [(self.losses, tr("Limits of the formats")), (self.exports, tr("Exported"))]
         shapes = [(self.gallery, tr("Representatives")), (self.library, tr("Library"))]
         self._lower, self._shapes = tabs("dataset_lower", lower), tabs("dataset_shapes", shapes)
         middle = stacked((upper, self._shapes, self._lower), (330, 330, 150), stretch=1)
         middle.setObjectName("dataset_middle")
-        whole = side_by_side((left, padded(middle, 0, 4, 4, 4)), (320, 1200), stretch=1)
+        right = QWidget()
+        column = QVBoxLayout(right)
+        column.setContentsMargins(0, 10, 4, 4)
+        column.addWidget(self.result)
+        column.addWidget(middle, 1)
+        whole = side_by_side((left, right), (320, 1200), stretch=1)
         whole.setObjectName("dataset_whole")
         layout = QHBoxLayout(self)
         layout.setContentsMargins(8, 0, 4, 0)

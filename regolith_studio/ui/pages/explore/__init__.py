@@ -41,6 +41,7 @@ PAGE = Page(
             N_("Show the whole particle"),
             bar="icon",
         ),
+        ActionSpec(N_("&View"), "list", N_("&Particle list"), "", "", N_("Show the open particles"), True),
         *(
             ActionSpec(N_("Look &from"), f"look_{key}", each.label, "", _DIRECTION_KEYS.get(key, ""))
             for key, each in DIRECTIONS.items()

@@ -3,12 +3,12 @@
 from collections.abc import Callable, Mapping
 from functools import partial
 
-from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QHBoxLayout, QMainWindow, QVBoxLayout, QWidget
 
 from regolith_studio.scene.cameras import DIRECTIONS
+from regolith_studio.scene.shapes import PARTICLE
 from regolith_studio.ui.latest_job import LatestJob
-from regolith_studio.ui.layout import CONTROLS_WIDTH, padded, scrolled_column, side_by_side, stacked
+from regolith_studio.ui.layout import padded, scrolled_column, side_by_side, stacked
 from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.pages.explore.pictures import PictureExport
 from regolith_studio.ui.pages.explore.plot_area import PlotArea
@@ -27,8 +27,10 @@ LIST_ROOM, NAMES_WIDTH = 320, 22
 """Maximum width of the particle list in pixels, and its minimum in digits."""
 CONTROLS_LETTERS = 32
 """Minimum width of the controls in digits."""
-LOW = 620
-"""Height in pixels below which the views get the larger share."""
+VIEWS_SHARE, PLOTS_SHARE = 0.4, 0.38
+"""Minimum shares of the height for the views and for what is below them."""
+WIDE_CONTROLS = 330
+"""Initial width of the controls in pixels; sliders have 150 then."""
 PLOTS_HEIGHT, PLOTS_LINES = 300, 15
 """Initial height of the plots in pixels, and its minimum in lines of text."""
 
@@ -68,6 +70,7 @@ class ExplorePage(PageWidget):
             "overlay": lambda on: views.comparison.set_mode(overlay=on),
             "wipe": lambda on: views.comparison.set_mode(wipe=on),
             "section": self._set_section,
+            "list": self._show_list,
             "enlarge": views.enlarge_next,
             "save_picture": self.pictures.save_picture,
             "save_turntable": self.pictures.save_turntable,
@@ -76,13 +79,6 @@ class ExplorePage(PageWidget):
 
     def on_close(self) -> None:
         self.three_views.release()
-
-    def resizeEvent(self, event: QResizeEvent) -> None:
-        super().resizeEvent(event)
-        views, plots = self._rows.sizes()
-        height = event.size().height()
-        if height < LOW and views < plots:
-            self._rows.setSizes([3 * height // 5, height - 3 * height // 5])
 
     def _place(self) -> None:
         high_enough = max(PLOTS_HEIGHT, PLOTS_LINES * self.fontMetrics().height())
@@ -93,16 +89,31 @@ class ExplorePage(PageWidget):
         column.addWidget(self.plots, 1)
         middle = self._rows = stacked([self.three_views, below], [520, high_enough], stretch=0)
         middle.setObjectName("explore_rows")
+        middle.fit = self._fit_rows
+        self._below = below
         controls = scrolled_column([self.fit, self.coarsening, self.loss])
-        parts = [padded(self.particles, 10, 10, 2, 8), padded(middle, 2, 10, 2, 8), controls]
+        self._list = padded(self.particles, 10, 10, 2, 8)
+        parts = [self._list, padded(middle, 2, 10, 2, 8), controls]
         digits = [self.fontMetrics().horizontalAdvance("0" * count) for count in (LIST_WIDTH, NAMES_WIDTH)]
         wide_enough = max(min(digits[0], LIST_ROOM), digits[1])
-        controls_wide = max(CONTROLS_WIDTH, self.fontMetrics().horizontalAdvance("0" * CONTROLS_LETTERS))
+        controls_wide = max(WIDE_CONTROLS, self.fontMetrics().horizontalAdvance("0" * CONTROLS_LETTERS))
         columns = side_by_side(parts, [wide_enough, 900, controls_wide], stretch=1)
         columns.setObjectName("explore_columns")
         layout = QHBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(columns)
+
+    def _fit_rows(self) -> None:
+        """Make the views as high as they are wide, where the plots have enough."""
+        height = sum(self._rows.sizes())
+        frame = self.three_views.frames[PARTICLE]
+        wanted = frame.width() + frame.height() - frame.view.widget.height()
+        least = max(self._below.minimumSizeHint().height(), round(PLOTS_SHARE * height))
+        views = max(min(wanted, height - least), round(VIEWS_SHARE * height))
+        self._rows.setSizes([views, height - views])
+
+    def _show_list(self, shown: bool) -> None:
+        self._list.setVisible(shown)
 
     def _wire(self, context: PageContext) -> None:
         session, bindings = context.session, context.bindings

@@ -345,6 +345,7 @@ class ReposePage(PageWidget):
 
     def _measure(self, pile: ParticleState) -> None:
         self._pile = pile
+        self.player.frame_heap(pile)
         self._measure_again()
 
     def _measure_again(self) -> None:

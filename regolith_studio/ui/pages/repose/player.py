@@ -13,13 +13,17 @@ from regolith_studio.dem.snapshot import ParticleState
 from regolith_studio.errors import FileError
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.scene import instancing
-from regolith_studio.scene.cameras import framing_pose
+from regolith_studio.scene.cameras import Direction, filled, framing_pose
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.views.camera_link import CameraLink
 from regolith_studio.ui.views.factory import make_view
 from regolith_studio.ui.views.view_frame import ViewFrame
 
+LOW_SIDE = Direction("", (0.35, -1.0, 0.22), (0.0, 0.0, 1.0))
+"""Flanks and their slope are seen from a low side."""
+HEAP_SHARE = 0.97
+"""Share of the coordinates of particles that lie within the frame of a heap."""
 FRAME = 50
 """Milliseconds between two frames of a replay."""
 
@@ -74,10 +78,17 @@ class RunPlayer(QWidget):
         fresh = (test.diameter, test.height) != (self._test.diameter, self._test.height) or not self._shapes
         self._shapes, self._spheres, self._test = tuple(shapes), spheres, test
         if fresh:
-            widget = self.frame.view.widget
-            aspect = max(0.2, widget.width() / max(1, widget.height()))
-            corners = instancing.framing_corners(test.diameter, test.height)
-            self.frame.view.set_pose(framing_pose(corners, "isometric", aspect, 0.95))
+            self._look_at(instancing.framing_corners(test.diameter, test.height))
+
+    def frame_heap(self, pile: ParticleState) -> None:
+        """Look at a heap from a low side, as large as it can be; particles far from it do not count."""
+        reach = float(np.quantile(np.abs(pile.points[:, :2]), HEAP_SHARE))
+        self._look_at(instancing.box_corners(reach, float(pile.points[:, 2].max())))
+
+    def _look_at(self, corners: FloatArray) -> None:
+        widget = self.frame.view.widget
+        aspect = max(0.2, widget.width() / max(1, widget.height()))
+        self.frame.view.set_pose(filled(framing_pose(corners, LOW_SIDE, aspect), corners, aspect))
 
     def show_moment(self, pile: ParticleState, title: str, detail: str = "") -> None:
         """Show a state that is not in a file: a preview, or the latest of a running simulation."""
