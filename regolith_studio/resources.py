@@ -25,6 +25,12 @@ def resource_folder() -> Path:
     )
 
 
+def guide_folder() -> Path:
+    """The folder of the guide: among the resources of an installation, ``docs`` in a checkout."""
+    shipped = resource_folder() / "guide"
+    return shipped if shipped.is_dir() else _PACKAGE.parent / "docs"
+
+
 def resource(*parts: str) -> Path:
     """Path of one shipped file, for example ``resource("presets", "all.json")``.
 

@@ -62,7 +62,7 @@ class FitOptions:
     )
     reference: str = setting(
         "sphere",
-        N_("Divide by"),
+        N_("Reference surface"),
         N_(
             "What radii are divided by before they are expanded. An ellipsoid lowers the oscillation on "
             "flat and elongated grains."

@@ -53,6 +53,16 @@ def load_particles(paths: Sequence[Path], unit: str = "um", repair: bool = True)
     return collect_particles(results, problems)
 
 
+def measure_first(paths: Sequence[Path]) -> Steps:
+    """Name and longest side of the first mesh, as its file gives it; ``None`` where it cannot be read."""
+    yield Started(N_("Reading particles"))
+    files = find_files(paths, [])
+    for file, result in read_each(files[:1], "um", False):
+        if not isinstance(result, FileProblem):
+            return file.path.stem, float(np.ptp(result.mesh.bounds, axis=0).max())
+    return None
+
+
 def load_sample() -> Steps:
     """Read the particles that ship with the program; returns :class:`LoadedParticles`."""
     yield from compile_first("read")

@@ -22,9 +22,14 @@ LINE_WIDTH = 1.6
 """Of the outlines of facets, in pixels."""
 
 
+SHARP_EDGE = 50.0
+"""Degrees between the normals of two triangles above which their edge is drawn sharp: a cube's, no scan's."""
+
+
 def show_particle(plotter: Any, mesh: Mesh) -> None:
-    """The particle as measured, smoothly shaded."""
-    show_smooth(plotter, mesh, palette.PARTICLE_MATERIAL)
+    """The particle as measured, smoothly shaded between its sharp edges."""
+    surface = with_sharp_edges(smooth_surface(mesh))
+    _show_surface(plotter, surface, palette.PARTICLE_MATERIAL, smooth=True)
 
 
 def show_smooth(plotter: Any, mesh: Mesh, material: Material, layer: str = "") -> None:
@@ -195,6 +200,18 @@ def smooth_surface(mesh: Mesh) -> pv.PolyData:
     data.point_data["Normals"] = (normals / np.where(length > 0.0, length, 1.0)).astype(np.float32)
     data.GetPointData().SetActiveNormals("Normals")
     return data
+
+
+def with_sharp_edges(surface: pv.PolyData) -> pv.PolyData:
+    """The surface with vertices doubled along edges that are too sharp to be shaded smoothly."""
+    split: pv.PolyData = surface.compute_normals(
+        cell_normals=False,
+        split_vertices=True,
+        feature_angle=SHARP_EDGE,
+        consistent_normals=False,
+        auto_orient_normals=False,
+    )
+    return split
 
 
 def _polygons(vertices: FloatArray, facets: tuple[tuple[int, ...], ...]) -> pv.PolyData:

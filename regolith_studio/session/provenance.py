@@ -219,7 +219,7 @@ def restore_particles(recipe: Recipe, base: Path) -> Steps:
 def _read_particles(
     members: Sequence["BatchInput"], problems: list[FileProblem], refs: "_References"
 ) -> Steps:
-    yield Started(N_("Bringing particles back"), len(members))
+    yield Started(N_("Restoring particles"), len(members))
     restored: list[tuple[Particle, ParticleRef]] = []
     for number, item in enumerate(members, start=1):
         try:

@@ -168,7 +168,7 @@ class Session:
         def take(restored: RestoredParticles) -> None:
             self._replace_particles(restored.loaded, restored.refs)
 
-        title = N_("Bringing particles back")
+        title = N_("Restoring particles")
         job = Job(restore_particles, (recipe, base))
         return self._board.start("load", title, job, Reactions(take, failed=self.failure_reporter(title)))
 

@@ -19,7 +19,16 @@ WITHIN_VIEW = (N_("Look &from"), N_("&Theme"))
 MENUS = (N_("&File"), N_("&Edit"), N_("&View"), N_("&Go"), PAGE_MENU, N_("&Help"))
 
 ROWS: tuple[ActionSpec, ...] = (
-    ActionSpec(N_("&File"), "open", N_("&Open …"), "open", "Ctrl+O", N_("Open mesh files"), None, "words"),
+    ActionSpec(
+        N_("&File"),
+        "open",
+        N_("&Open …"),
+        "open",
+        "Ctrl+O",
+        N_("Open meshes, folders, volumes or positions"),
+        None,
+        "words",
+    ),
     ActionSpec(N_("&File"), "open_folder", N_("Open &folder …"), "", "Ctrl+Shift+O"),
     ActionSpec(
         N_("&File"),
@@ -34,10 +43,10 @@ ROWS: tuple[ActionSpec, ...] = (
     ActionSpec(
         N_("&File"),
         "repair",
-        N_("&Mend meshes on opening"),
+        N_("&Repair meshes on opening"),
         "",
         "",
-        N_("Say, and mend, what is wrong"),
+        N_("Report defects and repair them"),
         checked=True,
     ),
     ActionSpec(N_("&File"), BREAK, ""),
@@ -79,7 +88,7 @@ ROWS: tuple[ActionSpec, ...] = (
         N_("&Edit"), "palette", N_("&Commands …"), "", "Ctrl+Shift+P", N_("Any command by a few letters")
     ),
     ActionSpec(
-        N_("&Edit"), "preferences", N_("P&references …"), "", "Ctrl+,", N_("Language, theme, size of letters")
+        N_("&Edit"), "preferences", N_("P&references …"), "", "Ctrl+,", N_("Language, theme, font size")
     ),
     ActionSpec("&Go", "next_page", N_("&Next page"), "", "Ctrl+PgDown"),
     ActionSpec("&Go", "previous_page", N_("&Previous page"), "", "Ctrl+PgUp"),
@@ -88,15 +97,27 @@ ROWS: tuple[ActionSpec, ...] = (
     ActionSpec(N_("&Theme"), "theme_light", N_("&Light")),
     ActionSpec(N_("&Theme"), "theme_dark", N_("&Dark")),
     ActionSpec(N_("&View"), "tasks", N_("&Tasks"), "", "Ctrl+T", N_("What is running")),
-    ActionSpec(N_("&View"), "log", N_("L&og"), "", "Ctrl+Shift+L", N_("What was said")),
+    ActionSpec(N_("&View"), "log", N_("L&og"), "", "Ctrl+Shift+L", N_("Messages so far")),
     ActionSpec(
         N_("&View"), "standard_layout", N_("Standard la&yout"), "", "", N_("Restore sizes and borders")
     ),
     ActionSpec(N_("&View"), BREAK, ""),
     ActionSpec(N_("&Help"), "tour", N_("&Tour"), "tour", "", N_("A walk through the window")),
-    ActionSpec(N_("&Help"), "shortcuts", N_("&Keyboard and mouse"), "help", "F1"),
+    ActionSpec(N_("&Help"), "guide", N_("&Guide"), "", "", N_("The manual of the program")),
+    ActionSpec(
+        N_("&Help"), "explain", N_("&Explain this page"), "help", "F1", N_("What the guide says of the page")
+    ),
+    ActionSpec(N_("&Help"), "shortcuts", N_("&Keyboard and mouse"), "", "Ctrl+F1"),
     ActionSpec(N_("&Help"), "about", N_("&About Regolith Studio")),
 )
+
+
+KINDS = (
+    ("scan", "open_volume", N_("Open &volume …")),
+    ("dataset", "open_dataset", N_("Open &dataset …")),
+    ("repose", "open_positions", N_("&Measure positions …")),
+)
+"""Page, command and text of what is opened on another page."""
 
 
 class Actions:
@@ -137,8 +158,24 @@ class Actions:
         self.recent = QMenu(tr("Open &recent"), window)
         self.by_name["recent"].setMenu(self.recent)
         self.bar.insertSeparator(self.by_name["undo"])
+        self._offer_kinds(run)
         for number, page in enumerate(pages.values(), start=1):
             self._add_page(page, number, run, commands["go"])
+
+    def _offer_kinds(self, run: Callable[..., object]) -> None:
+        """List beside the button *Open* what else can be opened."""
+        button = self.bar.widgetForAction(self.by_name["open"])
+        if not isinstance(button, QToolButton):
+            return
+        menu = QMenu(button)
+        menu.addAction(self.by_name["open"])
+        menu.addAction(self.by_name["open_folder"])
+        for key, name, text in KINDS:
+            if key in self._pages:
+                menu.addAction(tr(text), partial(run, key, name))
+        menu.addAction(self.by_name["recent"])
+        button.setMenu(menu)
+        button.setPopupMode(QToolButton.ToolButtonPopupMode.MenuButtonPopup)
 
     def show_page(self, key: str) -> None:
         """Show the rows of one page and hide those of the others."""
@@ -194,6 +231,8 @@ class Actions:
         action = QAction(tr(row.text), self._window)
         action.setObjectName(name)
         action.setData(tr(row.menu).replace("&", ""))
+        if row.label:
+            action.setIconText(tr(row.label))
         if row.shortcut:
             action.setShortcut(QKeySequence(row.shortcut))
         action.setToolTip(with_keys(tr(row.tip) or plain(action), action.shortcut()))
@@ -216,8 +255,11 @@ class Actions:
         button = self.bar.widgetForAction(action)
         if isinstance(button, QToolButton):
             button.setAccessibleName(tr(row.tip) or plain(action))
-            words, only = Qt.ToolButtonStyle.ToolButtonTextBesideIcon, Qt.ToolButtonStyle.ToolButtonIconOnly
-            button.setToolButtonStyle(words if row.bar == "words" else only)
+            styles = Qt.ToolButtonStyle
+            beside, under = styles.ToolButtonTextBesideIcon, styles.ToolButtonTextUnderIcon
+            button.setToolButtonStyle(
+                {"words": beside, "under": under}.get(row.bar, styles.ToolButtonIconOnly)
+            )
 
     def _menu(self, title: str) -> QMenu:
         if title not in self._menus:

@@ -11,16 +11,19 @@ from PySide6.QtWidgets import QDialog, QFileDialog, QWidget
 
 from regolith_studio.errors import RegolithError
 from regolith_studio.io.atomic import write_bytes
+from regolith_studio.jobs.events import Job
+from regolith_studio.jobs.particle_jobs import measure_first
 from regolith_studio.messages import N_
 from regolith_studio.session.choices import Choices, Kind
 from regolith_studio.session.code_export import as_command, as_python
 from regolith_studio.session.file_kinds import FileKind, kind_of_all
 from regolith_studio.session.preferences import Preferences
 from regolith_studio.session.project import SessionRecipe, input_shown, inputs_of
-from regolith_studio.session.provenance import MAX_RESTORED
-from regolith_studio.session.recipe import DatasetRequest, read_recipe
+from regolith_studio.session.provenance import MAX_RESTORED, SampleSource
+from regolith_studio.session.recipe import DatasetRequest, Recipe, read_recipe
 from regolith_studio.session.session import Session
 from regolith_studio.session.verdict import cost_of_imitating_the_fit
+from regolith_studio.ui.dialogs.add_or_replace import ADD, REPLACE, ask_add_or_replace
 from regolith_studio.ui.dialogs.export import ExportDialog, ExportRequest
 from regolith_studio.ui.dialogs.unit import UnitDialog
 from regolith_studio.ui.translation import tr, translate
@@ -34,6 +37,8 @@ MESH_FILTERS = (
     N_("All files (*)"),
 )
 T = TypeVar("T")
+LOOK = "look"
+"""Lane of the job that reads one particle while its unit is asked."""
 EXPORT_FOLDER = "export_folder"
 """In the preferences of the window: the folder that the last dataset was written into."""
 
@@ -75,6 +80,7 @@ class Commands(QObject):
         self.openers: dict[FileKind, Callable[[Path], object]] = {FileKind.RECIPE: self._open_recipe}
         self._export: ExportDialog | None = None
         self._export_task = 0
+        self._before: Recipe | None = None
 
     def open(self) -> None:
         """Ask for files and open them."""
@@ -89,6 +95,7 @@ class Commands(QObject):
 
     def open_sample(self) -> None:
         """Open the shipped particles."""
+        self._remember_open()
         self._session.open_sample()
 
     def open_paths(self, paths: Sequence[Path], unit: str | None = None) -> None:
@@ -104,10 +111,17 @@ class Commands(QObject):
         unit = unit or self._ask_unit(list(paths))
         if unit is None:
             return
+        particles = self._session.particles
+        answer = REPLACE
+        if not all(each.ref is not None and isinstance(each.ref.origin, SampleSource) for each in particles):
+            answer = ask_add_or_replace(self._preferences, len(particles), self._window) or ""
+        if not answer:
+            return
         for path in paths:
             self._preferences.add_recent(path, unit)
         self._preferences.save()
-        self._try(lambda: self._session.open(paths, unit))
+        self._remember_open()
+        self._try(lambda: self._session.open(paths, unit, add=answer == ADD))
 
     def save_recipe(self) -> None:
         """Ask for a file and write the present choices into it."""
@@ -155,8 +169,25 @@ class Commands(QObject):
         dialog.open()
 
     def undo(self) -> None:
-        """Take the last step back."""
-        self._session.undo()
+        """Take the last step back; where there is none, reopen what was open before the last opening."""
+        if self._session.can_undo or self._before is None:
+            self._session.undo()
+            return
+        before, self._before = self._before, None
+        self._try(lambda: self._session.open_recipe(before, Path.cwd()))
+
+    @property
+    def can_undo(self) -> bool:
+        """Whether :meth:`undo` would change something."""
+        return self._session.can_undo or self._before is not None
+
+    def _remember_open(self) -> None:
+        """Keep how to reopen the particles that are about to be closed; those without a source cannot be."""
+        entries = self._session.particles
+        if not entries:
+            return
+        kept = SessionRecipe.of(entries, self._session.choices)
+        self._before = None if kept.without_source or kept.model else kept.recipe
 
     def redo(self) -> None:
         """Take it again."""
@@ -214,7 +245,15 @@ class Commands(QObject):
         if len(known) == 1 and (unit := known.pop()):
             return unit
         dialog = UnitDialog(paths, self._session.choices.unit, self._window)
+        self._session.run(
+            LOOK,
+            N_("Reading particles"),
+            Job(measure_first, (paths,)),
+            dialog.set_first,
+            failed=lambda _: None,  # it is reported when the file is opened
+        )
         accepted = dialog.exec() == QDialog.DialogCode.Accepted
+        self._session.stop(LOOK)
         unit = dialog.value()
         dialog.deleteLater()
         return unit if accepted else None

@@ -64,7 +64,7 @@ class Splitter(QSplitter):
             self._place(self._standard)
 
     def scale_fixed(self, before: float, after: float) -> None:
-        """Scale the parts that do not stretch with letters of other points; back again, they are as before."""
+        """Scale the parts that do not stretch with letters of other points; back again, as before."""
         points, sizes = self._unscaled = self._unscaled or (before, self.sizes())
         self._place([round(after / points * size) for size in sizes])
 

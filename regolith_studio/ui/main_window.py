@@ -20,6 +20,7 @@ from regolith_studio.ui.bindings import Bindings
 from regolith_studio.ui.commands import Commands
 from regolith_studio.ui.dialogs.closing import may_close, worth_asking
 from regolith_studio.ui.dialogs.command_palette import CommandPalette
+from regolith_studio.ui.dialogs.guide import guide_dialog
 from regolith_studio.ui.dialogs.help import about_dialog
 from regolith_studio.ui.dialogs.shortcuts import ShortcutsDialog
 from regolith_studio.ui.layout import Splitter
@@ -118,6 +119,8 @@ class MainWindow(QMainWindow):
             "go": self.pages.go,
             "next_page": partial(self.pages.neighbour, 1),
             "previous_page": partial(self.pages.neighbour, -1),
+            "guide": lambda: guide_dialog(self).show(),
+            "explain": lambda: guide_dialog(self, self.pages.current).show(),
             "shortcuts": lambda: ShortcutsDialog(self.shortcuts, self.menus.places(), self).open(),
             "about": lambda: about_dialog(self, self._views).open(),
         }
@@ -135,6 +138,7 @@ class MainWindow(QMainWindow):
         bindings.refresh("tasks", self.commands.show_tasks, slow=True)
         bindings.refresh("tasks", self.batches.show_tasks, slow=True)
         bindings.listen("choices", self._show_choices)
+        bindings.listen("particles", self._show_choices)
         self._show_choices()
         bindings.listen("failed", lambda failure: self.toast.problem(failure.sentence, failure.details))
         bindings.listen("problems", lambda problems: report_file_problems(self.toast, problems))
@@ -156,7 +160,7 @@ class MainWindow(QMainWindow):
         self.session.choose(repair=repair)
 
     def _show_choices(self) -> None:
-        self.menus.by_name["undo"].setEnabled(self.session.can_undo)
+        self.menus.by_name["undo"].setEnabled(self.commands.can_undo)
         self.menus.by_name["redo"].setEnabled(self.session.can_redo)
         self.menus.by_name["repair"].setChecked(self.session.choices.repair)
 

@@ -39,7 +39,10 @@ class ActionSpec:
     checked
         ``True`` or ``False`` for a switch, ``None`` for a command.
     bar
-        Its place in the tool bar: ``words`` with its text, ``icon`` without, empty for none.
+        Its place in the tool bar: ``words`` with its text, ``under`` with `label` below its icon, ``icon``
+        without, empty for none.
+    label
+        One or two words for the tool bar; the text if empty.
     """
 
     menu: str
@@ -50,6 +53,7 @@ class ActionSpec:
     tip: str = ""
     checked: bool | None = None
     bar: str = ""
+    label: str = ""
 
 
 BREAK = "-"

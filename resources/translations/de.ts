@@ -60,6 +60,10 @@
         <translation>Eine Ansicht &amp;vergrößern</translation>
     </message>
     <message>
+        <source>&amp;Explain this page</source>
+        <translation>Diese Seite &amp;erklären</translation>
+    </message>
+    <message>
         <source>&amp;Export dataset …</source>
         <translation>Datensatz &amp;exportieren …</translation>
     </message>
@@ -86,6 +90,10 @@
     <message>
         <source>&amp;Go</source>
         <translation>&amp;Gehe zu</translation>
+    </message>
+    <message>
+        <source>&amp;Guide</source>
+        <translation>&amp;Handbuch</translation>
     </message>
     <message>
         <source>&amp;Help</source>
@@ -122,10 +130,6 @@
     <message>
         <source>&amp;Measure positions …</source>
         <translation>Positionen &amp;vermessen …</translation>
-    </message>
-    <message>
-        <source>&amp;Mend meshes on opening</source>
-        <translation>Netze beim Öffnen &amp;ausbessern</translation>
     </message>
     <message>
         <source>&amp;Next page</source>
@@ -166,6 +170,10 @@
     <message>
         <source>&amp;Redo</source>
         <translation>&amp;Wiederholen</translation>
+    </message>
+    <message>
+        <source>&amp;Repair meshes on opening</source>
+        <translation>Netze beim Öffnen &amp;reparieren</translation>
     </message>
     <message>
         <source>&amp;Reset cameras</source>
@@ -260,6 +268,10 @@
         <translation>1  Volumen</translation>
     </message>
     <message>
+        <source>1 - shared volume / united volume (Eq. 7)</source>
+        <translation>1 - gemeinsames Volumen / vereinigtes Volumen (Gl. 7)</translation>
+    </message>
+    <message>
         <source>1 coefficient</source>
         <translation>1 Koeffizient</translation>
     </message>
@@ -282,6 +294,10 @@
     <message>
         <source>1 grain from {bodies} connected bodies</source>
         <translation>1 Korn aus {bodies} zusammenhängenden Körpern</translation>
+    </message>
+    <message>
+        <source>1 keeps the size of the particles; the paper uses 10.</source>
+        <translation>1 lässt die Größe der Partikel, wie sie ist; der Artikel nimmt 10.</translation>
     </message>
     <message>
         <source>1 m in the file is 1 mm of the particles, coarse graining applied; y up</source>
@@ -346,10 +362,6 @@
     <message>
         <source>; {count} facets were asked for</source>
         <translation>; {count} Facetten waren verlangt</translation>
-    </message>
-    <message>
-        <source>&lt;b&gt;Angle of repose {angle:.1f}°&lt;/b&gt; ({low:.1f}° to {high:.1f}°, {count} sections); the paper&apos;s two sections: asymmetric {asymmetric:.1f}°, symmetric {symmetric:.1f}°.</source>
-        <translation>&lt;b&gt;Schüttwinkel {angle:.1f}°&lt;/b&gt; ({low:.1f}° bis {high:.1f}°, {count} Schnitte); die zwei Schnitte des Artikels: asymmetrisch {asymmetric:.1f}°, symmetrisch {symmetric:.1f}°.</translation>
     </message>
     <message>
         <source>&lt;b&gt;Shapes are changed:&lt;/b&gt; {how}</source>
@@ -444,8 +456,8 @@
         <translation>Über Regolith Studio</translation>
     </message>
     <message>
-        <source>About {time} on one core.</source>
-        <translation>Etwa {time} auf einem Kern.</translation>
+        <source>About {time} on one core, up to {longer} while other work runs.</source>
+        <translation>Etwa {time} auf einem Kern, bis zu {longer}, wenn anderes läuft.</translation>
     </message>
     <message>
         <source>Activity</source>
@@ -456,8 +468,28 @@
         <translation>Angepasste Schrittweite</translation>
     </message>
     <message>
+        <source>Add</source>
+        <translation>Hinzufügen</translation>
+    </message>
+    <message>
+        <source>Add the new ones to them, or replace them? Undo brings replaced ones back.</source>
+        <translation>Die neuen hinzufügen oder die offenen ersetzen? Rückgängig holt ersetzte zurück.</translation>
+    </message>
+    <message>
         <source>Address of the scheduler</source>
         <translation>Adresse des Schedulers</translation>
+    </message>
+    <message>
+        <source>After: {title}.</source>
+        <translation>Nach: {title}.</translation>
+    </message>
+    <message>
+        <source>Against the particle itself {symbol} is {error} off, Jaccard distance {distance}.</source>
+        <translation>Gegen das Partikel selbst weicht {symbol} um {error} ab, Jaccard-Distanz {distance}.</translation>
+    </message>
+    <message>
+        <source>All default keys</source>
+        <translation>Alle üblichen Tasten</translation>
     </message>
     <message>
         <source>All descriptors</source>
@@ -484,8 +516,16 @@
         <translation>Alle Partikel: Tabelle, Streudiagramm, Zustand der Netze und Statistik der Gruppen</translation>
     </message>
     <message>
-        <source>All usual keys</source>
-        <translation>Alle üblichen Tasten</translation>
+        <source>All weighted descriptors are met but {symbol}: no convex polyhedron is below {error}.</source>
+        <translation>Alle gewichteten Deskriptoren sind getroffen außer {symbol}: Kein konvexes Polyeder liegt unter {error}.</translation>
+    </message>
+    <message>
+        <source>All weighted descriptors are met within 0.1 %.</source>
+        <translation>Alle gewichteten Deskriptoren sind auf 0.1 % getroffen.</translation>
+    </message>
+    <message>
+        <source>Allow formats that change shapes</source>
+        <translation>Formate zulassen, die Formen ändern</translation>
     </message>
     <message>
         <source>Also</source>
@@ -506,10 +546,6 @@
     <message>
         <source>And back</source>
         <translation>Und zurück</translation>
-    </message>
-    <message>
-        <source>And what it cannot see</source>
-        <translation>Und was er nicht sieht</translation>
     </message>
     <message>
         <source>Angle</source>
@@ -644,6 +680,10 @@
         <translation>Vor dem Fall</translation>
     </message>
     <message>
+        <source>Before the repair:</source>
+        <translation>Vor der Reparatur:</translation>
+    </message>
+    <message>
         <source>Being measured …</source>
         <translation>Wird vermessen …</translation>
     </message>
@@ -658,10 +698,6 @@
     <message>
         <source>Blocks of the cylinder</source>
         <translation>Blöcke des Zylinders</translation>
-    </message>
-    <message>
-        <source>Bodies</source>
-        <translation>Körper</translation>
     </message>
     <message>
         <source>Bottom (from -z)</source>
@@ -680,8 +716,8 @@
         <translation>Hüllquader der Durchmesser</translation>
     </message>
     <message>
-        <source>Bringing particles back</source>
-        <translation>Partikel werden zurückgeholt</translation>
+        <source>Box</source>
+        <translation>Quader</translation>
     </message>
     <message>
         <source>Browse …</source>
@@ -770,6 +806,10 @@
     <message>
         <source>Change</source>
         <translation>Ändern</translation>
+    </message>
+    <message>
+        <source>Changed from {preset}.</source>
+        <translation>Geändert gegenüber {preset}.</translation>
     </message>
     <message>
         <source>Changes of errors in percentage points</source>
@@ -904,8 +944,12 @@
         <translation>Kohäsion</translation>
     </message>
     <message>
-        <source>Colours the faults in the picture, as they were before the mesh was mended</source>
-        <translation>Färbt die Mängel im Bild, wie sie vor der Reparatur waren</translation>
+        <source>Colour the fit by its distance from the particle</source>
+        <translation>Den Fit nach seinem Abstand vom Partikel färben</translation>
+    </message>
+    <message>
+        <source>Colours the faults in the picture, as they were before the mesh was repaired</source>
+        <translation>Färbt die Fehler im Bild, wie sie vor der Reparatur des Netzes waren</translation>
     </message>
     <message>
         <source>Command</source>
@@ -944,6 +988,10 @@
         <translation>Verteilungen werden verglichen</translation>
     </message>
     <message>
+        <source>Comparing with the particle</source>
+        <translation>Vergleiche mit dem Partikel</translation>
+    </message>
+    <message>
         <source>Compiling, once after an installation</source>
         <translation>Wird übersetzt, einmal nach einer Installation</translation>
     </message>
@@ -968,6 +1016,18 @@
         <translation>Vertrauensbereich</translation>
     </message>
     <message>
+        <source>Connected parts</source>
+        <translation>Zusammenhängende Teile</translation>
+    </message>
+    <message>
+        <source>Connected parts of the surface; a particle has one</source>
+        <translation>Zusammenhängende Teile der Oberfläche; ein Partikel hat einen</translation>
+    </message>
+    <message>
+        <source>Consistent orientation</source>
+        <translation>Einheitliche Orientierung</translation>
+    </message>
+    <message>
         <source>Constituents of the mixture, separated by commas, the most numerous first.</source>
         <translation>Komponenten der Mischung, durch Kommas getrennt, die häufigste zuerst.</translation>
     </message>
@@ -982,6 +1042,10 @@
     <message>
         <source>Contact time in steps</source>
         <translation>Kontaktzeit in Schritten</translation>
+    </message>
+    <message>
+        <source>Contents</source>
+        <translation>Inhalt</translation>
     </message>
     <message>
         <source>Contour each grain and open it as a particle</source>
@@ -1056,10 +1120,6 @@
         <translation>Querschnitt</translation>
     </message>
     <message>
-        <source>Crossing pairs</source>
-        <translation>Kreuzende Paare</translation>
-    </message>
-    <message>
         <source>Ctrl + drag</source>
         <translation>Strg + Ziehen</translation>
     </message>
@@ -1110,6 +1170,10 @@
     <message>
         <source>Dataset</source>
         <translation>Datensatz</translation>
+    </message>
+    <message>
+        <source>Default keys</source>
+        <translation>Übliche Tasten</translation>
     </message>
     <message>
         <source>Degree at which the series of Eq. 4 is cut: 0 is a sphere; the paper uses 10.</source>
@@ -1204,8 +1268,8 @@
         <translation>Verteilungen</translation>
     </message>
     <message>
-        <source>Divide by</source>
-        <translation>Bezug</translation>
+        <source>Do not ask again</source>
+        <translation>Nicht mehr fragen</translation>
     </message>
     <message>
         <source>Done</source>
@@ -1276,10 +1340,6 @@
         <translation>Drehung wird gezeichnet</translation>
     </message>
     <message>
-        <source>Draws thrown away</source>
-        <translation>Verworfene Ziehungen</translation>
-    </message>
-    <message>
         <source>Drop mesh files or folders anywhere in the window to open them.</source>
         <translation>Netzdateien oder Ordner irgendwo im Fenster ablegen, um sie zu öffnen.</translation>
     </message>
@@ -1292,7 +1352,7 @@
         <translation>Tabelle &amp;exportieren …</translation>
     </message>
     <message>
-        <source>Each particle counts the same</source>
+        <source>Each particle counts equally</source>
         <translation>Jedes Partikel zählt gleich</translation>
     </message>
     <message>
@@ -1390,10 +1450,6 @@
     <message>
         <source>Error of coarsened particles</source>
         <translation>Fehler vergröberter Partikel</translation>
-    </message>
-    <message>
-        <source>Error of the spheres</source>
-        <translation>Fehler der Kugeln</translation>
     </message>
     <message>
         <source>Error ≤</source>
@@ -1716,6 +1772,10 @@
         <translation>Rauschen</translation>
     </message>
     <message>
+        <source>Folder (created if missing):</source>
+        <translation>Ordner (wird angelegt):</translation>
+    </message>
+    <message>
         <source>Folder of figures and tables</source>
         <translation>Ordner für Abbildungen und Tabellen</translation>
     </message>
@@ -1744,10 +1804,6 @@
         <translation>Ordner …</translation>
     </message>
     <message>
-        <source>Folder, may be new:</source>
-        <translation>Ordner, auch ein neuer:</translation>
-    </message>
-    <message>
         <source>Folder:</source>
         <translation>Ordner:</translation>
     </message>
@@ -1764,12 +1820,12 @@
         <translation>Für regolith-studio run</translation>
     </message>
     <message>
-        <source>Forget sizes and borders</source>
-        <translation>Größen und Grenzen vergessen</translation>
-    </message>
-    <message>
         <source>Form</source>
         <translation>Form</translation>
+    </message>
+    <message>
+        <source>Formats written</source>
+        <translation>Geschriebene Formate</translation>
     </message>
     <message>
         <source>Found</source>
@@ -1888,12 +1944,12 @@
         <translation>Fit wächst</translation>
     </message>
     <message>
-        <source>Half-spaces of Eq. 5; n facets in general position have 2n−4 vertices and 4n−12 triangles.</source>
-        <translation>Halbräume von Gl. 5; n Facetten in allgemeiner Lage haben 2n−4 Ecken und 4n−12 Dreiecke.</translation>
+        <source>Guide</source>
+        <translation>Handbuch</translation>
     </message>
     <message>
-        <source>Hand the grains to all other pages</source>
-        <translation>Die Körner an alle anderen Seiten geben</translation>
+        <source>Half-spaces of Eq. 5; n facets in general position have 2n−4 vertices and 4n−12 triangles.</source>
+        <translation>Halbräume von Gl. 5; n Facetten in allgemeiner Lage haben 2n−4 Ecken und 4n−12 Dreiecke.</translation>
     </message>
     <message>
         <source>Harmonics fit, {degree}</source>
@@ -1960,10 +2016,6 @@
         <translation>Histogramm der Grauwerte mit dem Schwellwert</translation>
     </message>
     <message>
-        <source>Hold it back after the step that it is at, or let it go on</source>
-        <translation>Nach dem laufenden Schritt anhalten oder weiterlaufen lassen</translation>
-    </message>
-    <message>
         <source>Holds</source>
         <translation>Inhalt</translation>
     </message>
@@ -1992,18 +2044,6 @@
         <translation>Wie viele Einzelheiten: l_max</translation>
     </message>
     <message>
-        <source>How radii are taken</source>
-        <translation>Wie Radien bestimmt werden</translation>
-    </message>
-    <message>
-        <source>Imitate</source>
-        <translation>Vorbild</translation>
-    </message>
-    <message>
-        <source>Imitating</source>
-        <translation>Vorbild</translation>
-    </message>
-    <message>
         <source>Imported particles</source>
         <translation>Importierte Partikel</translation>
     </message>
@@ -2016,20 +2056,16 @@
         <translation>Im Rahmen: {counts}.</translation>
     </message>
     <message>
-        <source>In which unit are the numbers of these {count} files and folders?</source>
-        <translation>In welcher Einheit sind die Zahlen dieser {count} Dateien und Ordner?</translation>
-    </message>
-    <message>
-        <source>In which unit are the numbers of {name}?</source>
-        <translation>In welcher Einheit sind die Zahlen von {name}?</translation>
-    </message>
-    <message>
         <source>Independent normal coefficients; draws with a negative radius are thrown away.</source>
         <translation>Unabhängige normalverteilte Koeffizienten; Ziehungen mit negativem Radius werden verworfen.</translation>
     </message>
     <message>
         <source>Intermediate diameter</source>
         <translation>Mittlerer Durchmesser</translation>
+    </message>
+    <message>
+        <source>Intersecting pairs</source>
+        <translation>Sich schneidende Paare</translation>
     </message>
     <message>
         <source>Interval</source>
@@ -2148,7 +2184,7 @@
         <translation>Modelle werden beurteilt</translation>
     </message>
     <message>
-        <source>KS / floor</source>
+        <source>KS / noise</source>
         <translation>KS / Rauschen</translation>
     </message>
     <message>
@@ -2224,8 +2260,8 @@
         <translation>Sprache</translation>
     </message>
     <message>
-        <source>Language, theme, size of letters</source>
-        <translation>Sprache, Farbschema, Schriftgröße</translation>
+        <source>Language, theme, font size</source>
+        <translation>Sprache, Farben, Schriftgröße</translation>
     </message>
     <message>
         <source>Largest Feret diameter</source>
@@ -2264,10 +2300,6 @@
         <translation>Kleinstes Trägheitsmoment</translation>
     </message>
     <message>
-        <source>Least voxels of a grain</source>
-        <translation>Kleinste Voxelzahl eines Korns</translation>
-    </message>
-    <message>
         <source>Leave out grains at the border</source>
         <translation>Körner am Rand weglassen</translation>
     </message>
@@ -2304,6 +2336,14 @@
         <translation>Längeneinheit der Datei:</translation>
     </message>
     <message>
+        <source>Length unit of these {count} files and folders</source>
+        <translation>Längeneinheit dieser {count} Dateien und Ordner</translation>
+    </message>
+    <message>
+        <source>Length unit of {name}</source>
+        <translation>Längeneinheit von {name}</translation>
+    </message>
+    <message>
         <source>Level</source>
         <translation>Schwelle</translation>
     </message>
@@ -2330,6 +2370,14 @@
     <message>
         <source>Limit the sizes</source>
         <translation>Größen begrenzen</translation>
+    </message>
+    <message>
+        <source>Limits of the formats</source>
+        <translation>Grenzen der Formate</translation>
+    </message>
+    <message>
+        <source>Link</source>
+        <translation>Koppeln</translation>
     </message>
     <message>
         <source>Log</source>
@@ -2504,6 +2552,10 @@
         <translation>Mittlere Energiedistanz von Paaren von Deskriptoren: 0 bei gleichen Verteilungen</translation>
     </message>
     <message>
+        <source>Mean of {count} sections. Two perpendicular sections give {asymmetric:.1f}° (flanks apart) and {symmetric:.1f}° (both flanks alike).</source>
+        <translation>Mittel von {count} Schnitten. Zwei senkrechte Schnitte geben {asymmetric:.1f}° (Flanken einzeln) und {symmetric:.1f}° (beide Flanken gleich).</translation>
+    </message>
+    <message>
         <source>Mean rotation of a round particle; long ones are turned less.</source>
         <translation>Mittlere Drehung eines runden Partikels; lange werden weniger gedreht.</translation>
     </message>
@@ -2514,10 +2566,6 @@
     <message>
         <source>Measure the pile of another program</source>
         <translation>Den Schüttkegel eines anderen Programms vermessen</translation>
-    </message>
-    <message>
-        <source>Measured surfaces turned within their ellipsoids: sizes and shapes as in the sample, bodies new.</source>
-        <translation>Gemessene Oberflächen, in ihren Ellipsoiden gedreht: Größen und Formen wie in der Probe, Körper neu.</translation>
     </message>
     <message>
         <source>Measuring</source>
@@ -2556,8 +2604,12 @@
         <translation>Netz</translation>
     </message>
     <message>
-        <source>Mesh files carry no unit. The answer is kept for their folder.</source>
-        <translation>Netzdateien tragen keine Einheit. Die Antwort wird für ihren Ordner gemerkt.</translation>
+        <source>Mesh files contain no unit. The answer is kept for their folder.</source>
+        <translation>Netzdateien enthalten keine Einheit. Die Antwort wird für ihren Ordner behalten.</translation>
+    </message>
+    <message>
+        <source>Messages so far</source>
+        <translation>Bisherige Meldungen</translation>
     </message>
     <message>
         <source>Method</source>
@@ -2586,6 +2638,10 @@
     <message>
         <source>Minimum diameter</source>
         <translation>Kleinster Durchmesser</translation>
+    </message>
+    <message>
+        <source>Minimum number of voxels of a grain</source>
+        <translation>Mindestzahl der Voxel eines Korns</translation>
     </message>
     <message>
         <source>Mirror images</source>
@@ -2618,6 +2674,10 @@
     <message>
         <source>Moon</source>
         <translation>Mond</translation>
+    </message>
+    <message>
+        <source>More facets do not help here: {count} facets had a loss of {loss}.</source>
+        <translation>Mehr Facetten helfen hier nicht: {count} Facetten hatten einen Verlust von {loss}.</translation>
     </message>
     <message>
         <source>More than {count:,} particles are for other programs: export the dataset.</source>
@@ -2684,8 +2744,8 @@
         <translation>Negativ, wo das Netz umgestülpt ist</translation>
     </message>
     <message>
-        <source>Neighbouring triangles look the same way</source>
-        <translation>Benachbarte Dreiecke zeigen zur selben Seite</translation>
+        <source>Neighbouring triangles have normals on the same side</source>
+        <translation>Normalen benachbarter Dreiecke liegen auf derselben Seite</translation>
     </message>
     <message>
         <source>Neighbours</source>
@@ -2706,6 +2766,10 @@
     <message>
         <source>Next seed: the same method with other random numbers</source>
         <translation>Nächster Startwert: dasselbe Verfahren mit anderen Zufallszahlen</translation>
+    </message>
+    <message>
+        <source>No dataset has been written yet.</source>
+        <translation>Noch wurde kein Datensatz geschrieben.</translation>
     </message>
     <message>
         <source>No dataset yet</source>
@@ -2784,6 +2848,10 @@
         <translation>Nicht abgebildet</translation>
     </message>
     <message>
+        <source>Not run yet with these values.</source>
+        <translation>Mit diesen Werten noch nicht gerechnet.</translation>
+    </message>
+    <message>
         <source>Nothing is running.</source>
         <translation>Nichts ist in Arbeit.</translation>
     </message>
@@ -2848,10 +2916,6 @@
         <translation>Eine nach der anderen, dann alle</translation>
     </message>
     <message>
-        <source>One body over another</source>
-        <translation>Ein Körper über einem anderen</translation>
-    </message>
-    <message>
         <source>One particle, its spherical-harmonics fit and its polyhedron side by side</source>
         <translation>Ein Partikel, sein Fit mit Kugelflächenfunktionen und sein Polyeder nebeneinander</translation>
     </message>
@@ -2868,6 +2932,10 @@
         <translation>Ein Schritt zurück</translation>
     </message>
     <message>
+        <source>One surface over another</source>
+        <translation>Eine Oberfläche über einer anderen</translation>
+    </message>
+    <message>
         <source>One turn: GIF, WebP, PNG files</source>
         <translation>Eine Umdrehung: GIF, WebP, PNG-Dateien</translation>
     </message>
@@ -2878,6 +2946,14 @@
     <message>
         <source>Only equivalent radii from … to …</source>
         <translation>Nur Äquivalentradien von … bis …</translation>
+    </message>
+    <message>
+        <source>Only the overlap has a weight.</source>
+        <translation>Nur die Überlappung hat ein Gewicht.</translation>
+    </message>
+    <message>
+        <source>Open &amp;dataset …</source>
+        <translation>&amp;Datensatz öffnen …</translation>
     </message>
     <message>
         <source>Open &amp;folder …</source>
@@ -2968,8 +3044,8 @@
         <translation>Ordner öffnen</translation>
     </message>
     <message>
-        <source>Open mesh files</source>
-        <translation>Netzdateien öffnen</translation>
+        <source>Open meshes, folders, volumes or positions</source>
+        <translation>Netze, Ordner, Volumen oder Positionen öffnen</translation>
     </message>
     <message>
         <source>Open particles</source>
@@ -2990,6 +3066,14 @@
     <message>
         <source>Open the drawn particles: to be coarsened and made a dataset.</source>
         <translation>Die gezogenen Partikel öffnen: um sie zu vergröbern und einen Datensatz zu bauen.</translation>
+    </message>
+    <message>
+        <source>Open the folder</source>
+        <translation>Ordner öffnen</translation>
+    </message>
+    <message>
+        <source>Open the grains as particles</source>
+        <translation>Die Körner als Partikel öffnen</translation>
     </message>
     <message>
         <source>Open the results</source>
@@ -3068,6 +3152,10 @@
         <translation>Überdeckung oder Deskriptoren</translation>
     </message>
     <message>
+        <source>Overlay</source>
+        <translation>Überlagerung</translation>
+    </message>
+    <message>
         <source>Own preset</source>
         <translation>Eigene Vorlage</translation>
     </message>
@@ -3092,16 +3180,12 @@
         <translation>Paarwerte</translation>
     </message>
     <message>
-        <source>Pairs of triangles that cross each other</source>
-        <translation>Paare von Dreiecken, die sich kreuzen</translation>
+        <source>Pairs of triangles that intersect each other</source>
+        <translation>Paare von Dreiecken, die sich schneiden</translation>
     </message>
     <message>
         <source>Parametric, with facets: size, form, roughness and hull ratio go together as in the sample.</source>
         <translation>Parametrisch, mit Facetten: Größe, Form, Rauheit und Hüllenverhältnis hängen zusammen wie in der Probe.</translation>
-    </message>
-    <message>
-        <source>Part touching grains</source>
-        <translation>Berührende Körner trennen</translation>
     </message>
     <message>
         <source>Particle</source>
@@ -3110,6 +3194,10 @@
     <message>
         <source>Particle density</source>
         <translation>Dichte der Partikel</translation>
+    </message>
+    <message>
+        <source>Particle l&amp;ist</source>
+        <translation>Partikell&amp;iste</translation>
     </message>
     <message>
         <source>Particle mass</source>
@@ -3152,12 +3240,12 @@
         <translation>Komponenten</translation>
     </message>
     <message>
-        <source>Parts that hang together; a particle has one</source>
-        <translation>Zusammenhängende Teile; ein Partikel hat einen</translation>
-    </message>
-    <message>
         <source>Pause</source>
         <translation>Anhalten</translation>
+    </message>
+    <message>
+        <source>Pause after the current step, or resume</source>
+        <translation>Nach dem laufenden Schritt anhalten oder fortsetzen</translation>
     </message>
     <message>
         <source>Picture</source>
@@ -3328,6 +3416,10 @@
         <translation>Radius</translation>
     </message>
     <message>
+        <source>Radius function</source>
+        <translation>Radiusfunktion</translation>
+    </message>
+    <message>
         <source>Random field</source>
         <translation>Zufallsfeld</translation>
     </message>
@@ -3388,12 +3480,20 @@
         <translation>Wiederherstellen</translation>
     </message>
     <message>
+        <source>Reference surface</source>
+        <translation>Bezugsfläche</translation>
+    </message>
+    <message>
         <source>Regolith Studio was not closed properly the last time. Bring its state back?</source>
         <translation>Regolith Studio wurde zuletzt nicht ordentlich geschlossen. Den Stand zurückholen?</translation>
     </message>
     <message>
         <source>Rejected</source>
         <translation>Verworfen</translation>
+    </message>
+    <message>
+        <source>Rejected draws</source>
+        <translation>Verworfene Ziehungen</translation>
     </message>
     <message>
         <source>Relative error [%]</source>
@@ -3436,6 +3536,10 @@
         <translation>Verlorene Facetten ersetzen</translation>
     </message>
     <message>
+        <source>Replace</source>
+        <translation>Ersetzen</translation>
+    </message>
+    <message>
         <source>Replace the dataset</source>
         <translation>Datensatz ersetzen</translation>
     </message>
@@ -3446,6 +3550,10 @@
     <message>
         <source>Report (HTML)</source>
         <translation>Bericht (HTML)</translation>
+    </message>
+    <message>
+        <source>Report defects and repair them</source>
+        <translation>Fehler melden und reparieren</translation>
     </message>
     <message>
         <source>Representative particles</source>
@@ -3484,8 +3592,16 @@
         <translation>Stoßzahl</translation>
     </message>
     <message>
+        <source>Restore sizes and borders</source>
+        <translation>Größen und Grenzen wiederherstellen</translation>
+    </message>
+    <message>
         <source>Restore the volume</source>
         <translation>Volumen wiederherstellen</translation>
+    </message>
+    <message>
+        <source>Restoring particles</source>
+        <translation>Stelle Partikel wieder her</translation>
     </message>
     <message>
         <source>Resume</source>
@@ -3532,8 +3648,16 @@
         <translation>Wurzel des mittleren quadratischen relativen Fehlers jedes Deskriptors, eine Zeile je Verlustfunktion, wie in Bild 8 des Artikels.</translation>
     </message>
     <message>
+        <source>Root mean squared relative error over the descriptors that have a weight (Eq. 10)</source>
+        <translation>Wurzel des mittleren quadratischen relativen Fehlers über die gewichteten Deskriptoren (Gl. 10)</translation>
+    </message>
+    <message>
         <source>Rosin-Rammler, the same for all</source>
         <translation>Rosin-Rammler, für alle gleich</translation>
+    </message>
+    <message>
+        <source>Rotates measured surfaces within their ellipsoids: new particles, sizes and shapes as in the sample.</source>
+        <translation>Dreht gemessene Oberflächen in ihren Ellipsoiden: neue Partikel, Größen und Formen wie in der Probe.</translation>
     </message>
     <message>
         <source>Roughness</source>
@@ -3756,10 +3880,6 @@
         <translation>Gespeichert; verwenden mit: {command}</translation>
     </message>
     <message>
-        <source>Say, and mend, what is wrong</source>
-        <translation>Sagen und ausbessern, was nicht stimmt</translation>
-    </message>
-    <message>
         <source>Scale</source>
         <translation>Maßstab</translation>
     </message>
@@ -3828,8 +3948,24 @@
         <translation>Das ganze Volumen mit diesen Einstellungen segmentieren</translation>
     </message>
     <message>
+        <source>Segmentation</source>
+        <translation>Segmentierung</translation>
+    </message>
+    <message>
+        <source>Selection of grains</source>
+        <translation>Auswahl der Körner</translation>
+    </message>
+    <message>
         <source>Sensitivity to the weights</source>
         <translation>Empfindlichkeit gegen die Gewichte</translation>
+    </message>
+    <message>
+        <source>Separate touching grains</source>
+        <translation>Berührende Körner trennen</translation>
+    </message>
+    <message>
+        <source>Separation of grains</source>
+        <translation>Trennung der Körner</translation>
     </message>
     <message>
         <source>Sequence of PNG files (*.png)</source>
@@ -3876,10 +4012,6 @@
         <translation>Formen werden verändert: {how}</translation>
     </message>
     <message>
-        <source>Shapes may be changed</source>
-        <translation>Formen dürfen verändert werden</translation>
-    </message>
-    <message>
         <source>Share at or below [%]</source>
         <translation>Anteil bis hierher [%]</translation>
     </message>
@@ -3896,10 +4028,6 @@
         <translation>Das Bild verschieben</translation>
     </message>
     <message>
-        <source>Show fitting errors</source>
-        <translation>Fehler des Fits zeigen</translation>
-    </message>
-    <message>
         <source>Show in &amp;Explore</source>
         <translation>In Er&amp;kunden zeigen</translation>
     </message>
@@ -3910,6 +4038,10 @@
     <message>
         <source>Show the &amp;library</source>
         <translation>Bib&amp;liothek zeigen</translation>
+    </message>
+    <message>
+        <source>Show the open particles</source>
+        <translation>Die offenen Partikel zeigen</translation>
     </message>
     <message>
         <source>Show the whole particle</source>
@@ -3966,10 +4098,6 @@
     <message>
         <source>Smallest equivalent radius</source>
         <translation>Kleinster Äquivalentradius</translation>
-    </message>
-    <message>
-        <source>Smallest in volume</source>
-        <translation>Der kleinste dem Volumen nach</translation>
     </message>
     <message>
         <source>Smallest l&lt;sub&gt;max&lt;/sub&gt; with every error below</source>
@@ -4056,8 +4184,8 @@
         <translation>Sternförmig: kein Teil der Oberfläche ist vom Sternpunkt aus verdeckt.</translation>
     </message>
     <message>
-        <source>Start or go on</source>
-        <translation>Starten oder fortfahren</translation>
+        <source>Start or resume</source>
+        <translation>Beginnen oder fortsetzen</translation>
     </message>
     <message>
         <source>Start temperature T₀</source>
@@ -4152,8 +4280,16 @@
         <translation>Abbrechen und schließen</translation>
     </message>
     <message>
+        <source>Stop at</source>
+        <translation>Ende bei</translation>
+    </message>
+    <message>
         <source>Stop what is running</source>
         <translation>Abbrechen, was in Arbeit ist</translation>
+    </message>
+    <message>
+        <source>Stopped</source>
+        <translation>Angehalten</translation>
     </message>
     <message>
         <source>Stopped. Choose another seed, or come back to this page, to begin again.</source>
@@ -4166,6 +4302,10 @@
     <message>
         <source>Stopped; what is finished is kept, and the start button goes on there.</source>
         <translation>Abgebrochen; was fertig ist, bleibt, und der Startknopf fährt dort fort.</translation>
+    </message>
+    <message>
+        <source>Stopping criterion</source>
+        <translation>Abbruchkriterium</translation>
     </message>
     <message>
         <source>Stopping …</source>
@@ -4268,6 +4408,10 @@
         <translation>Ziel</translation>
     </message>
     <message>
+        <source>Target of the coarsening</source>
+        <translation>Ziel der Vergröberung</translation>
+    </message>
+    <message>
         <source>Targets</source>
         <translation>Ziele</translation>
     </message>
@@ -4290,6 +4434,10 @@
     <message>
         <source>That is all of the file&apos;s {count:,} bytes.</source>
         <translation>Das sind alle {count:,} Bytes der Datei.</translation>
+    </message>
+    <message>
+        <source>The angle is measured when the particles have come to rest.</source>
+        <translation>Der Winkel wird gemessen, wenn die Partikel zur Ruhe gekommen sind.</translation>
     </message>
     <message>
         <source>The animation is in {path}.</source>
@@ -4342,6 +4490,10 @@
     <message>
         <source>The expansion up to l = {degree} misses the radius by {error} in the root mean square; a higher l_max comes closer, and on flat or long grains so does an ellipsoid as reference.</source>
         <translation>Die Entwicklung bis l = {degree} verfehlt den Radius im quadratischen Mittel um {error}; ein höheres l_max kommt näher, bei flachen oder länglichen Körnern auch ein Ellipsoid als Bezug.</translation>
+    </message>
+    <message>
+        <source>The exports are in {folder}.</source>
+        <translation>Die Exporte sind in {folder}.</translation>
     </message>
     <message>
         <source>The fewest facets are sought whose weighted descriptors are all off by no more than this; of V and CH, which cannot both be met, beyond what none can avoid.</source>
@@ -4420,6 +4572,10 @@
         <translation>Die Sprache gilt ab dem nächsten Start des Programms.</translation>
     </message>
     <message>
+        <source>The largest error of a weighted descriptor is {error}, of {symbol}.</source>
+        <translation>Der größte Fehler eines gewichteten Deskriptors ist {error}, bei {symbol}.</translation>
+    </message>
+    <message>
         <source>The lesson is still being computed.</source>
         <translation>Die Lektion wird noch berechnet.</translation>
     </message>
@@ -4432,16 +4588,20 @@
         <translation>Der Verlust fällt, während die Vergröberung läuft; das Spektrum zeigt, welche Grade erhalten bleiben. Nichts davon blockiert das Fenster: was in Arbeit ist, steht in der Statuszeile und lässt sich dort abbrechen.</translation>
     </message>
     <message>
+        <source>The manual of the program</source>
+        <translation>Das Handbuch des Programms</translation>
+    </message>
+    <message>
         <source>The method keeps descriptors exactly: each is asked for or not, whatever its weight.</source>
         <translation>Das Verfahren hält Deskriptoren genau ein: jeder wird verlangt oder nicht, gleich mit welchem Gewicht.</translation>
     </message>
     <message>
-        <source>The nearest to the sample first</source>
-        <translation>Das der Probe nächste zuerst</translation>
+        <source>The minimum-volume bounding box</source>
+        <translation>Der Hüllquader kleinsten Volumens</translation>
     </message>
     <message>
-        <source>The next window stands as a new one.</source>
-        <translation>Das nächste Fenster steht wie ein neues.</translation>
+        <source>The nearest to the sample first</source>
+        <translation>Das der Probe nächste zuerst</translation>
     </message>
     <message>
         <source>The other half is then new to the model, as in its judgement.</source>
@@ -4500,6 +4660,10 @@
         <translation>Das Polyeder hat so viele Facetten, wie sicher nicht mehr Dreiecke als diese haben.</translation>
     </message>
     <message>
+        <source>The polyhedron is not finished yet.</source>
+        <translation>Das Polyeder ist noch nicht fertig.</translation>
+    </message>
+    <message>
         <source>The proposal, T(k) and the decision with their numbers</source>
         <translation>Der Vorschlag, T(k) und die Entscheidung mit ihren Zahlen</translation>
     </message>
@@ -4518,6 +4682,10 @@
     <message>
         <source>The results are the same bytes whoever works, and a run that was stopped can go on.</source>
         <translation>Die Ergebnisse sind Byte für Byte dieselben, wer auch arbeitet, und ein abgebrochener Lauf lässt sich fortsetzen.</translation>
+    </message>
+    <message>
+        <source>The run was stopped before it was measured.</source>
+        <translation>Der Lauf wurde vor der Messung angehalten.</translation>
     </message>
     <message>
         <source>The same for the Kolmogorov-Smirnov distance</source>
@@ -4554,6 +4722,10 @@
     <message>
         <source>The spectrum appears when the particle is fitted.</source>
         <translation>Das Spektrum erscheint, sobald das Partikel angepasst ist.</translation>
+    </message>
+    <message>
+        <source>The star point and the surface hidden from it</source>
+        <translation>Der Sternpunkt und die von ihm verdeckte Oberfläche</translation>
     </message>
     <message>
         <source>The start: the convex hull, decimated to {count} planes. In each step one plane is moved at random, and the move is taken or not.</source>
@@ -4760,8 +4932,8 @@
         <translation>{count} Flächen, die zur falschen Seite zeigten, wurden gedreht.</translation>
     </message>
     <message>
-        <source>Two bodies beside a line</source>
-        <translation>Zwei Körper beiderseits einer Linie</translation>
+        <source>Two surfaces on either side of a line</source>
+        <translation>Zwei Oberflächen beiderseits einer Linie</translation>
     </message>
     <message>
         <source>Type</source>
@@ -4814,10 +4986,6 @@
     <message>
         <source>Usual</source>
         <translation>Üblich</translation>
-    </message>
-    <message>
-        <source>Usual keys</source>
-        <translation>Übliche Tasten</translation>
     </message>
     <message>
         <source>V</source>
@@ -4908,7 +5076,7 @@
         <translation>Voxel x, y, z</translation>
     </message>
     <message>
-        <source>W / floor</source>
+        <source>W / noise</source>
         <translation>W / Rauschen</translation>
     </message>
     <message>
@@ -4944,8 +5112,20 @@
         <translation>Gewicht: {name}</translation>
     </message>
     <message>
+        <source>Weighted sum of the Jaccard distance and the relative errors (Eq. 9)</source>
+        <translation>Gewichtete Summe aus Jaccard-Distanz und relativen Fehlern (Gl. 9)</translation>
+    </message>
+    <message>
         <source>Weighting</source>
         <translation>Gewichtung</translation>
+    </message>
+    <message>
+        <source>Weighting of the particles</source>
+        <translation>Gewichtung der Partikel</translation>
+    </message>
+    <message>
+        <source>Weighting of the representatives</source>
+        <translation>Gewichtung der Repräsentanten</translation>
     </message>
     <message>
         <source>Weighting of the statistics</source>
@@ -4968,20 +5148,12 @@
         <translation>Was aus jedem Fehler wird, wenn ein Gewicht des Verlusts geändert wird: auf welche Gewichte es ankommt.</translation>
     </message>
     <message>
-        <source>What formats lose</source>
-        <translation>Was Formate verlieren</translation>
-    </message>
-    <message>
         <source>What happened</source>
         <translation>Was geschehen ist</translation>
     </message>
     <message>
         <source>What has been exported is listed here, with the command that loads it.</source>
         <translation>Was exportiert wurde, steht hier, mit dem Befehl, der es lädt.</translation>
-    </message>
-    <message>
-        <source>What is imitated</source>
-        <translation>Was nachgebildet wird</translation>
     </message>
     <message>
         <source>What is laid over it, or shown to the right of the line</source>
@@ -5012,24 +5184,16 @@
         <translation>Was Überdeckung an Deskriptoren kostet, und Deskriptoren an Überdeckung: links unten ist besser.</translation>
     </message>
     <message>
-        <source>What particles count</source>
-        <translation>Was Partikel zählen</translation>
-    </message>
-    <message>
         <source>What radii are divided by before they are expanded. An ellipsoid lowers the oscillation on flat and elongated grains.</source>
         <translation>Wodurch Radien geteilt werden, bevor sie entwickelt werden. Ein Ellipsoid mindert das Schwingen bei flachen und länglichen Körnern.</translation>
     </message>
     <message>
-        <source>What representatives count</source>
-        <translation>Wonach Repräsentanten zählen</translation>
-    </message>
-    <message>
-        <source>What says how fine the polyhedron is</source>
-        <translation>Wonach sich richtet, wie fein das Polyeder ist</translation>
-    </message>
-    <message>
         <source>What the fit and the polyhedron keep</source>
         <translation>Was Fit und Polyeder bewahren</translation>
+    </message>
+    <message>
+        <source>What the guide says of the page</source>
+        <translation>Was das Handbuch zu der Seite sagt</translation>
     </message>
     <message>
         <source>What the polyhedra look like (Fig. 7)</source>
@@ -5042,10 +5206,6 @@
     <message>
         <source>What to draw from</source>
         <translation>Woraus gezogen wird</translation>
-    </message>
-    <message>
-        <source>What was said</source>
-        <translation>Was gesagt wurde</translation>
     </message>
     <message>
         <source>Whatever it looks like</source>
@@ -5064,20 +5224,8 @@
         <translation>Wie es weitergeht</translation>
     </message>
     <message>
-        <source>Which grain they belong to</source>
-        <translation>Zu welchem Korn sie gehören</translation>
-    </message>
-    <message>
-        <source>Which grains become particles</source>
-        <translation>Welche Körner Partikel werden</translation>
-    </message>
-    <message>
         <source>Which radius counts where a ray crosses the surface more than once. Keep the volume: the cube root of the signed sum of r³ over all crossings.</source>
         <translation>Welcher Radius zählt, wo ein Strahl die Oberfläche mehrmals durchstößt. Volumen erhalten: die Kubikwurzel der vorzeichenbehafteten Summe von r³ über alle Durchstöße.</translation>
-    </message>
-    <message>
-        <source>Which voxels are grain</source>
-        <translation>Welche Voxel Korn sind</translation>
     </message>
     <message>
         <source>Which {noun}</source>
@@ -5086,6 +5234,10 @@
     <message>
         <source>Wi&amp;pe</source>
         <translation>&amp;Wischblende</translation>
+    </message>
+    <message>
+        <source>Wipe</source>
+        <translation>Wischblende</translation>
     </message>
     <message>
         <source>Work done by</source>
@@ -5098,10 +5250,6 @@
     <message>
         <source>Working on particles</source>
         <translation>Partikel werden bearbeitet</translation>
-    </message>
-    <message>
-        <source>Wound alike</source>
-        <translation>Einheitlich orientiert</translation>
     </message>
     <message>
         <source>Write settings for the next scan</source>
@@ -5240,16 +5388,8 @@
         <translation>wie angepasst [%]</translation>
     </message>
     <message>
-        <source>as it came</source>
-        <translation>wie gelesen</translation>
-    </message>
-    <message>
         <source>as scanned</source>
         <translation>wie gescannt</translation>
-    </message>
-    <message>
-        <source>as small as the sampling noise from N = {count} on</source>
-        <translation>ab N = {count} so klein wie das Stichprobenrauschen</translation>
     </message>
     <message>
         <source>as the folder</source>
@@ -5284,8 +5424,16 @@
         <translation>vorher</translation>
     </message>
     <message>
+        <source>being computed; the first one takes longer …</source>
+        <translation>wird berechnet; das erste dauert länger …</translation>
+    </message>
+    <message>
         <source>being found …</source>
         <translation>wird gesucht …</translation>
+    </message>
+    <message>
+        <source>below the sampling noise for N ≥ {count}</source>
+        <translation>unter dem Stichprobenrauschen ab N = {count}</translation>
     </message>
     <message>
         <source>best</source>
@@ -5310,10 +5458,6 @@
     <message>
         <source>blade</source>
         <translation>klingenförmig</translation>
-    </message>
-    <message>
-        <source>bodies left out</source>
-        <translation>weggelassene Körper</translation>
     </message>
     <message>
         <source>both programs need rounded edges; facets stay in their planes, corners are lost.</source>
@@ -5460,6 +5604,10 @@
         <translation>verworfene Ziehungen [%]</translation>
     </message>
     <message>
+        <source>duplicate faces</source>
+        <translation>doppelte Dreiecke</translation>
+    </message>
+    <message>
         <source>each counts once</source>
         <translation>jedes zählt einmal</translation>
     </message>
@@ -5502,18 +5650,6 @@
     <message>
         <source>exact minimum volume</source>
         <translation>kleinstes Volumen (exakt)</translation>
-    </message>
-    <message>
-        <source>faces that cross</source>
-        <translation>Flächen, die sich kreuzen</translation>
-    </message>
-    <message>
-        <source>faces there twice</source>
-        <translation>doppelte Flächen</translation>
-    </message>
-    <message>
-        <source>faces turned round</source>
-        <translation>verdrehte Flächen</translation>
     </message>
     <message>
         <source>faces without area</source>
@@ -5600,16 +5736,20 @@
         <translation>Gruppe</translation>
     </message>
     <message>
-        <source>held back</source>
-        <translation>angehalten</translation>
-    </message>
-    <message>
         <source>hidden from the star point</source>
         <translation>vom Sternpunkt aus verdeckt</translation>
     </message>
     <message>
+        <source>in the file</source>
+        <translation>in der Datei</translation>
+    </message>
+    <message>
         <source>in the regression</source>
         <translation>in der Regression</translation>
+    </message>
+    <message>
+        <source>intersecting faces</source>
+        <translation>sich schneidende Dreiecke</translation>
     </message>
     <message>
         <source>kernel</source>
@@ -5648,10 +5788,6 @@
         <translation>kleinster Abstand zweier paralleler Tangentialebenen</translation>
     </message>
     <message>
-        <source>least possible</source>
-        <translation>kleinstmöglich</translation>
-    </message>
-    <message>
         <source>left flank: {z:.3g} mm, {angle:.1f}°</source>
         <translation>linke Flanke: {z:.3g} mm, {angle:.1f}°</translation>
     </message>
@@ -5684,10 +5820,6 @@
         <translation>längste Kante des Hüllquaders</translation>
     </message>
     <message>
-        <source>loss (Eq. 9): {loss:.4g}</source>
-        <translation>Verlust (Gl. 9): {loss:.4g}</translation>
-    </message>
-    <message>
         <source>loss {loss:.4g}; {facets} facets of {planes} planes</source>
         <translation>Verlust {loss:.4g}; {facets} Facetten aus {planes} Ebenen</translation>
     </message>
@@ -5696,8 +5828,8 @@
         <translation>Verlust {loss:.4g}; {facets} Facetten; Schleier: das Vorbild</translation>
     </message>
     <message>
-        <source>lowest {loss:.3g}</source>
-        <translation>kleinster {loss:.3g}</translation>
+        <source>lower bound</source>
+        <translation>untere Schranke</translation>
     </message>
     <message>
         <source>mass and inertia</source>
@@ -5764,12 +5896,12 @@
         <translation>fast ein Ellipsoid</translation>
     </message>
     <message>
-        <source>needs no numbers</source>
-        <translation>braucht keine Zahlen</translation>
-    </message>
-    <message>
         <source>no</source>
         <translation>nein</translation>
+    </message>
+    <message>
+        <source>no numbers needed</source>
+        <translation>keine Zahlen nötig</translation>
     </message>
     <message>
         <source>no polyhedron</source>
@@ -5816,28 +5948,28 @@
         <translation>Hinweis</translation>
     </message>
     <message>
-        <source>now</source>
-        <translation>jetzt</translation>
-    </message>
-    <message>
         <source>number</source>
         <translation>Anzahl</translation>
-    </message>
-    <message>
-        <source>on its way; the very first one takes longer …</source>
-        <translation>unterwegs; das allererste dauert länger …</translation>
-    </message>
-    <message>
-        <source>overlapping spheres stand for each polyhedron; facets become bumpy, corners round.</source>
-        <translation>überlappende Kugeln stehen für jedes Polyeder; Facetten werden höckerig, Ecken rund.</translation>
     </message>
     <message>
         <source>pairs of r_eq, A, AR: the largest energy distance [%]</source>
         <translation>Paare aus r_eq, A, AR: die größte Energiedistanz [%]</translation>
     </message>
     <message>
+        <source>part of the volume</source>
+        <translation>ein Teil des Volumens</translation>
+    </message>
+    <message>
+        <source>parts left out</source>
+        <translation>ausgelassene Teile</translation>
+    </message>
+    <message>
         <source>passed</source>
         <translation>bestanden</translation>
+    </message>
+    <message>
+        <source>paused</source>
+        <translation>angehalten</translation>
     </message>
     <message>
         <source>pictures, drawn off-screen</source>
@@ -5900,6 +6032,14 @@
         <translation>abgelehnt</translation>
     </message>
     <message>
+        <source>reoriented faces</source>
+        <translation>umorientierte Dreiecke</translation>
+    </message>
+    <message>
+        <source>repaired</source>
+        <translation>repariert</translation>
+    </message>
+    <message>
         <source>resampled</source>
         <translation>neu gezogen</translation>
     </message>
@@ -5912,8 +6052,8 @@
         <translation>rechts {angle:.1f}°</translation>
     </message>
     <message>
-        <source>rigid clumps of overlapping spheres (12 by default) with the polyhedra&apos;s volume, mass and inertia</source>
-        <translation>starre Gruppen überlappender Kugeln (sonst 12) mit Volumen, Masse und Trägheit der Polyeder</translation>
+        <source>rigid clumps of inscribed spheres (8 by default) with the polyhedra&apos;s mass and inertia: rounder</source>
+        <translation>starre Gruppen einbeschriebener Kugeln (sonst 8) mit Masse und Trägheit der Polyeder: runder</translation>
     </message>
     <message>
         <source>rims of holes</source>
@@ -6016,6 +6156,10 @@
         <translation>Kugeln im Bezug einer Form vom Volumen 1; Durchmesser in Mikrometern</translation>
     </message>
     <message>
+        <source>spheres inside each polyhedron stand for it; facets become bumpy and some volume is missing.</source>
+        <translation>Kugeln in jedem Polyeder stehen für es; Facetten werden höckerig, und etwas Volumen fehlt.</translation>
+    </message>
+    <message>
         <source>sphericity</source>
         <translation>Sphärizität</translation>
     </message>
@@ -6100,6 +6244,10 @@
         <translation>das Partikel selbst</translation>
     </message>
     <message>
+        <source>the particles as they were then</source>
+        <translation>die Partikel, wie sie dann waren</translation>
+    </message>
+    <message>
         <source>the surface of the spherical-harmonics fit at l&lt;sub&gt;max&lt;/sub&gt; = {l_max}</source>
         <translation>die Oberfläche des Fits mit Kugelflächenfunktionen bei l&lt;sub&gt;max&lt;/sub&gt; = {l_max}</translation>
     </message>
@@ -6124,8 +6272,8 @@
         <translation>Verlust am Rand ausgleichen</translation>
     </message>
     <message>
-        <source>unilateral constraint, no bounce; penetration is reported, stiffness has no part</source>
-        <translation>einseitige Zwangsbedingung, kein Rückprall; die Durchdringung wird gemeldet, die Steifigkeit spielt keine Rolle</translation>
+        <source>unilateral constraint, no bounce; penetration is reported, stiffness is not used</source>
+        <translation>einseitige Zwangsbedingung, kein Rückprall; Eindringung wird gemeldet, die Steifigkeit nicht verwendet</translation>
     </message>
     <message>
         <source>unknown</source>
@@ -6264,7 +6412,7 @@
         <translation>{count:,} gezogen</translation>
     </message>
     <message>
-        <source>{count:,} draws thrown away</source>
+        <source>{count:,} draws rejected</source>
         <translation>{count:,} Ziehungen verworfen</translation>
     </message>
     <message>
@@ -6312,8 +6460,8 @@
         <translation>{count} Facetten</translation>
     </message>
     <message>
-        <source>{count} facets, Jaccard distance J = {distance:.3f}, loss of this row {loss:.3g}</source>
-        <translation>{count} Facetten, Jaccard-Distanz J = {distance:.3f}, Verlust dieser Zeile {loss:.3g}</translation>
+        <source>{count} facets, Jaccard distance J = {distance:.1%}, loss of this row {loss:.3g}</source>
+        <translation>{count} Facetten, Jaccard-Distanz J = {distance:.1%}, Verlust dieser Zeile {loss:.3g}</translation>
     </message>
     <message>
         <source>{count} files were written to {folder}.</source>
@@ -6362,6 +6510,10 @@
     <message>
         <source>{count} particles are in {name}.</source>
         <translation>{count} Partikel sind in {name}.</translation>
+    </message>
+    <message>
+        <source>{count} particles are open.</source>
+        <translation>{count} Partikel sind offen.</translation>
     </message>
     <message>
         <source>{count} particles came from no file and are not in it ({names}); export them.</source>
@@ -6460,6 +6612,10 @@
         <translation>{low:.1f} bis {high:.1f}</translation>
     </message>
     <message>
+        <source>{low:.1f}° to {high:.1f}°</source>
+        <translation>{low:.1f}° bis {high:.1f}°</translation>
+    </message>
+    <message>
         <source>{method}, seed {seed}</source>
         <translation>{method}, Startwert {seed}</translation>
     </message>
@@ -6506,6 +6662,10 @@
     <message>
         <source>{name} stands for {count} particles ({share})</source>
         <translation>{name} steht für {count} Partikel ({share})</translation>
+    </message>
+    <message>
+        <source>{name} would be {size} across.</source>
+        <translation>{name} wäre {size} groß.</translation>
     </message>
     <message>
         <source>{name} × {factor}</source>
@@ -6566,6 +6726,10 @@
     <message>
         <source>{share:.0%} bootstrap intervals</source>
         <translation>{share:.0%}-Bootstrap-Intervalle</translation>
+    </message>
+    <message>
+        <source>{share:.0%} interval</source>
+        <translation>{share:.0%}-Intervall</translation>
     </message>
     <message>
         <source>{share} quant.</source>

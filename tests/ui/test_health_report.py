@@ -98,7 +98,7 @@ def test_that_the_legend_names_what_was_found_with_its_number(panel):
     panel.show_entry(entry(BALL, mended=False))
     panel.show_legend({"hidden": 3})
     assert "Before the repair" not in panel.legend.text()
-    assert f"bodies left out ({len(SMALL.faces)})" in words
+    assert f"parts left out ({len(SMALL.faces)})" in words
     panel.show_legend({})
     assert "no faults" in panel.legend.text()
 

@@ -153,7 +153,7 @@ def test_that_a_stopped_run_and_changed_values_leave_no_earlier_angle(
     small(page, dataset)
     import_positions(page, monkeypatch, tmp_path, pile_of(30.0))
     wait(lambda: page._measured is not None)
-    assert "30" in page.verdict.text()
+    assert "°" in page.angle.figures[0].text()
 
     def stopped(*_):
         yield Partial(Snapshot(pile_of(20.0, 40), 0.5, "lift"))
@@ -163,6 +163,7 @@ def test_that_a_stopped_run_and_changed_values_leave_no_earlier_angle(
     page.run_test()
     wait(lambda: not page.busy())
     assert "stopped" in page.verdict.text()
+    assert "°" not in page.angle.figures[0].text()
     assert page.x_z.is_empty()
     assert "Stopped" in page.player.frame.title
     assert page.setup.run.isEnabled()
@@ -191,7 +192,7 @@ def test_that_positions_are_measured_and_a_dragged_cut_changes_the_angle(page, t
     wait(lambda: page.x_z.section is not None)
     assert page._measured.angle == pytest.approx(30.0, abs=2.0)
     before = page._measured
-    assert "Angle of repose" in page.verdict.text()
+    assert page.angle.figures[0].text() == f"{page._measured.angle:.1f}°"
     cut = page.x_z.cut("high")
     cut.setValue(0.7 * 1e3 * page.x_z.section.profile.top)
     cut.sigPositionChangeFinished.emit(cut)

@@ -252,7 +252,7 @@ class SampleMatchedModel:
     key = KEY
     label = N_("Matched to the sample")
     summary = N_(
-        "Measured surfaces turned within their ellipsoids: sizes and shapes as in the sample, bodies new."
+        "Rotates measured surfaces within their ellipsoids: new particles, sizes and shapes as in the sample."
     )
     Settings = SampleMatchedSettings
 

@@ -10,7 +10,7 @@ from regolith_studio.ui.translation import tr
 
 LESSONS = ("lecture:annealing", "lecture:degrees", "lecture:field")
 LOOKS = ("sample:faults", "scan:preview", "repose:preview", "dataset:library", "model:compare", "model:live")
-SHORT = {*(str(kind) for kind in LIVE), "load", "inspect", *LESSONS, *LOOKS}
+SHORT = {*(str(kind) for kind in LIVE), "load", "look", "inspect", *LESSONS, *LOOKS}
 """Lanes whose work is repeated by itself when the file, or the page, is opened again."""
 
 

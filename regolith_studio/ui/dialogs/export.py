@@ -68,7 +68,7 @@ def summary(count: int, choices: Choices, cost: str = "") -> list[tuple[str, str
     return [
         (tr("Particles"), files),
         (tr("Each with"), facet_limit_text(choices)),
-        (tr("Imitating"), target),
+        (tr("Target"), target),
         (tr("Method"), method),
         (tr("Weights"), (weights or tr("none")) + f" ({preset})"),
         (tr("Also"), tr("weights, size distribution, descriptors, provenance (JSON)")),

@@ -25,7 +25,7 @@ class FolderDialog(QFileDialog):
         self.setObjectName("folder_dialog")
         self.setFileMode(QFileDialog.FileMode.Directory)
         self.setOption(QFileDialog.Option.ShowDirsOnly)
-        self.setLabelText(QFileDialog.DialogLabel.FileName, tr("Folder, may be new:"))
+        self.setLabelText(QFileDialog.DialogLabel.FileName, tr("Folder (created if missing):"))
         if (line := self._line()) is not None:
             line.textChanged.connect(self._allow)  # after Qt, which greys the button out for a new one
 

@@ -17,6 +17,12 @@ from regolith_studio.ui.icons import pixmap
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.labels import heading, remark
 
+PAPER = (
+    "Geometry-Preserving Mesh Coarsening of Stochastically Generated Regolith Particles"
+    " for Use in DEM Simulations"
+)
+"""The paper whose equations, figures, tables and sections the window names."""
+
 
 def about_dialog(parent: QWidget, renderer: str) -> QDialog:
     """Version, purpose, and the libraries that matter when something looks wrong."""
@@ -34,6 +40,9 @@ def about_dialog(parent: QWidget, renderer: str) -> QDialog:
     text.addWidget(remark(", ".join(f"{name} {_version(name)}" for name in names)))
     drawn = tr("drawn by OpenGL in the window") if renderer == "live" else tr("pictures, drawn off-screen")
     text.addWidget(remark(tr("Three-dimensional views: {how}", how=drawn)))
+    source = remark(tr("After: {title}.", title=PAPER))
+    source.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
+    text.addWidget(source)
     row = QHBoxLayout()
     row.setSpacing(16)
     row.addWidget(mark)

@@ -66,7 +66,7 @@ class ShortcutsDialog(QDialog):
         self.editor.setMaximumSequenceLength(1)
         self.editor.setClearButtonEnabled(True)
         self.change, self.default, self.all_defaults = (
-            QPushButton(words) for words in (tr("Change"), tr("Usual keys"), tr("All usual keys"))
+            QPushButton(words) for words in (tr("Change"), tr("Default keys"), tr("All default keys"))
         )
         for button, name in (
             (self.change, "change"),

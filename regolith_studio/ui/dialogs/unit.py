@@ -14,9 +14,9 @@ from PySide6.QtWidgets import (
 )
 
 from regolith_studio.messages import N_
-from regolith_studio.readers.units import UNITS
+from regolith_studio.readers.units import UNITS, unit_factor
 from regolith_studio.ui.translation import tr, tr_count
-from regolith_studio.ui.widgets.labels import remark
+from regolith_studio.ui.widgets.labels import remark, short_number
 
 LABELS = {
     "um": N_("Micrometres (µm)"),
@@ -28,17 +28,25 @@ LABELS = {
 }
 
 
+GRAIN_SIZES = (1.0, 5000.0)
+"""Plausible longest sides of regolith particles in micrometres."""
+
+
 class UnitDialog(QDialog):
     """Edits one unit, as the readers take it: ``mm``, or ``voxel:2.3`` with the voxel's edge in µm."""
 
     def __init__(self, paths: list[Path], suggestion: str, parent: QWidget | None = None) -> None:
         super().__init__(parent)
+        self._first: tuple[str, float] | None = None
+        self._touched = False
+        self.size_note = remark()
+        self.size_note.setObjectName("unit_size")
         self.setWindowTitle(tr("Length unit"))
         self.setObjectName("unit_dialog")
         question = QLabel(
             tr_count(
-                N_("In which unit are the numbers of {name}?"),
-                N_("In which unit are the numbers of these {count} files and folders?"),
+                N_("Length unit of {name}"),
+                N_("Length unit of these {count} files and folders"),
                 len(paths),
                 name=paths[0].name,
             )
@@ -68,9 +76,13 @@ class UnitDialog(QDialog):
         layout = QVBoxLayout(self)
         layout.addWidget(question)
         layout.addLayout(form)
-        layout.addWidget(remark(tr("Mesh files carry no unit. The answer is kept for their folder.")))
+        layout.addWidget(self.size_note)
+        layout.addWidget(remark(tr("Mesh files contain no unit. The answer is kept for their folder.")))
         layout.addWidget(buttons)
         self.unit.currentIndexChanged.connect(self._show_voxel)
+        self.unit.currentIndexChanged.connect(self._show_size)
+        self.unit.activated.connect(lambda _: setattr(self, "_touched", True))
+        self.voxel.valueChanged.connect(self._show_size)
         self.setValue(suggestion)
 
     def value(self) -> str:
@@ -86,7 +98,35 @@ class UnitDialog(QDialog):
             self.voxel.setValue(float(size))
         self._show_voxel()
 
+    def set_first(self, first: tuple[str, float] | None) -> None:
+        """Show how large a particle would be; suggest the unit that makes it a grain.
+
+        Parameters
+        ----------
+        first
+            Name of the first particle, and its longest side as the file gives it.
+        """
+        self._first = first
+        if first is not None and not self._touched and not _is_plausible(first[1], self.value()):
+            plausible = [unit for unit in UNITS if unit != "voxel" and _is_plausible(first[1], unit)]
+            if plausible:
+                self.setValue(plausible[0])
+        self._show_size()
+
+    def _show_size(self) -> None:
+        if self._first is None:
+            return
+        name, length = self._first
+        size = f"{short_number(length * unit_factor(self.value()), 3)} µm"
+        self.size_note.setText(tr("{name} would be {size} across.", name=name, size=size))
+
     def _show_voxel(self) -> None:
         asked = self.unit.currentData() == "voxel"
         self.voxel.setEnabled(asked)
         self._voxel_label.setEnabled(asked)
+
+
+def _is_plausible(length: float, unit: str) -> bool:
+    """Whether a particle of this longest side has the size of a grain."""
+    low, high = GRAIN_SIZES
+    return low <= length * unit_factor(unit) <= high

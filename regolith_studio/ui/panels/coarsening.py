@@ -76,14 +76,14 @@ class CoarseningPanel(QWidget):
     def __init__(self) -> None:
         super().__init__()
         self.setObjectName("coarsening")
-        self.stop_at = ChoiceBox("stop_at", tr("What says how fine the polyhedron is"), STOPS)
+        self.stop_at = ChoiceBox("stop_at", tr("Stopping criterion"), STOPS)
         self.stop_at.setToolTip(self.stop_at.accessibleName())
         self.stop_at.setMinimumContentsLength(max(len(tr(label)) for label in STOPS.values()))
         self.n_facets = _amount(FACETS, "n_facets")
         self.n_triangles = _amount(TRIANGLES, "n_triangles")
         self.largest_error = _amount(ERROR, "largest_error")
         self._amounts = {"facets": self.n_facets, "triangles": self.n_triangles, "error": self.largest_error}
-        self.target = ChoiceBox("target", tr("What is imitated"), TARGET_LABELS)
+        self.target = ChoiceBox("target", tr("Target of the coarsening"), TARGET_LABELS)
         self.method = ChoiceBox("method", tr("Coarsening method"), {k: m.label for k, m in METHODS.items()})
         self.seed = _seed_field()
         self.dice = QToolButton()

@@ -46,7 +46,7 @@ class FitPanel(QWidget):
             each.name: ChoiceBox(each.name, tr(each.metadata["label"]), each.metadata["choices"])
             for each in fields(FitOptions)
         }
-        self.more = Collapsible(tr("How radii are taken"), self._form())
+        self.more = Collapsible(tr("Radius function"), self._form())
         self.more.button.setObjectName("radius_settings")
         self.findings = remark()
         self.warnings = remark(role="warning")

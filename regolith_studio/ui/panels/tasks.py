@@ -93,7 +93,7 @@ class TasksPanel(QWidget):
         count = f" ({steps})" if first.total else ""
         message = f": {translate(first.message)}" if first.message else ""
         more = "   " + tr("and {count} more", count=others) if others else ""
-        held = " – " + tr("held back") if first.paused else ""
+        held = " – " + tr("paused") if first.paused else ""
         self.text.setText(f"{translate(first.title)}{count}{message}{held}{more}")
 
     def _request(self) -> None:

@@ -276,7 +276,7 @@ class ThreeViews(QSplitter):
     def _empty_titles(self) -> None:
         self.frames[PARTICLE].set_texts(tr("Particle"))
         self.frames[FIT].set_texts(tr("Spherical-harmonics fit"), tr("waiting for the coefficients …"))
-        late = tr("on its way; the very first one takes longer …")
+        late = tr("being computed; the first one takes longer …")
         self.frames[POLYHEDRON].set_texts(tr("Polyhedron"), late)
 
 

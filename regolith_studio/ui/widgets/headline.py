@@ -8,7 +8,7 @@ from PySide6.QtWidgets import QFrame, QGridLayout, QHBoxLayout, QLabel, QWidget
 from regolith_studio.ui.widgets.fixed_height_text import FixedHeightText
 from regolith_studio.ui.widgets.labels import remark
 
-MAGNIFICATION = 1.9
+MAGNIFICATION = 1.75
 """Size of the figures in units of the widget's font."""
 LINES = 3
 """Visible lines of the sentence."""
@@ -34,7 +34,7 @@ class Headline(QFrame):
         self.sentence = remark()
         self.sentence.setObjectName(f"{name}_sentence")
         grid = QGridLayout()
-        grid.setHorizontalSpacing(22)
+        grid.setHorizontalSpacing(16)
         grid.setVerticalSpacing(0)
         for column, (figure, caption) in enumerate(zip(self.figures, self.captions, strict=True)):
             caption.setWordWrap(False)
@@ -43,7 +43,7 @@ class Headline(QFrame):
             grid.addWidget(caption, 1, column)
         row = self._row = QHBoxLayout(self)
         row.setContentsMargins(12, 5, 10, 5)
-        row.setSpacing(24)
+        row.setSpacing(16)
         row.addLayout(grid)
         row.addWidget(FixedHeightText((self.sentence,), LINES), 1)
         self._enlarge()

@@ -17,7 +17,7 @@ HALVED_STEPS = 2.2
 
 REPRESENTS = EngineCapabilities(
     shape=N_("the convex polyhedra themselves"),
-    normal=N_("unilateral constraint, no bounce; penetration is reported, stiffness has no part"),
+    normal=N_("unilateral constraint, no bounce; penetration is reported, stiffness is not used"),
     tangential=N_("Coulomb friction in an elliptic cone, one coefficient (the static one)"),
     cohesion=N_(
         "pull-off force 3/2 π w R*, shared by the contact points; hardly steepens a heap: take LAMMPS"

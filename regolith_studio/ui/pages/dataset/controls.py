@@ -24,7 +24,7 @@ POPULATION_LINES, SIZES_LINES, ASKED_LINES, STATE_LINES = (1, 2), (1, 3), (3, 3)
 """Visible lines of the texts between the controls, in low and in high windows."""
 COUNT = NumberSpec("N", N_("Number of representatives"), 1, MAX_REPRESENTATIVES, tip=N_("The paper has 10."))
 WEIGHTINGS = {
-    "number": N_("Each particle counts the same"),
+    "number": N_("Each particle counts equally"),
     "volume": N_("Particles count by their volume"),
 }
 SIZES = {
@@ -64,7 +64,7 @@ class RepresentativesPanel(QWidget):
         self.start.setObjectName("dataset_find")
         self.count.field.setObjectName("dataset_count")
         self.weighting.setObjectName("dataset_weighting")
-        self.weighting.setAccessibleName(tr("What representatives count"))
+        self.weighting.setAccessibleName(tr("Weighting of the representatives"))
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         for widget in (
@@ -188,7 +188,7 @@ class SizesPanel(QWidget):
         example = SIZES[key][1]
         self.numbers.setEnabled(bool(example))
         self.numbers.setText(example)
-        self.numbers.setPlaceholderText("" if example else tr("needs no numbers"))
+        self.numbers.setPlaceholderText("" if example else tr("no numbers needed"))
         self.hint.setText(tr(HINTS.get(key, "")))
         self.hint.setVisible(key in HINTS)
         self._emit_sizes()

@@ -96,6 +96,7 @@ class DatasetPage(PageWidget):
         self._context.bindings.refresh("choices", self._show_choices, SHAPE_FIELDS, slow=True)
         self._context.bindings.refresh("opened_request", self._take_opened)
         self._show_losses()
+        self._enable_build()
 
     # --- the page of the window ----------------------------------------------------------------
 

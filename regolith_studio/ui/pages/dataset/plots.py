@@ -54,9 +54,7 @@ class QualityPlot(CurvePlot):
         self._points = curve.points if curve else ()
         self._noise = curve.noise_mean if curve else None
         enough = curve.sufficient_count if curve else None
-        self.set_remark(
-            tr("as small as the sampling noise from N = {count} on", count=enough) if enough else ""
-        )
+        self.set_remark(tr("below the sampling noise for N ≥ {count}", count=enough) if enough else "")
         self._draw()
 
     def set_theme(self, theme: Theme) -> None:

@@ -30,7 +30,8 @@ PAGE = Page(
             "Ctrl+L",
             N_("Turn all views together"),
             True,
-            "icon",
+            bar="under",
+            label=N_("Link"),
         ),
         ActionSpec(
             N_("&View"),
@@ -39,9 +40,10 @@ PAGE = Page(
             "reset",
             "Ctrl+R",
             N_("Show the whole particle"),
-            bar="icon",
+            bar="under",
+            label=N_("Reset"),
         ),
-        ActionSpec(N_("&View"), "list", N_("&Particle list"), "", "", N_("Show the open particles"), True),
+        ActionSpec(N_("&View"), "list", N_("Particle l&ist"), "", "", N_("Show the open particles"), True),
         *(
             ActionSpec(N_("Look &from"), f"look_{key}", each.label, "", _DIRECTION_KEYS.get(key, ""))
             for key, each in DIRECTIONS.items()
@@ -55,7 +57,8 @@ PAGE = Page(
             "Ctrl+M",
             N_("Show triangles"),
             False,
-            "icon",
+            bar="under",
+            label=N_("Triangles"),
         ),
         ActionSpec(
             N_("&View"),
@@ -63,15 +66,32 @@ PAGE = Page(
             N_("&Distance map"),
             "heat",
             "Ctrl+D",
-            N_("Show fitting errors"),
+            N_("Colour the fit by its distance from the particle"),
             False,
-            "icon",
+            bar="under",
+            label=N_("Distances"),
         ),
         ActionSpec(
-            N_("&View"), "overlay", N_("&Overlay"), "overlay", "", N_("One body over another"), False, "icon"
+            N_("&View"),
+            "overlay",
+            N_("&Overlay"),
+            "overlay",
+            "",
+            N_("One surface over another"),
+            False,
+            bar="under",
+            label=N_("Overlay"),
         ),
         ActionSpec(
-            N_("&View"), "wipe", N_("Wi&pe"), "wipe", "Ctrl+I", N_("Two bodies beside a line"), False, "icon"
+            N_("&View"),
+            "wipe",
+            N_("Wi&pe"),
+            "wipe",
+            "Ctrl+I",
+            N_("Two surfaces on either side of a line"),
+            False,
+            bar="under",
+            label=N_("Wipe"),
         ),
         ActionSpec(
             N_("&View"),
@@ -81,10 +101,19 @@ PAGE = Page(
             "Ctrl+K",
             N_("Cut all views"),
             False,
-            "icon",
+            bar="under",
+            label=N_("Section"),
         ),
         ActionSpec(
-            N_("&View"), "box", N_("&Bounding box"), "box", "Ctrl+B", N_("Smallest in volume"), False, "icon"
+            N_("&View"),
+            "box",
+            N_("&Bounding box"),
+            "box",
+            "Ctrl+B",
+            N_("The minimum-volume bounding box"),
+            False,
+            bar="under",
+            label=N_("Box"),
         ),
         ActionSpec(
             N_("&View"),
@@ -92,9 +121,10 @@ PAGE = Page(
             N_("Star &point"),
             "star",
             "",
-            N_("And what it cannot see"),
+            N_("The star point and the surface hidden from it"),
             False,
-            "icon",
+            bar="under",
+            label=N_("Star point"),
         ),
         ActionSpec(
             N_("&View"),
@@ -105,7 +135,14 @@ PAGE = Page(
             N_("One after the other, then all"),
         ),
         ActionSpec(
-            PAGE_MENU, "save_picture", N_("Save &picture …"), "camera", "Ctrl+P", N_("PNG"), bar="icon"
+            PAGE_MENU,
+            "save_picture",
+            N_("Save &picture …"),
+            "camera",
+            "Ctrl+P",
+            N_("PNG"),
+            bar="under",
+            label=N_("Picture"),
         ),
         ActionSpec(
             PAGE_MENU, "save_turntable", N_("Save &turntable …"), tip=N_("One turn: GIF, WebP, PNG files")

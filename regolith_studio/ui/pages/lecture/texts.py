@@ -128,7 +128,7 @@ def sentence_of(step: AnnealingStep, lesson: AnnealingLesson) -> str:
         return tr(
             "{moved}: the half-spaces bound no polyhedron any more. Refused without asking T(k).", moved=moved
         )
-    losses = {"before": _number(move.before.loss), "after": _number(move.proposed.loss)}
+    losses = dict(zip(("before", "after"), _apart(move.before.loss, move.proposed.loss), strict=True))
     if move.better:
         return tr(
             "{moved}: the loss falls from {before} to {after}. Better, so it is accepted.",
@@ -196,6 +196,12 @@ def field_lines(amplitudes: Sequence[float]) -> tuple[str, ...]:
         r"Y_{lm}(\theta,\varphi),\quad z_{lm}\sim N(0,1)$",
         rf"$\sqrt{{A_l/4\pi}}={listed}$",
     )
+
+
+def _apart(one: float, other: float) -> tuple[str, str]:
+    """Two different numbers with as many digits as tell them apart."""
+    pairs = ((f"{one:.{digits}g}", f"{other:.{digits}g}") for digits in range(3, 17))
+    return next((pair for pair in pairs if pair[0] != pair[1]), (f"{one:.3g}", f"{other:.3g}"))
 
 
 def _number(value: float) -> str:

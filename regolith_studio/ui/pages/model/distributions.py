@@ -15,7 +15,7 @@ from regolith_studio.ui.widgets.labels import ElidedLabel, rich_symbol, short_nu
 from regolith_studio.ui.widgets.plots.curves import CurvePlot, PlotCurve
 
 WEIGHTINGS = {
-    "number": N_("Each particle counts the same"),
+    "number": N_("Each particle counts equally"),
     "volume": N_("Particles count by their volume"),
 }
 WAITING = N_("Draw particles: their distributions appear here, over those of the measured ones.")
@@ -30,7 +30,9 @@ class DistributionsPanel(QWidget):
         super().__init__()
         self.setObjectName("model_distributions")
         self.key = ChoiceBox("model_distribution_of", tr("Descriptor"), {k: CATALOGUE[k].label for k in KEYS})
-        self.weighting = ChoiceBox("model_distribution_weighting", tr("What particles count"), WEIGHTINGS)
+        self.weighting = ChoiceBox(
+            "model_distribution_weighting", tr("Weighting of the particles"), WEIGHTINGS
+        )
         self.plot = CurvePlot("", tr(SHARE), tr(WAITING))
         self.words = ElidedLabel(role="remark")
         self.weighting.setMinimumContentsLength(26)

@@ -51,8 +51,8 @@ TABLES: dict[str, tuple[str, Callable[[PopulationStudy], Table]]] = {
 }
 HEADERS = (
     N_("Model"),
-    N_("W / floor"),
-    N_("KS / floor"),
+    N_("W / noise"),
+    N_("KS / noise"),
     N_("Energy"),
     N_("Classifier"),
     N_("Novelty"),
@@ -67,7 +67,7 @@ TIPS = (
     N_("Mean energy distance of pairs of descriptors: 0 for equal distributions"),
     N_("Share that a classifier tells right: 0.5 cannot be told apart"),
     N_("Median distance to the nearest measured particle, over that between measured ones: 0 is a copy"),
-    N_("Draws thrown away"),
+    N_("Rejected draws"),
 )
 NUMBERS = Qt.AlignmentFlag.AlignCenter
 MIN_FIGURE_SCALE = 0.55

@@ -256,7 +256,7 @@ class ModelPage(PageWidget):
             low, high = drawn.radii
             words += ", " + tr("r_eq {low:.3g} to {high:.3g} µm", low=low, high=high)
         if drawn.draws.rejected:
-            words += "; " + tr("{count:,} draws thrown away", count=drawn.draws.rejected)
+            words += "; " + tr("{count:,} draws rejected", count=drawn.draws.rejected)
         self.drawing.findings.setText(rich_symbol(f"{words}."))
         self.gallery.show_shapes(self._fitted.examples if self._fitted else (), drawn.examples)
         job = Job(compare_distributions, (self._sample(), drawn.draws))

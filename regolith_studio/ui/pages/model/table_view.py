@@ -20,8 +20,8 @@ WORDS = {
     "kolmogorov_smirnov_low": N_("KS from"),
     "kolmogorov_smirnov_high": N_("KS to"),
     "kolmogorov_smirnov_floor": N_("KS floor"),
-    "wasserstein_in_floors": N_("W / floor"),
-    "kolmogorov_smirnov_in_floors": N_("KS / floor"),
+    "wasserstein_in_floors": N_("W / noise"),
+    "kolmogorov_smirnov_in_floors": N_("KS / noise"),
     "energy_distance": N_("Energy distance"),
 }
 """Short headers; tool tips have the long ones."""

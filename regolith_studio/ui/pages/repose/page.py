@@ -6,7 +6,7 @@ from typing import Any
 
 from platformdirs import user_data_path
 from PySide6.QtCore import QTimer
-from PySide6.QtWidgets import QFileDialog, QHBoxLayout, QWidget
+from PySide6.QtWidgets import QFileDialog, QHBoxLayout, QVBoxLayout, QWidget
 
 from regolith_studio.dataset.parameters import LiftingCylinderTest
 from regolith_studio.dem.angle_of_repose import ReposeMeasurement
@@ -46,7 +46,7 @@ from regolith_studio.ui.pages.repose.study import StudyPanel
 from regolith_studio.ui.pages.repose.study_controller import ReposeStudyController
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import tr
-from regolith_studio.ui.widgets.labels import remark
+from regolith_studio.ui.widgets.headline import Headline
 
 PREVIEW_DELAY = 250
 """Milliseconds from the last change to the preview."""
@@ -73,8 +73,9 @@ class ReposePage(PageWidget):
         self.setup = SetupPanel()
         self.player = RunPlayer(self._context.views)
         self.x_z, self.y_z = SectionPlot("x"), SectionPlot("y")
-        self.verdict = remark(tr("No pile yet."))
-        self.verdict.setObjectName("repose_verdict")
+        self.angle = Headline("repose_angle", (tr("Angle of repose"), tr("Interval")))
+        self.verdict = self.angle.sentence
+        self._show_answer(tr("No pile yet."))
         self.runs = RunsPanel()
         self.study = StudyPanel()
         self.engines = EnginePanel()
@@ -361,12 +362,15 @@ class ReposePage(PageWidget):
     def _show_measurement(self, measured: ReposeMeasurement | NotAPileError) -> None:
         if isinstance(measured, NotAPileError) or self._pile is None:
             self._measured = None
-            self.verdict.setText(tr("There is no angle of repose."))
+            self._show_answer(tr("There is no angle of repose."))
             for plot in (self.x_z, self.y_z):
                 plot.show_nothing(str(measured))
             return
         self._measured = measured
-        self.verdict.setText(angle_text(measured))
+        low, high = measured.interval
+        interval = tr("{low:.1f}° to {high:.1f}°", low=low, high=high)
+        self.angle.caption(1, tr("{share:.0%} interval", share=measured.settings.confidence))
+        self.angle.show_values((f"{measured.angle:.1f}°", interval), angle_text(measured))
         self.x_z.show_section(self._pile, measured.sections[0])
         self.y_z.show_section(self._pile, measured.sections[1])
 
@@ -374,9 +378,13 @@ class ReposePage(PageWidget):
         """Show that there is no measurement of what is seen, and why."""
         self._context.stop(MEASURE)
         self._pile = self._measured = None
-        self.verdict.setText(sentence)
+        self._show_answer(sentence)
         for plot in (self.x_z, self.y_z):
             plot.show_nothing(sentence)
+
+    def _show_answer(self, sentence: str) -> None:
+        """Show why there is no angle."""
+        self.angle.show_values(("–", "–"), sentence, fresh=False)
 
     def _take_cut(self, name: str, share: float) -> None:
         if name == "low":
@@ -392,15 +400,19 @@ class ReposePage(PageWidget):
         row.setContentsMargins(0, 0, 0, 0)
         row.addWidget(self.x_z)
         row.addWidget(self.y_z)
-        measured = stacked([sections, padded(self.verdict, 10, 0, 10, 4)], [300, 40], stretch=0)
         pages = [
-            (measured, tr("Sections")),
+            (sections, tr("Sections")),
             (self.runs, tr("Runs")),
             (self.study, tr("Study")),
             (self.engines, tr("Engines")),
         ]
         below = tabs("repose_tabs", pages)
-        pictures = stacked([self.player, below], [480, 340], stretch=0)
+        results = QWidget()
+        column = QVBoxLayout(results)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.addWidget(self.angle)
+        column.addWidget(below, 1)
+        pictures = stacked([self.player, results], [480, 380], stretch=0)
         pictures.setObjectName("repose_pictures")
         controls = scrolled_column([self.setup])
         parts = [padded(controls, 6, 0, 0, 0), padded(pictures, 0, 10, 0, 0)]

@@ -204,15 +204,11 @@ def duration_text(seconds: float) -> str:
 
 
 def angle_text(measured: ReposeMeasurement) -> str:
-    """The angle of repose as rich text."""
-    low, high = measured.interval
+    """What the angle of repose is the mean of, and what to know about it."""
     return (
         tr(
-            "<b>Angle of repose {angle:.1f}°</b> ({low:.1f}° to {high:.1f}°, {count} sections); the paper's"
-            " two sections: asymmetric {asymmetric:.1f}°, symmetric {symmetric:.1f}°.",
-            angle=measured.angle,
-            low=low,
-            high=high,
+            "Mean of {count} sections. Two perpendicular sections give {asymmetric:.1f}° (flanks apart) and"
+            " {symmetric:.1f}° (both flanks alike).",
             count=len(measured.sections),
             asymmetric=measured.paper_asymmetric.mean,
             symmetric=measured.paper_symmetric.mean,

@@ -69,7 +69,7 @@ class StudyPanel(QWidget):
         self.repeats.setObjectName("repose_study_repeats")
         self.repeats.setAccessibleName(tr("Runs of each value, with other seeds"))
         self.repeats.setRange(1, 100)
-        self.start, self.stop = QPushButton(tr("Start or go on")), QPushButton(tr("Stop"))
+        self.start, self.stop = QPushButton(tr("Start or resume")), QPushButton(tr("Stop"))
         self.start.setObjectName("repose_study_start")
         self.start.setToolTip(tr("Runs that are there already are not run again"))
         self.stop.setObjectName("repose_study_stop")

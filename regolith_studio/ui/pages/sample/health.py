@@ -49,7 +49,7 @@ KINDS = {
     "open": N_("rims of holes"),
     "crossing": N_("intersecting faces"),
     "turned": N_("reoriented faces"),
-    "small bodies": N_("bodies left out"),
+    "small bodies": N_("parts left out"),
     "non-manifold": N_("edges of more than two faces"),
     "double": N_("duplicate faces"),
     "degenerate": N_("faces without area"),

@@ -36,7 +36,7 @@ PAGE = Page(
             PAGE_MENU, "find_grains", N_("&Find grains"), "play", "F5", N_("Segment the whole volume")
         ),
         ActionSpec(
-            PAGE_MENU, "make_particles", N_("&Make particles"), tip=N_("Hand the grains to all other pages")
+            PAGE_MENU, "make_particles", N_("&Make particles"), tip=N_("Open the grains as particles")
         ),
     ),
 )

@@ -41,7 +41,7 @@ OPENING = NumberSpec(
 )
 CLOSING = NumberSpec(N_("Closing"), N_("Closing"), 0, 5, tip=N_("Closes cracks and thin gaps, in voxels."))
 MIN_VOXELS = NumberSpec(
-    N_("Smallest"), N_("Least voxels of a grain"), 0, 2000, 1, limit=10_000_000,
+    N_("Smallest"), N_("Minimum number of voxels of a grain"), 0, 2000, 1, limit=10_000_000,
     tip=N_("Grains of fewer voxels are left out; below 12 voxels in diameter shapes are coarse."),
 )  # fmt: skip
 
@@ -66,7 +66,7 @@ class SegmentationControls(QWidget):
         )
         self.dark = _check("dark", tr("Grains are dark"), tr("Grains are darker than what is between them."))
         self.split = _check(
-            "split", tr("Part touching grains"), tr("Otherwise each connected body is one grain.")
+            "split", tr("Separate touching grains"), tr("Otherwise each connected body is one grain.")
         )
         self.pores = _check(
             "fill_pores", tr("Fill closed pores"), tr("Pores without a way out become grain.")
@@ -222,7 +222,7 @@ class SegmentationControls(QWidget):
         self.level.setKeyboardTracking(False)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
-        layout.addWidget(heading(tr("Which voxels are grain")))
+        layout.addWidget(heading(tr("Segmentation")))
         layout.addLayout(
             _form(
                 (
@@ -236,11 +236,11 @@ class SegmentationControls(QWidget):
         for part in (self.dark, self.opening, self.closing, self.pores):
             layout.addWidget(part)
         layout.addSpacing(10)
-        layout.addWidget(heading(tr("Which grain they belong to")))
+        layout.addWidget(heading(tr("Separation of grains")))
         layout.addWidget(self.split)
         layout.addWidget(self.h_maxima)
         layout.addSpacing(10)
-        layout.addWidget(heading(tr("Which grains become particles")))
+        layout.addWidget(heading(tr("Selection of grains")))
         layout.addWidget(self.border)
         layout.addWidget(self.least)
         layout.addWidget(self.diameter)

@@ -111,7 +111,7 @@ class BarPlot(Plot):
         )
         legend = [(each.colour, each.label) for each in self._series]
         if any(bound > 0.0 for each in self._series for bound in each.bounds):
-            legend.append((self.theme.text, tr("least possible")))
+            legend.append((self.theme.text, tr("lower bound")))
         self.set_legend(legend)
 
     def resizeEvent(self, event: QResizeEvent) -> None:
