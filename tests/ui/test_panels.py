@@ -266,7 +266,7 @@ def test_that_a_line_is_drawn_across_a_bar_where_it_cannot_be_lower(shown):
     assert len(lines) == 1
     assert list(lines[0][1]) == [10.0, 10.0]
     assert lines[0][0].mean() == pytest.approx(1.0)
-    assert "least" in plot.legend.text()
+    assert "bound" in plot.legend.text()
     head, rows = plot.numbers()
     assert head == ("category", "Polyhedron [%]", "Polyhedron, not below [%]")
     assert rows == [("V", 0.0, 0.0), ("CH", 12.0, 10.0)]
