@@ -86,6 +86,13 @@ class Splitter(QSplitter):
         return bool(policy.horizontalStretch() if across else policy.verticalStretch())
 
 
+def scale_borders(root: QWidget, before: float, after: float) -> None:
+    """Scale what does not stretch in all splitters, as letters of other points need it."""
+    if before != after:
+        for splitter in root.findChildren(Splitter):
+            splitter.scale_fixed(before, after)
+
+
 def side_by_side(parts: Sequence[QWidget], sizes: Sequence[int], stretch: int) -> Splitter:
     """Parts in a row with movable borders; the one numbered `stretch` takes what room is left."""
     return Splitter(Qt.Orientation.Horizontal, parts, sizes, stretch)

@@ -23,7 +23,7 @@ from regolith_studio.ui.dialogs.command_palette import CommandPalette
 from regolith_studio.ui.dialogs.guide import guide_dialog
 from regolith_studio.ui.dialogs.help import about_dialog
 from regolith_studio.ui.dialogs.shortcuts import ShortcutsDialog
-from regolith_studio.ui.layout import Splitter
+from regolith_studio.ui.layout import scale_borders
 from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.page_stack import PageStack
 from regolith_studio.ui.pages import PAGES
@@ -113,7 +113,7 @@ class MainWindow(QMainWindow):
             "repair": self._choose_repair,
             "palette": self._open_palette,
             "preferences": self.appearance.ask,
-            "standard_layout": self._standard_layout,
+            "standard_layout": partial(self.window_state.restore_standard, self),
             "tour": self.show_tour,
             "quit": self.close,
             "go": self.pages.go,
@@ -153,9 +153,6 @@ class MainWindow(QMainWindow):
     def _open_palette(self) -> None:
         CommandPalette(self.menus.palette(self.pages.pages, self.pages.run), self).open()
 
-    def _standard_layout(self) -> None:
-        self.window_state.restore_standard(self)
-
     def _choose_repair(self, repair: bool) -> None:
         self.session.choose(repair=repair)
 
@@ -174,9 +171,7 @@ class MainWindow(QMainWindow):
         apply_theme(cast(QApplication, QApplication.instance()), theme, self, self.pages.scroll_areas)
         for part in (self.menus, self.pages, self.tasks):
             part.set_theme(theme)
-        if (after := QApplication.font().pointSizeF()) != before:
-            for splitter in self.findChildren(Splitter):
-                splitter.scale_fixed(before, after)
+        scale_borders(self, before, QApplication.font().pointSizeF())
 
     def dragEnterEvent(self, event: QDragEnterEvent) -> None:
         if any(url.isLocalFile() for url in event.mimeData().urls()):

@@ -4868,6 +4868,10 @@
         <translation>An den Anfang</translation>
     </message>
     <message>
+        <source>Told apart</source>
+        <translation>Unterschieden</translation>
+    </message>
+    <message>
         <source>Tolerance</source>
         <translation>Toleranz</translation>
     </message>
@@ -6618,6 +6622,14 @@
     <message>
         <source>{method}, seed {seed}</source>
         <translation>{method}, Startwert {seed}</translation>
+    </message>
+    <message>
+        <source>{model}: indistinguishable from the sample in size and form.</source>
+        <translation>{model}: in Größe und Form von der Probe nicht zu unterscheiden.</translation>
+    </message>
+    <message>
+        <source>{model}: {near:.2g} times as far from the sample as two halves of it are from each other.</source>
+        <translation>{model}: {near:.2g}-mal so weit von der Probe wie zwei ihrer Hälften voneinander.</translation>
     </message>
     <message>
         <source>{moved}: the half-spaces bound no polyhedron any more. Refused without asking T(k).</source>

@@ -29,8 +29,8 @@ class LmaxStudyPanel(QWidget):
         self.frame = StudyFrame("lmax_study", self.plot)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
-        layout.addWidget(self.frame, 1)
         layout.addWidget(self._asked())
+        layout.addWidget(self.frame, 1)
         self._study: Any = None
         self._answer()
 
@@ -93,4 +93,6 @@ class LmaxStudyPanel(QWidget):
         self._question.setVisible(self._study is not None)
         if self._study is not None:
             found = self._study.smallest_l_max(self.tolerance.value() / 100)
-            self.answer.setText(f"<b>{found}</b>" if found is not None else tr("none of these"))
+            self.answer.setText(
+                f'<b style="font-size:x-large">{found}</b>' if found is not None else tr("none of these")
+            )

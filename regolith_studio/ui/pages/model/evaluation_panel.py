@@ -21,7 +21,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from regolith_studio.io.tables import Table
+from regolith_studio.io.tables import Cell, Table
 from regolith_studio.jobs.model_evaluation import ModelEvaluationResult
 from regolith_studio.messages import N_
 from regolith_studio.session.tasks import Task
@@ -31,6 +31,7 @@ from regolith_studio.studies.population_tables import distance_table, pair_table
 from regolith_studio.ui.layout import tabs
 from regolith_studio.ui.pages.model.table_view import StudyTableView
 from regolith_studio.ui.translation import tr, translate
+from regolith_studio.ui.widgets.headline import Headline
 from regolith_studio.ui.widgets.labels import remark, with_subscripts
 from regolith_studio.ui.widgets.study_frame import StudyFrame
 
@@ -69,6 +70,10 @@ TIPS = (
     N_("Median distance to the nearest measured particle, over that between measured ones: 0 is a copy"),
     N_("Rejected draws"),
 )
+NOISE = 1.2
+"""Distance over the noise of sampling up to which a model counts as indistinguishable from the sample."""
+TOLD_APART = 0.6
+"""Share that a classifier may tell right of an indistinguishable model; half of them is chance."""
 NUMBERS = Qt.AlignmentFlag.AlignCenter
 MIN_FIGURE_SCALE = 0.55
 """Scale below which figures are scrolled instead of shrunk."""
@@ -139,6 +144,9 @@ class EvaluationPanel(QWidget):
         self.splits, self.repeats = QSpinBox(), QSpinBox()
         self.ranking = QTableWidget(0, len(HEADERS))
         self.notes = remark()
+        self.verdict = Headline("model_verdict", (tr("W / noise"), tr("Told apart")))
+        for place, tip in enumerate((TIPS[1], TIPS[4])):
+            self.verdict.caption(place, self.verdict.captions[place].text(), tr(tip))
         self.pictures = {name: PictureLabel(tr(WAITING), MIN_FIGURE_SCALE) for name in FIGURES}
         self.places = {name: _scrolled(label) for name, label in self.pictures.items()}
         self.tabs = tabs("model_figures", [(self._ranked(), tr("Ranking"))])
@@ -230,6 +238,20 @@ class EvaluationPanel(QWidget):
                     item.setTextAlignment(NUMBERS)
                 self.ranking.setItem(row, column, item)
         self.notes.setText(with_subscripts(translate(table.notes[0])))
+        self._show_answer(*table.rows[0][:5])
+
+    def _show_answer(self, key: Cell, near: Cell, _gap: Cell, _energy: Cell, told: Cell) -> None:
+        """The verdict on the model that is nearest to the sample."""
+        model = tr(MODELS[str(key)].label)
+        if float(str(near)) <= NOISE and float(str(told)) <= TOLD_APART:
+            sentence = tr("{model}: indistinguishable from the sample in size and form.", model=model)
+        else:
+            sentence = tr(
+                "{model}: {near:.2g} times as far from the sample as two halves of it are from each other.",
+                model=model,
+                near=float(str(near)),
+            )
+        self.verdict.show_values((f"{float(str(near)):.2f}", f"{float(str(told)):.0%}"), sentence)
 
     def _options(self) -> QHBoxLayout:
         row = QHBoxLayout()
@@ -267,6 +289,7 @@ class EvaluationPanel(QWidget):
         filled = QWidget()
         column = QVBoxLayout(filled)
         column.setContentsMargins(8, 6, 8, 6)
+        column.addWidget(self.verdict)
         column.addWidget(self.ranking, 1)
         column.addWidget(self.notes)
         page = QWidget()
