@@ -38,12 +38,13 @@ ROWS: tuple[ActionSpec, ...] = (
         "",
         N_("Open the shipped particles"),
         bar="words",
+        label=N_("Sample"),
     ),
     ActionSpec(N_("&File"), "recent", N_("Open &recent")),
     ActionSpec(
         N_("&File"),
         "repair",
-        N_("&Repair meshes on opening"),
+        N_("Repair &meshes on opening"),
         "",
         "",
         N_("Report defects and repair them"),
@@ -59,6 +60,7 @@ ROWS: tuple[ActionSpec, ...] = (
         N_("Export a DEM dataset"),
         None,
         "words",
+        N_("Export"),
     ),
     ActionSpec(
         N_("&File"),

@@ -172,10 +172,6 @@
         <translation>&amp;Wiederholen</translation>
     </message>
     <message>
-        <source>&amp;Repair meshes on opening</source>
-        <translation>Netze beim Öffnen &amp;reparieren</translation>
-    </message>
-    <message>
         <source>&amp;Reset cameras</source>
         <translation>Kameras &amp;zurücksetzen</translation>
     </message>
@@ -1728,6 +1724,10 @@
         <translation>Nur an eine zufällige Hälfte anpassen</translation>
     </message>
     <message>
+        <source>Fit view</source>
+        <translation>Einpassen</translation>
+    </message>
+    <message>
         <source>Fit vs. particle</source>
         <translation>Fit gegen Partikel</translation>
     </message>
@@ -3153,7 +3153,7 @@
     </message>
     <message>
         <source>Overlay</source>
-        <translation>Überlagerung</translation>
+        <translation>Darüber</translation>
     </message>
     <message>
         <source>Own preset</source>
@@ -3530,6 +3530,10 @@
     <message>
         <source>Removes specks and thin bridges, in voxels.</source>
         <translation>Entfernt Flecken und dünne Brücken, in Voxeln.</translation>
+    </message>
+    <message>
+        <source>Repair &amp;meshes on opening</source>
+        <translation>&amp;Netze beim Öffnen reparieren</translation>
     </message>
     <message>
         <source>Repair lost facets</source>
@@ -5241,7 +5245,7 @@
     </message>
     <message>
         <source>Wipe</source>
-        <translation>Wischblende</translation>
+        <translation>Wischen</translation>
     </message>
     <message>
         <source>Work done by</source>

@@ -41,7 +41,7 @@ PAGE = Page(
             "Ctrl+R",
             N_("Show the whole particle"),
             bar="under",
-            label=N_("Reset"),
+            label=N_("Fit view"),
         ),
         ActionSpec(N_("&View"), "list", N_("Particle l&ist"), "", "", N_("Show the open particles"), True),
         *(
