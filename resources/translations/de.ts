@@ -1448,6 +1448,10 @@
         <translation>Fehler vergröberter Partikel</translation>
     </message>
     <message>
+        <source>Error of the spheres</source>
+        <translation>Fehler der Kugeln</translation>
+    </message>
+    <message>
         <source>Error ≤</source>
         <translation>Fehler ≤</translation>
     </message>
@@ -5960,12 +5964,12 @@
         <translation>Anzahl</translation>
     </message>
     <message>
-        <source>pairs of r_eq, A, AR: the largest energy distance [%]</source>
-        <translation>Paare aus r_eq, A, AR: die größte Energiedistanz [%]</translation>
+        <source>overlapping spheres stand for each polyhedron; facets become bumpy, corners round.</source>
+        <translation>überlappende Kugeln stehen für jedes Polyeder; Facetten werden höckerig, Ecken rund.</translation>
     </message>
     <message>
-        <source>part of the volume</source>
-        <translation>ein Teil des Volumens</translation>
+        <source>pairs of r_eq, A, AR: the largest energy distance [%]</source>
+        <translation>Paare aus r_eq, A, AR: die größte Energiedistanz [%]</translation>
     </message>
     <message>
         <source>parts left out</source>
@@ -6060,8 +6064,8 @@
         <translation>rechts {angle:.1f}°</translation>
     </message>
     <message>
-        <source>rigid clumps of inscribed spheres (8 by default) with the polyhedra&apos;s mass and inertia: rounder</source>
-        <translation>starre Gruppen einbeschriebener Kugeln (sonst 8) mit Masse und Trägheit der Polyeder: runder</translation>
+        <source>rigid clumps of overlapping spheres (12 by default) with the polyhedra&apos;s volume, mass and inertia</source>
+        <translation>starre Gruppen überlappender Kugeln (sonst 12) mit Volumen, Masse und Trägheit der Polyeder</translation>
     </message>
     <message>
         <source>rims of holes</source>
@@ -6162,10 +6166,6 @@
     <message>
         <source>spheres in the frame of a shape of volume 1; diameters in micrometres</source>
         <translation>Kugeln im Bezug einer Form vom Volumen 1; Durchmesser in Mikrometern</translation>
-    </message>
-    <message>
-        <source>spheres inside each polyhedron stand for it; facets become bumpy and some volume is missing.</source>
-        <translation>Kugeln in jedem Polyeder stehen für es; Facetten werden höckerig, und etwas Volumen fehlt.</translation>
     </message>
     <message>
         <source>sphericity</source>
