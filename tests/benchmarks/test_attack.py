@@ -23,6 +23,7 @@ def test_that_an_attack_leaves_an_earlier_result_or_a_new_one(tmp_path: Path) ->
     [
         (("old", "grain"), Ended(1, "The disk is full.", 0), (1, 0, 0, 0, 0)),
         (("old", "grain"), Ended(1, "Traceback\nOSError", 0), (0, 1, 0, 0, 0)),
+        (("old", "grain"), Ended(1, "A remark.\nThe disk is full.", 0), (1, 0, 0, 0, 0)),
         (("old", "grain"), Ended(0, "", 0), (0, 0, 1, 0, 0)),
         (("new", "grain"), Ended(0, "", 0), (0, 0, 0, 0, 0)),
         (("half", "grain"), Ended(0, "", 0), (0, 0, 0, 1, 0)),
@@ -40,6 +41,6 @@ def test_that_what_a_run_leaves_is_judged(
         trees[content] = tree(arena.place)
     arena.reset(None)
     (arena.place / files[1]).write_text(files[0])
-    row, case = Row(), Prepared("fit", (), tmp_path, trees["old"], trees["new"], 1.0, 1)
+    row, case = Row(), Prepared("fit", (), tmp_path, trees["old"], trees["new"], 1.0, 1, ("A remark.",))
     judge(arena, case, ended, row)
     assert (row.sentences, row.unclear, row.lost, row.mixed, row.left) == counted
