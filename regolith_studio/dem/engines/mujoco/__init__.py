@@ -12,8 +12,8 @@ from regolith_studio.messages import N_
 
 SECONDS_PER_PARTICLE_AND_STEP = {"polyhedra": 18e-6, "spheres": 6e-6}
 """Measured on one core at 1,000 particles of 20 facets."""
-HALVED_STEPS = 2.2
-"""Number of steps over that of steps which are never halved; measured at 300 particles: 2.1 to 2.5."""
+HALVED_STEPS = 2.5
+"""Number of steps over that of steps never halved; measured: 2.1 to 2.5 at 300 particles, 2.8 at 1,000."""
 
 REPRESENTS = EngineCapabilities(
     shape=N_("the convex polyhedra themselves"),
