@@ -74,6 +74,7 @@ def guide_dialog(parent: QWidget, page: str = "") -> QDialog:
     dialog = QDialog(parent)
     dialog.setObjectName("guide_dialog")
     dialog.setWindowTitle(tr("Guide"))
+    dialog.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
     dialog.resize(860, 680)
     text = GuideBrowser()
     contents, back = QPushButton(tr("Contents")), QPushButton(tr("Back"))
