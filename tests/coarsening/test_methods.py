@@ -8,6 +8,7 @@ import pytest
 from scipy.spatial import ConvexHull, HalfspaceIntersection
 
 from regolith_studio.coarsening.coarsen import coarsen, coarsening_steps
+from regolith_studio.coarsening.exact.sliver_removal import COST
 from regolith_studio.coarsening.methods import METHODS
 from regolith_studio.coarsening.methods.annealing import AnnealingSettings
 from regolith_studio.coarsening.result import CoarseningResult
@@ -17,6 +18,7 @@ from regolith_studio.descriptors.catalogue import LOSS_KEYS
 from regolith_studio.errors import GeometryError, InputError
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.sphere_points import icosphere
+from tests.coarsening.conftest import bumpy
 
 EXACT = ("volume", "sphericity", "min_diameter", "max_diameter", "aspect_ratio")
 
@@ -24,6 +26,17 @@ EXACT = ("volume", "sphericity", "min_diameter", "max_diameter", "aspect_ratio")
 @pytest.fixture(scope="module")
 def exact(particle: Mesh) -> CoarseningResult:
     return coarsen(particle, 20, "exact", seed=1)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("roughness", [0.1, 0.2, 0.3])
+def test_that_more_effort_never_leads_to_less_overlap(roughness: float) -> None:
+    for seed in range(8):
+        target = Target.of(bumpy(seed, roughness=roughness))
+        fast, best = (coarsen(target, 20, "exact", settings={"level": level}) for level in ("fast", "best"))
+        assert best.reason is None or fast.reason is not None
+        if fast.reason is None:
+            assert best.jaccard_distance <= fast.jaccard_distance + COST
 
 
 def test_that_the_methods_announce_themselves() -> None:

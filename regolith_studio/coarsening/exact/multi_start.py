@@ -1,6 +1,6 @@
 """The whole exact method: starts until one meets all constraints, and relaxations if none does."""
 
-from collections.abc import Generator, Iterator
+from collections.abc import Generator, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -26,6 +26,7 @@ from regolith_studio.coarsening.exact.record import Record
 from regolith_studio.coarsening.exact.relaxation import relax, with_facets_back
 from regolith_studio.coarsening.exact.single_start import (
     Candidate,
+    descend_further,
     search_and_project,
     single_start,
 )
@@ -57,7 +58,7 @@ class Level:
     sliver_steps: int
 
 
-LEVELS = {"fast": Level(1, 2, 12, 16, 14), "best": Level(3, 3, 20, 40, 60)}
+LEVELS = {"fast": Level(1, 2, 12, 16, 14), "best": Level(2, 3, 20, 40, 60)}
 CHECK_ANGLES = (FINE_ANGLE, DENSE_ANGLE)
 """Of the searches for boxes that confirm a result."""
 RELAXATION_FACETS = (12, 20)
@@ -77,8 +78,10 @@ class Search:
 
     Parameters
     ----------
+    levels
+        Their starts one after the other, so that more effort never leads to less.
     retries
-        Further starts where those of the level do not meet all constraints.
+        Further starts where those of a level do not meet all constraints.
     seed
         Of all starts.
     """
@@ -88,12 +91,13 @@ class Search:
         target: Target,
         weights: LossWeights,
         n_facets: int,
-        level: Level,
+        levels: Sequence[Level],
         retries: int,
         seed: np.random.SeedSequence,
     ) -> None:
         request = ConstraintRequest.of(target, weights)
-        self._target, self._request, self._n_facets, self._level = target, request, n_facets, level
+        self._target, self._request, self._n_facets = target, request, n_facets
+        self._levels, self._level = levels, levels[0]
         self._rng = np.random.default_rng(seed)
         self._free = request.problem(target.rays, SAMPLE_ANGLE, only_volume=True)
         self._full = request.problem(target.rays, SAMPLE_ANGLE)
@@ -104,36 +108,60 @@ class Search:
         self._round_asked = bool(request.asked[SPHERICITY])
         wanted = target.descriptors["sphericity"]
         self._hopeless = self._round_asked and sphericity_reason(wanted, n_facets) is not None
-        self._total = ROUND_STARTS if self._hopeless else level.starts + retries
+        self._most = [ROUND_STARTS if self._hopeless else each.starts + retries for each in levels]
+        self._total = sum(self._most)
         self._numbers = (
             (n_facets,) if self._hopeless else numbers_to_grow_from(target, n_facets, self._round_asked)
         )
         self._record = Record(self._judge, self._total)
         self._planes: tuple[FloatArray, FloatArray]
         self._misses: list[float] = []
-        self._tried = 0
+        self._confirmed: Candidate | None = None
+        self._tried = self._tried_before = 0
         self._in_box = False
 
-    def from_starts(self) -> Iterator[MethodStep]:
-        """A step for each better polyhedron until one is good enough; the first is the first start itself."""
-        for tried in range(1, self._total + 1):
-            self._tried = tried
+    def steps(self) -> Iterator[MethodStep]:
+        """A step for each better polyhedron, level by level; the first is the first start itself.
+
+        A later level begins with what was found: the best polyhedron descends further.
+
+        Raises
+        ------
+        GeometryError
+            If no start bounds a polyhedron.
+        """
+        for level, most in zip(self._levels, self._most, strict=True):
+            even = self._without_slivers() if self._tried else None
+            self._level, self._tried_before = level, self._tried
+            if even is not None:
+                yield from self._record.record_candidates(self._tried, [even])
+            best = self._record.best
+            if best is not None and best.exact:
+                further = descend_further(self._full, best, level.bound_steps)
+                yield from self._record.record_candidates(self._tried, further)
+            yield from self._from_starts(most)
+            yield from self._relaxations()
+
+    def _from_starts(self, most: int) -> Iterator[MethodStep]:
+        """A step for each better polyhedron until one is good enough."""
+        for _ in range(most):
+            self._tried += 1
             self._planes = start_planes(self._target, self._n_facets, self._rng)
-            if tried == 1:
+            if self._tried == 1:
                 value = self._judge.value(*self._planes)
                 yield MethodStep(0, self._total, value, HalfSpaces(*self._planes))
-            yield from self._record.record_candidates(tried, self._solved())
+            yield from self._record.record_candidates(self._tried, self._solved())
             if self._in_box or not self._whole:
-                yield from self._record.record_candidates(tried, self._from_box())
+                yield from self._record.record_candidates(self._tried, self._from_box())
                 self._in_box = self._record.met
-            if self._round_asked and not self._record.met and tried <= ROUND_STARTS:
+            if self._round_asked and not self._record.met and self._tried <= ROUND_STARTS:
                 yield from self._as_round_as_can_be()
             if self._record.best is None:
-                yield from self._record.record_candidates(tried, self._all_at_once())
+                yield from self._record.record_candidates(self._tried, self._all_at_once())
             if self._good_enough() or self._out_of_reach():
                 break
 
-    def relaxations(self) -> Iterator[MethodStep]:
+    def _relaxations(self) -> Iterator[MethodStep]:
         """A step for each polyhedron with less loss, where no start could meet all constraints together."""
         best = self._found()
         if not self._round_asked or self._record.met or self._misses or self._itself is not None:
@@ -155,7 +183,7 @@ class Search:
         Raises
         ------
         GeometryError
-            If no start bounds a polyhedron; so does :meth:`relaxations`.
+            If no start bounds a polyhedron.
         """
         counts = {"starts": float(self._tried), "exact": float(self._record.met)}
         if not self._record.met and self._itself is not None:
@@ -206,19 +234,21 @@ class Search:
         few = self._numbers[(self._tried - 1) % len(self._numbers)]
         if few < self._n_facets:
             sizes = self._n_facets, few, self._level.few_starts
-            yield from grow_facets(self._target, self._free, self._full, *sizes, self._rng, *self._steps)
+            yield from grow_facets(
+                self._target, self._free, self._full, *sizes, self._rng, *self._descent_steps
+            )
         elif not self._hopeless:
             yield from self._all_at_once()
 
     def _all_at_once(self) -> Iterator[Candidate]:
-        return single_start(self._target, self._free, self._full, self._planes, *self._steps)
+        return single_start(self._target, self._free, self._full, self._planes, *self._descent_steps)
 
     def _from_box(self) -> Iterator[Candidate]:
         """With six half-spaces on the sides of the particle's box, where a constraint is about the box."""
         if self._full.needs_box:
             problems = self._free, self._full, self._rest
             yield from solve_from_box(
-                self._target, problems, self._n_facets, self._tried - 1, self._rng, self._steps
+                self._target, problems, self._n_facets, self._tried - 1, self._rng, self._descent_steps
             )
 
     def _as_round_as_can_be(self) -> Iterator[MethodStep]:
@@ -235,12 +265,15 @@ class Search:
 
     def _good_enough(self) -> bool:
         """Whether public descriptors say that all is met, with all facets or after enough starts for them."""
-        best = self._record.best
-        if self._tried < self._level.starts or best is None or not best.exact:
+        best, tried = self._record.best, self._tried - self._tried_before
+        if tried < self._level.starts or best is None or not best.exact:
             return False
-        best = self._record.best = confirmed(self._request, self._checks, best)
+        best = confirmed(self._request, self._checks, best)
+        if self._confirmed is not None and not best.better_than(self._confirmed):
+            best = self._confirmed  # what a finer search took back may have been better before
+        self._confirmed = self._record.best = best
         has_all_facets = best.n_facets == self._n_facets
-        return best.exact and (has_all_facets or self._tried >= self._level.starts + STARTS_FOR_FACETS)
+        return best.exact and (has_all_facets or tried >= self._level.starts + STARTS_FOR_FACETS)
 
     def _out_of_reach(self) -> bool:
         """Whether the sphericity is missed by so much that other starts would miss it too."""
@@ -256,7 +289,7 @@ class Search:
         return best is not None and best.exact and best.n_facets == self._n_facets
 
     @property
-    def _steps(self) -> tuple[int, int]:
+    def _descent_steps(self) -> tuple[int, int]:
         return self._level.free_steps, self._level.bound_steps
 
     def _found(self) -> Candidate:

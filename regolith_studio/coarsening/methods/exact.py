@@ -21,7 +21,7 @@ class ExactSettings:
     Parameters
     ----------
     level
-        ``fast`` (one start) or ``best`` (several starts, longer descents: better overlap).
+        ``fast`` (one start) or ``best`` (that start, then several with longer descents: better overlap).
     retries
         Further starts where no polyhedron meets all conditions.
 
@@ -63,9 +63,9 @@ class ExactMethod:
         settings: ExactSettings,
     ) -> Generator[MethodStep, None, MethodResult]:
         """A step for each better polyhedron; the first is the start, the last what is reported."""
-        search = Search(target, weights, n_facets, LEVELS[settings.level], settings.retries, seed)
-        yield from search.from_starts()
-        yield from search.relaxations()
+        levels = [LEVELS["fast"]] + [LEVELS["best"]] * (settings.level == "best")
+        search = Search(target, weights, n_facets, levels, settings.retries, seed)
+        yield from search.steps()
         return (yield from search.finish())
 
 
