@@ -76,7 +76,7 @@ def test_that_a_picture_without_background_covers_the_body_only(ball, scale):
     plotter.close()
     assert found.shape == (100 * scale, 120 * scale, 4)
     covered = (found[..., 3] > 128).mean()
-    radius = 50 / 1.16
+    radius = 50 * 0.85
     assert covered == pytest.approx(np.pi * radius**2 / (120 * 100), rel=0.03)
     middle = (slice(40 * scale, 60 * scale), slice(50 * scale, 70 * scale))
     assert np.abs(found[middle][..., :3].astype(int) - plain[middle]).max() <= 2

@@ -278,9 +278,9 @@ def test_that_the_smallest_l_max_follows_the_error_that_is_allowed(shown):
     errors = np.array([[[0.2, 0.1], [0.04, 0.06], [0.01, 0.02]]])
     panel.show_study(LmaxStudy((2, 6, 10), ("volume", "sphericity"), ("a",), ("",), errors), False)
     assert panel.answer.isVisible()
-    assert panel.answer.text() == "<b>10</b>"
+    assert panel.answer.text().endswith(">10</b>")
     panel.tolerance.setValue(7.0)
-    assert panel.answer.text() == "<b>6</b>"
+    assert panel.answer.text().endswith(">6</b>")
     panel.tolerance.setValue(0.5)
     assert panel.answer.text() == "none of these"
 
