@@ -63,7 +63,7 @@ def fit(
     """Fit spherical harmonics to meshes; write coefficients and spectrum."""
     from regolith_studio.jobs.particle_jobs import FitRequest, fit_sample
     from regolith_studio.session.choices import Choices
-    from regolith_studio.session.outputs.fits import FittedSample, fits_document, write_fits, write_surfaces
+    from regolith_studio.session.outputs.fits import FittedSample, fits_document, write_fits
 
     with usage_errors():
         Choices(l_max=l_max, seed=seed, level=level)
@@ -73,10 +73,8 @@ def fit(
     print_errors(f"{name}: {sentence}" for name, sentence in sample.failed)
     holes: dict[str, str] = {}
     if sample.fits:
-        write_fits(output, sample)
-        if surfaces is not None:
-            holes = write_surfaces(surfaces, sample, level)
-            print_errors(f"{name}: {sentence}" for name, sentence in holes.items())
+        holes = write_fits(output, sample, surfaces, level)
+        print_errors(f"{name}: {sentence}" for name, sentence in holes.items())
         if json:
             print_json(fits_document(sample))
         else:

@@ -42,6 +42,20 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return place
 
 
+def test_that_surfaces_that_cannot_be_written_leave_the_earlier_fit(tmp_path: Path) -> None:
+    bodies = [Particle("a", ellipsoid(3.0, 2.0, 1.5))]
+    fits = [fit_harmonics(bodies[0].mesh, l_max, sampling_degree=20) for l_max in (4, 6)]
+    path = tmp_path / "fit.json"
+    write_fits(path, FittedSample.of(bodies, fits[:1]))
+    earlier = path.read_bytes()
+    with pytest.raises(FileError):
+        write_fits(path, FittedSample.of(bodies, fits[1:]), path / "surfaces", 2)
+    assert path.read_bytes() == earlier
+    assert write_fits(path, FittedSample.of(bodies, fits[1:]), tmp_path / "surfaces", 2) == {}
+    assert path.read_bytes() != earlier
+    assert (tmp_path / "surfaces" / "a.stl").is_file()
+
+
 @pytest.mark.parametrize("name", ["fit", "fit.json"])
 def test_that_a_fit_is_read_by_its_name_with_or_without_suffix(folder: Path, name: str) -> None:
     found = read_shape_source(str(folder / name))

@@ -11,7 +11,7 @@ from regolith_studio.harmonics import io as fit_io
 from regolith_studio.harmonics.fit import HarmonicFit
 from regolith_studio.harmonics.spectrum import PowerSpectrum, power_spectrum, roughness_split, sample_spectrum
 from regolith_studio.harmonics.surface import reconstruct
-from regolith_studio.io.atomic import staged_folder, write_bytes
+from regolith_studio.io.atomic import staged_file, staged_folder, write_bytes
 from regolith_studio.io.json_arrays import arrays_document
 from regolith_studio.io.json_text import json_bytes
 from regolith_studio.io.stl import stl_bytes
@@ -61,19 +61,33 @@ class FittedSample:
         return sample_spectrum([fit.coefficients for fit in self.fits]) if self.fits else None
 
 
-def write_fits(path: Path, sample: FittedSample) -> None:
-    """Write a fit's JSON file, as :mod:`regolith_studio.harmonics.io` defines it."""
-    write_bytes(path, json_bytes(fits_document(sample)))
+def write_fits(
+    path: Path, sample: FittedSample, surfaces: Path | None = None, level: int = 4
+) -> dict[str, str]:
+    """Write a fit's JSON file, as :mod:`regolith_studio.harmonics.io` defines it, and surfaces on request.
 
-
-def write_surfaces(folder: Path, sample: FittedSample, level: int) -> dict[str, str]:
-    """Write ``<name>.stl``, the surface of each fit in the particle's frame; the reasons of those without.
+    Both are written completely before either takes the place of an earlier one.
 
     Parameters
     ----------
+    surfaces
+        Folder for the surfaces of the fits as STL.
     level
         Icosphere level of the surfaces.
+
+    Returns
+    -------
+    reasons
+        Why a particle has no surface, by its name.
     """
+    with staged_file(path) as stream:
+        stream.write(json_bytes(fits_document(sample)))
+        stream.flush()
+        return _write_surfaces(surfaces, sample, level) if surfaces is not None else {}
+
+
+def _write_surfaces(folder: Path, sample: FittedSample, level: int) -> dict[str, str]:
+    """Write ``<name>.stl``, the surface of each fit in the particle's frame; the reasons of those without."""
     reasons = {}
     with staged_folder(folder, "fit") as stage:
         for particle, fit in zip(sample.particles, sample.fits, strict=True):
