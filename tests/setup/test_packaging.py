@@ -24,6 +24,11 @@ def files_below(folder: Path) -> set[str]:
     }
 
 
+def shipped() -> set[str]:
+    """Resources of an installation: those of the checkout, and the guide."""
+    return files_below(ROOT / "resources") | {f"guide/{name}" for name in files_below(ROOT / "docs")}
+
+
 def run(*command: str | Path, folder: Path) -> str:
     done = subprocess.run(
         [str(word) for word in command], cwd=folder, capture_output=True, text=True, check=False
@@ -80,7 +85,7 @@ def test_that_the_wheel_holds_the_package_and_its_resources_and_nothing_else(whe
     with zipfile.ZipFile(wheel) as archive:
         inside = {name for name in archive.namelist() if ".dist-info/" not in name}
     package = {f"regolith_studio/{name}" for name in files_below(ROOT / "regolith_studio")}
-    resources = {f"regolith_studio/_resources/{name}" for name in files_below(ROOT / "resources")}
+    resources = {f"regolith_studio/_resources/{name}" for name in shipped()}
     assert inside == package | resources
 
 
@@ -90,7 +95,7 @@ def test_that_the_installed_program_reads_its_own_resources(installed: Path) -> 
     folder = Path(run(installed / "python", "-c", code, folder=installed).strip())
     assert folder.name == "_resources"
     assert folder.is_relative_to(installed.parent.resolve())
-    assert files_below(folder) == files_below(ROOT / "resources")
+    assert files_below(folder) == shipped()
 
 
 @pytest.mark.slow
