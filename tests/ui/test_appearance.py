@@ -32,6 +32,7 @@ from regolith_studio.ui.theme import (
     choose_theme,
     current_theme,
 )
+from regolith_studio.ui.widgets.headline import MAGNIFICATION, Headline
 
 
 @pytest.fixture
@@ -55,8 +56,9 @@ def test_that_only_another_look_is_applied(shown, preferences):
 
 
 def sizes_of_letters(window):
-    """In points, of all that is in a window and not on a canvas of pyqtgraph."""
-    return {round(each.font().pointSizeF(), 1) for each in window.findChildren(QWidget)}
+    """In points, of all that is in a window, neither a large figure nor on a canvas of pyqtgraph."""
+    large = {figure for headline in window.findChildren(Headline) for figure in headline.figures}
+    return {round(each.font().pointSizeF(), 1) for each in window.findChildren(QWidget) if each not in large}
 
 
 @pytest.mark.usefixtures("usual_looks")
@@ -70,10 +72,14 @@ def test_that_letters_of_another_size_reach_every_widget_at_the_start_and_later(
     window = shown(MainWindow(Session(InlineRunner()), preferences, "image"))
     assert sizes_of_letters(window) == {round(of_system * first / 100, 1)}
     slider = window.page.loss.sliders["min_diameter"]
+    figure = window.findChild(Headline).figures[0]
     for percent in (200, 80, 150):
         window.appearance.choose(**{LETTERS: percent})
         app.processEvents()
         assert sizes_of_letters(window) == {round(of_system * percent / 100, 1)}
+        assert figure.font().pointSizeF() == pytest.approx(
+            MAGNIFICATION * of_system * percent / 100, rel=0.02
+        )
         letters = QFontMetrics(app.font())
         assert window.tasks.text.height() >= letters.height()
         assert window.page.particles.table.rowHeight(0) in (0, letters.height() + 9)

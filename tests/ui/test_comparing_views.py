@@ -121,7 +121,7 @@ def test_that_the_place_of_the_section_can_be_read_in_a_narrow_panel(window):
     room = line.width() - line.textMargins().left() - line.textMargins().right()
     assert line.fontMetrics().horizontalAdvance("-100.0 µm") <= room
     switch(window, "section")
-    assert window.page.plots.section.width() < 400
+    assert window.page.plots.section.width() < 450
     assert window.page.plots.section.rect().contains(
         field.mapTo(window.page.plots.section, field.rect().bottomRight())
     )
