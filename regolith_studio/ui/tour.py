@@ -117,11 +117,18 @@ class Tour(QWidget):
         painter.drawRoundedRect(self._spot.adjusted(2, 2, -2, -2), 7, 7)
         painter.end()
 
+    def target(self) -> QWidget | None:
+        """What this stop is about, or the nearest part around it that can be seen."""
+        found = self._window.findChild(QWidget, self._steps[self._at].target)
+        while found is not None and not found.isVisible():
+            found = found.parentWidget()
+        return None if found is self._window else found
+
     def _place(self) -> None:
         self.hide()  # beside views that draw by themselves a frame that only moves leaves its trace behind
         self.setGeometry(self._window.rect())
-        target = self._window.findChild(QWidget, self._steps[self._at].target)
-        if target is None or not target.isVisible():
+        target = self.target()
+        if target is None:
             self._spot = QRect(self.rect().center(), self.rect().center())
         else:
             self._spot = QRect(target.mapTo(self._window, QPoint(0, 0)), target.size()).adjusted(-5, -5, 5, 5)
