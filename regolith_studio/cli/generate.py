@@ -22,6 +22,7 @@ from regolith_studio.cli.terminal import print_errors, print_json, run_with_prog
 if TYPE_CHECKING:
     from regolith_studio.jobs.model_jobs import GenerationRequest
     from regolith_studio.readers.shape_files import ShapeSource
+    from regolith_studio.session.outputs.particles import GeneratedParticles
 
 Sources = Annotated[
     list[str],
@@ -126,11 +127,11 @@ def generate(
     seed: Seed = 0,
 ) -> None:
     """Draw virtual particles with the shapes and sizes of a sample (section 2.3)."""
-    from regolith_studio.harmonics.surface import DEFAULT_LEVEL, level_for
+    from regolith_studio.harmonics.surface import DEFAULT_LEVEL
     from regolith_studio.io.atomic import staged_folder
     from regolith_studio.jobs.model_jobs import GenerationRequest, draw, fit_model, groups_of
     from regolith_studio.session.choices import Choices
-    from regolith_studio.session.outputs.particles import GeneratedParticles, write_document
+    from regolith_studio.session.outputs.particles import GeneratedParticles
 
     with usage_errors():
         Choices(level=level or DEFAULT_LEVEL)
@@ -143,8 +144,7 @@ def generate(
     draws = run_with_progress(draw(fitted, request))
     made = GeneratedParticles(source, request, fitted, draws, groups_of(draws, fitted))
     with staged_folder(output, "generate") as stage:
-        extra = _write(stage, made, format_, level_for(draws.l_max) if level is None else level, jobs)
-        document = write_document(stage, made, extra)
+        document = write_particles(stage, made, format_, level, jobs)
     if save_model is not None:
         _save(save_model, made)
     if json:
@@ -195,16 +195,21 @@ def _named(fitted: Any, names: str) -> Any:
         return fitted.renamed(wanted)
 
 
-def _write(stage: Path, made: Any, format_: str, level: int, jobs: int) -> dict[str, Any]:
+def write_particles(
+    folder: Path, made: "GeneratedParticles", format_: str, level: int | None, jobs: int
+) -> dict[str, Any]:
+    """Write drawn particles into an existing folder, and what is known of them; returns the document."""
+    from regolith_studio.harmonics.surface import level_for
     from regolith_studio.jobs.model_jobs import write_meshes
     from regolith_studio.session.outputs import particles as outputs
 
     if format_ == "npz":
-        outputs.write_coefficients(stage, made)
-        return {"files": [outputs.ARRAYS, outputs.TABLE]}
-    facts = run_with_progress(write_meshes(made.draws, made.groups, level, stage, jobs))
-    outputs.write_table_of_meshes(stage, made, facts)
-    return {"level": level, "files": ["*.stl", outputs.TABLE]}
+        outputs.write_coefficients(folder, made)
+        return outputs.write_document(folder, made, {"files": [outputs.ARRAYS, outputs.TABLE]})
+    level = level_for(made.draws.l_max) if level is None else level
+    facts = run_with_progress(write_meshes(made.draws, made.groups, level, folder, jobs))
+    outputs.write_table_of_meshes(folder, made, facts)
+    return outputs.write_document(folder, made, {"level": level, "files": ["*.stl", outputs.TABLE]})
 
 
 def _save(path: Path, made: Any) -> None:

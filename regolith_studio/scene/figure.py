@@ -1,5 +1,6 @@
 """The three views side by side as a picture file, drawn without a window."""
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -7,10 +8,13 @@ import pyvista as pv
 from numpy.typing import NDArray
 
 from regolith_studio.coarsening.result import CoarseningResult
+from regolith_studio.dataset.parameters import LiftingCylinderTest
+from regolith_studio.dem.snapshot import ParticleState
+from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.messages import N_
-from regolith_studio.scene import annotations, cameras, palette, plotter_setup, surfaces
+from regolith_studio.scene import annotations, cameras, instancing, palette, plotter_setup, surfaces
 from regolith_studio.scene.cameras import CameraPose
 
 Picture = NDArray[np.uint8]
@@ -74,6 +78,35 @@ def three_views(
     finally:
         plotter.close()
     return np.array(picture, dtype=np.uint8)
+
+
+def heap_picture(
+    shapes: Sequence[FloatArray], pile: ParticleState, test: LiftingCylinderTest, title: str, path: Path
+) -> None:
+    """Draw a heap on its plate into a PNG file.
+
+    Parameters
+    ----------
+    shapes
+        Vertices of the convex unit-volume shapes, each of shape (k, 3).
+    title
+        One line over the picture.
+    """
+    plotter_setup.choose_off_screen_window()
+    width, height = 2 * VIEW_SIZE[0], VIEW_SIZE[1]
+    plotter = pv.Plotter(off_screen=True, window_size=[width, height])
+    try:
+        plotter_setup.set_stage(plotter, palette.PAPER)
+        reach = 1.1 * float(np.hypot(pile.points[:, 0], pile.points[:, 1]).max())
+        instancing.show_heap(plotter, shapes, pile)
+        instancing.show_apparatus(plotter, pile, test.diameter, test.height, reach, palette.PAPER)
+        annotations.show_title(plotter, title)
+        corners = instancing.box_corners(reach / np.sqrt(2.0), float(pile.points[:, 2].max()))
+        pose = cameras.framing_pose(corners, "isometric", width / height)
+        cameras.apply_pose(plotter, cameras.filled(pose, corners, width / height))
+        plotter.screenshot(path)
+    finally:
+        plotter.close()
 
 
 def _fill(

@@ -281,7 +281,7 @@ def _write_volume_documents(run: RecipeRun, prepared: PreparedInputs) -> None:
     if run.recipe.volumes:
         (run.stage / "volumes").mkdir()
     for entry, source in zip(run.recipe.volumes, prepared.volumes, strict=True):
-        name = unique_name(Path(entry.file).stem, "", taken)
+        name = unique_name(Path(entry.file).stem.replace(":", "-"), "", taken)
         write_bytes(run.stage / "volumes" / f"{name}.json", (source / EXTRACTION).read_bytes())
 
 

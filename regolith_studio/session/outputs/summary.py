@@ -91,14 +91,19 @@ def summary_page(recipe: Recipe, summary: Summary, studies: Sequence[str], probl
     parts = [
         f"<h1>{TITLE}</h1>",
         _lead(recipe, summary),
-        *[_figure(file, caption) for file, caption in summary.pictures],
+        *[html_figure(file, caption) for file, caption in summary.pictures],
         _fidelity(summary),
         *map(_study, studies),
         _particles(summary),
         _problems(problems),
         _provenance(recipe),
     ]
-    head = f'<meta charset="utf-8"><title>{TITLE}</title><style>{_STYLE}</style>'
+    return html_page(TITLE, parts)
+
+
+def html_page(title: str, parts: Sequence[str]) -> str:
+    """A page of its own with the style of all pages."""
+    head = f'<meta charset="utf-8"><title>{escape(title)}</title><style>{_STYLE}</style>'
     return (
         f'<!doctype html>\n<html lang="en"><head>{head}</head><body>\n{chr(10).join(parts)}\n</body></html>\n'
     )
@@ -120,7 +125,8 @@ def _weights(recipe: Recipe) -> str:
     return ", ".join(f"{key} {value:g}" for key, value in recipe.weights.items() if value)
 
 
-def _figure(file: str, caption: str) -> str:
+def html_figure(file: str, caption: str) -> str:
+    """A picture with its caption."""
     return (
         f'<figure><img src="{escape(file)}" alt="{escape(caption)}">'
         f"<figcaption>{escape(caption)}</figcaption></figure>"
@@ -147,7 +153,7 @@ def _fidelity(summary: Summary) -> str:
         "<p>Relative errors against the imitated surface (Eq. 8); J is the Jaccard distance (paper: IoU)."
         f"{_more(summary.n_coarse, 'meshes/coarsening.json')}</p>"
     )
-    return "<h2>How well the polyhedra keep the shape</h2>" + note + _table(header, rows)
+    return "<h2>How well the polyhedra keep the shape</h2>" + note + html_table(header, rows)
 
 
 def _more(count: int, file: str) -> str:
@@ -159,7 +165,7 @@ def _more(count: int, file: str) -> str:
 
 def _study(kind: str) -> str:
     title, picture = STUDIES[kind].title, STUDIES[kind].picture
-    return f"<h2>{escape(title)}</h2>{_figure(f'studies/{picture}', title)}"
+    return f"<h2>{escape(title)}</h2>{html_figure(f'studies/{picture}', title)}"
 
 
 def _particles(summary: Summary) -> str:
@@ -178,7 +184,7 @@ def _particles(summary: Summary) -> str:
         for each in summary.described
     ]
     note = _more(summary.n_particles, "descriptors.csv")
-    return "<h2>The particles</h2>" + (f"<p>{note}</p>" if note else "") + _table(header, rows)
+    return "<h2>The particles</h2>" + (f"<p>{note}</p>" if note else "") + html_table(header, rows)
 
 
 def _problems(problems: Sequence[str]) -> str:
@@ -202,7 +208,8 @@ def _provenance(recipe: Recipe) -> str:
     )
 
 
-def _table(header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+def html_table(header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    """A table; the first column is text."""
     head = "".join(f"<th>{escape(cell)}</th>" for cell in header)
     body = "\n".join("<tr>" + "".join(f"<td>{escape(cell)}</td>" for cell in row) + "</tr>" for row in rows)
     return f"<table><thead><tr>{head}</tr></thead><tbody>\n{body}\n</tbody></table>"
