@@ -65,10 +65,10 @@ def _watch(now: Any, seen: dict[str, float]) -> None:
     """Follow the window once it is there."""
     from regolith_studio.ui.translation import language
 
-    speak = language.speak
+    install = language.install_translators
 
-    def spoken(*given: Any) -> None:
-        speak(*given)
+    def installed(*given: Any) -> Any:
+        translators = install(*given)
         from regolith_studio.ui import app
 
         opened, app.show_recovery_and_tour = app.open_window, lambda _window: None
@@ -80,8 +80,9 @@ def _watch(now: Any, seen: dict[str, float]) -> None:
             return window
 
         app.open_window = watched
+        return translators
 
-    language.speak = spoken
+    language.install_translators = installed
 
 
 def _frames(window: Any, now: Any, seen: dict[str, float]) -> None:
