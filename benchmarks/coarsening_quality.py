@@ -128,12 +128,12 @@ def quality(
 ) -> Quality:
     """One line: each target coarsened once."""
     table, results, times = [], [], []
-    for index, target in enumerate(targets):
+    for place, target in enumerate(targets):
         begun = time.process_time()
         try:
-            result = coarsen(target, n_facets, "exact", particle_index=index, settings={"level": level})
+            result = coarsen(target, n_facets, "exact", settings={"level": level})
         except RegolithError as error:  # such as a hull with fewer triangles than asked for
-            print(f"particle {index} is left out: {error}")
+            print(f"particle {place} is left out: {error}")
             continue
         times.append(1e3 * (time.process_time() - begun))
         results.append(result)

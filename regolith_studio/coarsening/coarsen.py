@@ -33,7 +33,6 @@ def coarsen(
     method: str = DEFAULT_METHOD,
     weights: LossWeights | None = None,
     seed: int = 0,
-    particle_index: int = 0,
     settings: Any = None,
 ) -> CoarseningResult:
     """The convex polyhedron with `n_facets` facets that stands for `mesh` (section 2.4).
@@ -48,8 +47,8 @@ def coarsen(
         Key of :data:`regolith_studio.coarsening.methods.METHODS`.
     weights
         Of the loss (Eq. 9); preset ``all`` where not given.
-    seed, particle_index
-        The random numbers are those of ``SeedSequence(seed, spawn_key=(particle_index,))``.
+    seed
+        Of the random numbers. Neither they nor anything else tells where a particle stands in a sample.
     settings
         The method's ``Settings``, or a mapping of those that differ from the defaults.
 
@@ -60,7 +59,7 @@ def coarsen(
     GeometryError
         If the mesh is open, flat or encloses no volume.
     """
-    _, run = _prepare(mesh, n_facets, method, weights, seed, particle_index, settings)
+    _, run = _prepare(mesh, n_facets, method, weights, seed, settings)
     while True:
         try:
             next(run)
@@ -75,11 +74,10 @@ def coarsening_steps(
     method: str = DEFAULT_METHOD,
     weights: LossWeights | None = None,
     seed: int = 0,
-    particle_index: int = 0,
     settings: Any = None,
 ) -> Generator[CoarseningProgress, None, CoarseningResult]:
     """As :func:`coarsen`, yielding each step; the first one has a polyhedron and comes at once."""
-    target, run = _prepare(mesh, n_facets, method, weights, seed, particle_index, settings)
+    target, run = _prepare(mesh, n_facets, method, weights, seed, settings)
     while True:
         try:
             step = next(run)
@@ -98,7 +96,6 @@ def _prepare(
     method: str,
     weights: LossWeights | None,
     seed: int,
-    particle_index: int,
     settings: Any,
 ) -> tuple[Target, Generator[MethodStep, None, CoarseningResult]]:
     """The target, and the method's steps with the measured result at their end."""
@@ -106,8 +103,7 @@ def _prepare(
     weights = LossWeights.from_preset(DEFAULT_PRESET) if weights is None else weights
     _check(n_facets, chosen, weights, seed)
     target = mesh if isinstance(mesh, Target) else Target.of(mesh)
-    random = np.random.SeedSequence(seed, spawn_key=(particle_index,))
-    run = chosen.run(target, n_facets, weights, random, settings_of(method, settings))
+    run = chosen.run(target, n_facets, weights, np.random.SeedSequence(seed), settings_of(method, settings))
     return target, _run_and_measure(run, target, method, n_facets, weights)
 
 

@@ -73,7 +73,6 @@ def fewest_facets(
     method: str = DEFAULT_METHOD,
     weights: LossWeights | None = None,
     seed: int = 0,
-    particle_index: int = 0,
     settings: Any = None,
 ) -> Generator[CoarseningProgress | Trial, None, CoarseningResult]:
     """The polyhedron with the fewest facets whose weighted descriptors are all off by at most `limit`.
@@ -104,7 +103,7 @@ def fewest_facets(
     def tried(n_facets: int) -> Generator[CoarseningProgress | Trial, None, Trial]:
         nonlocal done
         before = done
-        steps = coarsening_steps(target, n_facets, method, weights, seed, particle_index, settings)
+        steps = coarsening_steps(target, n_facets, method, weights, seed, settings)
         while True:
             try:
                 step = next(steps)

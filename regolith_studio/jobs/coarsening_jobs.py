@@ -110,7 +110,7 @@ class CoarsenedParticle:
     seconds: float = 0.0
 
 
-def coarsen_one(mesh: Mesh, request: CoarseningRequest, particle_index: int = 0) -> Steps:
+def coarsen_one(mesh: Mesh, request: CoarseningRequest) -> Steps:
     """Coarsen `mesh` as requested; yields ``CoarseningProgress``, returns a ``CoarseningResult``.
 
     While the method's kernels are compiled, the polyhedron by quadrics is what there is to see.
@@ -118,10 +118,10 @@ def coarsen_one(mesh: Mesh, request: CoarseningRequest, particle_index: int = 0)
     if not is_compiled(request.method):
         yield from compile_first_for("quadric")
         quadric = replace(request, method="quadric", settings=(), largest_error=None)
-        yield from _run_coarsening(mesh, quadric, particle_index)
+        yield from _run_coarsening(mesh, quadric)
         yield from compile_first_for(request.method)
     yield Started(N_("Coarsening"))
-    return (yield from _run_coarsening(mesh, request, particle_index))
+    return (yield from _run_coarsening(mesh, request))
 
 
 @dataclass(frozen=True)
@@ -175,7 +175,7 @@ def coarsen_particle(
         fit = (fit or request.fit_options.fit(mesh, max(request.l_max, FIT_DEGREE))).truncated(request.l_max)
         mesh, notes = reconstruct(fit, request.l_max, level=request.level), notes + fit.warnings
         coefficients = fit.coefficients
-    coarsened = yield from _run_coarsening(mesh, request, index)
+    coarsened = yield from _run_coarsening(mesh, request)
     seconds = time.perf_counter() - begun
     return CoarsenedParticle(particle.name, index, coarsened, "", coefficients, notes, seconds)
 
@@ -189,8 +189,8 @@ def coarsen_sample(
     """Fit and coarsen every particle; returns a tuple of :class:`CoarsenedParticle`.
 
     A particle that fails is reported with its message and does not stop the others. The results do not
-    depend on `workers` (0: one process a core), and with their `indices` in a larger sample (by default
-    0, 1, 2 ...) not on which of its particles are coarsened.
+    depend on `workers` (0: one process a core), nor on where a particle stands in the sample; they carry its
+    place in a larger one where `indices` are given.
     """
     yield from compile_first_for(request.method)
     yield Started(N_("Coarsening"), len(particles))
@@ -218,12 +218,11 @@ def _target(mesh: Mesh) -> Target:
     return Target.of(mesh)
 
 
-def _run_coarsening(mesh: Mesh, request: CoarseningRequest, index: int) -> Generator[Step, None, Any]:
+def _run_coarsening(mesh: Mesh, request: CoarseningRequest) -> Generator[Step, None, Any]:
     common: dict[str, Any] = {
         "method": request.method,
         "weights": request.weights,
         "seed": request.seed,
-        "particle_index": index,
         "settings": dict(request.settings),
     }
     steps: Generator[CoarseningProgress | Trial, None, CoarseningResult]

@@ -101,7 +101,7 @@ class AnnealingLesson:
     exact: CoarseningResult | None = None
 
 
-def trace_annealing(mesh: Mesh, request: CoarseningRequest, particle_index: int = 0) -> Steps:
+def trace_annealing(mesh: Mesh, request: CoarseningRequest) -> Steps:
     """Anneal and keep every iteration, then coarsen exactly; returns an :class:`AnnealingLesson`.
 
     The seed, weights and number of facets are those of the request, and its settings if they are those of the
@@ -120,7 +120,7 @@ def trace_annealing(mesh: Mesh, request: CoarseningRequest, particle_index: int 
     yield from compile_first_for("exact")
     yield Started(N_("Annealing step by step"), settings.iterations)
     target = Target.of(mesh)
-    seed = np.random.SeedSequence(request.seed, spawn_key=(particle_index,))
+    seed = np.random.SeedSequence(request.seed)
     run = METHODS["annealing"].run(target, request.n_facets, request.weights, seed, settings)
     raw = []
     for step in run:
@@ -136,7 +136,7 @@ def trace_annealing(mesh: Mesh, request: CoarseningRequest, particle_index: int 
         _trace_steps(target, raw),
     )
     yield Partial(lesson)
-    exact = coarsen(target, request.n_facets, "exact", request.weights, request.seed, particle_index)
+    exact = coarsen(target, request.n_facets, "exact", request.weights, request.seed)
     return replace(lesson, exact=exact)
 
 

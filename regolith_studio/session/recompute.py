@@ -209,7 +209,7 @@ class LiveResults:
             fewer_facets=None,
             against_particle=None,
         )
-        job = Job(coarsen_one, (target, choices.coarsening_request, self._session.particles.index(entry)))
+        job = Job(coarsen_one, (target, choices.coarsening_request))
         return job, self._keep_coarsened, self._keep_progress
 
     def _keep_progress(self, step: "CoarseningProgress") -> None:

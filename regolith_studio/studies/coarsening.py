@@ -120,7 +120,7 @@ def _pooled(errors: FloatArray, counts: ArrayLike) -> FloatArray:
 
 
 def coarsening_errors(
-    numbered: tuple[int, Mesh],
+    mesh: Mesh,
     rows: Sequence[LossVariant],
     seed: int = 0,
     target: TargetChoice | None = None,
@@ -129,28 +129,22 @@ def coarsening_errors(
     """Errors of one particle by row and column, and which rows met their request; or why there are none.
 
     Pure and picklable: for process pools.
-
-    Parameters
-    ----------
-    numbered
-        Index of the particle (for its random numbers) and its mesh.
     """
-    index, mesh = numbered
     try:
         goal = Target.of((target or TargetChoice()).mesh_of(mesh))
         wanted = describe(goal.mesh, LOSS_KEYS, box_metric)
-        table = [_row_errors(goal, row, seed, index, wanted, box_metric) for row in rows]
+        table = [_row_errors(goal, row, seed, wanted, box_metric) for row in rows]
     except RegolithError as error:
         return str(error)
     return np.array([values for values, _ in table]), tuple(met for _, met in table)
 
 
 def _row_errors(
-    target: Target, row: LossVariant, seed: int, index: int, wanted: Any, box_metric: str
+    target: Target, row: LossVariant, seed: int, wanted: Any, box_metric: str
 ) -> tuple[list[float], bool]:
     method = "quadric" if row.is_baseline else row.method
     settings = None if row.is_baseline else dict(row.settings)
-    found = coarsen(target, row.n_facets, method, row.weights, seed, index, settings)
+    found = coarsen(target, row.n_facets, method, row.weights, seed, settings)
     if box_metric == "exact" and not row.is_baseline:
         errors = dict(found.errors)
     else:
@@ -196,7 +190,7 @@ def coarsening_study(
     study = CoarseningStudy(
         chosen, errors=np.empty((0, len(chosen), len(COLUMNS))), box_metric=box_metric, seed=seed
     )
-    outcomes = mapper(work, list(enumerate(particle.mesh for particle in particles)))
+    outcomes = mapper(work, [particle.mesh for particle in particles])
     for done, (particle, outcome) in enumerate(zip(particles, outcomes, strict=True), start=1):
         study = _with_outcome(study, particle, outcome)
         yield StudyProgress(done, len(particles), particle.name, study if study.names else None)

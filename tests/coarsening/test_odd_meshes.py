@@ -17,7 +17,7 @@ CONDITIONS = ("volume", "sphericity", "min_diameter", "max_diameter", "aspect_ra
 def attempted(mesh: Mesh | Target, n_facets: int, method: str, number: int) -> CoarseningResult | str:
     """The result, or the sentence that refuses it."""
     try:
-        return coarsen(mesh, n_facets, method, particle_index=number)
+        return coarsen(mesh, n_facets, method, seed=number)
     except RegolithError as error:
         return str(error)
 

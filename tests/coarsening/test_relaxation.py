@@ -66,8 +66,8 @@ def test_that_no_box_is_overlooked_where_the_sphericity_cannot_be_met(
     """
     turn = np.linalg.qr(np.random.default_rng(5).normal(size=(3, 3)))[0]
     shape = egg(*axes)
-    for particle_index in range(4):
-        found = coarsen(Mesh(shape.vertices @ turn, shape.faces), n_facets, particle_index=particle_index)
+    for seed in range(4):
+        found = coarsen(Mesh(shape.vertices @ turn, shape.faces), n_facets, seed=seed)
         assert max(found.errors[key] for key in REST) <= 1e-6
 
 

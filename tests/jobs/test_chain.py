@@ -1,11 +1,13 @@
 """The jobs themselves on small bodies: load, measure, fit, coarsen, warm up."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
-from regolith_studio.coarsening.coarsen import DEFAULT_METHOD
+from regolith_studio.coarsening.coarsen import DEFAULT_METHOD, coarsen
 from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.errors import DatasetError, FileError
 from regolith_studio.geometry.mesh import Mesh
@@ -105,6 +107,17 @@ def test_that_a_sample_goes_on_after_a_particle_that_fails() -> None:
     assert good.coarsened is not None
     assert good.coefficients is not None
     assert good.coefficients.l_max == 4
+
+
+def test_that_a_grain_has_one_polyhedron_wherever_it_stands_in_a_sample() -> None:
+    request = replace(ORDER, method="annealing", settings=(("iterations", 10),), target="particle", seed=3)
+    other = Particle("other", Mesh(SPHERE.vertices * [60.0, 50.0, 20.0], SPHERE.faces))
+    grain = Particle("grain", GRAIN)
+    _, outcomes = played(coarsen_sample([grain, other, grain], request))
+    _, alone = played(coarsen_one(GRAIN, request))
+    wanted = coarsen(GRAIN, request.n_facets, "annealing", request.weights, 3, {"iterations": 10})
+    for found in (outcomes[0].coarsened, outcomes[2].coarsened, alone):
+        assert np.array_equal(found.half_spaces.points, wanted.half_spaces.points)
 
 
 def test_that_a_sample_without_a_single_polyhedron_is_no_dataset(tmp_path: Path) -> None:

@@ -36,21 +36,21 @@ def egg():
 @pytest.fixture(scope="module")
 def lesson(egg):
     order = CoarseningRequest(WEIGHTS, 12, "annealing", (("iterations", 60),), seed=5)
-    partial, made = results_of(trace_annealing(egg, order, 2))
+    partial, made = results_of(trace_annealing(egg, order))
     assert partial[0].exact is None
     assert partial[0].steps is made.steps
     return made
 
 
 def test_that_a_lesson_is_the_method_step_by_step(egg, lesson):
-    plain = coarsen(egg, 12, "annealing", WEIGHTS, 5, 2, {"iterations": 60})
+    plain = coarsen(egg, 12, "annealing", WEIGHTS, 5, {"iterations": 60})
     assert [step.evaluation.loss for step in lesson.steps] == list(plain.loss_history)
     np.testing.assert_allclose(
         np.sort(lesson.steps[-1].polyhedron.facet_areas), np.sort(plain.polyhedron.facet_areas), rtol=1e-9
     )
     assert sum(step.move.accepted for step in lesson.steps[1:]) == plain.steps["accepted"]
     assert sum(step.proposal is None for step in lesson.steps[1:]) == plain.steps["refused"]
-    assert lesson.exact.loss == coarsen(egg, 12, "exact", WEIGHTS, 5, 2).loss
+    assert lesson.exact.loss == coarsen(egg, 12, "exact", WEIGHTS, 5).loss
 
 
 def test_that_a_move_is_taken_if_it_is_better_or_lucky_and_moves_one_plane_only(lesson):

@@ -59,6 +59,14 @@ def study() -> CoarseningStudy:
     return finished(coarsening_study(particles, ROWS))[1]
 
 
+def test_that_a_grain_has_the_same_errors_wherever_it_stands_in_a_sample() -> None:
+    rows = (LossVariant("all", LossWeights.from_preset("all"), "annealing", 12, (("iterations", 10),)),)
+    particles = [Particle(f"egg {s}", egg(s)) for s in (1.2, 1.5, 1.2)]
+    errors = finished(coarsening_study(particles, rows))[1].errors
+    assert np.array_equal(errors[0], errors[2])
+    assert not np.array_equal(errors[0], errors[1])
+
+
 def test_that_the_rmsre_is_that_of_equation_10(study: CoarseningStudy) -> None:
     by_hand = np.sqrt((study.errors[0] ** 2 + study.errors[1] ** 2) / 2)
     assert study.rmsre[:, :-1] == pytest.approx(by_hand[:, :-1])

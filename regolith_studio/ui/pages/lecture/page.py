@@ -166,7 +166,6 @@ class LecturePage(PageWidget):
             return
         self._made_for["annealing"] = wanted
         request = choices.replaced(method="annealing", settings=settings, seed=seed).coarsening_request
-        index = [each.id for each in self._session.particles].index(entry.id)
         imitated = (
             tr("the fit at l<sub>max</sub> = {degree}", degree=choices.l_max)
             if fitted
@@ -182,7 +181,7 @@ class LecturePage(PageWidget):
         )
         self.annealing.wait()
         show = self.annealing.show_lesson
-        job = Job(trace_annealing, (mesh, request, index))
+        job = Job(trace_annealing, (mesh, request))
         self._context.start(
             tr("Annealing step by step"),
             job,
