@@ -161,7 +161,7 @@ def test_that_what_lammps_writes_is_read_and_losses_are_noticed(tmp_path) -> Non
     ],
 )
 def test_that_the_message_says_what_to_do_when_lammps_loses_its_particles(output, expected) -> None:
-    assert re.search(expected, str(early_end(output, 0.15)))
+    assert re.search(expected, str(early_end(output.splitlines(), 0.15)))
 
 
 def test_that_bad_settings_are_one_sentence() -> None:

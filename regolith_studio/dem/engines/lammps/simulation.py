@@ -2,7 +2,6 @@
 
 import subprocess
 import tempfile
-import time
 from collections.abc import Generator
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -23,6 +22,7 @@ from regolith_studio.dem.engines.lammps.script import (
     script,
     stiffness,
 )
+from regolith_studio.dem.external_program import printed_lines, running_program, written_files
 from regolith_studio.dem.initial_packing import enclosing_radii
 from regolith_studio.dem.run_checks import check_run, measure_filling
 from regolith_studio.dem.snapshot import ParticleState, Snapshot
@@ -31,8 +31,6 @@ from regolith_studio.geometry.arrays import FloatArray, IntArray
 
 _LOST_ATOMS_ERRORS = ("missing on proc", "Lost atoms", "Out of range atoms", "Non-numeric", "too far outside")
 """Error messages of LAMMPS for particles that moved too far in one step."""
-POLL_INTERVAL = 0.1
-"""Seconds between two checks for a new snapshot."""
 MAX_SPEED = 2.0
 """Largest speed of a particle, in that of a fall from the top of the column."""
 REST_ENERGY = 1e-3
@@ -133,23 +131,14 @@ def _attempt(run: _Run, folder: Path) -> Generator[Snapshot, None, None]:
     (folder / "bodies.txt").write_text(bodies_file(run.clumps, state.motion))
     (folder / "in.repose").write_text(script(run.prepared, run.settings, run.plan, radius, run.top))
     words, environment = command()
-    with (folder / "output.txt").open("wb") as output:
-        child = subprocess.Popen(
-            [*words, "-in", "in.repose", "-log", "log.lammps"],
-            cwd=folder,
-            env=environment,
-            stdin=subprocess.DEVNULL,
-            stdout=output,
-            stderr=subprocess.STDOUT,
-        )
+    words = [*words, "-in", "in.repose", "-log", "log.lammps"]
     try:
-        yield from _follow(run, child, folder)
+        with running_program(words, environment, folder) as child:
+            yield from _follow(run, child, folder)
     finally:
-        child.kill()
-        child.wait()
         _note_energies(run, folder)
     if child.returncode or run.last is None:
-        raise early_end((folder / "output.txt").read_text(errors="replace"), run.step_share)
+        raise early_end(printed_lines(folder), run.step_share)
 
 
 def _go_back(run: _Run, *, stuck: bool) -> None:
@@ -196,21 +185,12 @@ def _softness_in_words(prepared: PreparedCase, settings: LammpsSettings) -> str:
 
 
 def _follow(run: _Run, child: "subprocess.Popen[bytes]", folder: Path) -> Generator[Snapshot, None, None]:
-    """Moments as LAMMPS writes them; a file is whole when the next one is there or LAMMPS has ended."""
-    step = 0
-    while True:
-        ended = child.poll() is not None
-        while (path := folder / f"body.{step}.dump").exists():
-            following = (folder / f"body.{step + run.plan.picture}.dump").exists()
-            if not (following or ended):
-                break
-            snapshot = _snapshot(run, path, step)
-            if step or not run.restarts:
-                yield snapshot
-            step += run.plan.picture
-        if ended:
-            return
-        time.sleep(POLL_INTERVAL)
+    """Snapshots as LAMMPS writes them; that of the beginning has been there where the run goes on."""
+    picture = run.plan.picture
+    for number, path in written_files(child, lambda number: folder / f"body.{number * picture}.dump"):
+        snapshot = _snapshot(run, path, number * picture)
+        if number or not run.restarts:
+            yield snapshot
 
 
 def _snapshot(run: _Run, path: Path, step: int) -> Snapshot:
@@ -276,9 +256,8 @@ def kinetic_energies(log: str) -> dict[int, float]:
     return found
 
 
-def early_end(output: str, step_share: float) -> RegolithError:
+def early_end(lines: list[str], step_share: float) -> RegolithError:
     """Why LAMMPS has ended before its time, by its own first error."""
-    lines = output.splitlines()
     errors = [line for line in lines if "ERROR" in line] or lines[-1:] or ["it said nothing"]
     own = errors[0].strip()
     if any(sign in own for sign in _LOST_ATOMS_ERRORS):

@@ -1,9 +1,8 @@
 """Run YADE and read its states; after a crash continue from the last state."""
 
 import json
-import subprocess
+import re
 import tempfile
-import time
 from collections.abc import Generator
 from dataclasses import dataclass, field
 from itertools import pairwise
@@ -15,12 +14,10 @@ from regolith_studio.dem.case import PreparedCase
 from regolith_studio.dem.engine import RunChecks, SimulationResult
 from regolith_studio.dem.engines.yade.input_files import LENGTH, YadeState, input_document, read_yade_state
 from regolith_studio.dem.engines.yade.program import YadeSettings, command, expected_duration
+from regolith_studio.dem.external_program import printed_lines, running_program, written_files
 from regolith_studio.dem.run_checks import check_run, measure_filling, overlap_depths
 from regolith_studio.dem.snapshot import ParticleState, Snapshot
 from regolith_studio.errors import RegolithError
-
-POLL_INTERVAL = 0.1
-"""Seconds between two checks for a new state."""
 
 
 @dataclass(eq=False)
@@ -71,29 +68,12 @@ def _attempt(run: _Run, folder: Path) -> Generator[Snapshot, None, int]:
     plan = input_document(run.prepared, run.settings, run.duration, run.last)
     (folder / "input.json").write_text(json.dumps(plan), encoding="utf-8")
     words, environment = command(folder)
-    with (folder / "output.txt").open("wb") as output:
-        child = subprocess.Popen(
-            words,
-            cwd=folder,
-            env=environment,
-            stdin=subprocess.DEVNULL,
-            stdout=output,
-            stderr=subprocess.STDOUT,
-        )
-    try:
-        number = int(plan["number"])
-        while True:
-            ended = child.poll() is not None
-            while (path := folder / f"state.{number:06d}.json").exists():
-                yield _snapshot(run, read_yade_state(path, len(run.prepared)))
-                path.unlink()
-                number += 1
-            if ended:
-                return int(child.returncode)
-            time.sleep(POLL_INTERVAL)
-    finally:
-        child.kill()
-        child.wait()
+    with running_program(words, environment, folder) as child:
+        states = written_files(child, lambda number: folder / f"state.{number:06d}.json", int(plan["number"]))
+        for _, path in states:
+            yield _snapshot(run, read_yade_state(path, len(run.prepared)))
+            path.unlink()
+    return int(child.returncode)
 
 
 def _handle_crash(run: _Run, code: int, folder: Path) -> None:
@@ -105,8 +85,7 @@ def _handle_crash(run: _Run, code: int, folder: Path) -> None:
         With YADE's own last words where it said any.
     """
     run.crashes += 1
-    output = (folder / "output.txt").read_text(errors="replace").splitlines()
-    errors = [line.strip() for line in output if "Error" in line or "ERROR" in line or "FATAL" in line]
+    errors = [line.strip() for line in printed_lines(folder) if re.search("Error|ERROR|FATAL", line)]
     how = f"was ended by signal {-code}" if code < 0 else f"ended with code {code}"
     if code >= 0 and errors:
         raise RegolithError(f"YADE {how}: {errors[-1][:200]}")

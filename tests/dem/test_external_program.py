@@ -1,0 +1,41 @@
+"""A program that writes files is followed to its end, and ended with its block."""
+
+import os
+import sys
+import time
+
+import pytest
+
+from regolith_studio.dem.external_program import printed_lines, running_program, written_files
+
+WRITER = """
+import time
+for number in range(3, 6):
+    with open(f"state.{number}", "w") as file:
+        file.write("half,")
+        file.flush()
+        time.sleep(0.25)
+        file.write("whole")
+print("told")
+raise SystemExit(7)
+"""
+
+
+def test_that_files_come_in_order_and_only_when_they_are_whole(tmp_path) -> None:
+    with running_program([sys.executable, "-c", WRITER], os.environ, tmp_path) as child:
+        files = written_files(child, lambda number: tmp_path / f"state.{number}", first=3)
+        found = [(number, path.read_text()) for number, path in files]
+    assert found == [(3, "half,whole"), (4, "half,whole"), (5, "half,whole")]
+    assert child.returncode == 7
+    assert printed_lines(tmp_path) == ["told"]
+
+
+def test_that_a_program_ends_with_the_block_that_was_left_by_an_error(tmp_path) -> None:
+    begun = time.monotonic()
+    with (
+        pytest.raises(KeyError),
+        running_program([sys.executable, "-c", "import time; time.sleep(60)"], os.environ, tmp_path) as child,
+    ):
+        raise KeyError
+    assert child.returncode is not None
+    assert time.monotonic() - begun < 30
