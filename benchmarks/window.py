@@ -6,7 +6,8 @@ method, ``samples`` opens drawn particles and then the shipped ones again; all t
 at each look and their slope with its standard error. ``cancel`` stops each kind of work and prints how
 long the window did not answer, ``blocks`` goes through all pages and prints what kept it from answering
 for more than 50 ms; ``sliders`` times the way from a move to the painted view, ``rest`` what a window
-takes that nobody touches. ``--views live`` needs a display.
+takes that nobody touches. ``acts`` clicks, types and drags at random and prints the memory each minute.
+``--views live`` needs a display.
 """
 
 import argparse
@@ -26,9 +27,11 @@ LISTING = {"cancel": stops, "blocks": blocks, "sliders": responses}
 def main() -> None:
     """Measure and print."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.window", description=__doc__.splitlines()[0])
-    parser.add_argument("what", choices=["start", *GROWING, *LISTING, "rest"])
+    parser.add_argument("what", choices=["start", *GROWING, *LISTING, "rest", "acts"])
     parser.add_argument("--views", choices=["image", "live"], default="image")
-    parser.add_argument("--count", type=int, help="of moves, cycles and samples (1000) or starts (5)")
+    parser.add_argument(
+        "--count", type=int, help="of moves, cycles and samples (1000), starts (5) or minutes of acts (60)"
+    )
     options = parser.parse_args()
     if options.what == "start":
         for line in starts(options.count or 5, options.views):
@@ -40,6 +43,11 @@ def main() -> None:
                 print(line, flush=True)
         elif options.what == "rest":
             print(rest(window))
+        elif options.what == "acts":
+            from benchmarks.window_acts import act_for  # imports Qt, which `opened` sets up
+
+            for line in act_for(window, options.count or 60):
+                print(line, flush=True)
         else:
             _grow(window, options.what, options.count or 1000)
 
