@@ -98,7 +98,8 @@ def sphericity_reason(sphericity: float, n_facets: int) -> str | None:
     limit = max_sphericity(n_facets)
     if sphericity <= limit:
         return None
-    values = {"sphericity": f"{sphericity:.3f}", "faces": n_facets, "most": f"{limit:.3f}"}
+    digits = next((d for d in range(3, 9) if f"{sphericity:.{d}f}" != f"{limit:.{d}f}"), 9)
+    values = {"sphericity": f"{sphericity:.{digits}f}", "faces": n_facets, "most": f"{limit:.{digits}f}"}
     if (needed := min_facets(sphericity)) is None:
         template = N_(
             "Sphericity {sphericity} needs more than 100,000 facets; with {faces} the most is {most}."

@@ -160,8 +160,8 @@ def _least(failed: Sequence[Trial], limit: float) -> CoarseningResult:
     least = min(failed, key=lambda trial: trial.largest_error)
     reason = Message(
         N_(
-            "Not even {faces} facets bring all errors below {limit} %: the least is {error} %, with {count}"
-            " facets."
+            "No polyhedron was found whose errors are all below {limit} %, with up to {faces} facets: the"
+            " least is {error} %, with {count} facets."
         ),
         faces=failed[-1].n_facets,
         limit=f"{100 * limit:g}",

@@ -2820,6 +2820,10 @@
         <translation>Noch kein Schüttkegel.</translation>
     </message>
     <message>
+        <source>No polyhedron was found whose errors are all below {limit} %, with up to {faces} facets: the least is {error} %, with {count} facets.</source>
+        <translation>Es wurde kein Polyeder gefunden, dessen Fehler alle unter {limit} % liegen, mit bis zu {faces} Facetten: Der kleinste ist {error} %, mit {count} Facetten.</translation>
+    </message>
+    <message>
         <source>No polyhedron with {faces} facets was found that meets all descriptors; this one misses {missed}. A weight of 0 frees a descriptor.</source>
         <translation>Es fand sich kein Polyeder mit {faces} Facetten, das alle Deskriptoren trifft; dieses verfehlt {missed}. Ein Gewicht von 0 gibt einen Deskriptor frei.</translation>
     </message>
@@ -2838,10 +2842,6 @@
     <message>
         <source>Normal force</source>
         <translation>Normalkraft</translation>
-    </message>
-    <message>
-        <source>Not even {faces} facets bring all errors below {limit} %: the least is {error} %, with {count} facets.</source>
-        <translation>Nicht einmal {faces} Facetten bringen alle Fehler unter {limit} %: Der kleinste ist {error} %, mit {count} Facetten.</translation>
     </message>
     <message>
         <source>Not fitted yet.</source>
@@ -4832,8 +4832,8 @@
         <translation>Das kann Zufall sein.</translation>
     </message>
     <message>
-        <source>This one also misses {missed}.</source>
-        <translation>Dieses verfehlt außerdem {missed}.</translation>
+        <source>This one misses {missed}.</source>
+        <translation>Dieses verfehlt {missed}.</translation>
     </message>
     <message>
         <source>This run was not finished: {state}.</source>

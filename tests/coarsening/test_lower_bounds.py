@@ -39,6 +39,9 @@ def test_that_an_impossible_sphericity_is_explained_with_numbers() -> None:
         f"Sphericity 0.957 needs at least {min_facets(0.957)} facets; with 20 the most is 0.948."
     )
     assert sphericity_reason(0.9, 20) is None
+    close = sphericity_reason(max_sphericity(20) + 1e-5, 20)
+    assert close is not None
+    assert close.startswith("Sphericity 0.94772 needs at least 21 facets; with 20 the most is 0.94771.")
 
 
 def test_that_volume_and_hull_cannot_both_be_met() -> None:

@@ -47,6 +47,7 @@ def test_that_a_ball_becomes_nearly_as_round_as_goldberg_allows(n_facets: int) -
     assert found.n_facets == n_facets
     assert found.reason is not None
     assert f"with {n_facets} the most is {most:.3f}" in found.reason
+    assert f"misses sphericity by {100 * found.errors['sphericity']:.2g} %" in found.reason
 
 
 @pytest.mark.parametrize(
@@ -132,6 +133,14 @@ def test_that_conditions_are_met_in_turn_and_their_polyhedron_is_as_it_says() ->
     assert problem.asked[0]
     assert problem.wanted[0] == rest.wanted[0]
     assert not problem.asked[1]
+
+
+def test_that_an_error_above_a_hundred_per_cent_is_written_in_full() -> None:
+    target = Target.of(egg(1.0, 0.6, 0.3))
+    found = dict(target.descriptors) | {"min_diameter": 2.234 * target.descriptors["min_diameter"]}
+    reason = reason_for(target, ConstraintRequest.of(target, LossWeights.of(min_diameter=1.0)), 20, 20, found)
+    assert reason is not None
+    assert "misses min diameter by 123 %" in reason
 
 
 def test_that_missing_facets_are_named_beside_the_descriptor_that_is_missed() -> None:

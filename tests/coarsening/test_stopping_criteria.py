@@ -57,7 +57,8 @@ def test_that_a_limit_out_of_reach_gives_the_least_error_and_says_so(particle: M
     weights = LossWeights.of(volume=1.0, sphericity=1.0)
     found = coarsen_below(particle, 1e-9, method="quadric", weights=weights)
     assert found.reason is not None
-    assert found.reason.startswith("Not even 200 facets bring all errors below 1e-07 %: the least is ")
+    begun = "No polyhedron was found whose errors are all below 1e-07 %, with up to 200 facets: the least is "
+    assert found.reason.startswith(begun)
     assert f" %, with {found.n_facets_asked} facets." in found.reason
     for n_facets in (5, 20, 200):
         other = coarsen(particle, n_facets, "quadric", weights)

@@ -43,7 +43,7 @@ MISSED = N_(
     "No polyhedron with {faces} facets was found that meets all descriptors; this one misses {missed}."
     " A weight of 0 frees a descriptor."
 )
-ALSO_MISSED = N_("This one also misses {missed}.")
+THIS_MISSES = N_("This one misses {missed}.")
 MISSED_BY = N_("{name} by {error} %")
 
 
@@ -111,9 +111,10 @@ class ConstraintRequest:
 def reason_for(
     target: Target, request: ConstraintRequest, n_facets: int, n_real: int, found: Mapping[str, float]
 ) -> str | None:
-    """Sentences about the constraints that are missed, the largest error first, and facets that are missing.
+    """Sentences that name every constraint that is missed, the largest error first, and missing facets.
 
-    ``None`` where the descriptors `found` meet all constraints to 1e-6 with `n_real` = `n_facets` facets.
+    They say what was found; that more cannot be is said only where Goldberg's bound proves it. ``None`` where
+    the descriptors `found` meet all constraints to 1e-6 with `n_real` = `n_facets` facets.
     """
     errors = relative_errors(target.descriptors, found)
     missed = {key: errors[_reported(key, request)] for key in request.keys}
@@ -122,13 +123,14 @@ def reason_for(
     missed = {key: error for key, error in missed.items() if error > EXACT}
     if not missed:
         return None if n_real == n_facets else facets_reason(n_real, n_facets)
-    reason: str | None = None
+    listed, proof = _listed(missed, request), None
     if "sphericity" in request.keys:
-        reason = sphericity_reason(target.descriptors["sphericity"], n_facets)
-    if reason is None:
-        reason = Message(MISSED, faces=n_facets, missed=_listed(missed, request))
-    elif others := {key: error for key, error in missed.items() if key != "sphericity"}:
-        reason = join_messages([reason, Message(ALSO_MISSED, missed=_listed(others, request))])
+        proof = sphericity_reason(target.descriptors["sphericity"], n_facets)
+    reason = (
+        Message(MISSED, faces=n_facets, missed=listed)
+        if proof is None
+        else join_messages([proof, Message(THIS_MISSES, missed=listed)])
+    )
     if n_real == n_facets:
         return reason
     template = N_("The result has {real} facets instead of {faces}.")
@@ -140,11 +142,16 @@ def _listed(missed: Mapping[str, float], request: ConstraintRequest) -> Message:
     names = {key: _reported(key, request) for key in sorted(missed, key=lambda key: -missed[key])}
     return join_messages(
         (
-            Message(MISSED_BY, name=Message(NAMES[name]), error=f"{100 * missed[key]:.2g}")
+            Message(MISSED_BY, name=Message(NAMES[name]), error=_per_cent(missed[key]))
             for key, name in names.items()
         ),
         ", ",
     )
+
+
+def _per_cent(error: float) -> str:
+    """Two digits, and no power of ten for errors of 100 per cent and more."""
+    return f"{100 * error:.2g}" if error < 0.995 else f"{100 * error:.0f}"
 
 
 def own_planes(target: Target, below: int) -> HalfSpaces | None:
