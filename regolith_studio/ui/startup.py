@@ -96,7 +96,7 @@ def make_application(arguments: Sequence[str]) -> QApplication:
     """The application object, with contexts shared between windows and the surface format that VTK needs.
 
     Palette and font of the application also reach widgets under a style sheet. Numbers have a decimal point
-    in every language, as in the paper and in all files.
+    until a language is installed that writes them otherwise.
     """
     sys.setswitchinterval(SWITCH_INTERVAL)
     QCoreApplication.setAttribute(Qt.ApplicationAttribute.AA_ShareOpenGLContexts)

@@ -497,7 +497,7 @@
     </message>
     <message>
         <source>All descriptors of all particles: sort, filter with words such as flat S&lt;0.8, choose several rows, and see them in the scatter plot. Export the table with units.</source>
-        <translation>Alle Deskriptoren aller Partikel: sortieren, mit Wörtern wie flat S&lt;0.8 filtern, mehrere Zeilen wählen und sie im Streudiagramm sehen. Die Tabelle lässt sich mit Einheiten exportieren.</translation>
+        <translation>Alle Deskriptoren aller Partikel: sortieren, mit Wörtern wie flat S&lt;0,8 filtern, mehrere Zeilen wählen und sie im Streudiagramm sehen. Die Tabelle lässt sich mit Einheiten exportieren.</translation>
     </message>
     <message>
         <source>All files (*)</source>
@@ -517,7 +517,7 @@
     </message>
     <message>
         <source>All weighted descriptors are met within 0.1 %.</source>
-        <translation>Alle gewichteten Deskriptoren sind auf 0.1 % getroffen.</translation>
+        <translation>Alle gewichteten Deskriptoren sind auf 0,1 % getroffen.</translation>
     </message>
     <message>
         <source>Allow formats that change shapes</source>
@@ -804,6 +804,14 @@
         <translation>Ändern</translation>
     </message>
     <message>
+        <source>Change length &amp;unit …</source>
+        <translation>Längen&amp;einheit ändern …</translation>
+    </message>
+    <message>
+        <source>Change length unit …</source>
+        <translation>Längeneinheit ändern …</translation>
+    </message>
+    <message>
         <source>Changed from {preset}.</source>
         <translation>Geändert gegenüber {preset}.</translation>
     </message>
@@ -886,6 +894,10 @@
     <message>
         <source>Close all particles but the chosen rows</source>
         <translation>Alle Partikel außer den gewählten Zeilen schließen</translation>
+    </message>
+    <message>
+        <source>Close the particles that came from no file first: they cannot be reopened.</source>
+        <translation>Erst die Partikel schließen, die aus keiner Datei stammen: sie lassen sich nicht wieder öffnen.</translation>
     </message>
     <message>
         <source>Close this message</source>
@@ -1661,7 +1673,7 @@
     </message>
     <message>
         <source>Filter: words and comparisons, such as  flat S&lt;0.8 AR&gt;1.5</source>
-        <translation>Filter: Wörter und Vergleiche, etwa  flat S&lt;0.8 AR&gt;1.5</translation>
+        <translation>Filter: Wörter und Vergleiche, etwa  flat S&lt;0,8 AR&gt;1,5</translation>
     </message>
     <message>
         <source>Find all grains</source>
@@ -2901,7 +2913,7 @@
     </message>
     <message>
         <source>Numbers with commas between them; Return starts the study</source>
-        <translation>Zahlen mit Kommas dazwischen; Eingabe startet die Studie</translation>
+        <translation>Zahlen mit Semikolon dazwischen; Eingabe startet die Studie</translation>
     </message>
     <message>
         <source>Numerics of the engine</source>
@@ -3438,6 +3450,10 @@
     <message>
         <source>Reached</source>
         <translation>Erreicht</translation>
+    </message>
+    <message>
+        <source>Read the files of the chosen particle in another unit</source>
+        <translation>Die Dateien des gewählten Partikels in einer anderen Einheit lesen</translation>
     </message>
     <message>
         <source>Reading particles</source>
@@ -4029,7 +4045,7 @@
     </message>
     <message>
         <source>Share that a classifier tells right: 0.5 cannot be told apart</source>
-        <translation>Anteil, den ein Klassifikator richtig zuordnet: bei 0.5 nicht zu unterscheiden</translation>
+        <translation>Anteil, den ein Klassifikator richtig zuordnet: bei 0,5 nicht zu unterscheiden</translation>
     </message>
     <message>
         <source>Shift the picture</source>
@@ -5029,7 +5045,7 @@
     </message>
     <message>
         <source>Values, with commas between them</source>
-        <translation>Werte, mit Kommas dazwischen</translation>
+        <translation>Werte, mit Semikolon dazwischen</translation>
     </message>
     <message>
         <source>Vary</source>
@@ -5669,7 +5685,7 @@
     </message>
     <message>
         <source>facet {number} of {count}: {area:,.4g} µm² ({share:.1%}), normal ({x:.2f}, {y:.2f}, {z:.2f}), {offset:.4g} µm from the centre, {corners} corners</source>
-        <translation>Facette {number} von {count}: {area:,.4g} µm² ({share:.1%}), Normale ({x:.2f}, {y:.2f}, {z:.2f}), {offset:.4g} µm von der Mitte, {corners} Ecken</translation>
+        <translation>Facette {number} von {count}: {area:,.4g} µm² ({share:.1%}), Normale ({x:.2f}; {y:.2f}; {z:.2f}), {offset:.4g} µm von der Mitte, {corners} Ecken</translation>
     </message>
     <message>
         <source>facets: they are those of the vertices&apos; hull</source>
@@ -5733,7 +5749,7 @@
     </message>
     <message>
         <source>grain {number}: {size:.3g} mm at {x:.3g}, {z:.3g} mm</source>
-        <translation>Korn {number}: {size:.3g} mm bei {x:.3g}, {z:.3g} mm</translation>
+        <translation>Korn {number}: {size:.3g} mm bei {x:.3g}; {z:.3g} mm</translation>
     </message>
     <message>
         <source>greatest distance of two points</source>
@@ -6678,6 +6694,10 @@
     <message>
         <source>{name} stands for {count} particles ({share})</source>
         <translation>{name} steht für {count} Partikel ({share})</translation>
+    </message>
+    <message>
+        <source>{name} was not read from a file whose unit could be changed.</source>
+        <translation>{name} stammt aus keiner Datei, deren Einheit sich ändern ließe.</translation>
     </message>
     <message>
         <source>{name} would be {size} across.</source>

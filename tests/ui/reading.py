@@ -42,6 +42,10 @@ NO_WORDS = ("SizesPanel",)
 """Their ``text`` is not what is read."""
 OF_PYQTGRAPH = ("Export...", "Export")
 """In menus that nobody can open."""
+POINT = re.compile(r"\b0\.\d|\d\.(\d{1,2}|\d{4,})(?!\d)")
+"""A decimal point; three digits behind a point may be thousands."""
+OTHER_POINTS = re.compile(r"Abschnitt \d\.\d|\d+(\.\d+){2,}")
+"""Sections of the paper, and versions."""
 WORD = re.compile(r"[^\W\d_]{3,}")
 
 
@@ -128,6 +132,27 @@ def english_left(root):
         if WORD.search(rest):
             found.append((name, text))
     return found
+
+
+def points_left(root):
+    """Numbers with a decimal point, in texts, cells and at axes, beside those of sections and versions."""
+    found = [*texts_of(root)]
+    for table in root.findChildren(QTableView):
+        model, name = table.model(), f"{type(table).__name__} {table.objectName()}"
+        places = ((row, column) for row in range(model.rowCount()) for column in range(model.columnCount()))
+        for place in places:
+            at = model.index(*place)
+            found += [(name, str(at.data(role) or "")) for role in (Qt.DisplayRole, Qt.ToolTipRole)]
+    for plot in root.findChildren(Plot):
+        for side, axis in plot.axes.items():
+            low, high = axis.range
+            levels = axis.tickValues(low, high, 300.0)
+            found += [
+                (f"{side} {type(plot).__name__}", text)
+                for s, v in levels
+                for text in axis.tickStrings(v, 1.0, s)
+            ]
+    return [(name, text) for name, text in found if POINT.search(OTHER_POINTS.sub(" ", text))]
 
 
 def cut_off(root):

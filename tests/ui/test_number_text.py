@@ -3,11 +3,15 @@
 from types import SimpleNamespace
 
 import pytest
+from PySide6.QtTest import QTest
 
 from regolith_studio.descriptors.describe import describe
 from regolith_studio.geometry.sphere_points import icosphere
+from regolith_studio.messages import Message
 from regolith_studio.ui.panels.descriptor_table import DescriptorTablePanel
+from regolith_studio.ui.translation import tr, translate
 from regolith_studio.ui.widgets.labels import grouped_number, short_number
+from regolith_studio.ui.widgets.number_fields import DecimalField, NumbersLine
 
 
 @pytest.mark.parametrize(
@@ -34,6 +38,53 @@ def test_that_a_number_keeps_its_digits_and_loses_idle_signs(value, digits, text
 )
 def test_that_numbers_of_one_legend_are_written_alike(value, text):
     assert grouped_number(value) == text
+
+
+@pytest.mark.usefixtures("app")
+def test_that_a_german_window_writes_commas_and_only_numbers_change(speaking):
+    speaking("de")
+    assert (short_number(1.0474e6, 3), short_number(63.0, 4), grouped_number(12260.0)) == (
+        "1,05e6",
+        "63,00",
+        "12.260",
+    )
+    found = Message("{name}: {error}, {count}", name="apollo.1", error="0.76 %", count="2,918")
+    assert translate(found) == "apollo.1: 0,76 %, 2.918"
+    assert str(found) == "apollo.1: 0.76 %, 2,918"
+    assert tr("at most {reach:.3g} in {name}", reach=0.25, name="a.b") == "at most 0,25 in a.b"
+
+
+@pytest.mark.parametrize("language", ["en", "de"])
+@pytest.mark.parametrize(("typed", "value"), [("0.5", 0.5), ("0,5", 0.5), ("12,25", 12.25), ("1250", 1250.0)])
+def test_that_point_and_comma_are_typed_for_the_decimal_sign(language, typed, value, speaking, shown):
+    speaking(language)
+    field = shown(DecimalField())
+    field.setRange(0.0, 1e6)
+    field.setDecimals(3)
+    field.selectAll()
+    QTest.keyClicks(field, typed)
+    field.interpretText()
+    assert field.value() == value
+
+
+@pytest.mark.parametrize(
+    ("language", "typed", "value"),
+    [
+        ("en", "0.2, 0.4", "0.2, 0.4"),
+        ("en", "8,12,30", "8,12,30"),
+        ("de", "0,2; 0,4", "0.2, 0.4"),
+        ("de", "0,2, 0,4", "0.2, 0.4"),
+        ("de", "0.2, 0.4", "0.2, 0.4"),
+        ("de", "25=85,5;37=12,6", "25=85.5, 37=12.6"),
+    ],
+)
+def test_that_a_list_of_numbers_is_read_in_either_notation(language, typed, value, speaking, shown):
+    speaking(language)
+    line = shown(NumbersLine("0.3, 0.8"))
+    assert line.text() == {"en": "0.3, 0.8", "de": "0,3; 0,8"}[language]
+    assert line.value() == "0.3, 0.8"
+    line.setText(typed)
+    assert line.value() == value
 
 
 def cut_texts(table):

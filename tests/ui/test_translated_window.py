@@ -30,7 +30,7 @@ from regolith_studio.ui.pages.explore.pictures import PictureDialog
 from regolith_studio.ui.pages.scan.volume_dialog import VolumeDialog
 from regolith_studio.ui.tour import start_tour, steps
 from regolith_studio.ui.translation import tr, translate
-from tests.ui.reading import cut_off, english_left
+from tests.ui.reading import cut_off, english_left, points_left
 
 SECONDS = 120.0
 PAGES = ("sample", "model", "scan", "studies", "dataset", "repose", "lecture")
@@ -164,8 +164,9 @@ def test_that_the_dialogs_of_qt_and_the_keys_speak_german(opened, speaking):
     assert buttons.buttons()[0].text() == "Abbrechen"
     buttons.deleteLater()
     assert window.page.fit.l_max.field.text() == "10"
-    assert QLocale().decimalPoint() == "."
-    assert window.page.loss.sliders["volume"].field.text() == "1.00"
+    assert QLocale().decimalPoint() == ","
+    assert window.page.loss.sliders["volume"].field.text() == "1,00"
+    assert points_left(window) == []
 
 
 def test_that_no_two_commands_of_a_german_menu_have_the_same_letter(opened, speaking):
@@ -223,3 +224,4 @@ def test_that_nothing_is_cut_on_a_page_in_a_small_german_window(key, opened, spe
     speaking("de")
     window = opened()
     assert_fits(window.go(key))
+    assert points_left(window.go(key)) == []

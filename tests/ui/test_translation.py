@@ -72,7 +72,7 @@ def test_that_messages_of_the_layers_below_are_translated(speaking):
     speaking("de")
     reason = sphericity_reason(0.97, 10)
     assert translate(reason) == (
-        f"Die Sphärizität 0.970 braucht mindestens {re.findall(r'[0-9]+', reason)[2]} Facetten;"
+        f"Die Sphärizität 0,970 braucht mindestens {re.findall(r'[0-9]+', reason)[2]} Facetten;"
         f" mit 10 sind höchstens {max_sphericity(10):.3f} möglich."
     )
     by = Message(MISSED_BY, name=Message(NAMES["sphericity"]), error="3")
@@ -127,7 +127,7 @@ def test_that_what_was_found_in_a_scan_is_told_anew(grains, bodies, speaking):
         f" {'Körper' if bodies == 1 else 'Körpern'}"
     )
     assert translate(found.counts) == counts
-    assert translate(found.summary) == f"{counts} beim Grauwert 103.5; 2 zu klein."
+    assert translate(found.summary) == f"{counts} beim Grauwert 103,5; 2 zu klein."
     made = Extraction((), (1, 2), (3,), grains).summary
     assert translate(made) == f"{grains} Partikel; weggelassen: 2 am Rand, 1 zu klein."
 

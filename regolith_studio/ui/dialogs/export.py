@@ -26,6 +26,7 @@ from regolith_studio.session.choices import Choices
 from regolith_studio.session.tasks import Task
 from regolith_studio.ui.dialogs.folder import FolderDialog
 from regolith_studio.ui.translation import tr
+from regolith_studio.ui.translation.numbers import number_text
 from regolith_studio.ui.widgets.labels import remark, rich_symbol
 
 
@@ -46,7 +47,8 @@ def summary(count: int, choices: Choices, cost: str = "") -> list[tuple[str, str
         What imitating the fit costs the particle on screen, as a sentence.
     """
     weights = ", ".join(
-        f"{'Jaccard' if key == JACCARD else rich_symbol(CATALOGUE[key].symbol)}&nbsp;{value:g}"
+        f"{'Jaccard' if key == JACCARD else rich_symbol(CATALOGUE[key].symbol)}&nbsp;"
+        + number_text(value, "g")
         for key, value in choices.weights.items()
         if value
     )
@@ -191,7 +193,7 @@ class ExportDialog(QDialog):
 def facet_limit_text(choices: Choices) -> str:
     """What each polyhedron will have, to be put behind a heading."""
     if choices.stop_at == "error":
-        limit = f"{100 * choices.largest_error:g}"
+        limit = number_text(100 * choices.largest_error, "g")
         return tr("the fewest facets with all errors below {limit} %", limit=limit)
     faces = choices.facet_count
     return tr("at most {faces} facets, {triangles} triangles", faces=faces, triangles=4 * faces - 12)

@@ -6,7 +6,6 @@ from PySide6.QtWidgets import (
     QComboBox,
     QDialog,
     QDialogButtonBox,
-    QDoubleSpinBox,
     QFormLayout,
     QLabel,
     QVBoxLayout,
@@ -17,6 +16,7 @@ from regolith_studio.messages import N_
 from regolith_studio.readers.units import UNITS, unit_factor
 from regolith_studio.ui.translation import tr, tr_count
 from regolith_studio.ui.widgets.labels import remark, short_number
+from regolith_studio.ui.widgets.number_fields import DecimalField
 
 LABELS = {
     "um": N_("Micrometres (µm)"),
@@ -57,7 +57,7 @@ class UnitDialog(QDialog):
         self.unit.setAccessibleName(tr("Length unit"))
         for key in UNITS:
             self.unit.addItem(tr(LABELS.get(key, key)), key)
-        self.voxel = QDoubleSpinBox()
+        self.voxel = DecimalField()
         self.voxel.setObjectName("voxel_size")
         self.voxel.setAccessibleName(tr("Edge of a voxel in micrometres"))
         self.voxel.setRange(0.001, 10_000.0)

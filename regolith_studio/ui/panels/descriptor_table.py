@@ -17,6 +17,7 @@ from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.messages import N_
 from regolith_studio.session.results import Results
 from regolith_studio.ui.translation import tr
+from regolith_studio.ui.translation.numbers import number_text
 from regolith_studio.ui.widgets.labels import plain_symbol, short_number
 from regolith_studio.ui.widgets.table import FontRowHeight
 
@@ -95,6 +96,6 @@ def _cell(values: Mapping[str, float] | None, key: str, digits: int) -> QTableWi
     known = values is not None and key in values
     item = QTableWidgetItem(short_number(values[key], digits) if values is not None and known else "–")
     if values is not None and known:
-        item.setToolTip(f"{values[key]:.6g}")
+        item.setToolTip(number_text(values[key], ".6g"))
     item.setTextAlignment(_RIGHT)
     return item

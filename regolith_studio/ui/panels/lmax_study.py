@@ -3,7 +3,7 @@
 from typing import Any
 
 import numpy as np
-from PySide6.QtWidgets import QDoubleSpinBox, QHBoxLayout, QLabel, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QLabel, QVBoxLayout, QWidget
 
 from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.messages import N_
@@ -11,6 +11,7 @@ from regolith_studio.scene.palette import DESCRIPTOR_COLOURS
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import tr, tr_count
 from regolith_studio.ui.widgets.labels import rich_symbol
+from regolith_studio.ui.widgets.number_fields import DecimalField
 from regolith_studio.ui.widgets.plots.curves import CurvePlot, PlotCurve
 from regolith_studio.ui.widgets.study_frame import StudyFrame
 
@@ -69,7 +70,7 @@ class LmaxStudyPanel(QWidget):
 
     def _asked(self) -> QWidget:
         """The row with the tolerance and the smallest sufficient l_max."""
-        self.tolerance = QDoubleSpinBox()
+        self.tolerance = DecimalField()
         self.tolerance.setObjectName("lmax_study_tolerance")
         self.tolerance.setAccessibleName(tr("Largest error in percent"))
         self.tolerance.setRange(0.1, 100.0)

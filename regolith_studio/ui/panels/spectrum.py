@@ -13,6 +13,7 @@ from regolith_studio.session.choices import Choices
 from regolith_studio.session.results import Results
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import tr
+from regolith_studio.ui.translation.numbers import localized, number_text
 from regolith_studio.ui.widgets.plots.base import Numbers, Plot
 
 DECADES = 6.5
@@ -26,7 +27,11 @@ class SpectrumPlot(Plot):
 
     def value_at(self, place: QPointF) -> str:
         degree = round(self.canvas.getViewBox().mapSceneToView(place).x())
-        return f"l = {degree}: {self.shares[degree - 1]:.3g} %" if 1 <= degree <= len(self.shares) else ""
+        return (
+            localized(f"l = {degree}: {self.shares[degree - 1]:.3g} %")
+            if 1 <= degree <= len(self.shares)
+            else ""
+        )
 
     def numbers(self) -> Numbers:
         return ("l", tr("amplitude [%]")), [
@@ -93,7 +98,9 @@ class SpectrumPanel(QWidget):
             self.plot.canvas.addItem(bars)
             self._items.append(bars)
         decades = range(math.ceil(floor), math.floor(top) + 1)
-        self.plot.canvas.getAxis("left").setTicks([[(decade, f"{10.0**decade:g}") for decade in decades]])
+        self.plot.canvas.getAxis("left").setTicks(
+            [[(decade, number_text(10.0**decade, "g")) for decade in decades]]
+        )
         self.plot.canvas.setRange(
             xRange=(0.3, len(logs) + 0.7), yRange=(floor, top), padding=0.0, disableAutoRange=True
         )

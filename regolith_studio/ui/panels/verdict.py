@@ -4,6 +4,7 @@ from regolith_studio.session.choices import Choices
 from regolith_studio.session.results import Results
 from regolith_studio.session.verdict import PolyhedronVerdict, polyhedron_verdict
 from regolith_studio.ui.translation import tr, translate
+from regolith_studio.ui.translation.numbers import number_text
 from regolith_studio.ui.widgets.headline import Headline
 
 
@@ -34,6 +35,6 @@ class VerdictPanel(Headline):
         if found is None:
             self.show_values(("–",) * 3, tr("The polyhedron is not finished yet."), fresh=False)
             return
-        error = "–" if found.rmsre != found.rmsre else f"{found.rmsre:.2%}"
-        figures = (f"{found.loss:.4g}", error, f"{found.jaccard_distance:.1%}")
+        error = "–" if found.rmsre != found.rmsre else number_text(found.rmsre, ".2%")
+        figures = (number_text(found.loss, ".4g"), error, number_text(found.jaccard_distance, ".1%"))
         self.show_values(figures, translate(found.sentence), fresh=done is not None)

@@ -8,15 +8,18 @@ keeps ``resources/translations`` in step with the code by lupdate and lrelease.
 from PySide6.QtCore import QCoreApplication
 
 from regolith_studio.messages import Message
+from regolith_studio.ui.translation.numbers import NumberFormatter, localized_if_number
+
+_FORMATTER = NumberFormatter()
 
 
 def tr(text: str, **values: object) -> str:
     """`text` in the language of the window, its ``{placeholders}`` filled in; `text` itself if unknown.
 
-    Numbers are formatted as Python does, with a point, in every language.
+    Numbers are formatted as Python does, with the decimal sign of the language.
     """
     found = QCoreApplication.translate("", text) if text else text  # lupdate gives Python texts no context
-    return found.format(**values) if values else found
+    return _FORMATTER.format(found, **values) if values else found
 
 
 def tr_count(one: str, many: str, count: int, **values: object) -> str:
@@ -29,6 +32,7 @@ def translate(text: str) -> str:
     if not isinstance(text, Message):
         return tr(text)
     values = {
-        name: translate(each) if isinstance(each, Message) else each for name, each in text.values.items()
+        name: translate(each) if isinstance(each, Message) else localized_if_number(each)
+        for name, each in text.values.items()
     }
     return tr(text.template, **values)

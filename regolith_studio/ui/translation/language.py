@@ -1,4 +1,4 @@
-"""The language of the window, and the translators that it needs."""
+"""The language of the window, the translators that it needs, and the signs of its numbers."""
 
 from PySide6.QtCore import QCoreApplication, QLibraryInfo, QLocale, QTranslator
 
@@ -21,7 +21,7 @@ def language_of(choice: str) -> str:
 
 
 def install_translators(app: QCoreApplication, choice: str) -> list[QTranslator]:
-    """Translate the window and the dialogs of Qt from now on; returns the translators installed.
+    """Translate the window, its numbers and the dialogs of Qt from now on; returns the translators installed.
 
     Texts take it when they are made, so that this comes before any window.
     """
@@ -33,6 +33,7 @@ def install_translators(app: QCoreApplication, choice: str) -> list[QTranslator]
     ours.load(str(resource("translations", f"{language}.qm")))
     for each in (of_qt, ours):
         app.installTranslator(each)
+    set_number_locale(QLocale(language))
     return [of_qt, ours]
 
 
@@ -42,3 +43,10 @@ def remove_translators(app: QCoreApplication, installed: list[QTranslator]) -> N
         app.removeTranslator(each)
         each.deleteLater()
     installed.clear()
+    set_number_locale(QLocale.c())
+
+
+def set_number_locale(locale: QLocale) -> None:
+    """Let all widgets made from now on write numbers with the signs of this locale, thousands ungrouped."""
+    locale.setNumberOptions(QLocale.NumberOption.OmitGroupSeparator)
+    QLocale.setDefault(locale)

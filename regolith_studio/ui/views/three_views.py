@@ -19,6 +19,7 @@ from regolith_studio.scene.shapes import FIT, NAMES, PARTICLE, POLYHEDRON, Scene
 from regolith_studio.session.results import ParticleEntry, Results
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import tr
+from regolith_studio.ui.translation.numbers import number_text
 from regolith_studio.ui.views.camera_link import CameraLink
 from regolith_studio.ui.views.comparison import COMPARE, Comparison, partners_of
 from regolith_studio.ui.views.distance_worker import Distances, Follow
@@ -282,7 +283,7 @@ class ThreeViews(QSplitter):
 
 def _lengths(bounds: FloatArray) -> str:
     """Size of the box along the axes."""
-    return " × ".join(f"{edge:.3g}" for edge in bounds[1] - bounds[0]) + " µm"
+    return " × ".join(number_text(edge, ".3g") for edge in bounds[1] - bounds[0]) + " µm"
 
 
 def _missing_facets_text(results: Results) -> str:

@@ -19,6 +19,7 @@ from PySide6.QtWidgets import (
 from regolith_studio.dataset.parameters import NOT_GIVEN
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.labels import rich_symbol
+from regolith_studio.ui.widgets.number_fields import DecimalField
 
 Scalar = bool | int | float | str
 
@@ -88,7 +89,7 @@ def _setting_editor(default: Scalar, metadata: Mapping[str, Any]) -> QWidget:
         whole.setRange(int(metadata.get("minimum", 0)), int(metadata.get("maximum", 1_000_000)))
         whole.setKeyboardTracking(False)
         return whole
-    number = QDoubleSpinBox()
+    number = DecimalField()
     number.setDecimals(int(metadata.get("decimals", 4)))
     number.setRange(float(metadata.get("minimum", 0.0)), float(metadata.get("maximum", 1e6)))
     number.setSingleStep(float(metadata.get("step", 0.01)))
@@ -208,8 +209,8 @@ class ParameterForm(QWidget):
         return default if shown == round(default * factor, digits) else shown / factor
 
 
-def _number_editor(metadata: Mapping[str, Any]) -> QDoubleSpinBox:
-    editor = QDoubleSpinBox()
+def _number_editor(metadata: Mapping[str, Any]) -> DecimalField:
+    editor = DecimalField()
     editor.setDecimals(3)
     factor = float(metadata["factor"])
     editor.setRange(

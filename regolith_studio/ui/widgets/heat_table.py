@@ -17,6 +17,7 @@ from PySide6.QtWidgets import (
 
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import tr
+from regolith_studio.ui.translation.numbers import localized
 from regolith_studio.ui.widgets.table import FontRowHeight
 
 _MAX_HEADER_SHARE, _MIN_HEADER_SHARE = 0.33, 0.2
@@ -36,7 +37,7 @@ def percentage(share: float) -> str:
         return "–"
     if percent < 0.005:
         return "0"
-    return f"{percent:.2f}" if percent < 1.0 else f"{percent:.1f}"
+    return localized(f"{percent:.2f}" if percent < 1.0 else f"{percent:.1f}")
 
 
 def _short(share: float) -> str:

@@ -3,9 +3,11 @@
 import html
 import re
 
-from PySide6.QtCore import QSize, Qt
+from PySide6.QtCore import QLocale, QSize, Qt
 from PySide6.QtGui import QPainter, QPaintEvent, QResizeEvent
 from PySide6.QtWidgets import QLabel, QSizePolicy, QWidget
+
+from regolith_studio.ui.translation.numbers import localized, number_text
 
 _TAG = re.compile(r"(<[^<>]*>)")
 _SYMBOL = re.compile(r"\b([lDA])_(min|max|l)\b")
@@ -113,9 +115,9 @@ def short_number(value: float, digits: int = 4) -> str:
 
     Trailing zeros are kept, so that the numbers of a column can be compared.
     """
-    text = f"{value:#.{digits}g}"
+    text = localized(f"{value:#.{digits}g}")
     if "e" not in text:
-        return text.rstrip(".")
+        return text.rstrip(QLocale().decimalPoint())
     mantissa, _, exponent = text.partition("e")
     return f"{mantissa}e{int(exponent)}"
 
@@ -124,5 +126,5 @@ def grouped_number(value: float, digits: int = 4) -> str:
     """`value` with so many significant digits, its thousands apart: ``12,260``; from 1e8 on ``1.226e8``."""
     rounded = float(f"{value:.{digits}g}")
     if 10.0 ** (digits - 1) <= abs(rounded) < 1e8:
-        return f"{rounded:,.0f}"
+        return number_text(rounded, ",.0f")
     return short_number(value, digits)

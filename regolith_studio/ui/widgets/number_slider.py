@@ -7,6 +7,7 @@ from PySide6.QtCore import QEvent, QSignalBlocker, Qt, QTimer, Signal
 from PySide6.QtWidgets import QDoubleSpinBox, QGridLayout, QLabel, QSlider, QSpinBox, QWidget
 
 from regolith_studio.ui.translation import tr
+from regolith_studio.ui.widgets.number_fields import DecimalField
 
 THROTTLE = 30
 """Minimum milliseconds between two ``valueChanged``; the first is emitted at once, the last always."""
@@ -74,7 +75,7 @@ class NumberSlider(QWidget):
         self.spec = spec
         self.label = QLabel(tr(spec.label))
         self.slider = QSlider(Qt.Orientation.Horizontal)
-        self.field = QSpinBox() if spec.whole else QDoubleSpinBox()
+        self.field = QSpinBox() if spec.whole else DecimalField()
         self._timer = QTimer(self, interval=THROTTLE, singleShot=True)
         self._emitted: float | int | None = None
         self._configure()

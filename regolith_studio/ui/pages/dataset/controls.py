@@ -17,6 +17,7 @@ from regolith_studio.ui.pages.dataset.export_panel import ExportPanel
 from regolith_studio.ui.translation import tr, tr_count
 from regolith_studio.ui.widgets.fixed_height_text import FixedHeightText
 from regolith_studio.ui.widgets.labels import heading, remark
+from regolith_studio.ui.widgets.number_fields import NumbersLine
 from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec
 
 MAX_REPRESENTATIVES = 200
@@ -130,7 +131,7 @@ class SizesPanel(QWidget):
     def __init__(self) -> None:
         super().__init__()
         self.setObjectName("dataset_size_kinds")
-        self.kind, self.numbers = QComboBox(), QLineEdit()
+        self.kind, self.numbers = QComboBox(), NumbersLine()
         self.hint, self.problem = remark(), remark(role="warning")
         for key, (label, _) in SIZES.items():
             self.kind.addItem(tr(label), key)
@@ -150,7 +151,7 @@ class SizesPanel(QWidget):
     def text(self) -> str:
         """As :mod:`regolith_studio.dataset.size_parsing` writes it."""
         key = self.kind.currentData()
-        return f"{key}:{self.numbers.text().strip()}" if SIZES[key][1] else str(key)
+        return f"{key}:{self.numbers.value().strip()}" if SIZES[key][1] else str(key)
 
     def set_text(self, text: str) -> None:
         """Show another distribution; an unknown one is ignored."""
@@ -161,7 +162,7 @@ class SizesPanel(QWidget):
             self.kind.setCurrentIndex(self.kind.findData(key))
         self._show_kind()
         if SIZES[key][1]:
-            self.numbers.setText(text.removeprefix(f"{key}:"))
+            self.numbers.setValue(text.removeprefix(f"{key}:"))
         self._emit_sizes()
 
     def sizing(self) -> SizeRule | None:
@@ -187,7 +188,7 @@ class SizesPanel(QWidget):
         key = self.kind.currentData()
         example = SIZES[key][1]
         self.numbers.setEnabled(bool(example))
-        self.numbers.setText(example)
+        self.numbers.setValue(example)
         self.numbers.setPlaceholderText("" if example else tr("no numbers needed"))
         self.hint.setText(tr(HINTS.get(key, "")))
         self.hint.setVisible(key in HINTS)

@@ -11,6 +11,7 @@ from regolith_studio.session.choices import Choices
 from regolith_studio.ui.dialogs.export import facet_limit_text
 from regolith_studio.ui.pages.dataset.gallery import GalleryItem
 from regolith_studio.ui.translation import tr, tr_count
+from regolith_studio.ui.translation.numbers import localized
 
 
 def chosen_particles(particles: Sequence[Particle], chosen: ChosenParticles) -> list[GalleryItem]:
@@ -20,7 +21,7 @@ def chosen_particles(particles: Sequence[Particle], chosen: ChosenParticles) -> 
     shown = []
     for place, one in zip(chosen.places, classes, strict=True):
         particle = particles[place]
-        share = f"{100 * one.weight / total:.1f} %"
+        share = localized(f"{100 * one.weight / total:.1f} %")
         tip = tr_count(
             N_("{name} stands for 1 particle ({share})"),
             N_("{name} stands for {count} particles ({share})"),
@@ -44,7 +45,7 @@ def shapes(dataset: Dataset) -> list[GalleryItem]:
             vertices=solid.n_vertices,
             count=one.n_members,
         )
-        words = f"{100 * weight:.1f} %\n" + tr("{count} facets", count=solid.n_facets)
+        words = localized(f"{100 * weight:.1f} %\n") + tr("{count} facets", count=solid.n_facets)
         shown.append((float(weight), GalleryItem(solid.mesh, words, tip, coarsened=True)))
     return _by_share(shown)
 

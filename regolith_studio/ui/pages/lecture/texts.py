@@ -8,6 +8,7 @@ from regolith_studio.coarsening.weights import JACCARD, LossWeights
 from regolith_studio.descriptors.catalogue import CATALOGUE, LOSS_KEYS
 from regolith_studio.jobs.lecture_jobs import AnnealingLesson, AnnealingStep, DegreeStep
 from regolith_studio.ui.translation import tr
+from regolith_studio.ui.translation.numbers import number_text
 
 TERMS = (JACCARD, *LOSS_KEYS)
 REFUSED, ACCEPTED, LUCKY, START = "refused", "accepted", "lucky", "start"
@@ -48,7 +49,9 @@ def loss_lines(weights: LossWeights, found: Evaluation) -> tuple[str, ...]:
     """Eq. 9, and Eq. 9 with its numbers."""
     values = {JACCARD: found.jaccard_distance, **found.errors}
     parts = [
-        rf"{weights[key]:g}\cdot{_number(values[key])}_{{\,{symbol(key)}}}" for key in TERMS if weights[key]
+        rf"{_in_formula(weights[key])}\cdot{_number(values[key])}_{{\,{symbol(key)}}}"
+        for key in TERMS
+        if weights[key]
     ]
     total = rf"={_number(found.loss)}$"
     if len(parts) <= A_LINE:
@@ -60,8 +63,9 @@ def loss_lines(weights: LossWeights, found: Evaluation) -> tuple[str, ...]:
 def temperature_line(settings: AnnealingSettings, k: int) -> str:
     """T(k) with its numbers."""
     probability = settings.acceptance_probability(k)
+    start, cooling = _in_formula(settings.start_temperature), _in_formula(settings.cooling)
     return (
-        rf"$T(k)=T_0\,\gamma^{{\,k}}={settings.start_temperature:g}\cdot {settings.cooling:g}^{{\,{k}}}"
+        rf"$T(k)=T_0\,\gamma^{{\,k}}={start}\cdot {cooling}^{{\,{k}}}"
         rf"={_number(probability)}$"
     )
 
@@ -137,7 +141,7 @@ def sentence_of(step: AnnealingStep, lesson: AnnealingLesson) -> str:
         )
     same = move.proposed.loss == move.before.loss
     how = tr("stays what it is") if same else tr("rises from {before} to {after}", **losses)
-    chance = f"{move.probability:.2%}"
+    chance = number_text(move.probability, ".2%")
     if move.accepted:
         return tr(
             "{moved}: the loss {how}. Accepted all the same: luck, of which there was {chance}.",
@@ -174,7 +178,8 @@ def degree_sentence(step: DegreeStep) -> str:
     names = {0: tr("a sphere"), 1: tr("a sphere that is shifted a little"), 2: tr("nearly an ellipsoid")}
     shape = names.get(step.l_max, tr("finer and finer bumps"))
     errors = ", ".join(
-        f"{in_a_sentence(tr(CATALOGUE[key].label))} {value:.1%}" for key, value in step.errors.items()
+        f"{in_a_sentence(tr(CATALOGUE[key].label))} {number_text(value, '.1%')}"
+        for key, value in step.errors.items()
     )
     return tr(
         "{symbol} = {degree}: {shape}. The radius is missed by {missed:.1%} in the root mean square; errors"
@@ -189,7 +194,10 @@ def degree_sentence(step: DegreeStep) -> str:
 
 def field_lines(amplitudes: Sequence[float]) -> tuple[str, ...]:
     """The field of logarithms of radii with the amplitudes filled in."""
-    shown = [rf"{100 * value:.2g}\%_{{\,{degree}}}" for degree, value in enumerate(amplitudes, start=1)]
+    shown = [
+        rf"{_in_formula(100 * value, '.2g')}\%_{{\,{degree}}}"
+        for degree, value in enumerate(amplitudes, start=1)
+    ]
     listed = r",\;".join(shown[:6] + ([r"\ldots"] if len(shown) > 6 else []))
     return (
         r"$\ln\frac{r(\theta,\varphi)}{\bar{r}}=\sum_{l=1}^{l_{max}}\sum_{m=-l}^{l}\sqrt{A_l}\;z_{lm}\,"
@@ -200,18 +208,23 @@ def field_lines(amplitudes: Sequence[float]) -> tuple[str, ...]:
 
 def _apart(one: float, other: float) -> tuple[str, str]:
     """Two different numbers with as many digits as tell them apart."""
-    pairs = ((f"{one:.{digits}g}", f"{other:.{digits}g}") for digits in range(3, 17))
-    return next((pair for pair in pairs if pair[0] != pair[1]), (f"{one:.3g}", f"{other:.3g}"))
+    pairs = [(number_text(one, f".{digits}g"), number_text(other, f".{digits}g")) for digits in range(3, 17)]
+    return next((pair for pair in pairs if pair[0] != pair[1]), pairs[0])
 
 
 def _number(value: float) -> str:
     if abs(value) >= 1e-3:
-        return f"{value:.3g}"
-    return f"{value:.4f}" if abs(value) >= 5e-5 else "0"
+        return _in_formula(value, ".3g")
+    return _in_formula(value, ".4f") if abs(value) >= 5e-5 else "0"
 
 
 def _signed(value: float) -> str:
-    return f"{value:+.3g}" if abs(value) >= 1e-9 else "0"
+    return _in_formula(value, "+.3g") if abs(value) >= 1e-9 else "0"
+
+
+def _in_formula(value: float, form: str = "g") -> str:
+    """A number in TeX, whose comma would be followed by a space without braces."""
+    return number_text(value, form).replace(",", "{,}")
 
 
 def exact_terms(lesson: AnnealingLesson) -> dict[str, float]:

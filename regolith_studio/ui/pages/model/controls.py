@@ -8,7 +8,6 @@ from PySide6.QtCore import QSignalBlocker, Signal
 from PySide6.QtWidgets import (
     QCheckBox,
     QComboBox,
-    QDoubleSpinBox,
     QFormLayout,
     QHBoxLayout,
     QLabel,
@@ -29,6 +28,7 @@ from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.fixed_height_text import FixedHeightText
 from regolith_studio.ui.widgets.forms import SettingsForm
 from regolith_studio.ui.widgets.labels import heading, remark
+from regolith_studio.ui.widgets.number_fields import DecimalField
 from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec
 
 L_MAX = NumberSpec(
@@ -183,7 +183,7 @@ class DrawControls(QWidget):
         self.setObjectName("model_draw")
         self.number, self.seed = QSpinBox(), QSpinBox()
         self.limited = QCheckBox(tr("Only equivalent radii from … to …"))
-        self.smallest, self.largest = QDoubleSpinBox(), QDoubleSpinBox()
+        self.smallest, self.largest = DecimalField(), DecimalField()
         self.draw, self.adopt = QPushButton(tr("Draw")), QPushButton(tr("Use as population"))
         self.findings = remark()
         self.names = QLineEdit()

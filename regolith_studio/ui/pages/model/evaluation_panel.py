@@ -31,6 +31,7 @@ from regolith_studio.studies.population_tables import distance_table, pair_table
 from regolith_studio.ui.layout import tabs
 from regolith_studio.ui.pages.model.table_view import StudyTableView
 from regolith_studio.ui.translation import tr, translate
+from regolith_studio.ui.translation.numbers import localized, number_text
 from regolith_studio.ui.widgets.headline import Headline
 from regolith_studio.ui.widgets.labels import remark, with_subscripts
 from regolith_studio.ui.widgets.study_frame import StudyFrame
@@ -225,12 +226,12 @@ class EvaluationPanel(QWidget):
             key, near, gap, energy, accuracy, novelty, rejected, _ = cells
             words = (
                 tr(MODELS[str(key)].label),
-                f"{near:.2f}",
-                f"{gap:.2f}",
-                f"{energy:.2f} %",
-                f"{accuracy:.3f}",
-                f"{novelty:.2f}",
-                f"{rejected:.1f} %",
+                localized(f"{near:.2f}"),
+                localized(f"{gap:.2f}"),
+                localized(f"{energy:.2f} %"),
+                localized(f"{accuracy:.3f}"),
+                localized(f"{novelty:.2f}"),
+                localized(f"{rejected:.1f} %"),
             )
             for column, text in enumerate(words):
                 item = QTableWidgetItem(text)
@@ -251,7 +252,7 @@ class EvaluationPanel(QWidget):
                 model=model,
                 near=float(str(near)),
             )
-        self.verdict.show_values((f"{float(str(near)):.2f}", f"{float(str(told)):.0%}"), sentence)
+        self.verdict.show_values((number_text(float(str(near)), ".2f"), f"{float(str(told)):.0%}"), sentence)
 
     def _options(self) -> QHBoxLayout:
         row = QHBoxLayout()

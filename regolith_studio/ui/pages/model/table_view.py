@@ -8,6 +8,7 @@ from regolith_studio.io.tables import Cell, Table
 from regolith_studio.messages import N_
 from regolith_studio.shape_models.models import MODELS
 from regolith_studio.ui.translation import tr, translate
+from regolith_studio.ui.translation.numbers import number_text
 
 WORDS = {
     "wasserstein": "W",
@@ -79,6 +80,6 @@ def _item(cell: Cell) -> QTableWidgetItem:
         known = {key: model.label for key, model in MODELS.items()}
         descriptor = CATALOGUE.get(cell)
         return QTableWidgetItem(translate(known.get(cell, descriptor.label if descriptor else cell)))
-    item = QTableWidgetItem("" if cell is None else f"{cell:.3g}")
+    item = QTableWidgetItem("" if cell is None else number_text(cell, ".3g"))
     item.setTextAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
     return item

@@ -46,6 +46,7 @@ from regolith_studio.ui.pages.repose.study import StudyPanel
 from regolith_studio.ui.pages.repose.study_controller import ReposeStudyController
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import tr
+from regolith_studio.ui.translation.numbers import localized
 from regolith_studio.ui.widgets.headline import Headline
 
 PREVIEW_DELAY = 250
@@ -370,7 +371,7 @@ class ReposePage(PageWidget):
         low, high = measured.interval
         interval = tr("{low:.1f}° to {high:.1f}°", low=low, high=high)
         self.angle.caption(1, tr("{share:.0%} interval", share=measured.settings.confidence))
-        self.angle.show_values((f"{measured.angle:.1f}°", interval), angle_text(measured))
+        self.angle.show_values((localized(f"{measured.angle:.1f}°"), interval), angle_text(measured))
         self.x_z.show_section(self._pile, measured.sections[0])
         self.y_z.show_section(self._pile, measured.sections[1])
 

@@ -16,6 +16,7 @@ from regolith_studio.scene import instancing
 from regolith_studio.scene.cameras import Direction, filled, framing_pose
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import tr
+from regolith_studio.ui.translation.numbers import number_text
 from regolith_studio.ui.views.camera_link import CameraLink
 from regolith_studio.ui.views.factory import make_view
 from regolith_studio.ui.views.view_frame import ViewFrame
@@ -155,7 +156,7 @@ class RunPlayer(QWidget):
 
     def _show(self, pile: ParticleState) -> None:
         self.pile = pile
-        self.clock.setText(f"{pile.time:.2f} s  {tr(pile.phase)}")
+        self.clock.setText(f"{number_text(pile.time, '.2f')} s  {tr(pile.phase)}")
         self._draw()
 
     def _draw(self) -> None:

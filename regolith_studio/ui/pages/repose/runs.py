@@ -21,6 +21,7 @@ from regolith_studio.dem.run_io import RunSummary
 from regolith_studio.messages import N_
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import tr
+from regolith_studio.ui.translation.numbers import localized, number_text
 from regolith_studio.ui.widgets.plots.curves import CurvePlot, PlotCurve
 
 AGAINST: Mapping[str, tuple[str, ...]] = {
@@ -146,16 +147,18 @@ def _cells(run: RunSummary) -> tuple[str, ...]:
     interval = measurement.get("interval_deg")
     checks = document.get("checks")
     angle = (
-        f"{run.angle:.1f}°" if run.angle is not None else str(measurement.get("status", document["state"]))
+        localized(f"{run.angle:.1f}°")
+        if run.angle is not None
+        else str(measurement.get("status", document["state"]))
     )
     return (
         run.folder.name,
         angle,
         tr("{low:.1f} to {high:.1f}", low=interval[0], high=interval[1]) if interval else "",
-        f"{case['n_particles']:,}",
-        f"{case['contact']['static_friction']:g}",
+        number_text(case["n_particles"], ","),
+        number_text(case["contact"]["static_friction"], "g"),
         tr(str(case["shapes"])),
-        f"{case['test']['gravity']:g}",
+        number_text(case["test"]["gravity"], "g"),
         str(case["seed"]),
         str(document["engine"]["label"]),
         "" if checks is None else tr("passed") if checks["passed"] else tr("see tip"),

@@ -27,6 +27,7 @@ from regolith_studio.errors import InputError
 from regolith_studio.jobs.repose_jobs import ReposeRequest
 from regolith_studio.messages import N_
 from regolith_studio.ui.translation import tr
+from regolith_studio.ui.translation.numbers import number_text
 from regolith_studio.ui.widgets.collapsible import Collapsible
 from regolith_studio.ui.widgets.combo_box import ElidedComboBox
 from regolith_studio.ui.widgets.fixed_height_text import FixedHeightText
@@ -82,7 +83,7 @@ class SetupPanel(QWidget):
             {engine.label: key for key, engine in ENGINES.items()}, "repose_engine", tr("Engine")
         )
         self.gravity = _choice(
-            {f"{tr(name)} ({value:g} m/s²)": str(value) for name, value in GRAVITIES.items()}
+            {f"{tr(name)} ({number_text(value, 'g')} m/s²)": str(value) for name, value in GRAVITIES.items()}
             | {tr("Other"): ""},
             "repose_gravity_of",
             tr("Gravity of"),

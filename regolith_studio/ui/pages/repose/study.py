@@ -11,7 +11,6 @@ from PySide6.QtWidgets import (
     QFormLayout,
     QHBoxLayout,
     QHeaderView,
-    QLineEdit,
     QPushButton,
     QSpinBox,
     QTableWidget,
@@ -26,7 +25,9 @@ from regolith_studio.messages import N_
 from regolith_studio.studies.repose import ReposeStudy, ReposeStudyRun
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import tr
+from regolith_studio.ui.translation.numbers import localized, number_text
 from regolith_studio.ui.widgets.labels import remark
+from regolith_studio.ui.widgets.number_fields import NumbersLine
 from regolith_studio.ui.widgets.plots.curves import CurvePlot, PlotCurve
 
 VARIED: Mapping[str, tuple[str, str]] = {
@@ -62,7 +63,7 @@ class StudyPanel(QWidget):
         self.key.setAccessibleName(tr("What is varied"))
         for name, (label, _) in VARIED.items():
             self.key.addItem(tr(label), name)
-        self.values = QLineEdit(VARIED["static_friction"][1])
+        self.values = NumbersLine(VARIED["static_friction"][1])
         self.values.setObjectName("repose_study_values")
         self.values.setAccessibleName(tr("Values, with commas between them"))
         self.repeats = QSpinBox()
@@ -95,7 +96,7 @@ class StudyPanel(QWidget):
             If a value is invalid.
         """
         key = str(self.key.currentData())
-        return key, values_in(key, self.values.text()), self.repeats.value()
+        return key, values_in(key, self.values.value()), self.repeats.value()
 
     def set_running(self, running: bool) -> None:
         """Set whether a study is running."""
@@ -125,7 +126,7 @@ class StudyPanel(QWidget):
         """The values as plain JSON."""
         return {
             "key": self.key.currentData(),
-            "values": self.values.text(),
+            "values": self.values.value(),
             "repeats": self.repeats.value(),
         }
 
@@ -134,7 +135,7 @@ class StudyPanel(QWidget):
         at = self.key.findData(state.get("key"))
         if at >= 0:
             self.key.setCurrentIndex(at)
-            self.values.setText(str(state.get("values", VARIED[self.key.currentData()][1])))
+            self.values.setValue(str(state.get("values", VARIED[self.key.currentData()][1])))
         repeats = state.get("repeats")
         if isinstance(repeats, int):
             self.repeats.setValue(repeats)
@@ -210,7 +211,7 @@ class StudyPanel(QWidget):
 
     def _propose(self) -> None:
         key = str(self.key.currentData())
-        self.values.setText(VARIED[key][1])
+        self.values.setValue(VARIED[key][1])
         tip = tr("Names of presets: {names}", names=", ".join(presets())) if key == "preset" else ""
         self.values.setToolTip(tip)
         self.show_status(
@@ -230,8 +231,8 @@ def _columns(points: list[tuple[float, float]]) -> tuple[tuple[float, ...], tupl
 def _cells(run: ReposeStudyRun) -> tuple[str, ...]:
     measurement = run.document.get("measurement") or {"status": run.document["state"]}
     interval = measurement.get("interval_deg")
-    value = f"{run.value:g}" if isinstance(run.value, int | float) else run.value
-    angle = str(measurement["status"]) if run.angle is None else f"{run.angle:.1f}°"
+    value = number_text(run.value, "g") if isinstance(run.value, int | float) else run.value
+    angle = str(measurement["status"]) if run.angle is None else localized(f"{run.angle:.1f}°")
     return value, str(run.seed), angle, _interval(interval)
 
 

@@ -25,6 +25,7 @@ from regolith_studio.scene.overlays import FAULT_COLOURS
 from regolith_studio.session.results import ParticleEntry
 from regolith_studio.session.sample_table import health_sentences
 from regolith_studio.ui.translation import tr, translate
+from regolith_studio.ui.translation.numbers import localized, number_text
 from regolith_studio.ui.widgets.labels import WrappedLabel, short_number
 from regolith_studio.ui.widgets.table import FontRowHeight
 
@@ -169,7 +170,7 @@ class HealthPanel(QWidget):
 
 def _legend_entry(kind: str, count: int) -> str:
     mark = f'<span style="color:{FAULT_COLOURS[kind]}">&#9632;</span>&nbsp;'
-    return mark + html.escape(f"{tr(KINDS[kind])} ({count:,})")
+    return mark + html.escape(f"{tr(KINDS[kind])} ({number_text(count, ',')})")
 
 
 def translated_health(entry: ParticleEntry) -> list[str]:
@@ -206,7 +207,7 @@ def _text(value: object) -> str:
         case bool():
             return tr("yes") if value else tr("no")
         case int():
-            return f"{value:,}"
+            return number_text(value, ",")
         case float():
             return short_number(value)
     return DASH
@@ -215,7 +216,7 @@ def _text(value: object) -> str:
 def _percent(share: float) -> str:
     if share == 0.0:
         return "0 %"
-    return "< 0.01 %" if 0.0 < share < 1e-4 else f"{100 * share:.2g} %"
+    return localized("< 0.01 %" if 0.0 < share < 1e-4 else f"{100 * share:.2g} %")
 
 
 def _words(entry: ParticleEntry) -> str:

@@ -25,6 +25,7 @@ from regolith_studio.ui.pages.sample.statistics import StatisticsPanel
 from regolith_studio.ui.pages.sample.table import FORM_WORDS, HEALTH_WORDS, SampleTable
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import tr
+from regolith_studio.ui.translation.numbers import with_decimal_point
 from regolith_studio.ui.views.camera_link import CameraLink
 from regolith_studio.ui.views.factory import make_view
 from regolith_studio.ui.views.view_frame import ViewFrame
@@ -150,7 +151,7 @@ class SamplePage(PageWidget):
 
     def _filter(self, text: str) -> None:
         try:
-            keeps = filter_of(in_english(text)) if text.strip() else None
+            keeps = filter_of(in_english(with_decimal_point(text))) if text.strip() else None
         except RegolithError as error:
             self.verdict.setText(str(error))
             self.verdict.show()

@@ -16,6 +16,7 @@ from regolith_studio.scene.palette import DESCRIPTOR_COLOURS
 from regolith_studio.session.results import ParticleEntry
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import tr, tr_count
+from regolith_studio.ui.translation.numbers import number_text
 from regolith_studio.ui.widgets.labels import rich_symbol
 from regolith_studio.ui.widgets.plots.base import Plot
 from regolith_studio.ui.widgets.wrapping_row import WrappingRow
@@ -122,7 +123,9 @@ class ScatterPanel(QWidget):
             at = np.log10(np.maximum(at, 1e-300))
         colour = QColor(DESCRIPTOR_COLOURS[number % len(DESCRIPTOR_COLOURS)])
         ring = pg.mkPen(QColor(self.plot.theme.text), width=2)
-        item = pg.ScatterPlotItem(hoverable=True, tip=lambda x, y, data: f"{data}\n{x:.4g}, {y:.4g}")
+        item = pg.ScatterPlotItem(
+            hoverable=True, tip=lambda x, y, data: f"{data}\n{number_text(x, '.4g')}; {number_text(y, '.4g')}"
+        )
         item.setData(
             pos=at,
             data=[entry.id for entry in members],

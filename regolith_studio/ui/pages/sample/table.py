@@ -14,6 +14,7 @@ from regolith_studio.session.results import ParticleEntry
 from regolith_studio.session.sample_table import Filter, form_of, has_weights, health_sentences, health_word
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import tr, translate
+from regolith_studio.ui.translation.numbers import number_text
 from regolith_studio.ui.widgets.labels import plain_symbol, short_number
 from regolith_studio.ui.widgets.particle_table_model import (
     RIGHT,
@@ -74,7 +75,7 @@ def columns() -> tuple[SampleColumn, ...]:
             tr("weight"),
             tr("How many grains it stands for, since large ones were lost at the border of the scan"),
             lambda entry: entry.particle.weight,
-            lambda entry: f"{entry.particle.weight:.3g}",
+            lambda entry: number_text(entry.particle.weight, ".3g"),
         ),
     )
 

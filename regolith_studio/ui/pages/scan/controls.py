@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from PySide6.QtCore import QEvent, QSignalBlocker, Signal
-from PySide6.QtWidgets import QCheckBox, QComboBox, QDoubleSpinBox, QFormLayout, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QCheckBox, QComboBox, QFormLayout, QVBoxLayout, QWidget
 
 from regolith_studio.imaging.extraction import voxel_diameter
 from regolith_studio.imaging.segmentation.morphology import CleaningSettings
@@ -14,6 +14,7 @@ from regolith_studio.jobs.extraction_settings import GrainSettings
 from regolith_studio.messages import N_
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.labels import heading, remark
+from regolith_studio.ui.widgets.number_fields import DecimalField
 from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec, align_labels
 
 DENOISE = (
@@ -60,7 +61,7 @@ class SegmentationControls(QWidget):
         self._recipe = GrainSettings()
         self.denoise = choice("denoise", tr("Denoise"), DENOISE)
         self.threshold = choice("threshold", tr("Threshold"), THRESHOLD)
-        self.level = QDoubleSpinBox()
+        self.level = DecimalField()
         self.boundary = choice(
             "boundary", tr("Boundary"), ((1, N_("dark | middle")), (2, N_("middle | bright")))
         )

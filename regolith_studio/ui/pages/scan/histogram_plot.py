@@ -9,6 +9,7 @@ from PySide6.QtCore import QPointF, Signal
 from regolith_studio.imaging.segmentation.thresholding import Histogram
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import tr
+from regolith_studio.ui.translation.numbers import number_text
 from regolith_studio.ui.widgets.plots.base import Numbers, Plot
 
 MIN_PERCENTAGE = 1e-4
@@ -26,7 +27,7 @@ class HistogramPlot(Plot):
         self._denoised: Histogram | None = None
         self._curves: list[pg.PlotDataItem] = []
         self.line = pg.InfiniteLine(
-            angle=90, movable=True, label="{value:.4g}", labelOpts={"position": 0.92, "movable": False}
+            angle=90, movable=True, label="", labelOpts={"position": 0.92, "movable": False}
         )
         super().__init__(
             tr("Grey value"),
@@ -37,6 +38,9 @@ class HistogramPlot(Plot):
         self.canvas.getAxis("left").logTickStrings = _plain_powers
         self.canvas.addItem(self.line, ignoreBounds=True)
         self.canvas.setAccessibleName(tr("Histogram of grey values with the threshold"))
+        self.line.sigPositionChanged.connect(
+            lambda line: line.label.setText(number_text(float(line.value()), ".4g"))
+        )
         self.line.sigDragged.connect(lambda line: self.levelDragged.emit(float(line.value())))
 
     def set_scanned(self, seen: Histogram | None) -> None:

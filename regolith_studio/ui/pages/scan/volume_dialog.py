@@ -8,7 +8,6 @@ import numpy as np
 from PySide6.QtWidgets import (
     QDialog,
     QDialogButtonBox,
-    QDoubleSpinBox,
     QFormLayout,
     QHBoxLayout,
     QLabel,
@@ -24,6 +23,7 @@ from regolith_studio.readers.volumes.header import RawLayout, VolumeHeader
 from regolith_studio.ui.pages.scan.controls import choice
 from regolith_studio.ui.translation import tr, translate
 from regolith_studio.ui.widgets.labels import remark
+from regolith_studio.ui.widgets.number_fields import DecimalField
 
 RAW_SUFFIXES = (".raw", ".bin", ".vol", ".dat")
 AXES = (
@@ -209,8 +209,8 @@ def needs_asking(header: VolumeHeader) -> bool:
     return header.voxel_size is None or header.unit is None or len(header.datasets) > 1
 
 
-def _number(name: str, words: str) -> QDoubleSpinBox:
-    field = QDoubleSpinBox()
+def _number(name: str, words: str) -> DecimalField:
+    field = DecimalField()
     field.setObjectName(name)
     field.setAccessibleName(words)
     field.setDecimals(4)

@@ -7,6 +7,7 @@ from regolith_studio.imaging.segmentation.segment import Segmentation
 from regolith_studio.jobs.volume_jobs import Scan
 from regolith_studio.messages import N_
 from regolith_studio.ui.translation import tr, tr_count, translate
+from regolith_studio.ui.translation.numbers import number_text
 from regolith_studio.ui.widgets.fixed_height_text import FixedHeightText
 from regolith_studio.ui.widgets.labels import WrappedLabel, heading
 
@@ -134,12 +135,12 @@ def _about(scan: Scan | None) -> str:
     volume = scan.volume
     edges = " × ".join(map(str, volume.shape))
     size = volume.voxel_size
-    voxel = f"{size[0]:g} µm" if (size == size[0]).all() else " × ".join(f"{e:g}" for e in size) + " µm"
+    voxel = " × ".join(number_text(edge, "g") for edge in (size[:1] if (size == size[0]).all() else size))
     return tr(
         "{name}: {edges} voxels of {voxel}, {what} ({dtype}).",
         name=volume.name,
         edges=edges,
-        voxel=voxel,
+        voxel=f"{voxel} µm",
         what=tr("labels") if volume.kind == "labels" else tr("grey values"),
         dtype=volume.dtype,
     )

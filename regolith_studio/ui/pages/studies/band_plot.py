@@ -8,6 +8,7 @@ import pyqtgraph as pg
 from PySide6.QtCore import QPointF
 
 from regolith_studio.ui.translation import tr
+from regolith_studio.ui.translation.numbers import number_text
 from regolith_studio.ui.widgets.plots.base import Numbers
 from regolith_studio.ui.widgets.plots.curves import HOVER_DISTANCE, CurvePlot, PlotCurve
 from regolith_studio.ui.widgets.plots.export import plain_text
@@ -105,8 +106,8 @@ class BandPlot(CurvePlot):
         x, y = (plain_text(label) for label in self._labels)
         across = " " + _interval(s.left[n], s.right[n]) if s.left else ""
         return (
-            f"{plain_text(s.label)}\n{x}: {s.x[n]:.4g}{across}\n"
-            f"{y}: {s.y[n]:.4g} {_interval(s.low[n], s.high[n])}"
+            f"{plain_text(s.label)}\n{x}: {number_text(s.x[n], '.4g')}{across}\n"
+            f"{y}: {number_text(s.y[n], '.4g')} {_interval(s.low[n], s.high[n])}"
         )
 
     def _draw_bars(self, colour: str, x: "np.typing.NDArray[np.float64]", y: object) -> None:

@@ -54,7 +54,7 @@ class SweepController:
         """
         choices, particles = self._session.choices, tuple(e.particle for e in self._session.particles)
         try:
-            rows = varied_rows(key, choices, self._panels[key].values.text())
+            rows = varied_rows(key, choices, self._panels[key].values.value())
         except RegolithError as error:
             if not quietly:
                 self._context.toast.problem(str(error))

@@ -78,7 +78,7 @@ class StudiesPage(PageWidget):
         return {
             "rows": list(self.bar.names()),
             "box": self.bar.box.value(),
-            "values": {key: panel.values.text() for key, panel in self.variations.items()},
+            "values": {key: panel.values.value() for key, panel in self.variations.items()},
         }
 
     def restore(self, state: Mapping[str, Any]) -> None:
@@ -89,7 +89,7 @@ class StudiesPage(PageWidget):
             self.bar.box.setValue(str(state["box"]))
         for key, text in values.items() if isinstance(values, dict) else ():
             if key in self.variations and isinstance(text, str):
-                self.variations[key].values.setText(text)
+                self.variations[key].values.setValue(text)
 
     def run_all(self) -> None:
         """Start all studies that the choices allow, and the gallery."""

@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from typing import Protocol
 
 from PySide6.QtCore import Signal
-from PySide6.QtWidgets import QHBoxLayout, QLabel, QLineEdit, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QLabel, QVBoxLayout, QWidget
 
 from regolith_studio.coarsening.weights import JACCARD
 from regolith_studio.descriptors.catalogue import CATALOGUE, LOSS_KEYS
@@ -17,6 +17,7 @@ from regolith_studio.ui.pages.studies.sensitivity_table import SensitivityTable
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import tr, tr_count, translate
 from regolith_studio.ui.widgets.labels import plain_symbol, rich_symbol
+from regolith_studio.ui.widgets.number_fields import NumbersLine
 from regolith_studio.ui.widgets.plots.curves import PlotCurve
 from regolith_studio.ui.widgets.study_frame import StudyFrame
 
@@ -130,7 +131,7 @@ class SweepPanel(QWidget):
         super().__init__()
         self.setObjectName(f"{key}_study")
         self._variation = SWEEPS[key]
-        self.values = QLineEdit(", ".join(f"{value:g}" for value in self._variation.values))
+        self.values = NumbersLine(", ".join(f"{value:g}" for value in self._variation.values))
         self.values.setObjectName(f"{key}_values")
         self.values.setAccessibleName(tr(self._variation.asks))
         self.values.setToolTip(tr("Numbers with commas between them; Return starts the study"))

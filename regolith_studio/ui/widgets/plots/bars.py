@@ -10,6 +10,7 @@ from PySide6.QtCore import QPointF
 from PySide6.QtGui import QColor, QFont, QFontMetrics, QResizeEvent
 
 from regolith_studio.ui.translation import tr
+from regolith_studio.ui.translation.numbers import number_text
 from regolith_studio.ui.widgets.plots.base import Numbers, Plot
 
 GAP = 3
@@ -144,7 +145,9 @@ class BarPlot(Plot):
         category = round(here.x())
         if not 0 <= category < len(self._categories) or here.y() < 0:
             return ""
-        lines = [f"{each.label}: {each.values[category]:.3g} {self._unit}" for each in self._series]
+        lines = [
+            f"{each.label}: {number_text(each.values[category], '.3g')} {self._unit}" for each in self._series
+        ]
         lines += [
             tr("not below {bound:.3g} {unit} (line)", bound=each.bounds[category], unit=self._unit)
             for each in self._series

@@ -1,7 +1,7 @@
 """Canvas and axes of plots: a pyqtgraph view box without menus, labels that fit, logarithmic limits."""
 
 import html
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import pyqtgraph as pg
@@ -9,6 +9,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtGui import QFont, QFontMetricsF, QResizeEvent
 from PySide6.QtWidgets import QGraphicsGridLayout, QSizePolicy
 
+from regolith_studio.ui.translation.numbers import localized
 from regolith_studio.ui.widgets.plots.export import plain_text
 
 CANVAS_MARGIN = 1.0
@@ -178,6 +179,9 @@ class FittedAxis(pg.AxisItem):  # type: ignore[misc]
         if (rich, points) != self._shown:
             self._shown = (rich, points)
             self.setLabel(rich, color=colour, **{"font-size": f"{points:.1f}pt"})
+
+    def tickStrings(self, values: Sequence[float], scale: float, spacing: float) -> list[str]:
+        return [localized(each) for each in super().tickStrings(values, scale, spacing)]
 
     def _length(self) -> float:
         size = self.size()

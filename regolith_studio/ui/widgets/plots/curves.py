@@ -10,6 +10,7 @@ from PySide6.QtGui import QColor
 
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.ui.translation import tr
+from regolith_studio.ui.translation.numbers import number_text
 from regolith_studio.ui.widgets.plots.base import Numbers, Plot
 from regolith_studio.ui.widgets.plots.canvas import PlotCanvas
 from regolith_studio.ui.widgets.plots.export import plain_text
@@ -194,8 +195,8 @@ class CurvePlot(Plot):
                 best = float(away[nearest])
                 label = plain_text(curve.label)
                 words = f"{label}\n" if label else ""
-                words += f"{plain_text(self._labels[0])}: {x[nearest]:.5g}\n"
-                words += f"{plain_text(self._labels[1])}: {y[nearest]:.5g}"
+                words += f"{plain_text(self._labels[0])}: {number_text(x[nearest], '.5g')}\n"
+                words += f"{plain_text(self._labels[1])}: {number_text(y[nearest], '.5g')}"
         return words
 
     def _draw_marker(self) -> None:

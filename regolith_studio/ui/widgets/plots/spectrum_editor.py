@@ -9,6 +9,7 @@ from PySide6.QtCore import QEvent, QObject, QPointF, Qt, QTimer, Signal
 from PySide6.QtGui import QColor, QKeyEvent, QMouseEvent
 
 from regolith_studio.ui.translation import tr
+from regolith_studio.ui.translation.numbers import localized, number_text
 from regolith_studio.ui.widgets.plots.base import Numbers, Plot
 
 THROTTLE = 30
@@ -98,7 +99,9 @@ class SpectrumEditor(Plot):
 
     def _draw_axes(self, count: int) -> None:
         decades = range(math.ceil(LOG_MIN), math.floor(LOG_MAX) + 1)
-        self.canvas.getAxis("left").setTicks([[(decade, f"{10.0**decade:g}") for decade in decades]])
+        self.canvas.getAxis("left").setTicks(
+            [[(decade, number_text(10.0**decade, "g")) for decade in decades]]
+        )
         step = 1 if count <= 15 else 5
         self.canvas.getAxis("bottom").setTicks(
             [[(d, str(d)) for d in range(1, count + 1) if d % step == 0 or d == 1]]
@@ -114,7 +117,7 @@ class SpectrumEditor(Plot):
         degree = round(seen.x())
         if not 1 <= degree <= len(self._values):
             return ""
-        return f"l = {degree}: {100 * self._values[degree - 1]:.3g} %"
+        return localized(f"l = {degree}: {100 * self._values[degree - 1]:.3g} %")
 
     def numbers(self) -> Numbers:
         rows: list[tuple[str | float, ...]] = [
@@ -171,7 +174,7 @@ class SpectrumEditor(Plot):
         self._changed()
 
     def _words(self) -> str:
-        return f"l = {self._chosen + 1}: {100 * self._values[self._chosen]:.3g} %"
+        return localized(f"l = {self._chosen + 1}: {100 * self._values[self._chosen]:.3g} %")
 
     def _changed(self) -> None:
         self.redraw()

@@ -1,0 +1,45 @@
+"""Numbers in the language of the window: the one place that knows its decimal sign.
+
+Files, the command line, and sentences about errors that come from them keep the point.
+"""
+
+import re
+from numbers import Real
+from string import Formatter
+from typing import Any
+
+from PySide6.QtCore import QLocale
+
+_NUMBER = re.compile(r"[+-]?\d[\d,]*(\.\d+)?(e[+-]?\d+)?\s?[%°]?")
+
+
+def localized(text: str) -> str:
+    """A text with numbers as Python writes them, with the decimal and group signs of the language.
+
+    Every point and comma of the text is taken for one of a number.
+    """
+    locale = QLocale()
+    return text.translate({ord("."): locale.decimalPoint(), ord(","): locale.groupSeparator()})
+
+
+def number_text(value: float, form: str) -> str:
+    """A number in a format of Python, such as ``.3g``, with the signs of the language."""
+    return localized(format(value, form))
+
+
+def localized_if_number(value: Any) -> Any:
+    """A number that a layer below has formatted, localized; anything else as it is."""
+    return localized(value) if isinstance(value, str) and _NUMBER.fullmatch(value) else value
+
+
+def with_decimal_point(text: str) -> str:
+    """What a user has typed, with a point for a comma between digits."""
+    return re.sub(r"(?<=\d),(?=\d)", ".", text)
+
+
+class NumberFormatter(Formatter):
+    """As ``str.format``, with the numbers localized."""
+
+    def format_field(self, value: Any, format_spec: str) -> str:
+        text = format(value, format_spec)
+        return localized(text) if isinstance(value, Real) else text
