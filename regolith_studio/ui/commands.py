@@ -19,7 +19,7 @@ from regolith_studio.session.code_export import as_command, as_python
 from regolith_studio.session.file_kinds import FileKind, kind_of_all
 from regolith_studio.session.preferences import Preferences
 from regolith_studio.session.project import SessionRecipe, input_shown, inputs_of
-from regolith_studio.session.provenance import MAX_RESTORED, SampleSource
+from regolith_studio.session.provenance import MAX_RESTORED, FileSource, ParticleRef, SampleSource
 from regolith_studio.session.recipe import DatasetRequest, Recipe, read_recipe
 from regolith_studio.session.session import Session
 from regolith_studio.session.verdict import cost_of_imitating_the_fit
@@ -122,6 +122,35 @@ class Commands(QObject):
         self._preferences.save()
         self._remember_open()
         self._try(lambda: self._session.open(paths, unit, add=answer == ADD))
+
+    def change_unit(self, id: str) -> None:
+        """Ask for the unit of the files that this particle was opened with, and read them again in it."""
+        entries = self._session.particles
+        origin = next((each.ref.origin for each in entries if each.id == id and each.ref), None)
+        if not isinstance(origin, FileSource):
+            self._toast.problem(tr("{name} was not read from a file whose unit could be changed.", name=id))
+            return
+        paths = [Path(path) for path in origin.paths]
+        unit = self._unit_of_user(paths, origin.unit)
+        if unit is None or unit == origin.unit:
+            return
+        changed = dataclasses.replace(origin, unit=unit)
+        refs = [
+            ParticleRef(changed, each.ref.key) if each.ref and each.ref.origin == origin else each.ref
+            for each in entries
+        ]
+        moved = [dataclasses.replace(each, ref=ref) for each, ref in zip(entries, refs, strict=True)]
+        kept = SessionRecipe.of(moved, self._session.choices)
+        if kept.without_source or kept.model:
+            self._toast.problem(
+                tr("Close the particles that came from no file first: they cannot be reopened.")
+            )
+            return
+        for path in paths:
+            self._preferences.add_recent(path, unit)
+        self._preferences.save()
+        self._remember_open()
+        self._try(lambda: self._session.open_recipe(kept.recipe, Path.cwd()))
 
     def save_recipe(self) -> None:
         """Ask for a file and write the present choices into it."""
@@ -244,7 +273,10 @@ class Commands(QObject):
         known = {self._preferences.unit_for(path) for path in paths}
         if len(known) == 1 and (unit := known.pop()):
             return unit
-        dialog = UnitDialog(paths, self._session.choices.unit, self._window)
+        return self._unit_of_user(paths, self._session.choices.unit)
+
+    def _unit_of_user(self, paths: list[Path], suggestion: str) -> str | None:
+        dialog = UnitDialog(paths, suggestion, self._window)
         self._session.run(
             LOOK,
             N_("Reading particles"),

@@ -1,13 +1,23 @@
-"""The size of the first particle while its unit is asked, and the chapter of the guide on each page."""
+"""Opening: the unit and its size, add or replace, undo of both; and the chapter of the guide on each page."""
 
 from pathlib import Path
 
+import numpy as np
 import pytest
+from PySide6.QtCore import QTimer
+from PySide6.QtWidgets import QApplication, QDialog, QWidget
 
+from regolith_studio.geometry.particle import Particle
+from regolith_studio.geometry.sphere_points import icosphere
+from regolith_studio.io.stl import stl_bytes
+from regolith_studio.jobs.runners.run_job import InlineRunner
 from regolith_studio.resources import guide_folder
+from regolith_studio.session.session import Session
+from regolith_studio.ui.commands import Commands
 from regolith_studio.ui.dialogs.guide import PAGES, as_markdown
 from regolith_studio.ui.dialogs.unit import UnitDialog
 from regolith_studio.ui.pages import PAGES as WINDOW_PAGES
+from regolith_studio.ui.widgets.toast import Toast
 
 
 @pytest.mark.parametrize(("length", "unit"), [(5e-5, "m"), (0.12, "mm"), (80.0, "um")])
@@ -27,3 +37,86 @@ def test_that_every_page_has_a_chapter_of_the_guide_without_directives():
     assert as_markdown("see {doc}`views` and {doc}`more <harmonics>`") == (
         "see [views](views.md) and [more](harmonics.md)"
     )
+
+
+ACCEPTED = QDialog.DialogCode.Accepted
+
+
+def write_ball(path, radius):
+    path.parent.mkdir(exist_ok=True)
+    path.write_bytes(stl_bytes(icosphere(1).moved(scale=radius).triangles, "ball"))
+    return path
+
+
+@pytest.fixture
+def opening(shown, preferences, tmp_path, monkeypatch):
+    """The commands of a session with one ball of 50 mm, and its parent of dialogs."""
+    session, window = Session(InlineRunner()), shown(QWidget())
+    monkeypatch.setattr(session._live, "follow", lambda *_: None)  # no fit, no polyhedron
+    commands = Commands(session, preferences, Toast(window), window)
+    commands.open_paths([write_ball(tmp_path / "a" / "one.stl", 25.0)], "mm")
+    yield commands, session, window
+    session.close()
+
+
+def names(session):
+    return [each.id for each in session.particles]
+
+
+def size(session):
+    return float(np.ptp(session.particles[0].particle.mesh.bounds, axis=0).max())
+
+
+def press(name, remember=False):
+    """Press a button of the question as soon as it is asked."""
+
+    def act():
+        box = next(each for each in QApplication.topLevelWidgets() if each.objectName() == "add_or_replace")
+        box.checkBox().setChecked(remember)
+        next(each for each in box.buttons() if each.objectName() == name).click()
+
+    QTimer.singleShot(0, act)
+
+
+def test_that_replaced_particles_come_back_by_undo_and_added_ones_go(opening, tmp_path):
+    commands, session, _ = opening
+    other = write_ball(tmp_path / "b" / "two.stl", 30.0)
+    press("opening_cancel")
+    commands.open_paths([other], "um")
+    assert names(session) == ["one"]
+    press("opening_replace")
+    commands.open_paths([other], "um")
+    assert names(session) == ["two"]
+    commands.undo()
+    assert names(session) == ["one"]
+    press("opening_add", remember=True)
+    commands.open_paths([other], "um")
+    assert names(session) == ["one", "two"]
+    commands.undo()
+    assert names(session) == ["one"]
+    commands.open_paths([other], "um")  # it is not asked again
+    assert names(session) == ["one", "two"]
+
+
+def test_that_a_unit_is_changed_afterwards_and_undo_goes_back(opening, monkeypatch, tmp_path):
+    commands, session, _ = opening
+    write_ball(tmp_path / "b" / "two.stl", 30.0)
+    press("opening_add")
+    commands.open_paths([tmp_path / "b" / "two.stl"], "um")
+    before = size(session)
+    assert before == pytest.approx(50_000.0, rel=0.1)
+    monkeypatch.setattr(
+        UnitDialog, "exec", lambda dialog: dialog.setValue("um") or QDialog.DialogCode.Accepted
+    )
+    commands.change_unit("one")
+    assert names(session) == ["one", "two"]
+    assert size(session) == pytest.approx(before / 1000.0, rel=1e-6)
+    commands.undo()
+    assert size(session) == pytest.approx(before, rel=1e-6)
+
+
+def test_that_the_unit_of_a_particle_without_a_file_is_refused(opening):
+    commands, session, window = opening
+    session.adopt([Particle("drawn", icosphere(1))])
+    commands.change_unit("drawn")
+    assert "drawn was not read from a file" in window.findChild(Toast).sentence.text()

@@ -4,14 +4,15 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from PySide6.QtCore import QItemSelectionModel, QModelIndex, Qt, Signal
-from PySide6.QtWidgets import QVBoxLayout, QWidget
+from PySide6.QtCore import QItemSelectionModel, QModelIndex, QPoint, Qt, Signal
+from PySide6.QtWidgets import QMenu, QVBoxLayout, QWidget
 
 from regolith_studio.messages import N_
 from regolith_studio.session.results import ParticleEntry
 from regolith_studio.session.sample_table import health_sentences, health_word
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import tr, translate
+from regolith_studio.ui.translation.numbers import number_text
 from regolith_studio.ui.widgets.labels import heading, remark, short_number
 from regolith_studio.ui.widgets.particle_table_model import (
     RIGHT,
@@ -68,8 +69,12 @@ COLUMNS = (
         lambda e: e.particle.group,
     ),
     ListColumn(N_("V [µm³]"), N_("Volume"), *_descriptor("volume", lambda v: short_number(v, 3))),
-    ListColumn("S", N_("Sphericity, Eq. 1 (Wadell)"), *_descriptor("sphericity", "{:.3f}".format)),
-    ListColumn("AR", N_("Aspect ratio, Eq. 2"), *_descriptor("aspect_ratio", "{:.2f}".format)),
+    ListColumn(
+        "S", N_("Sphericity, Eq. 1 (Wadell)"), *_descriptor("sphericity", lambda v: number_text(v, ".3f"))
+    ),
+    ListColumn(
+        "AR", N_("Aspect ratio, Eq. 2"), *_descriptor("aspect_ratio", lambda v: number_text(v, ".2f"))
+    ),
 )
 
 
@@ -118,6 +123,7 @@ class ParticleListPanel(QWidget):
     FIELDS = ("selected",)
     valueChanged = Signal(dict)  # noqa: N815
     editingFinished = Signal()  # noqa: N815
+    unitRequested = Signal(str)  # noqa: N815
 
     def __init__(self) -> None:
         super().__init__()
@@ -175,7 +181,19 @@ class ParticleListPanel(QWidget):
         table.setModel(self._model)
         table.setSortingEnabled(True)
         table.horizontalHeader().setSortIndicator(UNSORTED, Qt.SortOrder.AscendingOrder)
+        table.setContextMenuPolicy(Qt.ContextMenuPolicy.CustomContextMenu)
+        table.customContextMenuRequested.connect(self._show_menu)
         return table
+
+    def _show_menu(self, place: QPoint) -> None:
+        index = self.table.indexAt(place)
+        if not index.isValid():
+            return
+        name = self._model.rows[index.row()].id
+        menu = QMenu(self)
+        menu.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+        menu.addAction(tr("Change length unit …"), lambda: self.unitRequested.emit(name))
+        menu.popup(self.table.viewport().mapToGlobal(place))
 
     def _mark(self) -> None:
         row = next((r for r, entry in enumerate(self._model.rows) if entry.id == self._selected), -1)

@@ -136,6 +136,12 @@ PAGE = Page(
         ),
         ActionSpec(
             PAGE_MENU,
+            "change_unit",
+            N_("Change length &unit …"),
+            tip=N_("Read the files of the chosen particle in another unit"),
+        ),
+        ActionSpec(
+            PAGE_MENU,
             "save_picture",
             N_("Save &picture …"),
             "camera",

@@ -41,7 +41,7 @@ class ExplorePage(PageWidget):
     def __init__(self, context: PageContext) -> None:
         super().__init__()
         self.setObjectName("explore")
-        self._session = context.session
+        self._session, self._commands = context.session, context.commands
         self.particles, self.fit = ParticleListPanel(), FitPanel()
         self.coarsening, self.loss = CoarseningPanel(), LossPanel()
         measuring = LatestJob(context, tr("Measuring distances"), "distances")
@@ -71,6 +71,7 @@ class ExplorePage(PageWidget):
             "wipe": lambda on: views.comparison.set_mode(wipe=on),
             "section": self._set_section,
             "list": self._show_list,
+            "change_unit": lambda: self._commands.change_unit(self._session.choices.selected),
             "enlarge": views.enlarge_next,
             "save_picture": self.pictures.save_picture,
             "save_turntable": self.pictures.save_turntable,
@@ -132,6 +133,7 @@ class ExplorePage(PageWidget):
         bindings.refresh(
             "coarsening comparison", lambda: self.verdict.show_results(session.results, session.choices)
         )
+        self.particles.unitRequested.connect(context.commands.change_unit)
         self.plots.wire(session, bindings)
 
     def _set_section(self, shown: bool) -> None:
