@@ -73,7 +73,8 @@ def test_that_messages_of_the_layers_below_are_translated(speaking):
     reason = sphericity_reason(0.97, 10)
     assert translate(reason) == (
         f"Die Sphärizität 0,970 braucht mindestens {re.findall(r'[0-9]+', reason)[2]} Facetten;"
-        f" mit 10 sind höchstens {max_sphericity(10):.3f} möglich."
+        f" mit 10 sind höchstens {max_sphericity(10):.3f}".replace(".", ",")
+        + " möglich."
     )
     by = Message(MISSED_BY, name=Message(NAMES["sphericity"]), error="3")
     missed = Message(MISSED, faces=8, missed=by)
