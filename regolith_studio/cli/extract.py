@@ -7,10 +7,13 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from regolith_studio.cli.dataclass_options import with_dataclass_options
-from regolith_studio.cli.options import Folder, Jobs, Json, Seed, usage_errors
-from regolith_studio.cli.terminal import print_errors, print_json, run_with_progress
+from regolith_studio.cli.options import Jobs, Json, OptionalFolder, Seed, usage_errors
+from regolith_studio.cli.terminal import print_errors, print_json, print_table, run_with_progress
+
+MAX_H = 1e6
 
 if TYPE_CHECKING:
+    from regolith_studio.imaging.segmentation.segment import SegmentationSettings
     from regolith_studio.imaging.segmentation.thresholding import ThresholdSettings
     from regolith_studio.imaging.volume import VolumeKind
     from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput
@@ -134,7 +137,7 @@ class GrainOptions:
         typer.Option(
             "--h-maxima",
             min=0.0,
-            max=1e6,
+            max=MAX_H,
             help="Height in voxels of the maxima of the distance map that count as separate grains; "
             "larger values give fewer grains.",
             metavar="H",
@@ -254,6 +257,34 @@ def _raw_layout(shape: str, dtype: str, byte_order: str, offset: int) -> "RawLay
     return RawLayout((nx, ny, nz), dtype, byte_order, offset)
 
 
+def _heights(text: str) -> tuple[float, ...]:
+    """Values of h from ``0.4,0.8,1.5``, or none."""
+    try:
+        heights = tuple(float(part) for part in text.split(",")) if text else ()
+    except ValueError:
+        heights = (-1.0,)
+    if not all(0.0 <= each <= MAX_H for each in heights):
+        raise typer.BadParameter(
+            f"Values of h are numbers from 0 to {MAX_H:g}, as 0.4,0.8,1.5, got {text!r}."
+        )
+    return heights
+
+
+def _print_counts(
+    given: "VolumeInput", settings: "SegmentationSettings", heights: tuple[float, ...], as_json: bool
+) -> None:
+    """Print number and size of the grains that each h gives."""
+    from regolith_studio.imaging.segmentation.segment import heights_table
+    from regolith_studio.io.tables import json_text
+    from regolith_studio.jobs.volume_jobs import count_over_heights, scratch_folder
+
+    table = heights_table(run_with_progress(count_over_heights(given, settings, heights, scratch_folder())))
+    if as_json:
+        typer.echo(json_text(table), nl=False)
+    else:
+        print_table(table)
+
+
 @with_dataclass_options
 def extract(
     *,
@@ -263,9 +294,18 @@ def extract(
             metavar="VOLUME", help="TIFF stack, folder of slices, HDF5, NRRD, MetaImage, NIfTI, NPY or raw."
         ),
     ],
-    output: Folder,
+    output: OptionalFolder = None,
     contents: VolumeOptions,
     grains: GrainOptions,
+    preview_h: Annotated[
+        str,
+        typer.Option(
+            "--preview-h",
+            help="Write nothing; print how many grains each of these values of --h-maxima gives, such as "
+            "0.4,0.8,1.5,2.5.",
+            metavar="LIST",
+        ),
+    ] = "",
     recipe: Annotated[
         Path | None,
         typer.Option("--recipe", help="Take all settings from an extraction.json instead.", metavar="FILE"),
@@ -276,7 +316,8 @@ def extract(
 ) -> None:
     """Turn the grains of a CT volume into particle meshes (section 2.1).
 
-    Writes one STL a particle, particles.csv and extraction.json with all settings.
+    Writes one STL a particle, particles.csv and extraction.json with all settings. With --preview-h it prints
+    how many grains several values of --h-maxima give, and writes nothing.
     """
     from regolith_studio.io.atomic import staged_folder
     from regolith_studio.jobs.extraction_settings import read_grain_settings
@@ -287,6 +328,12 @@ def extract(
     with usage_errors():
         given = contents.of(volume)
         settings = read_grain_settings(recipe) if recipe else grains.recipe
+        heights = _heights(preview_h)
+    if heights:
+        _print_counts(given, settings.segmentation, heights, json)
+        return
+    if output is None:
+        raise typer.BadParameter("Name a folder to write with -o, or values for --preview-h.")
     with staged_folder(output, "extract") as stage:
         folder = ExtractionFolder(stage)
         done = run_with_progress(extract_measured(given, settings, output.parent, folder.add, jobs))

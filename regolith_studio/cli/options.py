@@ -104,6 +104,17 @@ Folder = Annotated[
         callback=claim_folder,
     ),
 ]
+OptionalFolder = Annotated[
+    Path | None,
+    typer.Option(
+        "--output",
+        "-o",
+        help="Folder to write.",
+        metavar="DIR",
+        parser=output_path,
+        callback=claim_folder,
+    ),
+]
 LMax = Annotated[
     int,
     typer.Option(

@@ -4,11 +4,11 @@ import hashlib
 import os
 import tempfile
 from collections import deque
-from collections.abc import Callable, Generator, Iterator
+from collections.abc import Callable, Generator, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,7 +26,10 @@ from regolith_studio.imaging.extraction import (
 from regolith_studio.imaging.sample_volumes import SampleVolume, sample_volume
 from regolith_studio.imaging.segmentation.segment import (
     Segmentation,
+    SegmentationProgress,
     SegmentationSettings,
+    grains_over_heights,
+    part_of,
     preview,
     segmentation_steps,
 )
@@ -48,6 +51,7 @@ IN_MEMORY = 2**30
 _LABEL_BYTES = 4
 _SAMPLED = 4_000_000
 _CONTRAST = (0.002, 0.998)
+_Result = TypeVar("_Result")
 
 
 @dataclass(frozen=True, eq=False)
@@ -169,6 +173,37 @@ def preview_part(volume: Volume, box: Box, settings: SegmentationSettings, level
     except RegolithError:
         return None
     return found
+
+
+def preview_heights(
+    volume: Volume, box: Box, settings: SegmentationSettings, level: float | None, heights: Sequence[float]
+) -> Steps:
+    """Grains of a small part with each h of `heights`; returns a tuple of ``GrainsAtHeight``.
+
+    `level` takes the place of an automatic threshold, as in :func:`preview_part`.
+    """
+    part, chosen = part_of(volume, box, settings, level)
+    return (yield from _reported(grains_over_heights(part, heights, chosen)))
+
+
+def count_over_heights(
+    given: VolumeInput, settings: SegmentationSettings, heights: Sequence[float], scratch: Path | None = None
+) -> Steps:
+    """Grains of a file with each h of `heights`; returns a tuple of ``GrainsAtHeight``.
+
+    Raises
+    ------
+    InputError
+        If it holds labels, which are grains already.
+    """
+    yield Started(Message(N_("Reading {name}"), name=given.path.name))
+    volume = given.opened()
+    if volume.kind != "grey":
+        raise InputError(
+            f"{given.path.name} holds labels, which are grains already; there is no h to choose."
+        )
+    with ScratchArrays(scratch if _working_bytes(volume) > IN_MEMORY else None) as arrays:
+        return (yield from _reported(grains_over_heights(volume, heights, settings, arrays)))
 
 
 def _map_volume(source: VolumeFile) -> Generator[Step, None, Scan]:
@@ -300,13 +335,18 @@ def segment_volume(
     source: SliceSource, settings: SegmentationSettings, scratch: ScratchArrays | None = None
 ) -> Steps:
     """Find the grains in grey values; returns a ``Segmentation``."""
-    steps = segmentation_steps(source, settings, scratch)
+    return (yield from _reported(segmentation_steps(source, settings, scratch)))
+
+
+def _reported(steps: Generator[SegmentationProgress, None, _Result]) -> Generator[Step, None, _Result]:
+    """The steps as events."""
     stage = ""
     while True:
         try:
             step = next(steps)
         except StopIteration as end:
-            return end.value
+            result: _Result = end.value
+            return result
         if step.stage != stage:
             stage = step.stage
             yield Started(stage, step.total)

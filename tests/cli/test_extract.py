@@ -155,3 +155,25 @@ def test_that_grey_values_without_grains_are_one_sentence(command, tmp_path: Pat
     assert result.code == 1
     assert len(result.err.strip().splitlines()) == 1
     assert not (tmp_path / "x").exists()
+
+
+def test_that_the_preview_of_h_prints_counts_and_writes_nothing(command, tmp_path: Path) -> None:
+    np.save(tmp_path / "balls.npy", two_balls())
+    asked = ("extract", tmp_path / "balls.npy", "--voxel-size", 1, "--preview-h", "0.8,1e3")
+    result = command(*asked, "--json")
+    assert [(row["h_maxima"], row["grains"]) for row in result.json["rows"]] == [(0.8, 2), (1000, 2)]
+    assert command(*asked).out.splitlines()[1].split()[:2] == ["0.8", "2"]
+    assert [path.name for path in tmp_path.iterdir()] == ["balls.npy"]
+
+
+def test_that_extract_wants_a_folder_or_values_of_h(command, tmp_path: Path) -> None:
+    np.save(tmp_path / "balls.npy", two_balls())
+    nothing = command("extract", tmp_path / "balls.npy")
+    assert nothing.code == 2
+    assert "Name a folder to write with -o" in nothing.err
+    wrong = command("extract", tmp_path / "balls.npy", "--preview-h", "0.8,-1")
+    assert wrong.code == 2
+    assert "Values of h are numbers from 0" in wrong.err
+    labels = command("extract", GREY.with_name("synthetic-labels.tif"), "--preview-h", "0.8")
+    assert labels.code == 1
+    assert "holds labels" in labels.err

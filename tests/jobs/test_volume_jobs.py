@@ -20,6 +20,8 @@ from regolith_studio.jobs.volume_jobs import (
     extract_file,
     extract_labels,
     extract_measured,
+    preview_heights,
+    preview_part,
     segment_volume,
     volume_sha256,
 )
@@ -38,6 +40,14 @@ def played(steps: Steps) -> tuple[list[Step], Any]:
             received.append(next(steps))
         except StopIteration as end:
             return received, end.value
+
+
+def test_that_the_heights_of_a_part_give_the_grains_of_its_preview() -> None:
+    scan, level = sample_volume("grey"), 100.0
+    received, found = played(preview_heights(scan, PART, QUICK.segmentation, level, (0.8, 30.0)))
+    _, part = played(preview_part(scan, PART, QUICK.segmentation, level))
+    assert found[0].n_grains == part.n_grains > found[1].n_grains
+    assert isinstance(received[0], Started)
 
 
 def test_that_a_grey_file_tells_its_stages_and_gives_particles() -> None:

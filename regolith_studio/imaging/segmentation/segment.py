@@ -4,7 +4,7 @@ Everything happens slab by slab or body by body, so that the volume never has to
 whole: give a :class:`~regolith_studio.imaging.volume_slabs.ScratchArrays` in a folder for that.
 """
 
-from collections.abc import Generator
+from collections.abc import Generator, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -30,6 +30,7 @@ from regolith_studio.imaging.segmentation.thresholding import (
 )
 from regolith_studio.imaging.volume import Volume
 from regolith_studio.imaging.volume_slabs import ScratchArrays, SliceSource, slab_ranges, thick_slabs
+from regolith_studio.io.tables import Column, Table
 from regolith_studio.messages import N_, Message
 
 
@@ -152,27 +153,117 @@ def segmentation_steps(
         If the volume is too uniform for an automatic threshold, or no grain is found.
     """
     settings, scratch = settings or SegmentationSettings(), scratch or ScratchArrays()
-    edges = np.asarray(source.voxel_size, dtype=np.float64)
+    found = yield from _found_bodies(source, settings, scratch)
+    sizes, n_parts = yield from _parted(found.numbers, found, settings)
+    least = settings.cleaning.min_voxels
+    if not len(sizes):
+        raise InputError(
+            f"No grain of {least} voxels or more was found in {source.name} at grey level {found.level:g}; "
+            "is the threshold right, and are grains brighter than what is between them?"
+        )
+    small = int((found.bodies.sizes < least).sum()) + n_parts - len(sizes)
+    labels = Volume(found.numbers, found.edges, "labels", f"{source.name}, labels")
+    n_bodies = int((found.bodies.sizes >= least).sum())
+    return Segmentation(labels, sizes, found.level, found.seen, n_bodies, small, found.n_not_finite)
+
+
+@dataclass(frozen=True, eq=False)
+class GrainsAtHeight:
+    """What one h of the h-maxima gives.
+
+    Parameters
+    ----------
+    h_maxima
+        In voxels.
+    sizes
+        Voxels of each grain, shape (n,).
+    """
+
+    h_maxima: float
+    sizes: IntArray
+
+    @property
+    def n_grains(self) -> int:
+        """Number of grains."""
+        return len(self.sizes)
+
+
+def grains_over_heights(
+    source: SliceSource,
+    heights: Sequence[float],
+    settings: SegmentationSettings | None = None,
+    scratch: ScratchArrays | None = None,
+) -> Generator[SegmentationProgress, None, tuple[GrainsAtHeight, ...]]:
+    """The grains that :func:`segmentation_steps` finds with each h; what comes before is done once.
+
+    Parameters
+    ----------
+    heights
+        Values of ``h_maxima`` that take the place of the settings' own.
+
+    Raises
+    ------
+    InputError
+        If an h is negative, or the volume is too uniform for an automatic threshold.
+    """
+    settings, scratch = settings or SegmentationSettings(), scratch or ScratchArrays()
+    tried = [replace(settings, splitting=replace(settings.splitting, h_maxima=h)) for h in heights]
+    found = yield from _found_bodies(source, settings, scratch)
+    numbers: NDArray[np.int32] = scratch.zeros(source.shape, np.int32)
+    rows = []
+    for each in tried:
+        np.copyto(numbers, found.numbers)
+        sizes, _ = yield from _parted(numbers, found, each)
+        rows.append(GrainsAtHeight(each.splitting.h_maxima, sizes))
+    return tuple(rows)
+
+
+def heights_table(found: Sequence[GrainsAtHeight]) -> Table:
+    """A row for each h: number of grains, and equivalent diameters in voxels."""
+    names = ("h_maxima", "grains", "median_diameter", "largest_diameter")
+    rows = []
+    for each in found:
+        diameters = np.cbrt(6 * each.sizes / np.pi) if each.n_grains else np.full(1, np.nan)
+        rows.append((each.h_maxima, each.n_grains, float(np.median(diameters)), float(diameters.max())))
+    units = ("voxels", "", "voxels", "voxels")
+    columns = tuple(Column(name, unit) for name, unit in zip(names, units, strict=True))
+    return Table("grains over h", columns, tuple(rows))
+
+
+@dataclass(frozen=True, eq=False)
+class _FoundBodies:
+    numbers: NDArray[np.int32]
+    bodies: ConnectedComponents
+    edges: FloatArray
+    level: float
+    seen: Histogram
+    n_not_finite: int
+
+
+def _found_bodies(
+    source: SliceSource, settings: SegmentationSettings, scratch: ScratchArrays
+) -> Generator[SegmentationProgress, None, _FoundBodies]:
+    """Connected bodies with their provisional numbers, before they are parted."""
     values, seen, n_not_finite = yield from _denoised(source, settings, scratch)
     level = level_of(seen, settings.threshold, source.dtype)
     numbers: NDArray[np.int32] = scratch.zeros(source.shape, np.int32)
     bodies = yield from _numbered(values, level, settings, numbers)
+    edges = np.asarray(source.voxel_size, dtype=np.float64)
+    return _FoundBodies(numbers, bodies, edges, level, seen, n_not_finite)
+
+
+def _parted(
+    numbers: NDArray[np.int32], found: _FoundBodies, settings: SegmentationSettings
+) -> Generator[SegmentationProgress, None, tuple[IntArray, int]]:
+    """Turn provisional numbers into labels, in place; voxels of each grain, and parts before small ones were
+    dropped."""
     least = settings.cleaning.min_voxels
     splitter = GrainSplitter(
-        numbers, bodies, edges, settings.splitting, settings.cleaning.fill_pores, settings.tiles
+        numbers, found.bodies, found.edges, settings.splitting, settings.cleaning.fill_pores, settings.tiles
     )
     for done, total in splitter.steps(least):
         yield SegmentationProgress(N_("Parting touching grains"), done, total)
-    sizes = yield from _renumbered(numbers, splitter.n_grains, least)
-    if not len(sizes):
-        raise InputError(
-            f"No grain of {least} voxels or more was found in {source.name} at grey level {level:g}; "
-            "is the threshold right, and are grains brighter than what is between them?"
-        )
-    small = int((bodies.sizes < least).sum()) + splitter.n_grains - len(sizes)
-    labels = Volume(numbers, edges, "labels", f"{source.name}, labels")
-    n_bodies = int((bodies.sizes >= least).sum())
-    return Segmentation(labels, sizes, level, seen, n_bodies, small, n_not_finite)
+    return (yield from _renumbered(numbers, splitter.n_grains, least)), splitter.n_grains
 
 
 def preview(
@@ -185,12 +276,18 @@ def preview(
     level
         Taken instead of the one that an automatic threshold would find in this part.
     """
+    return segment(*part_of(volume, box, settings, level))
+
+
+def part_of(
+    volume: Volume, box: Box, settings: SegmentationSettings | None = None, level: float | None = None
+) -> tuple[Volume, SegmentationSettings]:
+    """A small part of a volume and its settings, for :func:`preview` and :func:`grains_over_heights`."""
     settings = settings or SegmentationSettings()
     if level is not None and settings.threshold.is_automatic:
         manual = replace(settings.threshold, method="manual", value=level)
         settings = replace(settings, threshold=manual)
-    part = Volume(np.array(volume.array[box]), volume.voxel_size, volume.kind, volume.name)
-    return segment(part, settings)
+    return Volume(np.array(volume.array[box]), volume.voxel_size, volume.kind, volume.name), settings
 
 
 _Values = Generator[SegmentationProgress, None, tuple[SliceSource, Histogram, int]]

@@ -1,5 +1,7 @@
 """The whole way from grey values to labels, on scans whose truth is known."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy import ndimage
@@ -12,6 +14,8 @@ from regolith_studio.imaging.segmentation.denoising import DENOISE_METHODS, Deno
 from regolith_studio.imaging.segmentation.morphology import CleaningSettings
 from regolith_studio.imaging.segmentation.segment import (
     SegmentationSettings,
+    grains_over_heights,
+    heights_table,
     preview,
     segment,
     segmentation_steps,
@@ -33,6 +37,15 @@ def overlaps(truth: np.ndarray, found: np.ndarray) -> np.ndarray:
     shared = table[1:, 1:]
     union = table[1:].sum(axis=1)[:, None] + table[:, 1:].sum(axis=0)[None] - shared
     return (shared / union).max(axis=1)
+
+
+def result_of(steps):
+    """What a generator returns in the end."""
+    while True:
+        try:
+            next(steps)
+        except StopIteration as end:
+            return end.value
 
 
 def grey(mask: np.ndarray, name: str = "test") -> Volume:
@@ -115,6 +128,20 @@ def test_that_h_trades_grains_apart_for_grains_together() -> None:
         for h in (0.2, 0.8, 30.0)
     ]
     assert counts[0] > counts[1] > counts[2]
+
+
+def test_that_two_balls_are_one_grain_from_the_h_on_by_which_their_peaks_stand_out() -> None:
+    """The distance is 12 in each centre and sqrt(12^2 - 9^2) in the circle in which the balls meet."""
+    x, y, z = np.mgrid[-24:25, -15:16, -15:16]
+    balls = np.minimum((x - 9) ** 2, (x + 9) ** 2) + y**2 + z**2 <= 12**2
+    persistence = 12 - np.sqrt(12**2 - 9**2)
+    plain = replace(PLAIN, splitting=SplittingSettings(relative=0.0))
+    found = result_of(grains_over_heights(grey(balls), (0.5, persistence - 1, persistence + 1), plain))
+    assert [each.n_grains for each in found] == [2, 2, 1]
+    assert [each.sizes.sum() for each in found] == [np.count_nonzero(balls)] * 3
+    assert found[0].sizes.tolist() == segment(grey(balls), plain).sizes.tolist()
+    median = (6 * np.count_nonzero(balls) / 2 / np.pi) ** (1 / 3)
+    assert heights_table(found).rows[0] == pytest.approx((0.5, 2, median, median), rel=0.01)
 
 
 @pytest.fixture
