@@ -25,6 +25,9 @@ from regolith_studio.studies.loss_variants import (
     tradeoff_variants,
 )
 
+GAIN = 1e-3
+"""A fall of an error of at most 0.1 percentage points is no gain."""
+
 
 @dataclass(frozen=True)
 class Sweep:
@@ -103,6 +106,22 @@ def significant(study: CoarseningStudy) -> NDArray[np.bool_]:
     """Which :func:`differences` are larger than what :data:`EXACT` allows, with a band that leaves 0 out."""
     values, (low, high) = differences(study)
     return np.asarray((np.abs(values) > EXACT) & ((low > 0) | (high < 0)))
+
+
+def sufficient_facets(study: CoarseningStudy) -> int:
+    """The fewest facets from which on no error falls by more than :data:`GAIN` beyond chance.
+
+    A fall is beyond chance where its paired bootstrap band leaves 0 out. Where the errors still fall, it is
+    the largest number of the study.
+    """
+    facets = np.array([row.n_facets for row in study.rows])
+    for row in np.argsort(facets):
+        more = facets > facets[row]
+        fall = study.rmsre[row] - study.rmsre[more]
+        low, _ = study.band_of(study.resampled[:, [row]] - study.resampled[:, more])
+        if not ((fall > GAIN) & (low > 0)).any():
+            break
+    return int(facets[row])
 
 
 def format_difference(points: float) -> str:

@@ -324,6 +324,10 @@
         <translation>1 Arbeitsprozess</translation>
     </message>
     <message>
+        <source>1 − volume of the intersection / volume of the union; “IoU” in the paper</source>
+        <translation>1 − Volumen des Durchschnitts / Volumen der Vereinigung; „IoU“ in der Arbeit</translation>
+    </message>
+    <message>
         <source>2  Grains</source>
         <translation>2  Körner</translation>
     </message>
@@ -638,10 +642,6 @@
     <message>
         <source>Aspect ratio and overlap</source>
         <translation>Seitenverhältnis und Überdeckung</translation>
-    </message>
-    <message>
-        <source>Aspect ratio, Eq. 2</source>
-        <translation>Seitenverhältnis, Gl. 2</translation>
     </message>
     <message>
         <source>At most</source>
@@ -1856,6 +1856,10 @@
         <translation>Von</translation>
     </message>
     <message>
+        <source>From &lt;b&gt;{count} facets&lt;/b&gt; on nothing is gained: no error falls by more than {gain:.1%}.</source>
+        <translation>Ab &lt;b&gt;{count} Facetten&lt;/b&gt; wird nichts mehr gewonnen: kein Fehler sinkt um mehr als {gain:.1%}.</translation>
+    </message>
+    <message>
         <source>From X-ray micro-CT to DEM-ready regolith particles whose geometry is right.</source>
         <translation>Von der Röntgen-Mikro-CT zu DEM-fertigen Regolithpartikeln, deren Geometrie stimmt.</translation>
     </message>
@@ -2170,10 +2174,6 @@
     <message>
         <source>Jaccard distance</source>
         <translation>Jaccard-Distanz</translation>
-    </message>
-    <message>
-        <source>Jaccard distance, Eq. 7 (paper: IoU)</source>
-        <translation>Jaccard-Distanz, Gl. 7 (im Artikel: IoU)</translation>
     </message>
     <message>
         <source>Johnson, Kendall and Roberts between spheres</source>
@@ -3516,12 +3516,12 @@
         <translation>Verworfene Ziehungen</translation>
     </message>
     <message>
-        <source>Relative error [%]</source>
-        <translation>Relativer Fehler [%]</translation>
+        <source>Relative error (Eq. 8) of {definition}</source>
+        <translation>Relativer Fehler (Gl. 8) von {definition}</translation>
     </message>
     <message>
-        <source>Relative error of {symbol}, Eq. 8: {name}, {formula}</source>
-        <translation>Relativer Fehler von {symbol}, Gl. 8: {name}, {formula}</translation>
+        <source>Relative error [%]</source>
+        <translation>Relativer Fehler [%]</translation>
     </message>
     <message>
         <source>Relative errors of volume, sphericity, diameters, aspect ratio and hull (Eq. 8): blue for the fit, orange for the polyhedron. The second tab has the numbers with their units.</source>
@@ -4188,10 +4188,6 @@
         <translation>Die Sphärizität {sphericity} braucht mehr als 100,000 Facetten; mit {faces} sind höchstens {most} möglich.</translation>
     </message>
     <message>
-        <source>Sphericity, Eq. 1 (Wadell)</source>
-        <translation>Sphärizität, Gl. 1 (Wadell)</translation>
-    </message>
-    <message>
         <source>Standard la&amp;yout</source>
         <translation>&amp;Standardanordnung</translation>
     </message>
@@ -4424,6 +4420,10 @@
         <translation>Die andere Hälfte wegnehmen</translation>
     </message>
     <message>
+        <source>Take {count} facets</source>
+        <translation>{count} Facetten nehmen</translation>
+    </message>
+    <message>
         <source>Tangential force</source>
         <translation>Tangentialkraft</translation>
     </message>
@@ -4506,6 +4506,10 @@
     <message>
         <source>The errors appear when the fit is measured.</source>
         <translation>Die Fehler erscheinen, sobald der Fit vermessen ist.</translation>
+    </message>
+    <message>
+        <source>The errors still fall at &lt;b&gt;{count} facets&lt;/b&gt;, the largest number here.</source>
+        <translation>Die Fehler sinken noch bei &lt;b&gt;{count} Facetten&lt;/b&gt;, der größten Zahl hier.</translation>
     </message>
     <message>
         <source>The expansion up to l = {degree} misses the radius by {error} in the root mean square, at most {most}; a higher l_max comes closer, and on flat or long grains so does an ellipsoid as reference.</source>
@@ -5406,6 +5410,10 @@
     <message>
         <source>and {count} more</source>
         <translation>und {count} weitere</translation>
+    </message>
+    <message>
+        <source>area of the surface</source>
+        <translation>Flächeninhalt der Oberfläche</translation>
     </message>
     <message>
         <source>as fitted</source>
@@ -6328,6 +6336,14 @@
         <translation>Volumen und Trägheit</translation>
     </message>
     <message>
+        <source>volume of the convex hull</source>
+        <translation>Volumen der konvexen Hülle</translation>
+    </message>
+    <message>
+        <source>volume that the surface encloses</source>
+        <translation>Volumen, das die Oberfläche umschließt</translation>
+    </message>
+    <message>
         <source>waiting for the coefficients …</source>
         <translation>wartet auf die Koeffizienten …</translation>
     </message>
@@ -6788,6 +6804,10 @@
         <translation>{symbol} = {degree}: {shape}. Der Radius wird im quadratischen Mittel um {missed:.1%} verfehlt; Fehler gegen das Partikel: {errors}.</translation>
     </message>
     <message>
+        <source>{symbol}, {name}: {formula}</source>
+        <translation>{symbol}, {name}: {formula}</translation>
+    </message>
+    <message>
         <source>{task} is running.</source>
         <translation>In Arbeit: {task}.</translation>
     </message>
@@ -6802,6 +6822,10 @@
     <message>
         <source>{who}, watched at {link}</source>
         <translation>{who}, zu beobachten unter {link}</translation>
+    </message>
+    <message>
+        <source>{words} (Eq. {number})</source>
+        <translation>{words} (Gl. {number})</translation>
     </message>
     <message>
         <source>π^(1/3) (6V)^(2/3) / A (Wadell, true sphericity)</source>

@@ -28,6 +28,7 @@ from regolith_studio.studies.sweeps import (
     parse_values,
     sensitivity_table,
     significant,
+    sufficient_facets,
     tradeoff_table,
 )
 
@@ -138,6 +139,29 @@ def test_that_a_change_is_judged_on_the_same_particles() -> None:
 def test_that_differences_below_what_exact_means_are_no_news() -> None:
     study = made_up(table_of((0.0, 0.1), (5e-7, 0.1)))
     assert not significant(study).any()
+
+
+@pytest.mark.parametrize(
+    ("distances", "enough"),
+    [
+        ((0.3, 0.2, 0.1), 10),
+        ((0.3, 0.2, 0.2), 9),
+        ((0.3, 0.2, 0.1995), 9),
+        ((0.2, 0.3, 0.2), 8),
+        ((0.2, 0.3, 0.1), 10),
+    ],
+)
+def test_that_facets_suffice_where_no_larger_number_lowers_an_error(distances, enough) -> None:
+    assert sufficient_facets(made_up(table_of(*((0.0, each) for each in distances)))) == enough
+
+
+def test_that_a_fall_that_may_be_chance_is_no_gain() -> None:
+    errors = table_of((0.1, 0.2), (0.1, 0.2), n=40)
+    noise = np.random.default_rng(1).normal(0.0, 0.05, 40)
+    errors[:, 1, -1] += noise - noise.mean() - 0.004  # falls by .4 points with a scatter of 5
+    assert sufficient_facets(made_up(errors)) == 8
+    errors[:, 1, -1] = errors[:, 0, -1] - 0.004
+    assert sufficient_facets(made_up(errors)) == 9
 
 
 def test_that_a_sensitivity_needs_a_change() -> None:

@@ -9,6 +9,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 
 from regolith_studio.studies.loss_variants import PAPER_LOSSES, losses, paper_variants
+from regolith_studio.studies.sweeps import sufficient_facets
 from regolith_studio.ui.app import open_window
 from regolith_studio.ui.pages.studies.loss_selector import LossSelector
 from regolith_studio.ui.theme import DARK
@@ -113,6 +114,10 @@ def test_that_errors_against_facets_are_drawn_told_and_saved(window, wait, settl
     assert volume.y == pytest.approx(100 * study.rmsre[:, 0])
     told = panel.part.value_at(panel.part.scene_position(12.0, volume.y[1]))
     assert told.startswith("V\nFacets: 12\n")
+    enough = sufficient_facets(study)
+    assert f"<b>{enough} facets</b>" in panel.answer.text()
+    panel.take.click()
+    assert window.session.choices.n_facets == enough
     assert f"({volume.low[1]:.4g} to {volume.high[1]:.4g})" in told
     header, rows = panel.part.numbers()
     assert len(header) == len(rows[0]) == 7

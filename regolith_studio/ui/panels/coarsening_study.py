@@ -9,6 +9,7 @@ from regolith_studio.descriptors.catalogue import CATALOGUE, LOSS_KEYS
 from regolith_studio.messages import N_
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import tr, tr_count, translate
+from regolith_studio.ui.widgets.definitions import definition
 from regolith_studio.ui.widgets.heat_table import HeatTable
 from regolith_studio.ui.widgets.labels import plain_symbol
 from regolith_studio.ui.widgets.study_frame import StudyFrame
@@ -42,7 +43,8 @@ class CoarseningStudyPanel(QWidget):
             return
         self._study = study
         labels, ends = [translate(row.label) for row in study.rows], study.bands.tolist()
-        self.table.set_values(labels, HEADERS, study.rmsre, (ends[0], ends[1]))
+        tips = [definition(key) for key in KEYS]
+        self.table.set_values(labels, HEADERS, study.rmsre, (ends[0], ends[1]), tips)
         self._set_tool_tips()
         count = tr_count(N_("RMSRE [%], 1 particle"), N_("RMSRE [%], {count} particles"), len(study.names))
         count += ", " + tr("{share:.0%} bootstrap intervals", share=study.confidence)

@@ -18,6 +18,7 @@ from regolith_studio.messages import N_
 from regolith_studio.session.results import Results
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.translation.numbers import number_text
+from regolith_studio.ui.widgets.definitions import definition
 from regolith_studio.ui.widgets.labels import plain_symbol, short_number
 from regolith_studio.ui.widgets.table import FontRowHeight
 
@@ -88,7 +89,7 @@ class DescriptorTablePanel(QWidget):
             row = CATALOGUE[key]
             short = plain_symbol(row.symbol) + _UNITS[row.dimension]
             item = QTableWidgetItem(f"{tr(row.label)} {short}" if self.width() > _MIN_LABEL_WIDTH else short)
-            item.setToolTip(f"{tr(row.label)}: {tr(row.formula)}")
+            item.setToolTip(definition(key))
             self.table.setVerticalHeaderItem(number, item)
 
 

@@ -11,6 +11,7 @@ from regolith_studio.session.choices import Choices
 from regolith_studio.session.results import Results
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import tr
+from regolith_studio.ui.widgets.definitions import definition
 from regolith_studio.ui.widgets.labels import plain_symbol
 from regolith_studio.ui.widgets.plots.bars import BarPlot, BarSeries
 
@@ -66,7 +67,8 @@ class ErrorBarsPanel(QWidget):
             stale = results.against_particle is None
             series.append(BarSeries(label, CHAIN, _percent(self._against_particle), stale))
         symbols = [plain_symbol(CATALOGUE[key].symbol) for key in LOSS_KEYS]
-        self.plot.set_bars([*symbols, "Jaccard"], series, short=[*symbols, "J"])
+        tips = [definition(key) for key in (*LOSS_KEYS, JACCARD)]
+        self.plot.set_bars([*symbols, "Jaccard"], series, short=[*symbols, "J"], tips=tips)
 
     def set_theme(self, theme: Theme) -> None:
         """Take the colours of a theme."""

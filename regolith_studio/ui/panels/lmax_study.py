@@ -10,6 +10,7 @@ from regolith_studio.messages import N_
 from regolith_studio.scene.palette import DESCRIPTOR_COLOURS
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import tr, tr_count
+from regolith_studio.ui.widgets.definitions import definition
 from regolith_studio.ui.widgets.labels import rich_symbol
 from regolith_studio.ui.widgets.number_fields import DecimalField
 from regolith_studio.ui.widgets.plots.curves import CurvePlot, PlotCurve
@@ -56,6 +57,7 @@ class LmaxStudyPanel(QWidget):
             for number, key in enumerate(study.keys)
         ]
         self.plot.set_curves(curves)
+        self.plot.legend.setToolTip("\n".join(map(definition, study.keys)))
         count = tr_count(N_("1 particle"), N_("{count} particles"), len(study.names))
         self.frame.set_remark(count + "; " + tr("computed with other choices") if outdated else count)
         self._answer()

@@ -12,6 +12,7 @@ from regolith_studio.errors import InputError
 from regolith_studio.messages import N_
 from regolith_studio.session.preferences import UserPresets
 from regolith_studio.ui.translation import tr
+from regolith_studio.ui.widgets.definitions import definition
 from regolith_studio.ui.widgets.fixed_height_text import FixedHeightText
 from regolith_studio.ui.widgets.labels import heading, remark, rich_symbol
 from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec, align_labels
@@ -28,18 +29,13 @@ LINES = 3
 def weight_spec(key: str) -> NumberSpec:
     """Label, range and tool tip of the weight of a term."""
     if key == JACCARD:
-        label, name, formula = "Jaccard", tr("Jaccard distance"), tr("Jaccard distance, Eq. 7 (paper: IoU)")
+        label, name, tip = "Jaccard", tr("Jaccard distance"), definition(key)
     else:
         row = CATALOGUE[key]
         label, name = rich_symbol(row.symbol), tr(row.label)
-        formula = tr(
-            "Relative error of {symbol}, Eq. 8: {name}, {formula}",
-            symbol=row.symbol,
-            name=name,
-            formula=tr(row.formula),
-        )
+        tip = tr("Relative error (Eq. 8) of {definition}", definition=definition(key))
     words = tr("Weight of {name}", name=name)
-    return NumberSpec(label, words, 0.0, SLIDER_END, 0.05, limit=LARGEST, tip=formula)
+    return NumberSpec(label, words, 0.0, SLIDER_END, 0.05, limit=LARGEST, tip=tip)
 
 
 class LossPanel(QWidget):

@@ -7,12 +7,14 @@ from typing import Any
 from PySide6.QtCore import QItemSelectionModel, QModelIndex, QPoint, Qt, Signal
 from PySide6.QtWidgets import QMenu, QVBoxLayout, QWidget
 
+from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.messages import N_
 from regolith_studio.session.results import ParticleEntry
 from regolith_studio.session.sample_table import health_sentences, health_word
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import tr, translate
 from regolith_studio.ui.translation.numbers import number_text
+from regolith_studio.ui.widgets.definitions import definition
 from regolith_studio.ui.widgets.labels import heading, remark, short_number
 from regolith_studio.ui.widgets.particle_table_model import (
     RIGHT,
@@ -35,7 +37,7 @@ class ListColumn:
     title
         Header, with the unit.
     tip
-        Tool tip of the header.
+        Tool tip of the header, or the key of the descriptor that it defines.
     key
         Sort key.
     text
@@ -68,13 +70,9 @@ COLUMNS = (
         lambda e: e.particle.group,
         lambda e: e.particle.group,
     ),
-    ListColumn(N_("V [µm³]"), N_("Volume"), *_descriptor("volume", lambda v: short_number(v, 3))),
-    ListColumn(
-        "S", N_("Sphericity, Eq. 1 (Wadell)"), *_descriptor("sphericity", lambda v: number_text(v, ".3f"))
-    ),
-    ListColumn(
-        "AR", N_("Aspect ratio, Eq. 2"), *_descriptor("aspect_ratio", lambda v: number_text(v, ".2f"))
-    ),
+    ListColumn(N_("V [µm³]"), "volume", *_descriptor("volume", lambda v: short_number(v, 3))),
+    ListColumn("S", "sphericity", *_descriptor("sphericity", lambda v: number_text(v, ".3f"))),
+    ListColumn("AR", "aspect_ratio", *_descriptor("aspect_ratio", lambda v: number_text(v, ".2f"))),
 )
 
 
@@ -111,7 +109,8 @@ class _Model(ParticleTableModel):
                 case Qt.ItemDataRole.DisplayRole:
                     return tr(COLUMNS[section].title)
                 case Qt.ItemDataRole.ToolTipRole:
-                    return tr(COLUMNS[section].tip)
+                    tip = COLUMNS[section].tip
+                    return definition(tip) if tip in CATALOGUE else tr(tip)
                 case Qt.ItemDataRole.TextAlignmentRole if section >= WORDS:
                     return RIGHT
         return None

@@ -69,8 +69,15 @@ class HeatTable(QWidget):
         columns: Sequence[str],
         values: Sequence[Sequence[float]],
         bands: Bands | None = None,
+        tips: Sequence[str] = (),
     ) -> None:
-        """Show other shares, each with its interval below; without rows the placeholder is shown."""
+        """Show other shares, each with its interval below; without rows the placeholder is shown.
+
+        Parameters
+        ----------
+        tips
+            Tool tips of the columns.
+        """
         self._values = tuple(tuple(float(value) for value in row) for row in values)
         self._bands = bands
         self._rows.set_lines(1 if bands is None else 2)
@@ -82,6 +89,7 @@ class HeatTable(QWidget):
         for number, text in enumerate(rows):
             if (item := self.table.verticalHeaderItem(number)) is not None:
                 item.setToolTip(text)
+        set_head_tips(self.table, tips)
         self._fill()
 
     def resizeEvent(self, event: QResizeEvent) -> None:
@@ -147,6 +155,13 @@ def numbers_table(name: str) -> QTableWidget:
     table.horizontalHeader().setMinimumSectionSize(MIN_COLUMN)
     table.verticalHeader().setTextElideMode(Qt.TextElideMode.ElideRight)
     return table
+
+
+def set_head_tips(table: QTableWidget, tips: Sequence[str]) -> None:
+    """Set the tool tips of the first columns."""
+    for column, tip in enumerate(tips):
+        if (item := table.horizontalHeaderItem(column)) is not None:
+            item.setToolTip(tip)
 
 
 def keep_legible(table: QTableWidget, width: int) -> None:

@@ -22,6 +22,7 @@ from regolith_studio.ui.translation import tr
 from regolith_studio.ui.views.camera_link import CameraLink
 from regolith_studio.ui.views.factory import make_view
 from regolith_studio.ui.views.view_frame import ViewFrame
+from regolith_studio.ui.widgets.definitions import definition
 from regolith_studio.ui.widgets.formula import FormulaLabel, prepare
 from regolith_studio.ui.widgets.labels import WrappedLabel
 from regolith_studio.ui.widgets.plots.bars import BarPlot, BarSeries
@@ -261,7 +262,8 @@ class AnnealingView(QWidget):
         if lesson.exact is not None:
             exact = texts.exact_terms(lesson)
             series.append(BarSeries(tr("exact method"), theme.polyhedron, tuple(exact.values())))
-        self.terms.set_bars([texts.plain(key) for key in before], series)
+        tips = [definition(key) for key in before]
+        self.terms.set_bars([texts.plain(key) for key in before], series, tips=tips)
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)

@@ -17,6 +17,7 @@ from regolith_studio.session.results import ParticleEntry
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import tr, tr_count
 from regolith_studio.ui.translation.numbers import number_text
+from regolith_studio.ui.widgets.definitions import definition
 from regolith_studio.ui.widgets.labels import rich_symbol
 from regolith_studio.ui.widgets.plots.base import Plot
 from regolith_studio.ui.widgets.wrapping_row import WrappingRow
@@ -168,6 +169,7 @@ def _descriptor_box(name: str, accessible: str) -> QComboBox:
     for key, row in CATALOGUE.items():
         if not row.costly and row.dimension in _UNITS:
             box.addItem(tr(row.label), key)
+            box.setItemData(box.count() - 1, definition(key), Qt.ItemDataRole.ToolTipRole)
     return box
 
 

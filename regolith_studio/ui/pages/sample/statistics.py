@@ -23,6 +23,7 @@ from regolith_studio.messages import N_
 from regolith_studio.session.results import ParticleEntry
 from regolith_studio.session.sample_table import UNITS, has_weights, statistics_table
 from regolith_studio.ui.translation import tr
+from regolith_studio.ui.widgets.definitions import definition
 from regolith_studio.ui.widgets.labels import short_number
 from regolith_studio.ui.widgets.table import FontRowHeight
 
@@ -51,6 +52,7 @@ class StatisticsPanel(QWidget):
         for key, row in CATALOGUE.items():
             if not row.costly and row.dimension in UNITS:
                 self.key.addItem(tr(row.label), key)
+                self.key.setItemData(self.key.count() - 1, definition(key), Qt.ItemDataRole.ToolTipRole)
         self.weighting = QComboBox()
         self.weighting.setObjectName("statistics_weighting")
         self.weighting.setAccessibleName(tr("Weighting of the statistics"))

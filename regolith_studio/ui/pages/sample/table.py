@@ -15,6 +15,7 @@ from regolith_studio.session.sample_table import Filter, form_of, has_weights, h
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import tr, translate
 from regolith_studio.ui.translation.numbers import number_text
+from regolith_studio.ui.widgets.definitions import definition
 from regolith_studio.ui.widgets.labels import plain_symbol, short_number
 from regolith_studio.ui.widgets.particle_table_model import (
     RIGHT,
@@ -64,7 +65,7 @@ def columns() -> tuple[SampleColumn, ...]:
             SampleColumn(
                 row.key,
                 plain_symbol(row.symbol) + _UNITS[row.dimension],
-                f"{tr(row.label)}: {tr(row.formula)}",
+                definition(row.key),
                 _Number(row.key),
                 _Formatted(row.key),
             )

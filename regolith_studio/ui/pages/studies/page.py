@@ -53,6 +53,9 @@ class StudiesPage(PageWidget):
         self.variations: dict[str, SweepPanel] = {}
         for key in SWEEPS:
             self.variations[key] = SweepPanel(key)
+        self.variations["facets"].facetsChosen.connect(
+            lambda count: self._session.choose(stop_at="facets", n_facets=count)
+        )
         self.tabs = self._tabs()
         self._place()
         self.sweeps = SweepController(self._context, self.variations, self.bar)

@@ -5,11 +5,12 @@ from PySide6.QtCore import Qt
 from PySide6.QtGui import QColor, QResizeEvent
 from PySide6.QtWidgets import QStackedLayout, QTableWidgetItem, QWidget
 
-from regolith_studio.studies.coarsening import CoarseningStudy
+from regolith_studio.studies.coarsening import COLUMNS, CoarseningStudy
 from regolith_studio.studies.sweeps import differences, format_difference, significant
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import tr, translate
-from regolith_studio.ui.widgets.heat_table import centred_remark, keep_legible, numbers_table
+from regolith_studio.ui.widgets.definitions import definition
+from regolith_studio.ui.widgets.heat_table import centred_remark, keep_legible, numbers_table, set_head_tips
 from regolith_studio.ui.widgets.table import FontRowHeight
 
 
@@ -56,6 +57,7 @@ class SensitivityTable(QWidget):
         self.table.setColumnCount(len(self._headers))
         self.table.setVerticalHeaderLabels(labels)
         self.table.setHorizontalHeaderLabels(list(self._headers))
+        set_head_tips(self.table, [definition(key) for key in COLUMNS])
         for r, label in enumerate(labels):
             for k, header in enumerate(self._headers):
                 value = float(values[r, k])

@@ -4,18 +4,19 @@ from collections.abc import Callable, Mapping
 from typing import Protocol
 
 from PySide6.QtCore import Signal
-from PySide6.QtWidgets import QHBoxLayout, QLabel, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidget
 
 from regolith_studio.coarsening.weights import JACCARD
 from regolith_studio.descriptors.catalogue import CATALOGUE, LOSS_KEYS
 from regolith_studio.messages import N_
 from regolith_studio.scene.palette import DESCRIPTOR_COLOURS
 from regolith_studio.studies.coarsening import COLUMNS, MIN_PLOTTED, CoarseningStudy
-from regolith_studio.studies.sweeps import SWEEPS, descriptor_error, pareto_front
+from regolith_studio.studies.sweeps import GAIN, SWEEPS, descriptor_error, pareto_front, sufficient_facets
 from regolith_studio.ui.pages.studies.band_plot import BandPlot, Series
 from regolith_studio.ui.pages.studies.sensitivity_table import SensitivityTable
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import tr, tr_count, translate
+from regolith_studio.ui.widgets.definitions import definition
 from regolith_studio.ui.widgets.labels import plain_symbol, rich_symbol
 from regolith_studio.ui.widgets.number_fields import NumbersLine
 from regolith_studio.ui.widgets.plots.curves import PlotCurve
@@ -65,6 +66,7 @@ class FacetsPlot(BandPlot):
                 for k, key in enumerate(COLUMNS)
             ]
         )
+        self.legend.setToolTip("\n".join(map(definition, COLUMNS)))
 
 
 class TradeoffPlot(BandPlot):
@@ -126,10 +128,12 @@ class SweepPanel(QWidget):
     """Edits the values of a sweep and shows its results."""
 
     startRequested = Signal()  # noqa: N815
+    facetsChosen = Signal(int)  # noqa: N815
 
     def __init__(self, key: str) -> None:
         super().__init__()
         self.setObjectName(f"{key}_study")
+        self._key, self._enough = key, 0
         self._variation = SWEEPS[key]
         self.values = NumbersLine(", ".join(f"{value:g}" for value in self._variation.values))
         self.values.setObjectName(f"{key}_values")
@@ -148,6 +152,7 @@ class SweepPanel(QWidget):
         layout.setContentsMargins(0, 0, 0, 0)
         layout.setSpacing(0)
         layout.addLayout(asking)
+        layout.addWidget(self._make_answer())
         layout.addWidget(self.frame, 1)
         self.values.returnPressed.connect(self.startRequested)
         self.frame.startRequested.connect(self.startRequested)
@@ -162,12 +167,44 @@ class SweepPanel(QWidget):
         """Show the results, or nothing."""
         shown: StudyView = self.part  # type: ignore[assignment]  # every part of PARTS is one
         shown.show_study(study)
+        self._show_answer(study)
         self.frame.set_remark("" if study is None else summary_text(study, outdated))
 
     def set_theme(self, theme: Theme) -> None:
         """Take the colours of a theme."""
         shown: StudyView = self.part  # type: ignore[assignment]  # every part of PARTS is one
         shown.set_theme(theme)
+
+    def _make_answer(self) -> QWidget:
+        """The row with the number of facets from which on nothing is gained, and a button that takes it."""
+        self.answer, self.take = QLabel(), QPushButton()
+        self.answer.setObjectName(f"{self._key}_answer")
+        self.answer.setWordWrap(True)
+        self.take.setObjectName(f"{self._key}_take")
+        self.take.clicked.connect(lambda: self.facetsChosen.emit(self._enough))
+        self._answers = QWidget()
+        self._answers.hide()
+        row = QHBoxLayout(self._answers)
+        row.setContentsMargins(8, 4, 8, 0)
+        row.addWidget(self.answer, 1)
+        row.addWidget(self.take)
+        return self._answers
+
+    def _show_answer(self, study: CoarseningStudy | None) -> None:
+        if self._key != "facets":
+            return
+        self._answers.setVisible(study is not None and len(study.rows) > 1)
+        if study is None:
+            return
+        self._enough = sufficient_facets(study)
+        if self._enough < max(row.n_facets for row in study.rows):
+            text = N_(
+                "From <b>{count} facets</b> on nothing is gained: no error falls by more than {gain:.1%}."
+            )
+        else:
+            text = N_("The errors still fall at <b>{count} facets</b>, the largest number here.")
+        self.answer.setText(tr(text, count=self._enough, gain=GAIN))
+        self.take.setText(tr("Take {count} facets", count=self._enough))
 
 
 def summary_text(study: CoarseningStudy, outdated: bool) -> str:

@@ -52,6 +52,7 @@ class BarPlot(Plot):
     def __init__(self, x: str, y: str, placeholder: str, unit: str = "%") -> None:
         self._categories: tuple[str, ...] = ()
         self._short: tuple[str, ...] = ()
+        self._tips: tuple[str, ...] = ()
         self._series: tuple[BarSeries, ...] = ()
         self._items: list[object] = []
         self._unit = unit
@@ -63,11 +64,24 @@ class BarPlot(Plot):
         return self._series
 
     def set_bars(
-        self, categories: Sequence[str], series: Sequence[BarSeries], short: Sequence[str] = ()
+        self,
+        categories: Sequence[str],
+        series: Sequence[BarSeries],
+        short: Sequence[str] = (),
+        tips: Sequence[str] = (),
     ) -> None:
-        """Draw other bars; `short` has the category names for narrow plots."""
+        """Draw other bars.
+
+        Parameters
+        ----------
+        short
+            Names of the categories for narrow plots.
+        tips
+            What the categories mean, for the tool tip.
+        """
         self._categories, self._series = tuple(categories), tuple(series)
         self._short = tuple(short) or self._categories
+        self._tips = tuple(tips) or self._categories
         self.set_empty(not any(np.isfinite(each.values).any() for each in series))
         self.redraw()
 
@@ -153,7 +167,7 @@ class BarPlot(Plot):
             for each in self._series
             if each.bounds and each.bounds[category] > 0.0
         ]
-        return "\n".join([self._categories[category], *lines])
+        return "\n".join([self._tips[category], *lines])
 
 
 def _shrunk(names: Sequence[str], font: QFont, room: float, least: float) -> QFont:
