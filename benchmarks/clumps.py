@@ -18,6 +18,7 @@ import trimesh
 
 from regolith_studio.dataset.folder_io import read_dataset
 from regolith_studio.dataset.multisphere import fit_spheres, sphere_fit_errors
+from regolith_studio.dataset.sphere_masses import sphere_masses
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 
@@ -43,7 +44,14 @@ def measured(shape: ConvexPolyhedron, count: int) -> dict[str, Any]:
     spheres = fit_spheres(shape, count)
     seconds = round(time.process_time() - begun, 1)
     errors = {key: round(value, 5) for key, value in asdict(sphere_fit_errors(shape, spheres)).items()}
-    return {"spheres": len(spheres), **errors, "seconds": seconds, "mss": other_program(shape, count)}
+    summed = round(sphere_masses(shape, spheres).inertia_error, 5)
+    return {
+        "spheres": len(spheres),
+        **errors,
+        "summed_inertia": summed,
+        "seconds": seconds,
+        "mss": other_program(shape, count),
+    }
 
 
 def other_program(shape: ConvexPolyhedron, count: int) -> float | None:
