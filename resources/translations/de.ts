@@ -2368,6 +2368,10 @@
         <translation>Bibliothek</translation>
     </message>
     <message>
+        <source>Licence: {licence}. Libraries with other terms for those who pass them on: {others}, FFTW in the wheels of pyshtools (GPL-2.0-or-later).</source>
+        <translation>Lizenz: {licence}. Bibliotheken mit anderen Bedingungen für deren Weitergabe: {others}, FFTW in den Wheels von pyshtools (GPL-2.0-or-later).</translation>
+    </message>
+    <message>
         <source>Lift speed</source>
         <translation>Hubgeschwindigkeit</translation>
     </message>

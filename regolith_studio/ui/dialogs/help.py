@@ -1,6 +1,6 @@
 """About the program."""
 
-from importlib.metadata import PackageNotFoundError, version
+from importlib.metadata import PackageNotFoundError, metadata, version
 
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import (
@@ -23,9 +23,13 @@ PAPER = (
 )
 """The paper whose equations, figures, tables and sections the window names."""
 
+LICENCE = "BSD-3-Clause"
+COPYLEFT = ("PySide6-Essentials", "connected-components-3d")
+"""Dependencies whose licences ask something of those who pass the program on with its libraries."""
+
 
 def about_dialog(parent: QWidget, renderer: str) -> QDialog:
-    """Version, purpose, and the libraries that matter when something looks wrong."""
+    """Version, purpose, the libraries that matter when something looks wrong, and licences."""
     dialog = QDialog(parent)
     dialog.setObjectName("about_dialog")
     dialog.setWindowTitle(tr("About Regolith Studio"))
@@ -43,11 +47,35 @@ def about_dialog(parent: QWidget, renderer: str) -> QDialog:
     source = remark(tr("After: {title}.", title=PAPER))
     source.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
     text.addWidget(source)
+    text.addWidget(remark(_licences()))
     row = QHBoxLayout()
     row.setSpacing(16)
     row.addWidget(mark)
     row.addLayout(text, 1)
     return _closed(dialog, row)
+
+
+def _licences() -> str:
+    others = ", ".join(f"{name} ({licence_of(name)})" for name in COPYLEFT)
+    return tr(
+        "Licence: {licence}. Libraries with other terms for those who pass them on: {others},"
+        " FFTW in the wheels of pyshtools (GPL-2.0-or-later).",
+        licence=LICENCE,
+        others=others,
+    )
+
+
+def licence_of(name: str) -> str:
+    """Licence of an installed package as its metadata state it: an expression, one line, or a classifier."""
+    try:
+        fields = metadata(name).json
+    except PackageNotFoundError:
+        return tr("(not installed)")
+    stated = str(fields.get("license_expression") or fields.get("license") or "")
+    if stated and "\n" not in stated:
+        return stated
+    classifiers = [each.split(" :: ") for each in fields.get("classifier", [])]
+    return ", ".join(words[-1] for words in classifiers if words[0] == "License")
 
 
 def _closed(dialog: QDialog, content: QHBoxLayout) -> QDialog:
