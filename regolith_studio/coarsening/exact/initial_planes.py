@@ -16,6 +16,10 @@ CUT_DEPTH = 0.3
 """Of cuts for half-spaces without a facet."""
 TIE_BREAK = 1e-7
 MIN_OFFSET = 0.05
+SPHERE_POINTS = 2000
+"""Of the sphere whose cells are as equal as can be, and of the ellipsoid that round half-spaces touch."""
+ROUNDS = 20
+"""Of Lloyd's method."""
 
 
 def start_planes(target: Target, n_facets: int, rng: np.random.Generator) -> tuple[FloatArray, FloatArray]:
@@ -36,7 +40,7 @@ def start_planes(target: Target, n_facets: int, rng: np.random.Generator) -> tup
     )
     offsets = np.maximum(offsets, MIN_OFFSET) * (1.0 + TIE_BREAK * rng.random(n_facets))
     if not _bounds_a_solid(normals, offsets):
-        normals, offsets = touching_planes(hull.vertices, n_facets, rng)
+        normals, offsets = touching_planes(hull.vertices, fibonacci_directions(n_facets), rng)
     rays = target.rays
     cuts, more_normals, more_offsets = insert_lost_facets(
         normals, offsets, rays.directions, rays.first, rays.distance, CUT_DEPTH
@@ -44,14 +48,33 @@ def start_planes(target: Target, n_facets: int, rng: np.random.Generator) -> tup
     return (more_normals, more_offsets) if cuts >= 0 else (normals, offsets)
 
 
-def touching_planes(
-    points: FloatArray, n_facets: int, rng: np.random.Generator
+def round_planes(
+    target: Target, n_facets: int, rng: np.random.Generator, around_hull: bool
 ) -> tuple[FloatArray, FloatArray]:
-    """Half-spaces that touch points about the origin, with the normals of an ellipsoid of their extents."""
+    """Half-spaces of a polyhedron nearly as round as Goldberg allows, stretched as the particle's box.
+
+    Their normals are the middles of a centroidal Voronoi partition of the sphere; they touch the hull, or an
+    ellipsoid of unit volume.
+    """
+    sphere, box = fibonacci_directions(SPHERE_POINTS), target.box
+    even, _ = grouped_planes(sphere, np.ones(SPHERE_POINTS), sphere, rng.random(n_facets), ROUNDS)
+    radii = box.extents / np.cbrt(4.0 / 3.0 * np.pi * box.extents.prod())
+    points = target.mesh.hull.vertices @ box.axes.T if around_hull else sphere * radii
+    normals, offsets = touching_planes(points, even, rng)
+    return normals @ box.axes, offsets
+
+
+def touching_planes(
+    points: FloatArray, directions: FloatArray, rng: np.random.Generator
+) -> tuple[FloatArray, FloatArray]:
+    """Half-spaces that touch points about the origin, with the normals of an ellipsoid of their extents.
+
+    They are those at the `directions` of a sphere, turned at random, that becomes the ellipsoid.
+    """
     rotation = np.linalg.qr(rng.normal(size=(3, 3)))[0]
-    normals = fibonacci_directions(n_facets) @ rotation / np.ptp(points, axis=0)
+    normals = directions @ rotation / np.ptp(points, axis=0)
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
-    offsets = (points @ normals.T).max(axis=0) * (1.0 + TIE_BREAK * rng.random(n_facets))
+    offsets = (points @ normals.T).max(axis=0) * (1.0 + TIE_BREAK * rng.random(len(normals)))
     return normals, offsets
 
 

@@ -21,9 +21,9 @@ from regolith_studio.coarsening.exact.facet_growth import (
     numbers_to_grow_from,
     with_waiting,
 )
-from regolith_studio.coarsening.exact.initial_planes import start_planes
+from regolith_studio.coarsening.exact.initial_planes import round_planes, start_planes
 from regolith_studio.coarsening.exact.record import Record
-from regolith_studio.coarsening.exact.relaxation import relax, with_facets_back
+from regolith_studio.coarsening.exact.relaxation import relax, relax_round, with_facets_back
 from regolith_studio.coarsening.exact.single_start import (
     Candidate,
     descend_further,
@@ -65,6 +65,8 @@ RELAXATION_FACETS = (12, 20)
 """Facets to start from, besides all, where constraints cannot be met together."""
 ROUND_STARTS = 2
 """Starts from which polyhedra as round as can be are sought where the particle is rounder than the first."""
+TOO_ROUND = 1e-2
+"""Where more is missed after as many starts, no further round start is tried either."""
 SIZED = np.arange(5) == VOLUME
 """The volume is held while the sphericity is sought, asked for or not: less surface would shrink the body."""
 OUT_OF_REACH = 4e-3
@@ -156,6 +158,8 @@ class Search:
                 self._in_box = self._record.met
             if self._round_asked and not self._record.met and self._tried <= ROUND_STARTS:
                 yield from self._as_round_as_can_be()
+            if self._misses and not self._record.met and not self._too_round():
+                yield from self._from_round_starts()
             if self._record.best is None:
                 yield from self._record.record_candidates(self._tried, self._all_at_once())
             if self._good_enough() or self._out_of_reach():
@@ -257,6 +261,15 @@ class Search:
         yield from self._record.record_candidates(self._tried, rounder)
         self._misses += [rounder[-1].worst] if rounder else []
 
+    def _from_round_starts(self) -> Iterator[MethodStep]:
+        """Starts that are nearly as round as can be, until one leads to all constraints."""
+        for around_hull in (False, True):
+            if not self._record.met:
+                planes = round_planes(self._target, self._n_facets, self._rng, around_hull)
+                steps = self._level.bound_steps
+                found = relax_round(self._target, self._full, self._rest, planes, steps)
+                yield from self._record.record_candidates(self._tried, found)
+
     def _relax(
         self, planes: tuple[FloatArray, FloatArray], only_rounder: bool = False
     ) -> Iterator[Candidate]:
@@ -281,6 +294,11 @@ class Search:
         nearly_met = best is not None and best.worst < OUT_OF_REACH
         enough = self._hopeless or self._tried >= len(FEW_FACETS)
         return enough and sum(self._misses) > OUT_OF_REACH and not nearly_met
+
+    def _too_round(self) -> bool:
+        """Whether round starts have missed the sphericity by too much."""
+        best = self._record.best
+        return self._tried > ROUND_STARTS and best is not None and best.worst > TOO_ROUND
 
     @property
     def _whole(self) -> bool:

@@ -9,7 +9,7 @@ from regolith_studio.coarsening.loss import LossFunction
 from regolith_studio.coarsening.progress import MethodStep
 from regolith_studio.geometry.half_spaces import HalfSpaces
 
-AS_GOOD_AS_MET = 1e-5
+AS_GOOD_AS_MET = 4e-3
 """Polyhedra whose constraints hold to this come before those with less loss."""
 SAME = 1e-6
 """Losses that differ by less are of one polyhedron, which boxes were searched for once more."""

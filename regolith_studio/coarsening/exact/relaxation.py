@@ -98,6 +98,23 @@ def relax(
         yield replace(found, worst=max(found.worst, apart))
 
 
+def relax_round(
+    target: Target,
+    full: Problem,
+    rest: Problem,
+    planes: tuple[FloatArray, FloatArray],
+    bound_steps: int,
+) -> Iterator[Candidate]:
+    """As :func:`relax` from planes that are round already: they may be rounder than what is wanted.
+
+    Nothing comes where the other constraints are not met together.
+    """
+    rest, full = (each._replace(sample_angle=FINE_ANGLE) for each in (rest, full))
+    point = _measured_and_projected(rest, *planes)
+    if point.worst <= TOLERANCE:
+        yield from nearer_sphericity(target, full, rest, point, bound_steps, only_rounder=False)
+
+
 def nearer_sphericity(
     target: Target,
     full: Problem,
