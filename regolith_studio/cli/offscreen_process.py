@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any
 from regolith_studio.errors import MissingRequirement
 
 if TYPE_CHECKING:
+    from multiprocessing.connection import Connection
+
     from regolith_studio.coarsening.result import CoarseningResult
     from regolith_studio.geometry.mesh import Mesh
     from regolith_studio.geometry.particle import Particle
@@ -48,18 +50,34 @@ def draw_in_process(draw: Callable[..., None], arguments: tuple[Any, ...], path:
     ------
     MissingRequirement
         If this machine cannot draw.
+    OSError
+        If the picture cannot be written.
     """
     stage = path.with_name(f".{path.stem}-drawn{path.suffix}")
-    child = multiprocessing.get_context("spawn").Process(target=draw, args=(*arguments, stage), daemon=True)
+    context = multiprocessing.get_context("spawn")
+    errors, sending = context.Pipe(duplex=False)
+    child = context.Process(target=_draw_and_report, args=(sending, draw, (*arguments, stage)), daemon=True)
     child.start()
     child.join(_TIMEOUT)
     if child.is_alive():
         child.kill()
         child.join()
-    if child.exitcode != 0 or not stage.is_file():
-        stage.unlink(missing_ok=True)
-        raise MissingRequirement("This machine cannot draw in three dimensions; `check` tells more.")
-    stage.replace(path)
+    if child.exitcode == 0 and stage.is_file():
+        stage.replace(path)
+        return
+    stage.unlink(missing_ok=True)
+    if errors.poll():
+        raise errors.recv()
+    raise MissingRequirement("This machine cannot draw in three dimensions; `check` tells more.")
+
+
+def _draw_and_report(sending: "Connection", draw: Callable[..., None], arguments: tuple[Any, ...]) -> None:
+    """Draw; what the file system refuses is raised where the picture is waited for."""
+    try:
+        draw(*arguments)
+    except OSError as error:
+        sending.send(error)
+        raise SystemExit(1) from None
 
 
 def _draw(particle: "Mesh", fit: "Mesh", coarse: "CoarseningResult", l_max: int, path: Path) -> None:
