@@ -1,7 +1,10 @@
 """Labels that show all that they say."""
 
+import pytest
+from PySide6.QtCore import QPoint
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 
+from regolith_studio.ui.widgets.headline import Headline
 from regolith_studio.ui.widgets.labels import WrappedLabel, with_subscripts
 
 WORDS = "In each step one plane is moved at random, and the move is taken or not. " * 3
@@ -28,3 +31,25 @@ def test_that_a_sentence_gets_real_subscripts_and_is_left_alone_without_symbols(
     assert with_subscripts("a higher l_max comes closer") == "a higher l<sub>max</sub> comes closer"
     assert with_subscripts("D_min < 2 & l_max") == "D<sub>min</sub> &lt; 2 &amp; l<sub>max</sub>"
     assert with_subscripts("flat S<0.8, file sand_max_3.stl") == "flat S<0.8, file sand_max_3.stl"
+
+
+SIZES = [(1000, 900, False), (500, 900, True), (500, 400, False)]
+
+
+@pytest.mark.parametrize(("width", "height", "below"), SIZES)
+def test_that_a_sentence_goes_below_its_figures_where_it_is_narrow_and_high(width, height, below, shown, app):
+    window = QWidget()
+    column = QVBoxLayout(window)
+    headline = Headline("answer", ("Loss", "RMSRE", "Jaccard distance"))
+    column.addWidget(headline)
+    column.addStretch(1)
+    headline.show_values(("–",) * 3, "")
+    window.resize(width, height)
+    shown(window)
+    app.processEvents()
+    tops = [each.mapTo(window, QPoint()).y() for each in (headline.sentence, headline.captions[0])]
+    assert (tops[0] > tops[1]) == below
+    before = headline.height()
+    headline.show_values(("0.4583", "9.32%", "23.0%"), "All weighted descriptors are met but CH. " * 4)
+    app.processEvents()
+    assert headline.height() == before

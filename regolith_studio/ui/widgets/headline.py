@@ -3,7 +3,8 @@
 from collections.abc import Sequence
 
 from PySide6.QtCore import QEvent, Qt
-from PySide6.QtWidgets import QFrame, QGridLayout, QHBoxLayout, QLabel, QWidget
+from PySide6.QtGui import QResizeEvent
+from PySide6.QtWidgets import QBoxLayout, QFrame, QGridLayout, QHBoxLayout, QLabel, QWidget
 
 from regolith_studio.ui.widgets.fixed_height_text import FixedHeightText
 from regolith_studio.ui.widgets.labels import remark
@@ -12,10 +13,16 @@ MAGNIFICATION = 1.75
 """Size of the figures in units of the widget's font."""
 LINES = 3
 """Visible lines of the sentence."""
+WIDEST_FIGURE, SENTENCE_DIGITS = "0.0000", 40
+"""What a figure has room for, and digits of room beside the figures without which the sentence goes below."""
+MIN_LINES = 34
+"""Lines of text that a window must be high enough for if the sentence is to go below the figures."""
 
 
 class Headline(QFrame):
-    """Large figures with captions, and a sentence beside them; keeps its height whatever it shows.
+    """Large figures with captions, and a sentence beside them, or below where there is little room.
+
+    Its height does not change with what it shows.
 
     Parameters
     ----------
@@ -41,11 +48,14 @@ class Headline(QFrame):
             figure.setAccessibleName(caption.text())
             grid.addWidget(figure, 0, column, Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignBottom)
             grid.addWidget(caption, 1, column)
+        self._parts = QBoxLayout(QBoxLayout.Direction.LeftToRight)
+        self._parts.addLayout(grid)
+        self._parts.addWidget(FixedHeightText((self.sentence,), LINES), 1)
         row = self._row = QHBoxLayout(self)
         row.setContentsMargins(12, 5, 10, 5)
+        row.addLayout(self._parts, 1)
+        self._parts.setSpacing(16)
         row.setSpacing(16)
-        row.addLayout(grid)
-        row.addWidget(FixedHeightText((self.sentence,), LINES), 1)
         self._enlarge()
 
     def show_values(self, figures: Sequence[str], sentence: str, *, fresh: bool = True) -> None:
@@ -64,6 +74,23 @@ class Headline(QFrame):
         self.captions[place].setText(text)
         for part in (self.captions[place], self.figures[place]):
             part.setToolTip(tip)
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self.place_sentence(self.width())
+
+    def place_sentence(self, width: int) -> None:
+        """Put the sentence beside the figures, or below where a card of this width has no room for it."""
+        figure = self.figures[0].fontMetrics().horizontalAdvance(WIDEST_FIGURE) + 16
+        words = self.fontMetrics().horizontalAdvance("0" * SENTENCE_DIGITS)
+        high = self.window().height() >= MIN_LINES * self.fontMetrics().height()
+        below = high and width < len(self.figures) * figure + words
+        way = QBoxLayout.Direction.TopToBottom if below else QBoxLayout.Direction.LeftToRight
+        if way != self._parts.direction():
+            self._parts.setDirection(way)
+            self._parts.setSpacing(4 if below else 16)
+            self._row.invalidate()
+            self.updateGeometry()
 
     def changeEvent(self, event: QEvent) -> None:
         super().changeEvent(event)

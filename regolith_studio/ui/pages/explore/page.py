@@ -107,6 +107,7 @@ class ExplorePage(PageWidget):
     def _fit_rows(self) -> None:
         """Make the views as high as they are wide, where the plots have enough."""
         height = sum(self._rows.sizes())
+        self.verdict.place_sentence(self._rows.width())
         frame = self.three_views.frames[PARTICLE]
         wanted = frame.width() + frame.height() - frame.view.widget.height()
         least = max(self._below.minimumSizeHint().height(), round(PLOTS_SHARE * height))
