@@ -20,6 +20,7 @@ from regolith_studio.errors import FileError
 from regolith_studio.readers.sandbox.parent import Sandbox
 from regolith_studio.readers.sandbox.volume_tasks import open_volume_file, read_checked_slices
 from regolith_studio.readers.volumes.read import describe_volume, open_slabs
+from tests.readers.test_txm import txm
 
 SLICES = np.random.default_rng(1).integers(0, 9, (4, 5, 6)).astype(np.uint16)
 FOREIGN = Path(__file__).with_name("foreign_volumes")
@@ -67,6 +68,8 @@ OWN = {
     "one.nii": foreign("nib1.nii"),
     "two.nii": foreign("nib2.nii"),
     "one.nii.gz": nii_gz,
+    "small.txm": txm,
+    "large.txm": lambda: txm((2, 40, 60)),
 }
 LIBRARIES = {
     "plain.tif": tiff,
