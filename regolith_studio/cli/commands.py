@@ -16,6 +16,7 @@ from regolith_studio.cli import (
     forget,
     gallery,
     generate,
+    install_desktop,
     recipe,
     repose,
     study,
@@ -24,14 +25,16 @@ from regolith_studio.cli.terminal import CommandGroup
 
 
 def open_files(
-    files: Annotated[list[Path], typer.Argument(metavar="FILE...", help="Meshes, folders or a recipe.")],
+    files: Annotated[
+        list[Path] | None, typer.Argument(metavar="FILE...", help="Meshes, folders or a recipe.")
+    ] = None,
     unit: Annotated[
         str | None,
         typer.Option("--unit", help="Length unit of files without one: um, mm, m, nm, cm or voxel:SIZE."),
     ] = None,
 ) -> None:
     """Open files in the window."""
-    open_window(files, unit)
+    open_window(files or [], unit)
 
 
 def open_window(paths: list[Path], unit: str | None) -> None:
@@ -78,6 +81,7 @@ app.command("run")(recipe.run)
 app.command("demo")(demo.demo)
 app.command("check")(check.check)
 app.command("forget")(forget.forget)
+app.command("install-desktop")(install_desktop.install_desktop)
 app.command("warm-up")(check.warm_up)
 app.add_typer(study.app, name="study")
 app.add_typer(dataset.app, name="dataset")
