@@ -1,9 +1,11 @@
-"""`pip install .` gives the command regolith-studio, and the wheel holds what the program reads."""
+"""Source archive and wheel can be built and installed, hold what the program reads, and run anywhere."""
 
+import json
 import os
 import subprocess
 import sys
 import sysconfig
+import tarfile
 import tomllib
 import venv
 import zipfile
@@ -11,6 +13,7 @@ from itertools import chain
 from pathlib import Path
 
 import pytest
+import trimesh
 
 ROOT = Path(__file__).resolve().parents[2]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
@@ -38,9 +41,22 @@ def run(*command: str | Path, folder: Path) -> str:
 
 
 @pytest.fixture(scope="module")
-def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def source(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The source archive, unpacked far from the checkout; nothing is fetched for it."""
+    pytest.importorskip("hatchling", reason="hatchling, which builds the package, is not installed")
+    folder = tmp_path_factory.mktemp("source")
+    run(sys.executable, "-m", "hatchling", "build", "-t", "sdist", "-d", folder, folder=ROOT)
+    (archive,) = folder.glob("*.tar.gz")
+    with tarfile.open(archive) as content:
+        content.extractall(folder, filter="data")
+    return folder / archive.name.removesuffix(".tar.gz")
+
+
+@pytest.fixture(scope="module")
+def wheel(source: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("wheel")
-    run(sys.executable, "-m", "pip", "wheel", "--quiet", "--no-deps", "-w", folder, ROOT, folder=folder)
+    build = (sys.executable, "-m", "pip", "wheel", "--quiet", "--no-deps", "--no-build-isolation")
+    run(*build, "-w", folder, source, folder=folder)
     (made,) = folder.glob("*.whl")
     return made
 
@@ -81,6 +97,26 @@ def test_that_the_guide_says_of_every_dependency_what_it_does_here() -> None:
 
 
 @pytest.mark.slow
+def test_that_the_source_archive_holds_the_checkout_but_for_the_files_of_its_services(source: Path) -> None:
+    if not (ROOT / ".git").exists():
+        pytest.skip("this is not a checkout")
+    listed = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, check=True).stdout
+    tracked = {name for name in listed.decode().split("\0") if name and (ROOT / name).is_file()}
+    services = {name for name in tracked if name.startswith((".ci/", ".github/", ".pre-commit"))}
+    assert files_below(source) == tracked - services | {"PKG-INFO"}
+
+
+@pytest.mark.slow
+def test_that_the_metadata_hold_the_licence_and_its_text(wheel: Path) -> None:
+    with zipfile.ZipFile(wheel) as archive:
+        (metadata,) = (name for name in archive.namelist() if name.endswith(".dist-info/METADATA"))
+        (licence,) = (name for name in archive.namelist() if name.endswith("/licenses/LICENSE"))
+        lines = archive.read(metadata).decode().splitlines()
+        assert archive.read(licence) == (ROOT / "LICENSE").read_bytes()
+    assert "License-Expression: BSD-3-Clause" in lines
+
+
+@pytest.mark.slow
 def test_that_the_wheel_holds_the_package_and_its_resources_and_nothing_else(wheel: Path) -> None:
     with zipfile.ZipFile(wheel) as archive:
         inside = {name for name in archive.namelist() if ".dist-info/" not in name}
@@ -101,3 +137,12 @@ def test_that_the_installed_program_reads_its_own_resources(installed: Path) -> 
 @pytest.mark.slow
 def test_that_the_command_is_there_and_answers(installed: Path) -> None:
     assert "Usage" in run(installed / "regolith-studio", "--help", folder=installed)
+
+
+@pytest.mark.slow
+def test_that_the_installed_program_measures_a_mesh_in_another_folder(
+    installed: Path, tmp_path: Path
+) -> None:
+    trimesh.creation.box((1.0, 2.0, 3.0)).export(tmp_path / "box.stl")
+    said = run(installed / "regolith-studio", "describe", "box.stl", "--json", folder=tmp_path)
+    assert json.loads(said)[0]["volume"] == pytest.approx(6.0, rel=1e-6)
