@@ -2928,8 +2928,8 @@
         <translation>Aller Zufallszahlen: derselbe Startwert ergibt dasselbe Polyeder.</translation>
     </message>
     <message>
-        <source>Of the mesh; the tool tip of a cell says what was found and mended</source>
-        <translation>Des Netzes; der Hinweis einer Zelle sagt, was gefunden und ausgebessert wurde</translation>
+        <source>Of the mesh; the tool tip of a cell says what was found and repaired</source>
+        <translation>Des Netzes; der Hinweis einer Zelle sagt, was gefunden und repariert wurde</translation>
     </message>
     <message>
         <source>One after the other, then all</source>
