@@ -1,5 +1,6 @@
 """A folder of slices: one TIFF, PNG or BMP file for each."""
 
+import re
 import struct
 from collections.abc import Mapping
 from pathlib import Path
@@ -10,11 +11,21 @@ from numpy.typing import NDArray
 
 from regolith_studio.errors import FileError
 from regolith_studio.readers.error_messages import display_name
+from regolith_studio.readers.number_rows import float_or_nan
 from regolith_studio.readers.volume_formats import VolumeFormat
-from regolith_studio.readers.voxels.header import MAX_SLICE_BYTES, VoxelHeader, format_shape, voxel_type
+from regolith_studio.readers.voxels.header import (
+    MAX_SLICE_BYTES,
+    Sizes,
+    VoxelHeader,
+    format_shape,
+    sizes_or_none,
+    voxel_type,
+)
+from regolith_studio.readers.voxels.scanner_headers import text_fields
 from regolith_studio.readers.voxels.tiff import check_page, open_tiff_file, stated_size
 
 SLICE_SUFFIXES = (".tif", ".tiff", ".png", ".bmp")
+_COUNTER = re.compile(r"\d+$")
 _BMP = struct.Struct("<10xIIiiHHIIxxxxxxxxI")
 """Place of the pixels, length of the header, width, height, planes, bits, packing, size, colours."""
 
@@ -59,7 +70,7 @@ def open_slices(path: Path, options: Mapping[str, Any]) -> SliceFiles:
             f"slice_001.tif ({', '.join(SLICE_SUFFIXES)})."
         )
     first = _image(paths[0])
-    size, unit, notes = _stated(paths[0])
+    size, unit, notes = _logged(paths[0]) or _stated(paths[0])
     shape = (len(paths), *first.shape)
     return SliceFiles(
         paths, VoxelHeader((shape[0], shape[1], shape[2]), first.dtype, size, unit, None, notes)
@@ -130,6 +141,27 @@ def _bmp_edges(data: bytes) -> tuple[int, int]:
     if colours > 256 or not 14 + header + table <= begin <= len(data) - row * abs(height):
         raise FileError("ends before its pixels do.")
     return width, abs(height)
+
+
+def _logged(path: Path) -> tuple[Sizes, str, tuple[str, ...]] | None:
+    """The size that the log of a Bruker SkyScan states, if one lies beside the slices with their name."""
+    stem = _COUNTER.sub("", path.stem)
+    for log in sorted(path.parent.glob("*.log")):
+        if log.stem != stem or not log.is_file():
+            continue
+        try:
+            fields = text_fields(log)
+        except FileError as error:
+            raise FileError(f"has the log {display_name(log)} beside its slices, which {error}") from None
+        pixel = fields.get("reconstruction/pixel size (um)") or fields.get(
+            "acquisition/image pixel size (um)"
+        )
+        step = float_or_nan(fields.get("reconstruction/section to section step", "1"))
+        edge = float_or_nan(pixel or "")
+        size = sizes_or_none([edge, edge, edge * step])
+        if size is not None:
+            return size, "um", ()
+    return None
 
 
 def _stated(path: Path) -> Any:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from regolith_studio.errors import FileError
 from regolith_studio.readers.error_messages import printable
-from regolith_studio.readers.voxels.header import Shape, VoxelHeader
+from regolith_studio.readers.voxels.header import Shape, VoxelHeader, format_shape
 
 BLOCK = 1 << 25
 """Bytes of a file whose slices are last that are mapped at a time."""
@@ -129,6 +129,23 @@ class TransposedVoxels:
 
     def close(self) -> None:
         """Do nothing: no file is kept open."""
+
+
+def exact_voxels(path: Path, offset: int, header: VoxelHeader, stored: np.dtype[Any]) -> PlainVoxels:
+    """The voxels of a file that has just as many bytes as they need.
+
+    Raises
+    ------
+    FileError
+        If it has others: then the shape or the type is not what it is.
+    """
+    there, needed = path.stat().st_size, offset + math.prod(header.shape) * stored.itemsize
+    if there != needed:
+        raise FileError(
+            f"has {there:,} bytes, but {format_shape(header.shape[::-1])} voxels of {stored.name} after "
+            f"{offset:,} bytes of header make {needed:,}."
+        )
+    return PlainVoxels(path, offset, header, stored)
 
 
 def plain_voxels(layout: Mapping[str, Any], shape: Shape, dtype: np.dtype[Any]) -> PlainVoxels:
