@@ -50,5 +50,6 @@ def coarsen(
             print_table(error_table(done))
         results = [(each.name, each.coarsened) for each in done if each.coarsened]
         print_errors(f"{name}: {coarse.reason}" for name, coarse in results if coarse.reason)
+        print_errors(f"{name}: {coarse.warning}" for name, coarse in results if coarse.warning)
         typer.echo(f"{len(done) - len(failed)} of {len(done)} particles coarsened in {output}")
     raise typer.Exit(exit_code(meshes, loaded, len(failed)))

@@ -11,7 +11,7 @@ from regolith_studio.coarsening.lower_bounds import attainable_errors
 from regolith_studio.coarsening.methods import METHODS, CoarseningMethod
 from regolith_studio.coarsening.polyhedra import polyhedron_of
 from regolith_studio.coarsening.progress import CoarseningProgress, MethodStep
-from regolith_studio.coarsening.result import CoarseningResult, MethodResult
+from regolith_studio.coarsening.result import CoarseningResult, MethodResult, SphericityFree
 from regolith_studio.coarsening.target import Target
 from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.descriptors.catalogue import CATALOGUE
@@ -19,6 +19,7 @@ from regolith_studio.descriptors.comparison import relative_errors
 from regolith_studio.descriptors.describe import Descriptors, describe
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
+from regolith_studio.geometry.half_spaces import HalfSpaces
 from regolith_studio.geometry.mesh import Mesh
 
 DEFAULT_METHOD = "exact"
@@ -178,7 +179,16 @@ def _measured(
         reason=result.reason,
         steps=result.steps,
         variants=result.variants,
+        sphericity_free=_sphericity_free(target, result.without_sphericity),
     )
+
+
+def _sphericity_free(target: Target, half_spaces: HalfSpaces | None) -> SphericityFree | None:
+    if half_spaces is None:
+        return None
+    found = describe(ConvexPolyhedron.from_half_spaces(half_spaces), ("sphericity",))
+    error = relative_errors(target.descriptors, found, ("sphericity",))["sphericity"]
+    return SphericityFree(target.jaccard_distance(half_spaces), error)
 
 
 def in_unit(descriptors: Descriptors, scale: float) -> Descriptors:

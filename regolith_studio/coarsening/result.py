@@ -9,6 +9,10 @@ from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.half_spaces import HalfSpaces
 from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.messages import N_, Message
+
+COSTLY_OVERLAP = 1.5
+"""Above so many times the Jaccard distance with the sphericity free, a result has a warning."""
 
 
 @dataclass(frozen=True)
@@ -31,6 +35,8 @@ class MethodResult:
         By :meth:`ConvexPolyhedron.from_half_spaces`, where the method has made it already.
     achieved
         Of `polyhedron` by :func:`regolith_studio.descriptors.describe.describe`, where it has measured it.
+    without_sphericity
+        A polyhedron that keeps all that is asked for but the sphericity, where keeping that may cost overlap.
     """
 
     half_spaces: HalfSpaces
@@ -40,6 +46,23 @@ class MethodResult:
     variants: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     polyhedron: ConvexPolyhedron | None = None
     achieved: Descriptors | None = None
+    without_sphericity: HalfSpaces | None = None
+
+
+@dataclass(frozen=True)
+class SphericityFree:
+    """The same request with the sphericity left free.
+
+    Parameters
+    ----------
+    jaccard_distance
+        Eq. 7, with 16,000 rays.
+    sphericity_error
+        Relative error of the sphericity (Eq. 8).
+    """
+
+    jaccard_distance: float
+    sphericity_error: float
 
 
 @dataclass(frozen=True)
@@ -74,6 +97,8 @@ class CoarseningResult:
         Numbers about the run: iterations, restarts, refused proposals ...
     variants
         Relative errors of other readings of the result (the quadric baseline has three).
+    sphericity_free
+        What leaving the sphericity free would give, where keeping it may cost overlap; else ``None``.
     """
 
     polyhedron: ConvexPolyhedron
@@ -90,6 +115,24 @@ class CoarseningResult:
     reason: str | None = None
     steps: Mapping[str, float] = field(default_factory=dict)
     variants: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    sphericity_free: SphericityFree | None = None
+
+    @property
+    def warning(self) -> str | None:
+        """What an exact sphericity costs, in one sentence, where that is much overlap."""
+        free = self.sphericity_free
+        if free is None or self.jaccard_distance <= COSTLY_OVERLAP * free.jaccard_distance:
+            return None
+        return Message(
+            N_(
+                "Keeping the sphericity costs overlap: the Jaccard distance is {kept}; with the sphericity"
+                " free it is {free}, and the sphericity is off by {error} %. The preset Shape first leaves it"
+                " free."
+            ),
+            kept=f"{self.jaccard_distance:.3f}",
+            free=f"{free.jaccard_distance:.3f}",
+            error=f"{100 * free.sphericity_error:.2g}",
+        )
 
     @property
     def n_facets(self) -> int:

@@ -2228,6 +2228,10 @@
         <translation>Weiterarbeiten</translation>
     </message>
     <message>
+        <source>Keeping the sphericity costs overlap: the Jaccard distance is {kept}; with the sphericity free it is {free}, and the sphericity is off by {error} %. The preset Shape first leaves it free.</source>
+        <translation>Die Sphärizität einzuhalten kostet Überdeckung: Der Jaccard-Abstand ist {kept}; mit freier Sphärizität ist er {free}, und die Sphärizität weicht um {error} % ab. Die Voreinstellung „Form zuerst“ lässt sie frei.</translation>
+    </message>
+    <message>
         <source>Kept the largest of {count} bodies, with {share} of their volume.</source>
         <translation>Der größte von {count} Körpern wurde behalten, mit {share} ihres Volumens.</translation>
     </message>
@@ -4028,6 +4032,10 @@
         <translation>Form</translation>
     </message>
     <message>
+        <source>Shape first</source>
+        <translation>Form zuerst</translation>
+    </message>
+    <message>
         <source>Shape model</source>
         <translation>Formmodell</translation>
     </message>
@@ -4182,6 +4190,10 @@
     <message>
         <source>Sphericity</source>
         <translation>Sphärizität</translation>
+    </message>
+    <message>
+        <source>Sphericity and convex hull volume are free: the most overlap at the particle&apos;s volume and diameters</source>
+        <translation>Sphärizität und Volumen der konvexen Hülle sind frei: die größte Überdeckung bei Volumen und Durchmessern des Partikels</translation>
     </message>
     <message>
         <source>Sphericity {sphericity} needs at least {needed} facets; with {faces} the most is {most}.</source>

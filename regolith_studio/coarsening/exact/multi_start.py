@@ -18,6 +18,7 @@ from regolith_studio.coarsening.exact.constraint_selection import (
 from regolith_studio.coarsening.exact.constraints import SPHERICITY, VOLUME, Problem
 from regolith_studio.coarsening.exact.facet_growth import (
     grow_facets,
+    more_surface_than_hull,
     numbers_to_grow_from,
     with_waiting,
 )
@@ -71,6 +72,8 @@ SIZED = np.arange(5) == VOLUME
 """The volume is held while the sphericity is sought, asked for or not: less surface would shrink the body."""
 OUT_OF_REACH = 4e-3
 """Where all polyhedra miss a constraint by more (in logarithms), no further start is tried."""
+COSTLY_SURPLUS = 0.12
+"""Where a particle has so much more surface than its hull (in logarithms), keeping it may cost overlap."""
 STARTS_FOR_FACETS = 3
 """Further starts where all constraints are met, but a half-space bounds no facet."""
 
@@ -202,7 +205,27 @@ class Search:
             reason = reason_for(self._target, self._request, self._n_facets, solid.n_facets, found)
         yield from self._record.record_final(solid.half_spaces)
         history = tuple(self._record.history)
-        return MethodResult(solid.half_spaces, history, reason, counts, polyhedron=solid, achieved=found)
+        free = self._without_sphericity()
+        return MethodResult(
+            solid.half_spaces,
+            history,
+            reason,
+            counts,
+            polyhedron=solid,
+            achieved=found,
+            without_sphericity=None if free is None else free.solid.half_spaces,
+        )
+
+    def _without_sphericity(self) -> Candidate | None:
+        """What one start finds with the sphericity free, where keeping it may cost overlap."""
+        costly = bool(self._misses) or more_surface_than_hull(self._target) > COSTLY_SURPLUS
+        if not self._round_asked or not costly:
+            return None
+        best: Candidate | None = None
+        planes = start_planes(self._target, self._n_facets, self._rng)
+        for found in single_start(self._target, self._free, self._rest, planes, *self._descent_steps):
+            best = found if found.better_than(best) else best
+        return best if best is not None and best.exact else None
 
     def _without_slivers(self) -> Candidate | None:
         """The best with larger small facets, where it meets all constraints and they can be had."""

@@ -62,6 +62,8 @@ def error_table(done: Sequence[CoarsenedParticle]) -> Table:
     """Facets, vertices, triangles and the errors of each particle, with what no polyhedron can do better."""
     symbols = [Column(CATALOGUE[key].symbol, "%") for key in LOSS_KEYS]
     columns = (Column("name"), Column("facets"), Column("vertices"), Column("triangles"), *symbols)
+    results = [each.coarsened for each in done if each.coarsened]
+    free = any(coarse.sphericity_free for coarse in results)
     rows: list[tuple[Cell, ...]] = [
         (
             each.name,
@@ -70,12 +72,20 @@ def error_table(done: Sequence[CoarsenedParticle]) -> Table:
             coarse.n_triangles,
             *[_per_cent(coarse.errors[key], bounds[key]) for key in LOSS_KEYS],
             _per_cent(coarse.jaccard_distance, bounds[JACCARD]),
+            *([_when_free(coarse)] if free else []),
         )
         for each in done
         if (coarse := each.coarsened)
         for bounds in (bounds_in_force(coarse.bounds, coarse.errors),)
     ]
-    return Table("", (*columns, Column("Jaccard", "%")), tuple(rows))
+    last = [Column("Jaccard", "%"), *([Column("Jaccard, S free", "%")] if free else [])]
+    return Table("", (*columns, *last), tuple(rows))
+
+
+def _when_free(coarse: CoarseningResult) -> str:
+    """The Jaccard distance with the sphericity free, where keeping it may cost overlap."""
+    free = coarse.sphericity_free
+    return "" if free is None else f"{100 * free.jaccard_distance:.2g}"
 
 
 def _per_cent(error: float, bound: float) -> str:
@@ -99,6 +109,8 @@ def coarsening_entry(each: CoarsenedParticle, coarse: CoarseningResult) -> dict[
         "loss": coarse.loss,
         "bounds": dict(coarse.bounds),
         "reason": coarse.reason,
+        "warning": coarse.warning,
+        "sphericity_free": None if coarse.sphericity_free is None else asdict(coarse.sphericity_free),
         "target": dict(coarse.target),
         "achieved": dict(coarse.achieved),
         "centre": coarse.centre.tolist(),
