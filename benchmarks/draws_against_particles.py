@@ -19,6 +19,7 @@ from regolith_studio.studies.population import KEYS, N_FLOOR_SPLITS
 
 DEGREES = (10, 20, 30)
 N_DRAWS = 2000
+MODEL_KEYS = ("sample_matched", "hull_field")
 
 
 def far(one: FloatArray, two: FloatArray) -> FloatArray:
@@ -40,18 +41,22 @@ def main(path: str, seed: int, n: int) -> None:
     sample = whole.chosen(rng.permutation(len(whole))[:n])
     table = measured(realized(sample), KEYS)
     halves = [sample.halves(seed + split) for split in range(N_FLOOR_SPLITS)]
-    show("floor", np.mean([far(table[a], table[b]) for a, b in halves], axis=0))
+    floor = [far(table[a], table[b]) for a, b in halves]
+    show("floor", np.mean(floor, axis=0))
+    show("floor, 95th percentile", np.quantile(floor, 0.95, axis=0))
     train, test = halves[0]
     fit_to: Sample = sample.chosen(train)
+    show("the half fitted to", far(table[test], table[train]))
     for degree in (degree for degree in DEGREES if degree <= sample.l_max):
         cut = measured(realized(sample.chosen(test).truncated(degree)), KEYS)
         show(f"other half cut at {degree}", far(table[test], cut))
-        begin = time.process_time()
-        model = MODELS["sample_matched"]
-        draws = model.fit(fit_to, model.Settings(l_max=degree)).draw(N_DRAWS, seed)
-        spent = time.process_time() - begin
-        drawn = measured(draws.chosen(range(min(N_DRAWS, len(test)))), KEYS)
-        show(f"sample_matched at {degree}, {spent:.1f} s", far(table[test], drawn))
+        for key in MODEL_KEYS:
+            begin = time.process_time()
+            model = MODELS[key]
+            draws = model.fit(fit_to, model.Settings(l_max=degree)).draw(N_DRAWS, seed)
+            spent = time.process_time() - begin
+            drawn = measured(draws.chosen(range(min(N_DRAWS, len(test)))), KEYS)
+            show(f"{key} at {degree}, {spent:.1f} s", far(table[test], drawn))
 
 
 if __name__ == "__main__":

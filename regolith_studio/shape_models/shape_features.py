@@ -130,6 +130,30 @@ def outer_features_of_log_radii(rows: FloatArray, shares: FloatArray) -> FloatAr
     return outer_features(shape_grid(l_max).grid.values(rows), _squared_slopes(rows, l_max), shares, l_max)
 
 
+def whole_features_of_radii(coefficients: FloatArray) -> FloatArray:
+    """Outer features of radius functions (n, (l_max + 1)^2), their share of the hull measured too."""
+    parts = []
+    for first in range(0, len(coefficients), _BATCH):
+        rows = coefficients[first : first + _BATCH]
+        means = rows[:, :1] / np.sqrt(4 * np.pi)
+        shapes = shape_grid(round(rows.shape[1] ** 0.5) - 1)
+        shares = shapes.convexities(np.maximum(shapes.grid.values(rows) / means, _MIN_RADIUS))
+        parts.append(outer_features_of_radii(rows, log_share(shares)))
+    return np.concatenate(parts)
+
+
+def whole_features_of_log_radii(coefficients: FloatArray) -> FloatArray:
+    """The same of the exponentials of expansions."""
+    parts = []
+    for first in range(0, len(coefficients), _BATCH):
+        rows = coefficients[first : first + _BATCH]
+        shapes = shape_grid(round(rows.shape[1] ** 0.5) - 1)
+        logs = shapes.grid.values(rows)
+        shares = shapes.convexities(np.exp(logs - logs.mean(axis=1, keepdims=True)))
+        parts.append(outer_features_of_log_radii(rows, log_share(shares)))
+    return np.concatenate(parts)
+
+
 def _squared_slopes(rows: FloatArray, l_max: int) -> FloatArray:
     along, across = _slope_bases(l_max)
     return np.asarray((rows @ along) ** 2 + (rows @ across) ** 2)

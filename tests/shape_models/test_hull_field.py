@@ -13,7 +13,9 @@ from regolith_studio.errors import InputError
 from regolith_studio.shape_models.calibration import features_and_target, measured_features
 from regolith_studio.shape_models.convex_hull import ROWS, hull_grid, supports
 from regolith_studio.shape_models.copula import GaussianCopula
+from regolith_studio.shape_models.fine_degrees import FineDegrees
 from regolith_studio.shape_models.inertia_ellipsoid import forms, log_ellipsoids, with_forms
+from regolith_studio.shape_models.log_radius import log_shapes
 from regolith_studio.shape_models.materials import materials
 from regolith_studio.shape_models.models import MODELS
 from regolith_studio.shape_models.models.hull_field import HullFieldSettings
@@ -26,6 +28,7 @@ from regolith_studio.shape_models.shape_features import (
     SPHERICITY,
     outer_features_of_log_radii,
     outer_features_of_radii,
+    powers,
     shape_features,
     shape_grid,
 )
@@ -125,12 +128,49 @@ def test_that_the_numbers_of_an_ellipsoid_are_its_own() -> None:
     assert found[CONVEXITY] > 4
 
 
-@pytest.mark.parametrize("l_max", [2, 21])
+def test_that_fine_degrees_have_the_power_that_goes_with_the_particles(
+    rough_sample: Callable[..., Sample],
+) -> None:
+    shapes = log_shapes(rough_sample(200, 9))
+    fine = FineDegrees.of(shapes.coefficients, shapes.equivalent_radii, 6)
+    base = shapes.coefficients[:, :49]
+    rows = fine.added(base, shapes.equivalent_radii, np.random.default_rng(1))
+    np.testing.assert_allclose(rows[:, :49], base, rtol=1e-12)
+    measured, drawn = (np.log(powers(each)[:, 7:]) for each in (shapes.coefficients, rows))
+    error = measured.std(axis=0) * np.sqrt(2 / 200)
+    assert (np.abs(drawn.mean(axis=0) - measured.mean(axis=0)) < 4 * error).all()
+    np.testing.assert_allclose(drawn.std(axis=0), measured.std(axis=0), rtol=0.25)
+
+
+@pytest.mark.slow
+def test_that_draws_with_fine_degrees_fill_their_hulls_and_are_as_round_as_the_sample() -> None:
+    """Of meshes, the hull by scipy; a sample cut at the tenth degree would be rounder than its particles."""
+    card = materials()["ma165"].model(14).draw(100, 0)
+    sample = Sample(np.stack([card.particle(index).values for index in range(100)]))
+    fitted = MODEL.fit(sample, HullFieldSettings(l_max=14))
+
+    def seen(draws: Realizations) -> np.ndarray:
+        meshes = [virtual_mesh(draws, index, level=3) for index in range(100)]
+        rows = (
+            [(36 * np.pi * mesh.volume**2) ** (1 / 3) / mesh.surface_area for mesh in meshes],
+            [mesh.volume / ConvexHull(mesh.vertices).volume for mesh in meshes],
+        )
+        return np.array(rows)
+
+    measured = seen(Realizations(sample.coefficients, "radius", "measured", 0))
+    drawn = seen(fitted.draw(100, 3))
+    error = measured.std(axis=1) * np.sqrt(2 / 100)
+    assert (np.abs(drawn.mean(axis=1) - measured.mean(axis=1)) < 3 * error).all()
+    cut = seen(Realizations(sample.truncated(10).coefficients, "radius", "cut", 0))
+    assert (cut.mean(axis=1) > measured.mean(axis=1) + error).all()
+
+
+@pytest.mark.parametrize("l_max", [2, 31])
 def test_that_a_degree_that_has_no_facets_or_too_many_is_refused(
     l_max: int, rough_sample: Callable[..., Sample]
 ) -> None:
-    with pytest.raises(InputError, match=f"has l_max 3 to 20, got {l_max}"):
-        MODEL.fit(rough_sample(10, 21), HullFieldSettings(l_max=l_max))
+    with pytest.raises(InputError, match=f"has l_max 3 to 30, got {l_max}"):
+        MODEL.fit(rough_sample(10, 31), HullFieldSettings(l_max=l_max))
 
 
 def test_that_an_unknown_law_of_sizes_is_refused(rough_sample: Callable[..., Sample]) -> None:

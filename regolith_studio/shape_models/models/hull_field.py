@@ -3,7 +3,8 @@
 Fields with random phases are too concave for their roughness: the facets and edges of real grains are in the
 phases. Here a rough isotropic field in ln r about an ellipsoid is moved most of the way to its convex hull,
 which makes facets; its degrees are scaled to their power; it is moved towards or away from its hull until it
-fills the wanted share of it; and it is stretched until its ellipsoid of inertia is the wanted one. Size,
+fills the wanted share of it; and it is stretched until its ellipsoid of inertia is the wanted one. Degrees
+above the tenth are added with the power that goes with these features, and random phases. Size,
 elongation, flatness, the power of each degree and the share of the hull come from a Gaussian copula. How far
 the first move goes (the faceting), and the offset of what is asked for, are calibrated so that the result has
 the sample's extents, sphericities and shares. No measured particle is stored; sizes beyond the sample get the
@@ -29,14 +30,31 @@ from regolith_studio.shape_models.calibration import (
 )
 from regolith_studio.shape_models.chunked_sampling import CHUNK, SizedSampler
 from regolith_studio.shape_models.copula import GaussianCopula
+from regolith_studio.shape_models.fine_degrees import FineDegrees
 from regolith_studio.shape_models.inertia_ellipsoid import log_ellipsoids, with_forms
 from regolith_studio.shape_models.log_radius import log_shapes
 from regolith_studio.shape_models.sample import Sample
-from regolith_studio.shape_models.shape_features import CONVEXITY, FORM, POWERS, shape_grid, with_powers
+from regolith_studio.shape_models.shape_features import (
+    CONVEXITY,
+    FORM,
+    POWERS,
+    SPHERICITY,
+    shape_grid,
+    whole_features_of_log_radii,
+    whole_features_of_radii,
+    with_powers,
+)
 from regolith_studio.shape_models.size_law import SIZE_LAWS, SizeLaw, size_law_from
 
 KEY = "hull_field"
-DEGREES = (3, 20)
+DEGREES = (3, 30)
+HULL_DEGREE = 10
+"""Degrees above are added with random phases."""
+FINE_ROUNDS = 4
+"""Rounds of calibration of the degrees above."""
+FINE_RATES = (1.2, 0.7)
+"""Change of ln P_l, and of the hull ratio that is asked for, for a difference in ln(s / (1 - s)) of the
+sphericity, and of the share of the hull."""
 ROUGHNESS = 2.5
 """Amplitude of the field that is moved to its hull, over that of the finished surface."""
 FACETINGS = (0.6, 0.7, 0.8, 0.9, 1.0)
@@ -56,7 +74,7 @@ class HullFieldSettings:
     """Parameters
     ----------
     l_max
-        Degree of ln r, 3 to 20.
+        Degree of ln r, 3 to 30.
     size_law
         Key of ``SIZE_LAWS``.
     """
@@ -85,6 +103,8 @@ class HullField(SizedSampler):
         Features asked for are median + shift + spread (drawn - median), shapes (l_max + 4,).
     faceting
         Share of the distance to its hull by which the rough field is moved, 0 to 1.
+    fine
+        The degrees above :data:`HULL_DEGREE`, where there are any.
     """
 
     numbers: GaussianCopula
@@ -94,13 +114,16 @@ class HullField(SizedSampler):
     shift: FloatArray | None = None
     spread: FloatArray | None = None
     faceting: float = DEFAULT_FACETING
+    fine: FineDegrees | None = None
     key: ClassVar[str] = KEY
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "spectrum", locked_floats(self.spectrum, (None,), "spectrum"))
-        length = self.l_max + 4
+        length = self._base + 4
         if len(self.numbers.correlations) != length:
-            raise InputError(f"A field of degree {self.l_max} needs {length} numbers a particle.")
+            raise InputError(f"A field of degree {self._base} needs {length} numbers a particle.")
+        if self.fine is not None and self.fine.slopes.shape[1] != length:
+            raise InputError(f"Degrees above {self._base} need {length} slopes each.")
         for name, filler in (("shift", np.zeros), ("spread", np.ones)):
             given = getattr(self, name)
             values = filler(length) if given is None else given
@@ -114,20 +137,26 @@ class HullField(SizedSampler):
         """Degree of ln r."""
         return len(self.spectrum) - 1
 
+    @property
+    def _base(self) -> int:
+        """Degree of what is moved to its hull."""
+        return self.l_max - (0 if self.fine is None else len(self.fine))
+
     def shapes(
         self, radii: FloatArray, _components: IntArray, rng: np.random.Generator
     ) -> tuple[FloatArray, dict[str, IntArray]]:
         """Surfaces drawn to their hulls, with numbers that go with these sizes."""
-        return self._shapes(self.numbers.draw(np.log(radii), rng), rng), {}
+        rows = self._shapes(self.numbers.draw(np.log(radii), rng), rng)
+        return (rows if self.fine is None else self.fine.added(rows, radii, rng)), {}
 
     def _shapes(self, numbers: FloatArray, rng: np.random.Generator) -> FloatArray:
         """Coefficients of ln r, up to size, of particles that come out with these numbers (n, d)."""
-        shapes, wanted = shape_grid(self.l_max), self._with_offset(numbers)
+        shapes, wanted = shape_grid(self._base), self._with_offset(numbers)
         grid, form = shapes.grid, np.maximum(numbers[:, FORM], 0.0)
         power = np.column_stack([np.zeros(len(wanted)), np.exp(wanted[:, POWERS])])
         frames = Rotation.from_quat(rng.standard_normal((len(wanted), 4))).as_matrix()
         ellipsoids = log_ellipsoids(grid.directions, form, frames)
-        field = rng.standard_normal((len(wanted), (self.l_max + 1) ** 2))
+        field = rng.standard_normal((len(wanted), (self._base + 1) ** 2))
         field[:, 0] = 0.0
         rough = ellipsoids + grid.values(with_powers(field, ROUGHNESS**2 * power))
         surface = grid.expanded(shapes.drawn(rough, self.faceting) - ellipsoids)
@@ -149,6 +178,26 @@ class HullField(SizedSampler):
         better = target.corrected(offset, numbers, outer)
         return replace(self, shift=better.shift, spread=better.spread), target.distance(outer)
 
+    def refined(self, usable: Sample) -> "HullField":
+        """The field with all degrees of measured particles, whose mean sphericity and share of the hull its
+        draws have."""
+        shapes = log_shapes(usable)
+        fine = FineDegrees.of(shapes.coefficients, shapes.equivalent_radii, self._base)
+        spectrum = shapes.powers.mean(axis=0) / (2 * np.arange(usable.l_max + 1) + 1)
+        field = replace(self, spectrum=spectrum, fine=fine)
+        wanted = whole_features_of_radii(usable.coefficients).mean(axis=0)
+        for _ in range(FINE_ROUNDS):
+            rng = np.random.default_rng(np.random.SeedSequence(0))
+            radii, components = field.sizes.draw(N_COMPARED, rng)
+            missing = wanted - whole_features_of_log_radii(field.shapes(radii, components, rng)[0]).mean(
+                axis=0
+            )
+            shift = np.array(field.shift)
+            shift[CONVEXITY] += FINE_RATES[1] * missing[CONVEXITY]
+            fine = fine.louder(-FINE_RATES[0] * float(missing[SPHERICITY]))
+            field = replace(field, shift=shift, fine=fine)
+        return field
+
     def stored(self) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
         """Plain values for JSON, no arrays."""
         values = {
@@ -159,6 +208,7 @@ class HullField(SizedSampler):
             "shift": np.asarray(self.shift).tolist(),
             "spread": np.asarray(self.spread).tolist(),
             "faceting": self.faceting,
+            "fine": None if self.fine is None else self.fine.stored(),
         }
         return values, {}
 
@@ -190,16 +240,19 @@ class HullFieldModel:
             raise InputError(
                 f"A field drawn to its hull has l_max {DEGREES[0]} to {DEGREES[1]}, got {chosen.l_max}."
             )
-        usable = cut.star_shaped()
+        whole = cut.star_shaped()
+        usable = whole.truncated(min(chosen.l_max, HULL_DEGREE)).star_shaped()
         table, target = features_and_target(usable.coefficients)
         mean_powers = log_shapes(usable).powers.mean(axis=0)
         sizes = SIZE_LAWS[chosen.size_law](usable.equivalent_radii)
-        spectrum = mean_powers / (2 * np.arange(chosen.l_max + 1) + 1)
+        spectrum = mean_powers / (2 * np.arange(usable.l_max + 1) + 1)
         plain = HullField(GaussianCopula.of(table), sizes, spectrum, sample.unit)
         if len(usable) < MIN_TO_CHOOSE:
-            return _calibrated(plain, target, N_COMPARED)[0]
-        tried = [_calibrated(replace(plain, faceting=share), target, N_TRIED) for share in FACETINGS]
-        return _calibrated(min(tried, key=lambda each: each[1])[0], target, N_COMPARED)[0]
+            field = _calibrated(plain, target, N_COMPARED)[0]
+        else:
+            tried = [_calibrated(replace(plain, faceting=share), target, N_TRIED) for share in FACETINGS]
+            field = _calibrated(min(tried, key=lambda each: each[1])[0], target, N_COMPARED)[0]
+        return field if usable.l_max == chosen.l_max else field.refined(whole)
 
     def restored(self, values: Mapping[str, Any], _arrays: Mapping[str, NDArray[Any]]) -> HullField:
         """The field from its stored values."""
@@ -212,6 +265,7 @@ class HullFieldModel:
             np.array(values["shift"]),
             np.array(values["spread"]),
             float(values["faceting"]),
+            FineDegrees.restored(values["fine"]) if values.get("fine") else None,
         )
 
 
