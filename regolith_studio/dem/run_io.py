@@ -23,6 +23,7 @@ from regolith_studio.errors import FileError, os_error_reason
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.io.atomic import exchange, hidden_folder
 from regolith_studio.io.json_text import canonical_json, parse_strict_json
+from regolith_studio.io.natural_order import natural_key
 
 FORMAT = "regolith-studio-repose"
 SCHEMA_VERSION = 1
@@ -173,9 +174,12 @@ def read_run(folder: Path) -> RunSummary:
 
 
 def find_runs(folder: Path) -> list[RunSummary]:
-    """Runs in a folder and directly below it, sorted by name; invalid ones are skipped."""
+    """Runs in a folder and directly below it, in the natural order of names; invalid ones are skipped."""
     found = []
-    for place in (folder, *sorted(path for path in folder.iterdir() if path.is_dir())):
+    below = sorted(
+        (path for path in folder.iterdir() if path.is_dir()), key=lambda path: natural_key(path.name)
+    )
+    for place in (folder, *below):
         try:
             found.append(read_run(place))
         except FileError:

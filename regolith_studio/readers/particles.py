@@ -16,6 +16,7 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.mesh_health import inspect
 from regolith_studio.geometry.particle import Particle, Source
 from regolith_studio.io.atomic import check_listed, listed_hashes
+from regolith_studio.io.natural_order import natural_key
 from regolith_studio.readers.coefficient_tables import TABLE_SUFFIXES, TEXT_SUFFIXES, read_table_particle
 from regolith_studio.readers.error_messages import display_name, message_about, plural, printable
 from regolith_studio.readers.file_bytes import sha256_of
@@ -298,10 +299,10 @@ def _in_folder(folder: Path, several: bool) -> Iterator[MeshFile]:
     name = folder.name or folder.resolve().name
     suffixes = mesh_suffixes() | set(TABLE_SUFFIXES)
     for where, folders, files in os.walk(folder):
-        folders[:] = sorted(inner for inner in folders if not inner.startswith("."))
+        folders[:] = sorted((inner for inner in folders if not inner.startswith(".")), key=natural_key)
         inside = Path(where).relative_to(folder).as_posix()
         group = printable(name if inside == "." else f"{name}/{inside}" if several else inside)
-        for file in sorted(files):
+        for file in sorted(files, key=natural_key):
             if not file.startswith(".") and Path(file).suffix.lower() in suffixes:
                 yield MeshFile(Path(where) / file, group)
 

@@ -51,6 +51,22 @@ def test_that_a_folder_tree_becomes_groups(tree):
     ]
 
 
+def test_that_numbered_files_and_folders_come_in_the_order_of_their_numbers(tmp_path, cube):
+    for name in ("set10/rock1", "set2/rock11", "set2/rock3", "set2/rock1"):
+        path = tmp_path / "all" / f"{name}.stl"
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(cube.binary_stl())
+    places = [
+        (each.group, each.source.path.rpartition("/")[2]) for each in read_particles([tmp_path / "all"])
+    ]
+    assert places == [
+        ("set2", "rock1.stl"),
+        ("set2", "rock3.stl"),
+        ("set2", "rock11.stl"),
+        ("set10", "rock1.stl"),
+    ]
+
+
 def test_that_several_folders_keep_their_names_in_the_groups(tree):
     groups = [particle.group for particle in read_particles([tree / "fine", tree])]
     assert groups == ["fine", "fine", "JSC-1A", "JSC-1A/coarse", "JSC-1A/fine", "JSC-1A/fine"]

@@ -53,6 +53,13 @@ def test_that_equal_rows_stay_as_they_were_given_in_both_orders(rows):
     assert listed(rows) == "edcba"
 
 
+def test_that_numbered_names_are_sorted_by_their_numbers(rows):
+    names = ("rock11", "rock3", "rock1")
+    rows.set_entries(tuple(ParticleEntry(name, Particle(name, MESH), None, {}) for name in names))
+    rows.sort(0)
+    assert listed(rows) == "rock1rock3rock11"
+
+
 def test_that_what_is_chosen_stays_chosen_when_rows_move(rows):
     chosen = QItemSelectionModel(rows)
     chosen.select(rows.index(0, 0), QItemSelectionModel.SelectionFlag.Select)

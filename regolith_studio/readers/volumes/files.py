@@ -5,6 +5,7 @@ import re
 from pathlib import Path
 
 from regolith_studio.errors import FileError
+from regolith_studio.io.natural_order import natural_key
 from regolith_studio.readers.error_messages import display_name
 from regolith_studio.readers.sandbox.parent import checked_size
 from regolith_studio.readers.volume_formats import VOLUME_FORMATS, volume_suffixes
@@ -39,7 +40,7 @@ def volume_files(path: str | Path) -> tuple[Path, ...]:
         raise FileError(
             f"The folder {display_name(path)} holds no volume; volumes end in {', '.join(suffixes)}."
         )
-    return tuple(path / file for file in sorted(found, key=_natural))
+    return tuple(path / file for file in sorted(found, key=natural_key))
 
 
 def slice_names(folder: Path) -> tuple[str, ...]:
@@ -56,7 +57,7 @@ def slice_names(folder: Path) -> tuple[str, ...]:
     names = max(series.values(), key=len)
     if not MIN_SLICES <= len(names) <= MAX_SLICES:
         return ()
-    return tuple(sorted(names, key=_natural))
+    return tuple(sorted(names, key=natural_key))
 
 
 def slices_stamp(folder: Path, names: tuple[str, ...]) -> tuple[int, list[int]]:
@@ -85,9 +86,3 @@ def _without_counter(name: str) -> tuple[str, ...]:
         return (name,)
     start, end = numbers[-1].span()
     return name[:start], name[end:]
-
-
-def _natural(name: str) -> list[tuple[int, int, str]]:
-    """Sorts ``slice10`` after ``slice9``."""
-    parts = re.split(r"(\d+)", name)
-    return [(1, int(part), "") if part.isdigit() and part.isascii() else (0, 0, part) for part in parts]

@@ -6,6 +6,7 @@ from typing import Any
 from PySide6.QtCore import QAbstractTableModel, QModelIndex, QObject, QPersistentModelIndex, Qt
 from PySide6.QtGui import QPixmap
 
+from regolith_studio.io.natural_order import natural_key
 from regolith_studio.session.results import ParticleEntry
 from regolith_studio.ui.icons import pixmap
 from regolith_studio.ui.theme import Theme
@@ -101,8 +102,12 @@ class ParticleTableModel(QAbstractTableModel):
         kept = [entry for entry in self.entries if self._keeps is None or self._keeps(entry)]
         if self._column != UNSORTED:
             falling = self._order == Qt.SortOrder.DescendingOrder
-            kept.sort(key=lambda entry: self.value(entry, self._column), reverse=falling)
+            kept.sort(key=self._sort_key, reverse=falling)
         return tuple(kept)
+
+    def _sort_key(self, entry: ParticleEntry) -> Any:
+        value = self.value(entry, self._column)
+        return natural_key(value) if isinstance(value, str) else value
 
     def _reset(self, rows: tuple[ParticleEntry, ...]) -> None:
         self.beginResetModel()
