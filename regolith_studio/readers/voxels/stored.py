@@ -3,7 +3,7 @@
 import math
 import os
 import zlib
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, BinaryIO
@@ -258,6 +258,8 @@ class DeflatedVoxels:
         Shape and type of the voxels in memory.
     stored
         The type in the file, with its byte order.
+    open_stream
+        What unpacks the stream, from the file and the stream's place in it.
     """
 
     path: Path
@@ -265,6 +267,7 @@ class DeflatedVoxels:
     offset: int
     header: VoxelHeader
     stored: np.dtype[Any]
+    open_stream: Callable[[Path, int], InflatedStream] = InflatedStream
     in_order: bool = True
     _stream: InflatedStream | None = field(default=None, init=False)
 
@@ -274,7 +277,7 @@ class DeflatedVoxels:
         place = self.offset + z0 * ny * nx * self.stored.itemsize
         if self._stream is None or self._stream.place > place:
             self.close()
-            self._stream = InflatedStream(self.path, self.start)
+            self._stream = self.open_stream(self.path, self.start)
         out = np.empty((z1 - z0, ny, nx), self.stored)
         try:
             self._stream.skip(place - self._stream.place)
