@@ -1,10 +1,13 @@
 """What the views can show besides the surfaces, and their way into files."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from PIL import Image
 from PySide6.QtWidgets import QApplication
 
+from regolith_studio.coarsening.result import SphericityFree
 from regolith_studio.geometry.oriented_box import minimum_volume_box
 from regolith_studio.scene import overlays
 from regolith_studio.scene.comparison import OTHER
@@ -51,6 +54,19 @@ def test_that_box_star_point_and_overlay_come_and_go(window):
         window.menus.by_name[f"explore.{name}"].trigger()
     for view in ("particle", "fit", "polyhedron"):
         assert not any(seen(window, view, each) for each in (overlays.BOX, overlays.STAR_POINT, VEIL))
+
+
+def test_that_the_price_of_an_exact_sphericity_is_told_beside_the_choices(window, settled):
+    coarse = window.session.results.coarsened
+    assert not window.page.coarsening.outcome.isVisible()
+    free = SphericityFree(coarse.jaccard_distance / 2, 0.18)
+    window.session.update("coarsening", coarsened=replace(coarse, sphericity_free=free))
+    settled(window)
+    said = window.page.coarsening.outcome.text()
+    assert (
+        f"with the sphericity free it is {free.jaccard_distance:.3f}, and the sphericity is off by 18 %"
+        in said
+    )
 
 
 @pytest.mark.slow

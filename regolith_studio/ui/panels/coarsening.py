@@ -135,7 +135,7 @@ class CoarseningPanel(QWidget):
             form.setValue(dict(value["settings"]))
 
     def set_outcome(self, sentence: str | None) -> None:
-        """Show why a request could not be met, or nothing."""
+        """Show why a request could not be met, what meeting it costs, or nothing."""
         self.outcome.setText(translate(sentence) if sentence else "")
         self.outcome.setVisible(bool(sentence))
 

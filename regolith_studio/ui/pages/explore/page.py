@@ -5,6 +5,7 @@ from functools import partial
 
 from PySide6.QtWidgets import QHBoxLayout, QMainWindow, QVBoxLayout, QWidget
 
+from regolith_studio.messages import join_messages
 from regolith_studio.scene.cameras import DIRECTIONS
 from regolith_studio.scene.shapes import PARTICLE
 from regolith_studio.ui.latest_job import LatestJob
@@ -162,4 +163,6 @@ class ExplorePage(PageWidget):
     def _show_coarsening(self) -> None:
         results = self._session.results
         self.three_views.show_polyhedron(results)
-        self.coarsening.set_outcome(results.coarsened.reason if results.coarsened else None)
+        coarse = results.coarsened
+        said = [each for each in (coarse.reason, coarse.warning) if each] if coarse else []
+        self.coarsening.set_outcome(join_messages(said) if said else None)
