@@ -5096,8 +5096,8 @@
         <translation>Volumen, Oberfläche, Seitenverhältnis</translation>
     </message>
     <message>
-        <source>Volumes (*.tif *.tiff *.h5 *.hdf5 *.nrrd *.nhdr *.mha *.mhd *.nii *.nii.gz *.npy *.raw);;All files (*)</source>
-        <translation>Volumen (*.tif *.tiff *.h5 *.hdf5 *.nrrd *.nhdr *.mha *.mhd *.nii *.nii.gz *.npy *.raw);;Alle Dateien (*)</translation>
+        <source>Volumes ({suffixes});;All files (*)</source>
+        <translation>Volumen ({suffixes});;Alle Dateien (*)</translation>
     </message>
     <message>
         <source>Voxel size x, y, z</source>

@@ -208,6 +208,32 @@ def test_that_a_raw_file_is_asked_for_its_layout(page, tmp_path, wait):
     wait(lambda: page.preview is not None, SECONDS)
 
 
+def test_that_raw_voxels_with_the_header_of_a_scanner_beside_them_are_read_without_a_question(
+    page, tmp_path, wait
+):
+    array = np.ascontiguousarray(sample_volume("grey").array[:60, :50, :40].T, np.dtype("<f4"))
+    (tmp_path / "scan.vol").write_bytes(array.tobytes())
+    (tmp_path / "scan.vol.info").write_text(
+        "NUM_X = 60\nNUM_Y = 50\nNUM_Z = 40\nvoxelSize = 2.5\nBYTEORDER = LOWBYTEFIRST\n"
+    )
+    page.open(tmp_path / "scan.vol")
+    wait(lambda: page.scan is not None or page.findChild(VolumeDialog), SECONDS)
+    assert page.findChild(VolumeDialog) is None
+    assert np.array_equal(page.scan.volume.array, array.T)
+    assert page.scan.volume.voxel_size == pytest.approx([2.5] * 3)
+    wait(lambda: page.preview is not None, SECONDS)
+
+
+def test_that_the_file_dialog_shows_every_format_of_volumes(page, monkeypatch):
+    asked = []
+    monkeypatch.setattr(
+        "regolith_studio.ui.pages.scan.page.QFileDialog.getOpenFileName",
+        lambda *given: asked.append(given[-1]) or ("", ""),
+    )
+    page.ask_for_file()
+    assert all(f"*{suffix}" in asked[0] for suffix in (".tif", ".txm", ".vgi", ".am", ".nii.gz", ".raw"))
+
+
 def test_that_the_name_of_a_raw_file_fills_the_form_in_and_its_size_is_checked(page, tmp_path):
     path = tmp_path / "scan_30x20x10_uint16_be.raw"
     path.write_bytes(bytes(30 * 20 * 10 * 2 + 64))

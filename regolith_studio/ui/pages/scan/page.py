@@ -29,7 +29,9 @@ from regolith_studio.jobs.volume_jobs import (
     read_scan,
 )
 from regolith_studio.messages import N_
+from regolith_studio.readers.volume_formats import volume_suffixes
 from regolith_studio.readers.volumes.header import VolumeHeader, layout_from_name
+from regolith_studio.readers.voxels.scanner_headers import header_beside
 from regolith_studio.session.batch.preprocessing import entry_of
 from regolith_studio.session.provenance import VolumeSource
 from regolith_studio.session.recipe import VolumeEntry
@@ -42,9 +44,7 @@ from regolith_studio.ui.pages.scan.workflow_panel import WorkflowPanel
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import tr, translate
 
-VOLUMES = N_(
-    "Volumes (*.tif *.tiff *.h5 *.hdf5 *.nrrd *.nhdr *.mha *.mhd *.nii *.nii.gz *.npy *.raw);;All files (*)"
-)
+VOLUMES = N_("Volumes ({suffixes});;All files (*)")
 RECIPES = N_("Settings (*.json);;All files (*)")
 PREVIEW_DELAY = 120
 """Milliseconds from the last change to the preview."""
@@ -112,7 +112,8 @@ class ScanPage(PageWidget):
 
     def ask_for_file(self) -> None:
         """Ask for a volume and open it."""
-        name, _ = QFileDialog.getOpenFileName(self, tr("Open a volume"), self._folder(), tr(VOLUMES))
+        kinds = tr(VOLUMES, suffixes=" ".join(f"*{suffix}" for suffix in sorted(volume_suffixes())))
+        name, _ = QFileDialog.getOpenFileName(self, tr("Open a volume"), self._folder(), kinds)
         if name:
             self.open(Path(name))
 
@@ -125,7 +126,7 @@ class ScanPage(PageWidget):
     def open(self, path: Path) -> None:
         """Open a file or a folder of slices, and ask for missing properties."""
         self._context.remember("folder", str(path.parent))
-        if path.suffix.lower() in RAW_SUFFIXES:
+        if path.suffix.lower() in RAW_SUFFIXES and header_beside(path) is None:
             self._ask_layout(path)
             return
         job = Job(read_header, (VolumeInput(path),))
