@@ -45,7 +45,7 @@ DISK_MOMENTS, KILL_MOMENTS = 5, 10
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGKILL)
 NOT_COMPARED = {"times.json", "journal"}
 """Durations differ, and a journal is there to be resumed."""
-PATIENCE = 300.0
+PATIENCE = 900.0
 BLOCK = 4096
 """Bytes in which a file system in memory counts."""
 GRACE = 2.0
@@ -270,11 +270,16 @@ def judge(arena: Arena, case: Prepared, ended: Ended, row: Row, signalled: bool 
             row.unclear += 1
             print(f"  {case.name}: code {ended.code}, {ended.stderr.strip()[-300:]!r}", file=sys.stderr)
     if found not in (case.old, case.new):
-        whole = set(found.items()) <= set(case.old.items()) | set(case.new.items())
         row.lost += not found
         row.mixed += bool(found)
-        names = sorted(set(found) ^ set(case.new))[:4] if whole else "other content"
-        print(f"  {case.name}: code {ended.code}, mixed: {names}", file=sys.stderr)
+        other = {
+            name for name, digest in found.items() if digest not in (case.old.get(name), case.new.get(name))
+        }
+        print(
+            f"  {case.name}: code {ended.code}, mixed; missing or too many: "
+            f"{sorted(set(found) ^ set(case.new))[:4]}, other content: {sorted(other)[:4]}",
+            file=sys.stderr,
+        )
     elif not ended.code and found != case.new:
         row.lost += 1
     if hidden := arena.hidden() + ["process"] * ended.processes:
