@@ -168,7 +168,8 @@ def column(window, title):
     """What the table of descriptors says, by the first word of its rows."""
     table = window.findChild(QWidget, "descriptor_table").table
     at = next(n for n in range(table.columnCount()) if table.horizontalHeaderItem(n).text() == title)
-    rows = [table.verticalHeaderItem(row).toolTip().split(":")[0] for row in range(table.rowCount())]
+    tips = [table.verticalHeaderItem(row).toolTip() for row in range(table.rowCount())]
+    rows = [tip.partition(":")[0].partition(", ")[2] for tip in tips]
     texts = [table.item(row, at).text() for row in range(table.rowCount())]
     return {name: float(text.replace(",", "")) for name, text in zip(rows, texts, strict=True)}
 
