@@ -63,9 +63,7 @@ def test_that_medium_numbers_of_facets_are_met_and_cost_no_more_overlap_than_ano
             assert found.reason is None
             assert found.n_facets == n_facets
             overlap[n_facets] += found.jaccard_distance / 6
-    assert (
-        max(overlap[30], overlap[50]) < overlap[20] + 0.006
-    )  # as means of six seeds scatter
+    assert max(overlap[30], overlap[50]) < overlap[20] + 0.006  # as means of six seeds scatter
 
 
 def test_that_a_convex_particle_has_no_more_surface_than_its_hull() -> None:
