@@ -6004,6 +6004,10 @@
         <translation>Anzahl</translation>
     </message>
     <message>
+        <source>or</source>
+        <translation>oder</translation>
+    </message>
+    <message>
         <source>overlapping spheres stand for each polyhedron; facets become bumpy, corners round.</source>
         <translation>überlappende Kugeln stehen für jedes Polyeder; Facetten werden höckerig, Ecken rund.</translation>
     </message>

@@ -91,7 +91,7 @@ def decision_line(step: AnnealingStep) -> str:
     """The acceptance criterion with its numbers."""
     move = step.move
     if move is None:
-        return r"$\Delta L<0\;$ or $\;u<T(k)\quad\Rightarrow\quad$ " + tr("accept")
+        return r"$\Delta L<0\;$ " + tr("or") + r" $\;u<T(k)\quad\Rightarrow\quad$ " + tr("accept")
     if move.proposed is None:
         return tr("no polyhedron") + r" $\quad\Rightarrow\quad$ " + tr("refuse")
     change = move.proposed.loss - move.before.loss
