@@ -291,7 +291,9 @@ def extract(
     volume: Annotated[
         Path,
         typer.Argument(
-            metavar="VOLUME", help="TIFF stack, folder of slices, HDF5, NRRD, MetaImage, NIfTI, NPY or raw."
+            metavar="VOLUME",
+            help="TIFF stack, folder of slices, TXM, Amira, HDF5, NRRD, MetaImage, NIfTI, NPY, raw, or the "
+            "header of a scanner beside its voxels.",
         ),
     ],
     output: OptionalFolder = None,

@@ -93,28 +93,16 @@ def _check_folder(folder: Path) -> None:
         raise FileError(f"The folder {existing} cannot be written (Permission denied).")
 
 
-Folder = Annotated[
-    Path,
-    typer.Option(
-        "--output",
-        "-o",
-        help="Folder to write.",
-        metavar="DIR",
-        parser=output_path,
-        callback=claim_folder,
-    ),
-]
-OptionalFolder = Annotated[
-    Path | None,
-    typer.Option(
-        "--output",
-        "-o",
-        help="Folder to write.",
-        metavar="DIR",
-        parser=output_path,
-        callback=claim_folder,
-    ),
-]
+_FOLDER = typer.Option(
+    "--output",
+    "-o",
+    help="Folder to write.",
+    metavar="DIR",
+    parser=output_path,
+    callback=claim_folder,
+)
+Folder = Annotated[Path, _FOLDER]
+OptionalFolder = Annotated[Path | None, _FOLDER]
 LMax = Annotated[
     int,
     typer.Option(

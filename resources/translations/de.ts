@@ -3012,8 +3012,8 @@
         <translation>Ein CT-Volumen mit Grauwerten oder Labels öffnen</translation>
     </message>
     <message>
-        <source>Open a CT volume: TIFF stack, folder of slices, HDF5, NRRD, MetaImage, NIfTI, NPY or raw. Drop it here, or begin with the sample scan.</source>
-        <translation>Öffnen Sie ein CT-Volumen: TIFF-Stapel, Ordner mit Schichtbildern, HDF5, NRRD, MetaImage, NIfTI, NPY oder Rohdaten. Legen Sie es hier ab, oder beginnen Sie mit dem Beispielscan.</translation>
+        <source>Open a CT volume: TIFF stack, folder of slices, TXM, Amira, HDF5, NRRD, MetaImage, NIfTI, NPY, raw, or the header of a scanner. Drop it here, or begin with the sample scan.</source>
+        <translation>Öffnen Sie ein CT-Volumen: TIFF-Stapel, Ordner mit Schichtbildern, TXM, Amira, HDF5, NRRD, MetaImage, NIfTI, NPY, Rohdaten oder die Beschreibung eines Scanners. Legen Sie es hier ab, oder beginnen Sie mit dem Beispielscan.</translation>
     </message>
     <message>
         <source>Open a dataset</source>

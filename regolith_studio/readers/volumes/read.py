@@ -104,7 +104,7 @@ def describe_volume(
     Parameters
     ----------
     path
-        TIFF stack, folder of slices, NRRD, MetaImage, NIfTI, HDF5, NPY or raw.
+        A file of one of ``VOLUME_FORMATS``, or a folder of slices.
     dataset
         Which volume of a file that holds several; by default the likeliest.
     axes
