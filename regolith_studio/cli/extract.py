@@ -9,11 +9,11 @@ import typer
 from regolith_studio.cli.dataclass_options import with_dataclass_options
 from regolith_studio.cli.options import Jobs, Json, OptionalFolder, Seed, usage_errors
 from regolith_studio.cli.terminal import print_errors, print_json, print_table, run_with_progress
+from regolith_studio.readers.volumes.region import RegionSettings
 
 MAX_H = 1e6
 
 if TYPE_CHECKING:
-    from regolith_studio.imaging.segmentation.segment import SegmentationSettings
     from regolith_studio.imaging.segmentation.thresholding import ThresholdSettings
     from regolith_studio.imaging.volume import VolumeKind
     from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput
@@ -92,8 +92,9 @@ class VolumeOptions:
 
 @dataclass(frozen=True)
 class GrainOptions:
-    """How grains are found and their surfaces taken."""
+    """Where grains are looked for, how they are found and their surfaces taken."""
 
+    region: RegionSettings
     denoise: Annotated[
         str,
         typer.Option(
@@ -192,6 +193,7 @@ class GrainOptions:
                 min_voxels=self.min_voxels,
                 surface=self.surface,  # type: ignore[arg-type]  # checked by the settings
             ),
+            self.region,
         )
 
 
@@ -271,7 +273,7 @@ def _heights(text: str) -> tuple[float, ...]:
 
 
 def _print_counts(
-    given: "VolumeInput", settings: "SegmentationSettings", heights: tuple[float, ...], as_json: bool
+    given: "VolumeInput", settings: "GrainSettings", heights: tuple[float, ...], as_json: bool
 ) -> None:
     """Print number and size of the grains that each h gives."""
     from regolith_studio.imaging.segmentation.segment import heights_table
@@ -332,7 +334,7 @@ def extract(
         settings = read_grain_settings(recipe) if recipe else grains.recipe
         heights = _heights(preview_h)
     if heights:
-        _print_counts(given, settings.segmentation, heights, json)
+        _print_counts(given, settings, heights, json)
         return
     if output is None:
         raise typer.BadParameter("Name a folder to write with -o, or values for --preview-h.")

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from regolith_studio.errors import InputError
-from regolith_studio.geometry.arrays import BoolArray, FloatArray
+from regolith_studio.geometry.arrays import BoolArray
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle, Source
 from regolith_studio.imaging.bounding_boxes import Box, box_between, grown, touches, within
@@ -285,19 +285,18 @@ def _surfaces(
     volume: SliceSource, grey: SliceSource | None, boxes: Mapping[int, Box], settings: ExtractionSettings
 ) -> Iterator[_Made]:
     """Label, mesh in micrometres, notes and origin of each surface."""
-    edges = np.asarray(volume.voxel_size, float)
     if grey is None:
         for label, mask in label_masks(volume, boxes):
-            yield label, *mask_surface(mask, boxes[label], edges, settings), "mask"
+            yield label, *mask_surface(mask, boxes[label], volume, settings), "mask"
         return
     whole = box_between((0, 0, 0), volume.shape)
     wider = {label: grown(box, MARGIN, whole) for label, box in boxes.items()}
     for label, crop in grain_crops(volume, grey, wider):
-        yield label, *grey_surface(crop, boxes[label], wider[label], edges, settings)
+        yield label, *grey_surface(crop, boxes[label], wider[label], volume, settings)
 
 
 def mask_surface(
-    mask: NDArray[np.bool_], box: Box, voxel_size: FloatArray, settings: ExtractionSettings
+    mask: NDArray[np.bool_], box: Box, volume: SliceSource, settings: ExtractionSettings
 ) -> tuple[Mesh, tuple[str, ...]]:
     """Surface of one label's mask at its place in the volume, in micrometres, and notes on it.
 
@@ -305,15 +304,15 @@ def mask_surface(
     ----------
     mask, box
         The label in its box, and the box.
-    voxel_size
-        Edges of a voxel along x, y, z, in micrometres, shape (3,).
+    volume
+        What they lie in; not read.
     """
     body, notes = _one_body(mask, settings)
-    return _placed(mask_mesh(body, settings.iterations, settings.pass_band), box, voxel_size), tuple(notes)
+    return _placed(mask_mesh(body, settings.iterations, settings.pass_band), box, volume), tuple(notes)
 
 
 def grey_surface(
-    crop: GrainCrop, box: Box, wider: Box, voxel_size: FloatArray, settings: ExtractionSettings
+    crop: GrainCrop, box: Box, wider: Box, volume: SliceSource, settings: ExtractionSettings
 ) -> tuple[Mesh, tuple[str, ...], Surface]:
     """As :func:`mask_surface`, of the grey values about the grain if they tell it, else of its mask.
 
@@ -325,21 +324,22 @@ def grey_surface(
     part = within(box, wider)
     body, notes = _one_body(crop.own[part], settings)
     padding = [(a.start, n - a.stop) for a, n in zip(part, crop.own.shape, strict=True)]
-    cubic = float(np.ptp(voxel_size)) <= 1e-3 * float(voxel_size.max())
+    edges = np.asarray(volume.voxel_size, float)
+    cubic = float(np.ptp(edges)) <= 1e-3 * float(edges.max())
     mesh = grey_mesh(crop, np.pad(body, padding), settings.iterations, settings.pass_band, cubic)
     if isinstance(mesh, str):
         notes.append(f"{_OF_MASK}: {mesh}.")
         return (
-            _placed(mask_mesh(body, settings.iterations, settings.pass_band), box, voxel_size),
+            _placed(mask_mesh(body, settings.iterations, settings.pass_band), box, volume),
             tuple(notes),
             "mask",
         )
-    return _placed(mesh, wider, voxel_size), tuple(notes), "grey"
+    return _placed(mesh, wider, volume), tuple(notes), "grey"
 
 
-def _placed(mesh: Mesh, box: Box, voxel_size: FloatArray) -> Mesh:
-    corner = np.array([side.start for side in box], dtype=np.float64)
-    return Mesh((mesh.vertices + corner) * voxel_size, mesh.faces)
+def _placed(mesh: Mesh, box: Box, volume: SliceSource) -> Mesh:
+    corner = np.array([side.start for side in box]) + np.array(volume.origin)
+    return Mesh((mesh.vertices + corner) * np.asarray(volume.voxel_size, float), mesh.faces)
 
 
 def _one_body(mask: BoolArray, settings: ExtractionSettings) -> tuple[BoolArray, list[str]]:

@@ -11,11 +11,13 @@ from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray, locked_floats
 
 VolumeKind = Literal["labels", "grey"]
+Origin = tuple[float, float, float]
+"""A place in a volume along x, y and z, in voxels from the centre of the first one."""
 
 
 @dataclass(frozen=True, eq=False)
 class Volume:
-    """Voxels on a rectangular grid; voxel [0, 0, 0] has its centre at the origin.
+    """Voxels on a rectangular grid.
 
     The array is not copied, since volumes can fill the memory: the volume holds a read-only view,
     and whoever made the array must leave it alone.
@@ -31,6 +33,8 @@ class Volume:
         ``labels`` (each particle its own number) or ``grey``.
     name
         As the user knows the volume.
+    origin
+        Place of the centre of voxel [0, 0, 0] in the whole volume that this is a part of, in voxels.
 
     Raises
     ------
@@ -42,6 +46,7 @@ class Volume:
     voxel_size: FloatArray
     kind: VolumeKind
     name: str
+    origin: Origin = (0.0, 0.0, 0.0)
 
     def __post_init__(self) -> None:
         view = np.asanyarray(self.array).view()
@@ -59,7 +64,7 @@ class Volume:
         object.__setattr__(self, "voxel_size", sizes)
 
     def __reduce__(self) -> tuple[Callable[..., "Volume"], tuple[Any, ...]]:
-        return Volume, (self.array, self.voxel_size, self.kind, self.name)
+        return Volume, (self.array, self.voxel_size, self.kind, self.name, self.origin)
 
     @property
     def shape(self) -> tuple[int, int, int]:

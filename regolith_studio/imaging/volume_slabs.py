@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from regolith_studio.errors import MissingRequirement
-from regolith_studio.imaging.volume import VolumeKind
+from regolith_studio.imaging.volume import Origin, VolumeKind
 
 SLAB_VOXELS = 2**24
 """Voxels that are worked on at a time, unless a few slices are more."""
@@ -29,7 +29,8 @@ class SliceSource(Protocol):
     """Anything that gives slices of a volume: a :class:`~regolith_studio.imaging.volume.Volume`, a file.
 
     `shape` is (nx, ny, nz), `dtype` the type of a voxel, `voxel_size` its edges along x, y, z in
-    micrometres, and `kind` says ``labels`` or ``grey``. ``read(z0, z1)`` gives the slices
+    micrometres, `origin` the place of its first voxel (as in a ``Volume``), and `kind` says ``labels`` or
+    ``grey``. ``read(z0, z1)`` gives the slices
     ``z0 <= z < z1``, shape (nx, ny, z1 - z0).
     """
 
@@ -41,6 +42,9 @@ class SliceSource(Protocol):
 
     @property
     def voxel_size(self) -> ArrayLike: ...
+
+    @property
+    def origin(self) -> Origin: ...
 
     @property
     def kind(self) -> VolumeKind: ...

@@ -19,6 +19,7 @@ from regolith_studio.imaging.volume import VolumeKind
 from regolith_studio.readers.file_bytes import read_bytes
 from regolith_studio.readers.volumes.header import RawLayout
 from regolith_studio.readers.volumes.read import VolumeFile, open_slabs
+from regolith_studio.readers.volumes.region import RegionSettings
 
 S = TypeVar("S")
 _LARGEST = 64 * 2**20
@@ -37,10 +38,15 @@ class GrainSettings:
 
     segmentation: SegmentationSettings = field(default_factory=SegmentationSettings)
     extraction: ExtractionSettings = field(default_factory=ExtractionSettings)
+    region: RegionSettings = field(default_factory=RegionSettings)
 
     def as_document(self) -> dict[str, Any]:
         """Plain JSON."""
-        return {"segmentation": asdict(self.segmentation), "extraction": asdict(self.extraction)}
+        return {
+            "region": asdict(self.region),
+            "segmentation": asdict(self.segmentation),
+            "extraction": asdict(self.extraction),
+        }
 
     @classmethod
     def from_document(cls, document: Mapping[str, Any]) -> "GrainSettings":
@@ -56,6 +62,7 @@ class GrainSettings:
         return cls(
             SegmentationSettings(**parts),
             _parse_settings(ExtractionSettings, _section(document, "extraction")),
+            _parse_settings(RegionSettings, _section(document, "region")),
         )
 
 

@@ -44,7 +44,8 @@ from regolith_studio.jobs.particle_jobs import MeasuredParticle, measure_one
 from regolith_studio.messages import N_, Message
 from regolith_studio.readers.file_bytes import sha256_of
 from regolith_studio.readers.volumes.files import slice_names
-from regolith_studio.readers.volumes.read import VolumeFile, describe_volume, read_volume
+from regolith_studio.readers.volumes.read import VolumeFile, describe_volume
+from regolith_studio.readers.volumes.region import RegionSettings
 
 IN_MEMORY = 2**30
 """Bytes of a volume, or of what is computed from it, beyond which it stays on the disk."""
@@ -116,26 +117,18 @@ def read_header(given: VolumeInput) -> Steps:
     return describe_volume(given.path, dataset=given.dataset, axes=given.axes, raw=given.raw)
 
 
-def read_scan(given: VolumeInput) -> Steps:
-    """Read a volume into memory, or map it beyond :data:`IN_MEMORY`; returns a :class:`Scan`.
+def read_scan(given: VolumeInput, region: RegionSettings | None = None) -> Steps:
+    """Read a region of a volume into memory, or map it beyond :data:`IN_MEMORY`; returns a :class:`Scan`.
 
     What lies in the file as it is, is mapped there; packed voxels are unpacked into a temporary file.
     """
     yield Started(Message(N_("Reading {name}"), name=given.path.name))
-    source = given.opened()
+    source = (region or RegionSettings()).of(given.opened())
     if _n_bytes(source) > IN_MEMORY:
         return (yield from _map_volume(source))
-    volume = read_volume(
-        given.path,
-        dataset=given.dataset,
-        axes=given.axes,
-        voxel_size=given.voxel_size,
-        unit=given.unit,
-        kind=given.kind,
-        raw=given.raw,
-    )
+    array = source.read(0, source.shape[2])
     yield Progress(1, 2, N_("Counting grey values"))
-    return scan_of(volume)
+    return scan_of(_volume_of(source, array))
 
 
 def find_grains(scan: Scan, settings: SegmentationSettings) -> Steps:
@@ -159,10 +152,11 @@ def scratch_folder() -> Path:
     return there if there.is_dir() and os.access(there, os.W_OK) else Path(tempfile.gettempdir())
 
 
-def read_sample_scan(kind: SampleVolume = "grey") -> Steps:
-    """Read the shipped synthetic scan; returns a :class:`Scan`."""
+def read_sample_scan(kind: SampleVolume = "grey", region: RegionSettings | None = None) -> Steps:
+    """Read a region of the shipped synthetic scan; returns a :class:`Scan`."""
     yield Started(N_("Reading the sample scan"))
-    return scan_of(sample_volume(kind))
+    source = (region or RegionSettings()).of(sample_volume(kind))
+    return scan_of(_volume_of(source, source.read(0, source.shape[2])))
 
 
 def preview_part(volume: Volume, box: Box, settings: SegmentationSettings, level: float | None) -> Steps:
@@ -187,7 +181,7 @@ def preview_heights(
 
 
 def count_over_heights(
-    given: VolumeInput, settings: SegmentationSettings, heights: Sequence[float], scratch: Path | None = None
+    given: VolumeInput, settings: GrainSettings, heights: Sequence[float], scratch: Path | None = None
 ) -> Steps:
     """Grains of a file with each h of `heights`; returns a tuple of ``GrainsAtHeight``.
 
@@ -197,17 +191,21 @@ def count_over_heights(
         If it holds labels, which are grains already.
     """
     yield Started(Message(N_("Reading {name}"), name=given.path.name))
-    volume = given.opened()
+    volume = settings.region.of(given.opened())
     if volume.kind != "grey":
         raise InputError(
             f"{given.path.name} holds labels, which are grains already; there is no h to choose."
         )
     with ScratchArrays(scratch if _working_bytes(volume) > IN_MEMORY else None) as arrays:
-        return (yield from _reported(grains_over_heights(volume, heights, settings, arrays)))
+        return (yield from _reported(grains_over_heights(volume, heights, settings.segmentation, arrays)))
 
 
-def _map_volume(source: VolumeFile) -> Generator[Step, None, Scan]:
-    array, scratch = source.mapped(), ScratchArrays()
+def _volume_of(source: SliceSource, array: NDArray[Any]) -> Volume:
+    return Volume(array, np.array(source.voxel_size), source.kind, source.name, source.origin)
+
+
+def _map_volume(source: SliceSource) -> Generator[Step, None, Scan]:
+    array, scratch = source.mapped() if isinstance(source, VolumeFile) else None, ScratchArrays()
     try:
         if array is None:
             scratch = ScratchArrays(scratch_folder())
@@ -216,7 +214,7 @@ def _map_volume(source: VolumeFile) -> Generator[Step, None, Scan]:
             for done, (first, stop) in enumerate(ranges, start=1):
                 array[:, :, first:stop] = source.read(first, stop)
                 yield Progress(done, len(ranges), N_("Unpacking into a temporary file"))
-        volume = Volume(array, np.array(source.voxel_size), source.kind, source.name)
+        volume = _volume_of(source, array)
         return scan_of(volume, (yield from _slice_images(volume)), scratch)
     except BaseException:
         scratch.close()
@@ -234,7 +232,7 @@ def _slice_images(volume: Volume) -> Generator[Step, None, SliceImages]:
             yield Progress(done, total, N_("Looking through the slices"))
 
 
-def _n_bytes(source: VolumeFile) -> int:
+def _n_bytes(source: SliceSource) -> int:
     return int(np.prod([int(edge) for edge in source.shape])) * source.dtype.itemsize
 
 
@@ -394,7 +392,7 @@ def _extract(
     collect: bool = False,
 ) -> Steps:
     yield Started(Message(N_("Reading {name}"), name=given.path.name))
-    volume = given.opened()
+    volume = recipe.region.of(given.opened())
     sizes = tuple(float(edge) for edge in np.ravel(np.asarray(volume.voxel_size)))
     source = _source_of(given.path, volume)
     with ScratchArrays(folder if _working_bytes(volume) > IN_MEMORY else None) as scratch:

@@ -112,7 +112,7 @@ class VolumeEntry(Strict):
         As ``regolith-studio extract`` takes them; by default what the file says.
     recipe
         An ``extraction.json`` with all settings, as ``extract`` and the window write it.
-    segmentation, extraction
+    region, segmentation, extraction
         The settings themselves, in place of such a file.
     """
 
@@ -124,12 +124,13 @@ class VolumeEntry(Strict):
     axes: str | None = None
     raw: RawVolume | None = None
     recipe: str | None = None
+    region: dict[str, Any] = Field(default_factory=dict)
     segmentation: dict[str, Any] = Field(default_factory=dict)
     extraction: dict[str, Any] = Field(default_factory=dict)
 
     @model_validator(mode="after")
     def _one_way(self) -> Self:
-        if self.recipe is not None and (self.segmentation or self.extraction):
+        if self.recipe is not None and (self.region or self.segmentation or self.extraction):
             raise ValueError("give settings or the recipe that holds them, not both")
         return self
 

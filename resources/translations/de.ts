@@ -688,6 +688,10 @@
         <translation>Angepasstes Ellipsoid</translation>
     </message>
     <message>
+        <source>Bin</source>
+        <translation>Binning</translation>
+    </message>
+    <message>
         <source>Bin width, in mean d</source>
         <translation>Klassenbreite, in mittleren d</translation>
     </message>
@@ -1120,6 +1124,10 @@
         <translation>Grauwerte werden gezählt</translation>
     </message>
     <message>
+        <source>Crop</source>
+        <translation>Zuschnitt</translation>
+    </message>
+    <message>
         <source>Cross-s&amp;ection</source>
         <translation>&amp;Querschnitt</translation>
     </message>
@@ -1382,6 +1390,10 @@
     <message>
         <source>Earth</source>
         <translation>Erde</translation>
+    </message>
+    <message>
+        <source>Edge in voxels of the cubes whose mean becomes one voxel: 2 makes eight voxels one.</source>
+        <translation>Kante der Würfel in Voxeln, deren Mittelwert ein Voxel wird: 2 macht aus acht Voxeln eines.</translation>
     </message>
     <message>
         <source>Edge of a voxel</source>
@@ -3212,6 +3224,10 @@
         <translation>Parametrisch, mit Facetten: Größe, Form, Rauheit und Hüllenverhältnis hängen zusammen wie in der Probe.</translation>
     </message>
     <message>
+        <source>Part of the volume to work on: X0:X1,Y0:Y1,Z0:Z1 in voxels, or in lengths with a unit, such as 0.2:1.5mm,:,100:300. Particles keep their places in the whole volume.</source>
+        <translation>Teil des Volumens, mit dem gearbeitet wird: X0:X1,Y0:Y1,Z0:Z1 in Voxeln oder in Längen mit Einheit, etwa 0.2:1.5mm,:,100:300. Partikel behalten ihren Platz im ganzen Volumen.</translation>
+    </message>
+    <message>
         <source>Particle</source>
         <translation>Partikel</translation>
     </message>
@@ -3510,6 +3526,10 @@
     <message>
         <source>Reference surface</source>
         <translation>Bezugsfläche</translation>
+    </message>
+    <message>
+        <source>Region of interest</source>
+        <translation>Auszuwertender Bereich</translation>
     </message>
     <message>
         <source>Regolith Studio was not closed properly the last time. Bring its state back?</source>

@@ -81,6 +81,38 @@ def test_that_the_recipe_of_one_scan_serves_the_next(command, tmp_path: Path) ->
     assert files[0] == files[1]
 
 
+def test_that_a_cropped_scan_gives_its_grains_in_their_places_and_the_recipe_too(
+    command, tmp_path: Path
+) -> None:
+    np.save(tmp_path / "scan.npy", two_balls())
+    call = ("extract", tmp_path / "scan.npy", "--kind", "grey", "--voxel-size", 2)
+    asked = ("--denoise", "none", "--threshold", 111, "--crop", "50:120um,:,:")
+    whole = command(*call, "-o", tmp_path / "whole", *asked[:4])
+    first = command(*call, "-o", tmp_path / "a", *asked)
+    second = command(*call, "-o", tmp_path / "b", "--recipe", tmp_path / "a" / "extraction.json")
+    assert (whole.code, first.code, second.code) == (0, 0, 0)
+    files = [{each.name: each.read_bytes() for each in (tmp_path / name).iterdir()} for name in "ab"]
+    assert files[0] == files[1]
+    recipe = json.loads(files[0]["extraction.json"])
+    assert recipe["region"] == {"crop": "50:120um,:,:", "bin": 1}
+    assert recipe["volume"]["shape_xyz"] == [35, 44, 40]
+    (row,), (larger, _) = rows_of(tmp_path / "a"), rows_of(tmp_path / "whole")
+    files = (tmp_path / "a" / f"{row['name']}.stl", tmp_path / "whole" / f"{larger['name']}.stl")
+    bounds = [trimesh.load_mesh(file).bounds for file in files]
+    assert bounds[0] == pytest.approx(bounds[1], abs=0.005)
+    assert bounds[0][0] == pytest.approx([60, 18, 16], abs=1)
+
+
+def test_that_a_binned_scan_gives_balls_of_the_right_size(command, tmp_path: Path) -> None:
+    np.save(tmp_path / "scan.npy", two_balls())
+    call = ("extract", tmp_path / "scan.npy", "-o", tmp_path / "x", "--voxel-size", 2, "--bin", 2)
+    result = command(*call, "--kind", "grey", "--min-voxels", 100, "--json")
+    assert result.code == 0, result.err
+    assert result.json["volume"]["voxel_size_um"] == [4.0, 4.0, 4.0]
+    radii = sorted(float(row["equivalent_radius [um]"]) for row in rows_of(tmp_path / "x"))
+    assert radii == pytest.approx([18.0, 24.0], rel=0.03)
+
+
 def test_that_keeping_the_border_of_labels_gives_all_grains(command, tmp_path: Path) -> None:
     scan, x = part_of_scan(tmp_path, "labels"), tmp_path / "x"
     result = command("extract", scan, "-o", x, "--border", "keep", "--voxel-size", 1, "--min-voxels", 600)
@@ -138,6 +170,8 @@ def test_that_a_probability_map_of_an_hdf5_file_is_taken(command, tmp_path: Path
         (("--h-maxima", "-1"), "h-maxima"),
         (("--min-voxels", "-1"), "--min-voxels"),
         (("--recipe", "nowhere.json"), "cannot be opened"),
+        (("--crop", "1:2"), "A crop is X0:X1,Y0:Y1,Z0:Z1"),
+        (("--bin", "65"), "a whole number from 1 to 64"),
     ],
 )
 def test_that_bad_options_are_bad_use(command, tmp_path: Path, options, sentence: str) -> None:

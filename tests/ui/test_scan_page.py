@@ -157,6 +157,26 @@ def test_that_a_click_and_the_wheel_go_through_the_slices(page, part, wait):
     assert "z = 39 of 70" in top.title.text()
 
 
+def test_that_a_region_is_read_again_and_a_wrong_one_is_explained(page, part, wait):
+    page.read(VolumeInput(part, 2.3, kind="grey"))
+    wait(lambda: page.preview is not None, SECONDS)
+    crop, edge = (page.controls.region.findChild(QWidget, f"setting_{name}") for name in ("crop", "bin"))
+    crop.setText("10:70,:,92:161um")
+    crop.editingFinished.emit()
+    wait(lambda: page.scan.volume.shape == (60, 80, 30), SECONDS)
+    edge.setValue(2)
+    wait(lambda: page.scan.volume.shape == (30, 40, 15), SECONDS)
+    assert page.scan.volume.origin == (5.25, 0.25, 20.25)
+    assert page.scan.volume.voxel_size.tolist() == [4.6, 4.6, 4.6]
+    assert page.state()["region"] == {"crop": "10:70,:,92:161um", "bin": 2}
+    crop.setText("10-70")
+    crop.editingFinished.emit()
+    assert page.controls.region_error.isVisible()
+    assert "X0:X1,Y0:Y1,Z0:Z1" in page.controls.region_error.text()
+    assert page.state()["region"]["crop"] == "10:70,:,92:161um"
+    wait(lambda: page.preview is not None, SECONDS)
+
+
 def test_that_labels_go_straight_to_particles(page, tmp_path, wait):
     np.save(tmp_path / "labels.npy", np.ascontiguousarray(sample_volume("labels").array[:80, :80, :80].T))
     page.open(tmp_path / "labels.npy")

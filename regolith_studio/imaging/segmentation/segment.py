@@ -162,7 +162,7 @@ def segmentation_steps(
             "is the threshold right, and are grains brighter than what is between them?"
         )
     small = int((found.bodies.sizes < least).sum()) + n_parts - len(sizes)
-    labels = Volume(found.numbers, found.edges, "labels", f"{source.name}, labels")
+    labels = Volume(found.numbers, found.edges, "labels", f"{source.name}, labels", source.origin)
     n_bodies = int((found.bodies.sizes >= least).sum())
     return Segmentation(labels, sizes, found.level, found.seen, n_bodies, small, found.n_not_finite)
 

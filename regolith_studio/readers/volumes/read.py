@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from regolith_studio.errors import FileError, InputError
-from regolith_studio.imaging.volume import Volume, VolumeKind
+from regolith_studio.imaging.volume import Origin, Volume, VolumeKind
 from regolith_studio.io.machine_memory import machine_memory
 from regolith_studio.readers.error_messages import message_about, printable
 from regolith_studio.readers.sandbox.parent import Sandbox
@@ -73,6 +73,11 @@ class VolumeFile:
         if self.kind == "labels" and voxels.dtype.kind == "f":
             voxels = _whole_numbers(self._file.path, voxels)
         return voxels.T
+
+    @property
+    def origin(self) -> Origin:
+        """Centre of the first voxel: the origin."""
+        return 0.0, 0.0, 0.0
 
     def mapped(self) -> NDArray[Any] | None:
         """The voxels where they lie in the file, shape (nx, ny, nz), or ``None`` where they are packed."""
@@ -184,7 +189,8 @@ def read_volume(
     array = _read_box(file, box, on_progress)
     if kind == "labels" and array.dtype.kind == "f":
         array = _whole_numbers(file.path, array)
-    return Volume(array.T, np.array(edges), kind, _name_of(file))
+    (z0, _), (y0, _), (x0, _) = box
+    return Volume(array.T, np.array(edges), kind, _name_of(file), (float(x0), float(y0), float(z0)))
 
 
 def open_slabs(

@@ -258,9 +258,9 @@ def _volume_input(entry: VolumeEntry, base: Path) -> VolumeInput:
 def _settings(entry: VolumeEntry, base: Path) -> GrainSettings:
     if entry.recipe is not None:
         return read_grain_settings(base / entry.recipe)
-    volume = {"segmentation": entry.segmentation, "extraction": entry.extraction}
-    _check_names(volume, GrainSettings().as_document(), "")
-    return GrainSettings.from_document(volume)
+    given = {"region": entry.region, "segmentation": entry.segmentation, "extraction": entry.extraction}
+    _check_names(given, GrainSettings().as_document(), "")
+    return GrainSettings.from_document(given)
 
 
 def _check_names(volume: Mapping[str, Any], allowed: Mapping[str, Any], prefix: str) -> None:

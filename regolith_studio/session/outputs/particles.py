@@ -94,6 +94,7 @@ def recipe_document(volume: VolumeInput, recipe: GrainSettings, result: Extracte
             "kind": result.kind,
             "voxel_size_um": list(result.voxel_size),
         },
+        "region": recipe.as_document()["region"],
         "extraction": recipe.as_document()["extraction"],
         "n_particles": result.extraction.n_found,
         "border": list(result.extraction.border),

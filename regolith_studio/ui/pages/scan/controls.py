@@ -1,4 +1,4 @@
-"""Settings of the segmentation: denoising, threshold, cleaning, splitting, surface."""
+"""Settings of the region of interest and the segmentation: denoising, threshold, splitting, surface."""
 
 import dataclasses
 from collections.abc import Sequence
@@ -7,12 +7,15 @@ from typing import Any
 from PySide6.QtCore import QEvent, QSignalBlocker, Signal
 from PySide6.QtWidgets import QCheckBox, QComboBox, QFormLayout, QVBoxLayout, QWidget
 
+from regolith_studio.errors import InputError
 from regolith_studio.imaging.extraction import voxel_diameter
 from regolith_studio.imaging.segmentation.morphology import CleaningSettings
 from regolith_studio.imaging.segmentation.segment import SegmentationSettings
 from regolith_studio.jobs.extraction_settings import GrainSettings
 from regolith_studio.messages import N_
-from regolith_studio.ui.translation import tr
+from regolith_studio.readers.volumes.region import RegionSettings
+from regolith_studio.ui.translation import tr, translate
+from regolith_studio.ui.widgets.forms import SettingsForm
 from regolith_studio.ui.widgets.labels import heading, remark
 from regolith_studio.ui.widgets.number_fields import DecimalField
 from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec, align_labels
@@ -88,7 +91,8 @@ class SegmentationControls(QWidget):
                 " however blurred the scan."
             )
         )
-        self.diameter = remark()
+        self.region = SettingsForm(RegionSettings)
+        self.diameter, self.region_error = remark(), remark()
         self._arrange()
         self._connect()
         self.setValue(self._recipe)
@@ -121,7 +125,7 @@ class SegmentationControls(QWidget):
             fill_pores=self.pores.isChecked(),
             surface=self.surface.currentData(),
         )
-        return GrainSettings(segmentation, extraction)
+        return GrainSettings(segmentation, extraction, self._recipe.region)
 
     def setValue(self, recipe: GrainSettings) -> None:
         """Show other settings without emitting a signal."""
@@ -148,6 +152,8 @@ class SegmentationControls(QWidget):
         self.closing.setValue(how.cleaning.closing)
         self.h_maxima.setValue(how.splitting.h_maxima)
         self.least.setValue(what.min_voxels)
+        self.region.setValue(dataclasses.asdict(recipe.region))
+        self.region_error.hide()
         self._show_which()
 
     def set_level(self, level: float) -> None:
@@ -200,6 +206,17 @@ class SegmentationControls(QWidget):
         self._show_which()
         self.valueChanged.emit(self.value())
 
+    def _region_changed(self, changes: dict[str, Any]) -> None:
+        """Take the region that was entered, or show why it is none."""
+        try:
+            self._recipe = dataclasses.replace(self._recipe, region=RegionSettings(**changes))
+        except InputError as error:
+            self.region_error.setText(translate(str(error)))
+            self.region_error.show()
+            return
+        self.region_error.hide()
+        self._changed()
+
     def _threshold_chosen(self) -> None:
         if self.threshold.currentData() == "probability":
             self._show_level(0.5)
@@ -214,6 +231,7 @@ class SegmentationControls(QWidget):
         for slider in self._sliders:
             slider.valueChanged.connect(lambda _: self._changed())
         self.level.valueChanged.connect(self._changed)
+        self.region.valueChanged.connect(self._region_changed)
 
     def _arrange(self) -> None:
         self.level.setObjectName("level")
@@ -223,6 +241,10 @@ class SegmentationControls(QWidget):
         self.level.setKeyboardTracking(False)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
+        layout.addWidget(heading(tr("Region of interest")))
+        layout.addWidget(self.region)
+        layout.addWidget(self.region_error)
+        layout.addSpacing(10)
         layout.addWidget(heading(tr("Segmentation")))
         layout.addLayout(
             _form(

@@ -2,6 +2,7 @@
 
 import contextlib
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -31,6 +32,7 @@ from regolith_studio.jobs.volume_jobs import (
 from regolith_studio.messages import N_
 from regolith_studio.readers.volume_formats import volume_suffixes
 from regolith_studio.readers.volumes.header import VolumeHeader, layout_from_name
+from regolith_studio.readers.volumes.region import RegionSettings
 from regolith_studio.readers.voxels.scanner_headers import header_beside
 from regolith_studio.session.batch.preprocessing import entry_of
 from regolith_studio.session.provenance import VolumeSource
@@ -59,7 +61,8 @@ class ScanPage(PageWidget):
         self.setAcceptDrops(True)
         self._context = context
         self.scan: Scan | None = None
-        self._given = VolumeInput(Path())
+        self._given = self._wanted = VolumeInput(Path())
+        self._wanted_region = RegionSettings()
         self._segmented: GrainSegmentation | None = None
         self.preview: Segmentation | None = None
         self._found_with: SegmentationSettings | None = None
@@ -124,7 +127,9 @@ class ScanPage(PageWidget):
             self.open(Path(name))
 
     def open(self, path: Path) -> None:
-        """Open a file or a folder of slices, and ask for missing properties."""
+        """Open a file or a folder of slices whole, and ask for missing properties."""
+        settings = self.controls.value()
+        self.controls.setValue(replace(settings, region=replace(settings.region, crop="")))
         self._context.remember("folder", str(path.parent))
         if path.suffix.lower() in RAW_SUFFIXES and header_beside(path) is None:
             self._ask_layout(path)
@@ -136,18 +141,16 @@ class ScanPage(PageWidget):
 
     def open_sample(self) -> None:
         """Open the shipped scan."""
-        volume = VolumeInput(sample_file("grey"))
-        self._context.start(
-            tr("Reading the sample scan"),
-            Job(read_sample_scan),
-            lambda scan: self._take(scan, volume),
-            lane="read",
-        )
+        self.read(VolumeInput(sample_file("grey")))
 
     def read(self, volume: VolumeInput) -> None:
-        """Read a volume."""
-        job = Job(read_scan, (volume,))
-        self._context.start(tr("Reading the volume"), job, lambda scan: self._take(scan, volume), lane="read")
+        """Read the region of interest of a volume."""
+        self._wanted, self._wanted_region = volume, self.controls.value().region
+        job = Job(read_scan, (volume, self._wanted_region))
+        title = tr("Reading the volume")
+        if volume.path == sample_file("grey"):
+            job, title = Job(read_sample_scan, ("grey", self._wanted_region)), tr("Reading the sample scan")
+        self._context.start(title, job, lambda scan: self._take(scan, volume), lane="read")
 
     def _on_header(self, path: Path, header: VolumeHeader) -> None:
         if needs_asking(header):
@@ -245,7 +248,8 @@ class ScanPage(PageWidget):
         if labels is None or self.scan is None:
             self._context.toast.note(tr("Find the grains first."))
             return
-        settings = GrainSettings(self._found_with or SegmentationSettings(), self.controls.value().extraction)
+        chosen = self.controls.value()
+        settings = replace(chosen, segmentation=self._found_with or SegmentationSettings())
         entry = entry_of(self._given, settings)
         grey = self.scan.volume if self.scan.volume.kind == "grey" else None
         job = Job(extract_labels, (labels, settings.extraction, self._given.path, grey))
@@ -281,7 +285,10 @@ class ScanPage(PageWidget):
         self.workflow.set_particles(summary)
 
     def _on_settings(self, recipe: GrainSettings) -> None:
-        """Discard grains of other settings and start a preview."""
+        """Read another region; discard grains of other settings and start a preview."""
+        if recipe.region != self._wanted_region and self._wanted.path != Path():
+            self.read(self._wanted)
+            return
         if self.grains is not None and recipe.segmentation == self._found_with:
             self._show_state()
             return

@@ -1,0 +1,118 @@
+"""Which part of a volume is worked on, and how finely: the settings of a region of interest."""
+
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from regolith_studio.errors import InputError
+from regolith_studio.messages import N_
+from regolith_studio.readers.units import UNITS, unit_named
+from regolith_studio.settings import check_settings, setting
+
+if TYPE_CHECKING:  # the command line makes its options of these fields, and must not wait for numerics
+    from regolith_studio.imaging.volume_slabs import SliceSource
+
+_BOUND = r"\s*(?:(\d+(?:\.\d*)?|\.\d+)\s*([^\W\d_]*))?\s*"
+_RANGE = re.compile(f"{_BOUND}:{_BOUND}")
+_Bound = tuple[float | None, str]
+
+
+@dataclass(frozen=True)
+class RegionSettings:
+    """Region of interest of a volume; picklable.
+
+    Parameters
+    ----------
+    crop
+        Ranges along x, y and z, ``X0:X1,Y0:Y1,Z0:Z1``: voxels from X0 up to but not including X1, or lengths
+        with a unit from the volume's outer faces on (``0.2:1.5mm``). A bound that is left out is the face.
+        Empty for the whole volume.
+    bin
+        Edge in voxels of the cubes whose mean becomes one voxel.
+
+    Raises
+    ------
+    InputError
+        If the ranges cannot be understood.
+    """
+
+    crop: str = setting(
+        "",
+        N_("Crop"),
+        N_(
+            "Part of the volume to work on: X0:X1,Y0:Y1,Z0:Z1 in voxels, or in lengths with a unit, such as "
+            "0.2:1.5mm,:,100:300. Particles keep their places in the whole volume."
+        ),
+        metavar="RANGES",
+    )
+    bin: int = setting(
+        1,
+        N_("Bin"),
+        N_("Edge in voxels of the cubes whose mean becomes one voxel: 2 makes eight voxels one."),
+        minimum=1,
+        maximum=64,
+    )
+
+    def __post_init__(self) -> None:
+        check_settings(self)
+        _ranges(self.crop)
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether the volume is used as it is."""
+        return self.bin == 1 and not self.crop
+
+    def of(self, source: "SliceSource") -> "SliceSource":
+        """This region of a volume, read slab by slab.
+
+        Raises
+        ------
+        InputError
+            As :class:`~regolith_studio.imaging.volume_region.VolumeRegion`.
+        """
+        if self.is_whole:
+            return source
+        import numpy as np
+
+        from regolith_studio.imaging.bounding_boxes import box_between
+        from regolith_studio.imaging.volume_region import VolumeRegion
+
+        edges = np.asarray(source.voxel_size, float).tolist()
+        ranges = _ranges(self.crop) or (((None, ""), (None, "")),) * 3
+        low = [_voxel(first, edge, 0) for (first, _), edge in zip(ranges, edges, strict=True)]
+        high = [_voxel(stop, edge, n) for (_, stop), edge, n in zip(ranges, edges, source.shape, strict=True)]
+        return VolumeRegion(source, box_between(low, high), self.bin)
+
+
+def _ranges(text: str) -> tuple[tuple[_Bound, _Bound], ...]:
+    """Both bounds along x, y and z, each a number or None and the key of a unit or nothing for voxels."""
+    if not text:
+        return ()
+    found = [_RANGE.fullmatch(part) for part in text.split(",")]
+    if len(found) != 3 or not all(found):
+        raise InputError(
+            f"A crop is X0:X1,Y0:Y1,Z0:Z1 in voxels or lengths, such as 0:256,:,0.1:0.5mm, got {text!r}."
+        )
+    return tuple(_bounds(each.groups(), text) for each in found if each is not None)
+
+
+def _bounds(groups: tuple[str | None, ...], text: str) -> tuple[_Bound, _Bound]:
+    first, first_unit, stop, stop_unit = groups
+    bounds = []
+    for number, unit in ((first, first_unit or stop_unit), (stop, stop_unit or first_unit)):
+        key = unit_named(unit or "") or ""
+        if unit and not key:
+            units = ", ".join(each for each in UNITS if each != "voxel")
+            raise InputError(f"There is no unit “{unit}” for a crop; the units are {units}.")
+        if number and not key and not number.isdigit():
+            raise InputError(f"A crop in voxels has whole numbers, got {text!r}; lengths need a unit.")
+        bounds.append((float(number) if number else None, key))
+    return bounds[0], bounds[1]
+
+
+def _voxel(bound: _Bound, edge: float, default: int) -> int:
+    """The face between voxels that is nearest to a bound."""
+    number, unit = bound
+    if number is None:
+        return default
+    return round(number * UNITS[unit] / edge) if unit else int(number)
