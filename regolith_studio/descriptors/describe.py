@@ -5,6 +5,7 @@ from typing import Any
 
 from regolith_studio.descriptors.catalogue import CATALOGUE, DEFAULT_KEYS
 from regolith_studio.descriptors.shape_cache import ShapeCache
+from regolith_studio.geometry.convex_compound import ConvexCompound
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.mesh import Mesh
 
@@ -48,14 +49,16 @@ class Descriptors(Mapping[str, float]):
 
 
 def describe(
-    solid: Mesh | ConvexPolyhedron, keys: Iterable[str] | None = None, box_metric: str = "exact"
+    solid: Mesh | ConvexPolyhedron | ConvexCompound,
+    keys: Iterable[str] | None = None,
+    box_metric: str = "exact",
 ) -> Descriptors:
     """Descriptors of a closed, outward-oriented solid, in powers of its length unit.
 
     Parameters
     ----------
     solid
-        In micrometres for particles.
+        In micrometres for particles; a compound counts as its union.
     keys
         Keys of `CATALOGUE`; by default all that are quick to work out (`DEFAULT_KEYS`).
     box_metric
@@ -70,7 +73,7 @@ def describe(
     """
     wanted = DEFAULT_KEYS if keys is None else tuple(keys)
     _check_keys(wanted)
-    facts = ShapeCache(solid, box_metric)
+    facts = ShapeCache(solid.mesh if isinstance(solid, ConvexCompound) else solid, box_metric)
     return Descriptors({key: CATALOGUE[key].compute(facts) for key in wanted})
 
 

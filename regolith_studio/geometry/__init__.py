@@ -1,7 +1,8 @@
-"""Meshes, half-spaces and convex polyhedra: values that never change."""
+"""Meshes, half-spaces, convex polyhedra and their unions: values that never change."""
 
+from regolith_studio.geometry.convex_compound import ConvexCompound
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.half_spaces import HalfSpaces
 from regolith_studio.geometry.mesh import Mesh
 
-__all__ = ["ConvexPolyhedron", "HalfSpaces", "Mesh"]
+__all__ = ["ConvexCompound", "ConvexPolyhedron", "HalfSpaces", "Mesh"]

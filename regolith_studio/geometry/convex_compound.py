@@ -1,0 +1,165 @@
+"""Unions of convex polyhedra: particles that are not convex, as DEM codes take them."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from regolith_studio.errors import GeometryError
+from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats
+from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
+from regolith_studio.geometry.mesh import Mesh
+
+
+@dataclass(frozen=True, eq=False)
+class ConvexCompound:
+    """The union of convex polyhedra that overlap or touch; volume, area and moments are those of the union.
+
+    Facets are numbered through: those of the first part first.
+
+    Parameters
+    ----------
+    parts
+        Each about its own place.
+    places
+        Origins of the parts' half-spaces, shape (k, 3).
+
+    Raises
+    ------
+    ValueError
+        If there is no part, or not one place for each.
+    """
+
+    parts: tuple[ConvexPolyhedron, ...]
+    places: FloatArray
+
+    def __post_init__(self) -> None:
+        if not self.parts:
+            raise ValueError("a compound needs at least one part")
+        places = locked_floats(self.places, (len(self.parts), 3), "places")
+        object.__setattr__(self, "places", places)
+
+    def __reduce__(self) -> tuple[Callable[..., "ConvexCompound"], tuple[Any, ...]]:
+        return ConvexCompound, (self.parts, self.places)
+
+    @property
+    def n_parts(self) -> int:
+        """Number of convex parts."""
+        return len(self.parts)
+
+    @property
+    def n_facets(self) -> int:
+        """Facets of all parts."""
+        return sum(part.n_facets for part in self.parts)
+
+    @property
+    def n_vertices(self) -> int:
+        """Vertices of all parts."""
+        return sum(part.n_vertices for part in self.parts)
+
+    @property
+    def n_triangles(self) -> int:
+        """Triangles of all parts."""
+        return sum(part.n_triangles for part in self.parts)
+
+    @cached_property
+    def part_meshes(self) -> tuple[Mesh, ...]:
+        """Surface of each part in the frame of the compound."""
+        return tuple(
+            part.mesh.moved(shift=place) for part, place in zip(self.parts, self.places, strict=True)
+        )
+
+    @cached_property
+    def _union(self) -> tuple[Mesh, IntArray]:
+        """Surface of the union, and the facet of each of its triangles.
+
+        Raises
+        ------
+        GeometryError
+            If the union cannot be made (manifold3d).
+        """
+        import manifold3d
+
+        low, high = self._bounds
+        middle, size = (low + high) / 2, float((high - low).max())
+        solids, first = [], 0
+        for part, mesh in zip(self.parts, self.part_meshes, strict=True):
+            points = np.ascontiguousarray((mesh.vertices - middle) / size)
+            facets = (part.triangle_facets + first).astype(np.uint64)
+            faces = mesh.faces.astype(np.uint64)
+            solids.append(manifold3d.Manifold(manifold3d.Mesh64(points, faces, face_id=facets)))
+            first += part.n_facets
+        union = manifold3d.Manifold.batch_boolean(solids, manifold3d.OpType.Add)
+        if union.status() != manifold3d.Error.NoError or union.is_empty():
+            raise GeometryError("The union of the convex parts cannot be made.")
+        found = union.to_mesh64()
+        vertices = np.asarray(found.vert_properties)[:, :3] * size + middle
+        triangles = np.asarray(found.tri_verts).astype(np.int64)
+        return Mesh(vertices, triangles), np.asarray(found.face_id).astype(np.int64)
+
+    @property
+    def _bounds(self) -> tuple[FloatArray, FloatArray]:
+        points = np.concatenate([mesh.vertices for mesh in self.part_meshes])
+        return points.min(axis=0), points.max(axis=0)
+
+    @property
+    def mesh(self) -> Mesh:
+        """Surface of the union: a closed mesh of what is exposed of the facets (manifold3d).
+
+        Raises
+        ------
+        GeometryError
+            If the union cannot be made.
+        """
+        return self._union[0]
+
+    @property
+    def triangle_facets(self) -> IntArray:
+        """Facet of each triangle of `mesh`."""
+        return self._union[1]
+
+    @cached_property
+    def exposed_areas(self) -> FloatArray:
+        """Area of the exposed part of each facet, shape (n_facets,)."""
+        areas = np.bincount(self.triangle_facets, weights=self.mesh.face_areas, minlength=self.n_facets)
+        return areas.astype(np.float64)
+
+    @cached_property
+    def facet_parts(self) -> IntArray:
+        """Part of each facet, shape (n_facets,)."""
+        return np.repeat(np.arange(self.n_parts), [part.n_facets for part in self.parts])
+
+    @property
+    def volume(self) -> float:
+        """Volume of the union."""
+        return self.mesh.volume
+
+    @property
+    def surface_area(self) -> float:
+        """Area of what is exposed of the facets."""
+        return self.mesh.surface_area
+
+    @property
+    def centroid(self) -> FloatArray:
+        """Centre of mass of the union, shape (3,)."""
+        return self.mesh.centroid
+
+    @property
+    def inertia(self) -> FloatArray:
+        """Tensor of inertia of the union about its centroid at density 1, shape (3, 3)."""
+        return self.mesh.inertia
+
+    def moved(
+        self, *, shift: ArrayLike = (0.0, 0.0, 0.0), rotation: ArrayLike | None = None, scale: float = 1.0
+    ) -> "ConvexCompound":
+        """The compound with every point x at ``scale * rotation @ (x + shift)``."""
+        turn = np.eye(3) if rotation is None else np.asarray(rotation, dtype=np.float64)
+        places = ((self.places + np.asarray(shift, dtype=np.float64)) * scale) @ turn.T
+        return ConvexCompound(tuple(part.moved(rotation=turn, scale=scale) for part in self.parts), places)
+
+
+Polyhedron = ConvexPolyhedron | ConvexCompound
+"""What a particle is coarsened to."""
