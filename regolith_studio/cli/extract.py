@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from regolith_studio.cli.dataclass_options import with_dataclass_options
-from regolith_studio.cli.options import Jobs, Json, OptionalFolder, Seed, usage_errors
+from regolith_studio.cli.options import Jobs, Json, OptionalFolder, Seed, claim_labels, usage_errors
 from regolith_studio.cli.terminal import print_errors, print_json, print_table, run_with_progress
 from regolith_studio.readers.volumes.region import RegionSettings
 
@@ -301,6 +301,16 @@ def extract(
     output: OptionalFolder = None,
     contents: VolumeOptions,
     grains: GrainOptions,
+    labels: Annotated[
+        Path | None,
+        typer.Option(
+            "--labels",
+            help="File for the volume of labels, as TIFF, NRRD or HDF5 by its suffix; a table of the labels "
+            "is written beside it as CSV.",
+            metavar="FILE",
+            callback=claim_labels,
+        ),
+    ] = None,
     preview_h: Annotated[
         str,
         typer.Option(
@@ -340,7 +350,7 @@ def extract(
         raise typer.BadParameter("Name a folder to write with -o, or values for --preview-h.")
     with staged_folder(output, "extract") as stage:
         folder = ExtractionFolder(stage)
-        done = run_with_progress(extract_measured(given, settings, output.parent, folder.add, jobs))
+        done = run_with_progress(extract_measured(given, settings, output.parent, folder.add, jobs, labels))
         document = folder.finish(given, settings, done)
     if done.facts is not None and done.facts.n_not_finite:
         print_errors(

@@ -76,6 +76,22 @@ def claim_file(context: typer.Context, path: Path | None) -> Path | None:
     return path
 
 
+def claim_labels(context: typer.Context, path: Path | None) -> Path | None:
+    """The same for a label volume, whose suffix says the format.
+
+    Raises
+    ------
+    BadParameter
+        If the suffix is unknown.
+    """
+    if path is not None:
+        from regolith_studio.imaging.label_files import label_suffix
+
+        with usage_errors():
+            label_suffix(path)
+    return claim_file(context, path)
+
+
 def claim_json(context: typer.Context, path: Path | None) -> Path | None:
     """The same for a JSON file, whose name may be given without its suffix."""
     if path is not None and path.suffix != ".json" and not path.is_dir():

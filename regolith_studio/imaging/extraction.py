@@ -212,25 +212,69 @@ def extraction_steps(
         :data:`~regolith_studio.imaging.label_table.MAX_LABEL`.
     """
     settings = settings or ExtractionSettings()
-    table = label_table(volume)
-    boxes, sizes = table.boxes(), table.sizes()
-    width = max(4, len(str(max(boxes))))
-    border = [k for k, box in boxes.items() if settings.exclude_border and touches(box, volume.shape)]
-    if grey is not None and border:
-        border += pieces_of_cut_grains(contact_areas(volume), sizes, border)
-    small = [k for k in set(boxes).difference(border) if sizes[k] < settings.min_voxels]
-    wanted = {k: box for k, box in boxes.items() if k not in {*border, *small}}
+    chosen = select_labels(volume, settings, grey is not None)
+    boxes, sizes, wanted = chosen.boxes, chosen.sizes, chosen.wanted
     found: list[ExtractedParticle] = []
     made = _surfaces(volume, grey if settings.surface == "grey" else None, wanted, settings)
     for done, (label, mesh, notes, surface) in enumerate(made, start=1):
         weight = border_weight(boxes[label], volume.shape) if settings.exclude_border else 1.0
-        particle = Particle(f"particle_{label:0{width}d}", mesh, group, source, notes, weight)
+        particle = Particle(chosen.name_of(label), mesh, group, source, notes, weight)
         extracted = ExtractedParticle(particle, label, sizes[label], weight, surface)
         if collect:
             found.append(extracted)
         yield ExtractionProgress(done, len(wanted), extracted)
     ordered = tuple(sorted(found, key=lambda each: each.label))
-    return Extraction(ordered, tuple(border), tuple(sorted(small)), len(wanted))
+    return Extraction(ordered, chosen.border, chosen.small, len(wanted))
+
+
+@dataclass(frozen=True, eq=False)
+class LabelSelection:
+    """The labels of a volume, and which of them become particles.
+
+    Parameters
+    ----------
+    boxes, sizes
+        Box and number of voxels of each label.
+    border, small
+        Labels that are left out, as in an :class:`Extraction`.
+    """
+
+    boxes: Mapping[int, Box]
+    sizes: Mapping[int, int]
+    border: tuple[int, ...]
+    small: tuple[int, ...]
+
+    @property
+    def wanted(self) -> dict[int, Box]:
+        """Boxes of the labels that become particles."""
+        left_out = {*self.border, *self.small}
+        return {label: box for label, box in self.boxes.items() if label not in left_out}
+
+    def name_of(self, label: int) -> str:
+        """Name of the particle of a label."""
+        return f"particle_{label:0{max(4, len(str(max(self.boxes))))}d}"
+
+
+def select_labels(volume: SliceSource, settings: ExtractionSettings, segmented: bool) -> LabelSelection:
+    """Which labels become particles.
+
+    Parameters
+    ----------
+    segmented
+        Whether the labels were found in grey values: then pieces of grains at the border are left out too.
+
+    Raises
+    ------
+    InputError
+        As :func:`extraction_steps`.
+    """
+    table = label_table(volume)
+    boxes, sizes = table.boxes(), table.sizes()
+    border = [k for k, box in boxes.items() if settings.exclude_border and touches(box, volume.shape)]
+    if segmented and border:
+        border += pieces_of_cut_grains(contact_areas(volume), sizes, border)
+    small = [k for k in set(boxes).difference(border) if sizes[k] < settings.min_voxels]
+    return LabelSelection(boxes, sizes, tuple(border), tuple(sorted(small)))
 
 
 def pieces_of_cut_grains(

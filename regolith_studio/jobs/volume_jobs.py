@@ -40,6 +40,7 @@ from regolith_studio.imaging.volume_slabs import ScratchArrays, SliceSource, sla
 from regolith_studio.jobs.events import Job, Progress, Started, Step, Steps
 from regolith_studio.jobs.executor import Executor, open_executor, value_of
 from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput
+from regolith_studio.jobs.label_jobs import write_labels
 from regolith_studio.jobs.particle_jobs import MeasuredParticle, measure_one
 from regolith_studio.messages import N_, Message
 from regolith_studio.readers.file_bytes import sha256_of
@@ -314,6 +315,7 @@ def extract_measured(
     scratch: Path | None,
     sink: ParticleCallback,
     workers: int | Executor = 1,
+    labels_file: Path | None = None,
 ) -> Steps:
     """As :func:`extract_file`, but each particle is measured, handed to `sink` and forgotten.
 
@@ -323,10 +325,11 @@ def extract_measured(
         Called in this process with each particle in the order of slabs.
     workers
         Processes that measure.
+    labels_file
+        Where to write the label volume, if anywhere (:func:`~regolith_studio.jobs.label_jobs.write_labels`).
     """
-    return (
-        yield from _extract(given, recipe, scratch, partial(_measure_and_pass_on, sink=sink, workers=workers))
-    )
+    consume = partial(_measure_and_pass_on, sink=sink, workers=workers)
+    return (yield from _extract(given, recipe, scratch, consume, labels_file=labels_file))
 
 
 def segment_volume(
@@ -390,6 +393,7 @@ def _extract(
     consume: _Consumer,
     *,
     collect: bool = False,
+    labels_file: Path | None = None,
 ) -> Steps:
     yield Started(Message(N_("Reading {name}"), name=given.path.name))
     volume = recipe.region.of(given.opened())
@@ -402,8 +406,10 @@ def _extract(
             segmentation: Segmentation = yield from segment_volume(volume, recipe.segmentation, scratch)
             facts, labels = _summary_of(segmentation), segmentation.labels
             del segmentation
-        yield Started(N_("Extracting particles"))
         grey = volume if volume.kind == "grey" else None
+        if labels_file is not None:
+            yield from write_labels(labels, recipe.extraction, labels_file, grey is not None)
+        yield Started(N_("Extracting particles"))
         steps = extraction_steps(labels, recipe.extraction, given.path.stem, source, collect, grey)
         extraction = yield from consume(steps)
     if not extraction.n_found:

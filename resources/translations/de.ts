@@ -2288,6 +2288,10 @@
         <translation>Labels von Körnern</translation>
     </message>
     <message>
+        <source>Labels were written to {file}, their particles to {table}.</source>
+        <translation>Die Labels stehen in {file}, ihre Partikel in {table}.</translation>
+    </message>
+    <message>
         <source>Language</source>
         <translation>Sprache</translation>
     </message>
@@ -3268,6 +3272,10 @@
         <translation>Gezogene Partikel</translation>
     </message>
     <message>
+        <source>Particles of labels</source>
+        <translation>Partikel der Labels</translation>
+    </message>
+    <message>
         <source>Particles that may lend their ellipsoid.</source>
         <translation>Partikel, die ihr Ellipsoid leihen dürfen.</translation>
     </message>
@@ -3868,6 +3876,14 @@
         <translation>Abbildung speichern</translation>
     </message>
     <message>
+        <source>Save labels</source>
+        <translation>Labels speichern</translation>
+    </message>
+    <message>
+        <source>Save labels …</source>
+        <translation>Labels speichern …</translation>
+    </message>
+    <message>
         <source>Save material &amp;card …</source>
         <translation>Material&amp;karte speichern …</translation>
     </message>
@@ -3930,6 +3946,10 @@
     <message>
         <source>Saved; use it with: {command}</source>
         <translation>Gespeichert; verwenden mit: {command}</translation>
+    </message>
+    <message>
+        <source>Saving labels</source>
+        <translation>Labels werden gespeichert</translation>
     </message>
     <message>
         <source>Scale</source>
@@ -5324,12 +5344,20 @@
         <translation>Einstellungen für den nächsten Scan schreiben</translation>
     </message>
     <message>
+        <source>Write the volume of labels and a table of them for other programs</source>
+        <translation>Das Volumen der Labels und eine Tabelle dazu für andere Programme schreiben</translation>
+    </message>
+    <message>
         <source>Write:</source>
         <translation>Schreiben:</translation>
     </message>
     <message>
         <source>Writing figures</source>
         <translation>Abbildungen werden geschrieben</translation>
+    </message>
+    <message>
+        <source>Writing labels to {name}</source>
+        <translation>Labels werden nach {name} geschrieben</translation>
     </message>
     <message>
         <source>Writing particles</source>

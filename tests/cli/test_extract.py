@@ -113,6 +113,49 @@ def test_that_a_binned_scan_gives_balls_of_the_right_size(command, tmp_path: Pat
     assert radii == pytest.approx([18.0, 24.0], rel=0.03)
 
 
+def test_that_labels_that_are_written_give_the_same_grains_again(command, tmp_path: Path) -> None:
+    balls = two_balls()
+    balls[18:22, 19:23, :5] = 180
+    np.save(tmp_path / "scan.npy", balls)
+    asked = (
+        "--surface",
+        "mask",
+        "--min-voxels",
+        100,
+        "--denoise",
+        "none",
+        "--threshold",
+        111,
+        "--closing",
+        1,
+    )
+    call = (
+        "extract",
+        tmp_path / "scan.npy",
+        "--kind",
+        "grey",
+        "--voxel-size",
+        "1,1,1.5",
+        "-o",
+        tmp_path / "a",
+    )
+    assert command(*call, *asked, "--labels", tmp_path / "grains.tif").code == 0
+    assert command("extract", tmp_path / "grains.tif", "-o", tmp_path / "b", "--min-voxels", 100).code == 0
+    meshes = [{each.name: each.read_bytes() for each in (tmp_path / name).glob("*.stl")} for name in "ab"]
+    assert len(meshes[0]) == 2
+    assert meshes[0] == meshes[1]
+    table = list(csv.DictReader((tmp_path / "grains.csv").read_text(encoding="utf-8").splitlines()))
+    found = {row["name"]: (row["label"], row["voxels"]) for row in rows_of(tmp_path / "a")}
+    assert {row["particle"]: (row["label"], row["voxels"]) for row in table if row["particle"]} == found
+    assert [row["left_out"] for row in table if not row["particle"]] == ["border"]
+
+
+def test_that_labels_of_an_unknown_format_are_bad_use(command, tmp_path: Path) -> None:
+    result = command("extract", GREY, "-o", tmp_path / "x", "--labels", tmp_path / "labels.png")
+    assert result.code == 2
+    assert "Labels are written as .tif" in " ".join(result.err.split())
+
+
 def test_that_keeping_the_border_of_labels_gives_all_grains(command, tmp_path: Path) -> None:
     scan, x = part_of_scan(tmp_path, "labels"), tmp_path / "x"
     result = command("extract", scan, "-o", x, "--border", "keep", "--voxel-size", 1, "--min-voxels", 600)

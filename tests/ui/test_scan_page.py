@@ -15,6 +15,7 @@ from regolith_studio.jobs import volume_jobs
 from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput, read_grain_settings
 from regolith_studio.jobs.runners.thread import ThreadRunner
 from regolith_studio.readers.volumes.header import RawLayout
+from regolith_studio.readers.volumes.read import read_volume
 from regolith_studio.session.session import Session
 from regolith_studio.ui.app import MainThreadInvoker
 from regolith_studio.ui.bindings import Bindings
@@ -124,7 +125,9 @@ def test_that_a_dragged_threshold_is_a_manual_one_and_changes_the_preview(page, 
     wait(lambda: page.preview.level < 110.0, SECONDS)
 
 
-def test_that_h_and_the_frame_change_the_preview_and_settings_undo_what_was_found(page, part, wait):
+def test_that_h_and_the_frame_change_the_preview_and_settings_undo_what_was_found(
+    page, part, wait, monkeypatch
+):
     page.read(VolumeInput(part, 2.3, kind="grey"))
     wait(lambda: page.preview is not None, SECONDS)
     page.find_grains()
@@ -133,6 +136,12 @@ def test_that_h_and_the_frame_change_the_preview_and_settings_undo_what_was_foun
     assert page.grains.n_grains == expected.n_grains
     assert np.array_equal(page.grains.labels.array, expected.labels.array)
     assert page.workflow.convert.isEnabled()
+    monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *_: (str(part.with_name("grains.h5")), ""))
+    press(page.workflow.save)
+    wait(lambda: part.with_name("grains.csv").is_file(), SECONDS)
+    written = read_volume(part.with_name("grains.h5"), kind="labels")
+    assert np.array_equal(written.array, expected.labels.array)
+    assert written.voxel_size.tolist() == [2.3, 2.3, 2.3]
     page.controls.least.field.setValue(2000)
     assert page.grains is not None
     few = np.count_nonzero(expected.sizes < 2000)

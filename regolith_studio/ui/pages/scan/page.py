@@ -13,12 +13,14 @@ from PySide6.QtWidgets import QFileDialog, QHBoxLayout
 
 from regolith_studio.errors import RegolithError
 from regolith_studio.imaging.extraction import Extraction
+from regolith_studio.imaging.label_files import LABEL_SUFFIXES
 from regolith_studio.imaging.sample_volumes import sample_file
 from regolith_studio.imaging.segmentation.segment import Segmentation, SegmentationSettings
 from regolith_studio.io.atomic import write_bytes
 from regolith_studio.io.json_text import json_bytes
 from regolith_studio.jobs.events import Job
 from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput, read_grain_settings
+from regolith_studio.jobs.label_jobs import write_labels
 from regolith_studio.jobs.volume_jobs import (
     GrainSegmentation,
     Scan,
@@ -92,6 +94,7 @@ class ScanPage(PageWidget):
             "open_settings": self.ask_for_settings,
             "save_settings": self.save_settings,
             "find_grains": self.find_grains,
+            "save_labels": self.save_labels,
             "make_particles": self.make_particles,
         }
 
@@ -240,6 +243,28 @@ class ScanPage(PageWidget):
             tr("Finding grains"), job, lambda found: self._show_grains(found, settings), lane="grains"
         )
 
+    def save_labels(self) -> None:
+        """Ask for a file and write the labels of the grains."""
+        if self.grains is None:
+            self._context.toast.note(tr("Find the grains first."))
+            return
+        kinds = tr(VOLUMES, suffixes=" ".join(f"*{suffix}" for suffix in LABEL_SUFFIXES))
+        start = str(Path(self._folder()) / f"{self._given.path.stem}_labels.tif")
+        name, _ = QFileDialog.getSaveFileName(self, tr("Save labels"), start, kinds)
+        if not name:
+            return
+        path = Path(name)
+        job = Job(write_labels, (self.grains.labels, self.controls.value().extraction, path, True))
+        self._context.start(
+            tr("Saving labels"), job, lambda table: self._labels_saved(path, table), lane="grains"
+        )
+
+    def _labels_saved(self, path: Path, table: Path) -> None:
+        words = tr(
+            "Labels were written to {file}, their particles to {table}.", file=path.name, table=table.name
+        )
+        self._context.toast.note(words)
+
     def make_particles(self) -> None:
         """Convert the grains to particles and open them."""
         labels = self.grains.labels if self.grains else None
@@ -362,6 +387,7 @@ class ScanPage(PageWidget):
         self.workflow.openRequested.connect(self.ask_for_file)
         self.workflow.sampleRequested.connect(self.open_sample)
         self.workflow.findRequested.connect(self.find_grains)
+        self.workflow.labelsRequested.connect(self.save_labels)
         self.workflow.particlesRequested.connect(self.make_particles)
         self.workflow.showRequested.connect(lambda: self._context.go("sample"))
 

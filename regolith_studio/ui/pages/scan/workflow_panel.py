@@ -21,6 +21,7 @@ class WorkflowPanel(QWidget):
     openRequested = Signal()  # noqa: N815
     sampleRequested = Signal()  # noqa: N815
     findRequested = Signal()  # noqa: N815
+    labelsRequested = Signal()  # noqa: N815
     particlesRequested = Signal()  # noqa: N815
     showRequested = Signal()  # noqa: N815
 
@@ -36,6 +37,11 @@ class WorkflowPanel(QWidget):
         self.search = _button(
             "scan_find", tr("Find all grains"), tr("Segment the whole volume with these settings")
         )
+        self.save = _button(
+            "scan_save_labels",
+            tr("Save labels …"),
+            tr("Write the volume of labels and a table of them for other programs"),
+        )
         self.convert = _button(
             "scan_make", tr("Make particles"), tr("Contour each grain and open it as a particle")
         )
@@ -48,7 +54,7 @@ class WorkflowPanel(QWidget):
         self.show_them.setSizePolicy(kept)
         for title, buttons, words, lines, most in (
             (tr("1  Volume"), (self.browse, self.sample), self.volume, 2, 3),
-            (tr("2  Grains"), (self.search,), self.found, 4, 7),
+            (tr("2  Grains"), (self.search, self.save), self.found, 4, 7),
             (tr("3  Particles"), (self.convert, self.show_them), self.made, 2, 3),
         ):
             layout.addWidget(heading(title))
@@ -60,6 +66,7 @@ class WorkflowPanel(QWidget):
         self.browse.clicked.connect(self.openRequested)
         self.sample.clicked.connect(self.sampleRequested)
         self.search.clicked.connect(self.findRequested)
+        self.save.clicked.connect(self.labelsRequested)
         self.convert.clicked.connect(self.particlesRequested)
         self.show_them.clicked.connect(self.showRequested)
 
@@ -69,6 +76,7 @@ class WorkflowPanel(QWidget):
         """Describe the volume and the grains, and how many have fewer than `least` voxels."""
         is_grey = scan is not None and scan.volume.kind == "grey"
         self.search.setEnabled(is_grey)
+        self.save.setEnabled(grains is not None)
         self.convert.setEnabled(grains is not None or (scan is not None and not is_grey))
         self.show_them.hide()
         self.volume.setText(_about(scan))
