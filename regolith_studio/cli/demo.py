@@ -63,11 +63,12 @@ def _noted(problems: list[str]) -> Iterator[None]:
 
 def _run_recipe(folder: Path, jobs: int, problems: list[str], **entries: Any) -> "RecipeRun":
     """Run a recipe that nobody will resume."""
+    from regolith_studio.io.atomic import JOURNAL
     from regolith_studio.session.recipe import recipe_of
-    from regolith_studio.session.run_recipe import JOURNAL_FOLDER, run_recipe
+    from regolith_studio.session.run_recipe import run_recipe
 
     done: RecipeRun = run_with_progress(run_recipe(recipe_of(**entries), Path(), folder, jobs))
-    shutil.rmtree(folder / JOURNAL_FOLDER)
+    shutil.rmtree(folder / JOURNAL)
     problems += done.problems
     return done
 

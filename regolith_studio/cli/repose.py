@@ -241,8 +241,7 @@ def study(
     seed: Seed = 0,
 ) -> None:
     """Measure the angle of repose against a parameter or for several datasets; resumes a stopped study."""
-    from regolith_studio.jobs.repose_jobs import ReposeVariant, study_repose, with_value
-    from regolith_studio.studies.figures.repose import write_repose_study
+    from regolith_studio.jobs.repose_study import ReposeVariant, study_repose, with_value, write_study
     from regolith_studio.studies.repose import repose_table
 
     del jobs  # one run after the other, so that what is there already is known
@@ -256,7 +255,7 @@ def study(
         if not points:
             rows.append(ReposeVariant(name, folder.name, folder, request))
     done = run_with_progress(study_repose(rows, output, repeats))
-    files = [path.name for path in write_repose_study(done, output)]
+    files = write_study(done, output)
     if json:
         print_json({"folder": str(output), "files": files})
     else:

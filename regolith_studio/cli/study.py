@@ -154,11 +154,11 @@ class RunOptions:
         study
             Makes the steps; takes the number of `workers` and the checkpoint of `answers`.
         """
-        from regolith_studio.io.atomic import staged_folder
+        from regolith_studio.io.atomic import JOURNAL, staged_folder
         from regolith_studio.jobs.study_checkpoint import StudyCheckpoint
         from regolith_studio.session.outputs.studies import STUDIES
 
-        with StudyCheckpoint(folder / "journal" / f"{kind}.sqlite", self.resume) as answers:
+        with StudyCheckpoint(folder / JOURNAL / f"{kind}.sqlite", self.resume) as answers:
             result = run_with_progress(study(workers=self.jobs, answers=answers))
             with staged_folder(folder, kind) as stage:
                 files = [path.name for path in STUDIES[kind].write(result, stage)]

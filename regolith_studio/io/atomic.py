@@ -27,6 +27,9 @@ from regolith_studio.io.output_lock import LOCK, NEW, hidden_beside, output_lock
 CONCURRENT_SYNCS = 16
 """Files flushed to the disk at the same time."""
 
+JOURNAL = "journal"
+"""Folder in an output that keeps what is needed to resume unfinished work; it is no part of the result."""
+
 Content = bytes | Iterable[bytes]
 """Of a file: as a whole, or in pieces."""
 
@@ -73,8 +76,9 @@ def staged_folder(folder: Path, kind: str) -> Iterator[Path]:
     """A hidden folder beside `folder`, which takes its place if no exception is raised.
 
     The list of its files with their SHA-256, ``<kind>.sha256`` as sha256sum writes it, says what belongs
-    together. A folder that holds only what an earlier list names is replaced in one step. In a folder with
-    other files, which are kept, the new files take the places of the earlier ones one by one.
+    together. A folder that holds only what an earlier list names, and perhaps a journal, which is kept, is
+    replaced in one step. In a folder with other files, which are kept, the new files take the places of the
+    earlier ones one by one.
 
     Raises
     ------
@@ -198,11 +202,15 @@ def _files_in(folder: Path) -> set[str]:
 
 def _replace_listed(stage: Path, folder: Path, listed: str) -> None:
     """Let the files of `stage` take the place of those in `folder` that its list names."""
-    there = _files_in(folder)
+    there = {name for name in _files_in(folder) if not name.startswith(f"{JOURNAL}/")}
     names = [line[66:] for line in os.fsdecode(_read_if_there(folder / listed)).splitlines()]
     earlier = there & {*names, listed}
     if earlier == there and folder != Path.cwd():
-        exchange(stage, folder)
+        try:
+            exchange(stage, folder)
+        finally:
+            if (stage / JOURNAL).is_dir():
+                (stage / JOURNAL).rename(folder / JOURNAL)
         return
     (stage / listed).replace(folder / listed)
     fresh = _files_in(stage)
@@ -298,7 +306,7 @@ def exchange(fresh: Path, target: Path) -> None:
     except OSError:
         os.rename(aside, target)  # noqa: PTH104
         raise
-    remove_quietly(aside)
+    os.rename(aside, fresh)  # noqa: PTH104
 
 
 @cache

@@ -45,9 +45,10 @@ def run_recipe_job(
 
 def is_unfinished(folder: Path) -> bool:
     """Whether a run into `folder` was begun and has not ended."""
-    from regolith_studio.session.run_recipe import CHECKPOINT, ENDED, JOURNAL_FOLDER
+    from regolith_studio.io.atomic import JOURNAL
+    from regolith_studio.session.run_recipe import CHECKPOINT, ENDED
 
-    path = folder / JOURNAL_FOLDER / CHECKPOINT
+    path = folder / JOURNAL / CHECKPOINT
     try:
         return path.exists() and read_note(path, ENDED) is None
     except FileError:  # damaged, or being written

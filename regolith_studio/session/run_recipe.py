@@ -20,7 +20,7 @@ from regolith_studio.dataset.build import software_versions
 from regolith_studio.dataset.streaming import check_count, write_stored
 from regolith_studio.errors import FileError, RegolithError
 from regolith_studio.geometry.particle import Particle
-from regolith_studio.io.atomic import staged_folder, write_bytes
+from regolith_studio.io.atomic import JOURNAL, staged_folder, write_bytes
 from regolith_studio.io.checkpoint import CheckpointRecord, read_note
 from regolith_studio.jobs.batch import LOST, Batch, run_batch
 from regolith_studio.jobs.compile_kernels import compile_first_for
@@ -57,7 +57,7 @@ from regolith_studio.session.outputs.summary import Summary, write_summary
 from regolith_studio.session.recipe import Recipe, Representatives
 
 Part = Generator[Step, None, Any]
-JOURNAL_FOLDER, CHECKPOINT, PREPARED_FOLDER = "journal", "checkpoint.sqlite", "prepared"
+CHECKPOINT, PREPARED_FOLDER = "checkpoint.sqlite", "prepared"
 ENDED = "ended"
 """Note of a run that has ended: the problems that it met."""
 
@@ -97,7 +97,7 @@ class RecipeRun:
     def files(self) -> list[str]:
         """Paths of all results below the folder, relative to it; the journal is none."""
         result = (path.relative_to(self.folder) for path in self.folder.rglob("*") if path.is_file())
-        return sorted(path.as_posix() for path in result if path.parts[0] != JOURNAL_FOLDER)
+        return sorted(path.as_posix() for path in result if path.parts[0] != JOURNAL)
 
 
 def run_recipe(
@@ -135,7 +135,7 @@ def run_recipe(
         If no input can be read, the folder cannot be written, or holds an unfinished run that is not to
         be resumed or is of another recipe.
     """
-    choices, journal = recipe.choices(), folder / JOURNAL_FOLDER
+    choices, journal = recipe.choices(), folder / JOURNAL
     if folder.exists() and not folder.is_dir():
         raise FileError(f"{folder} is a file; name a folder for the results.")
     checkpoint = journal / CHECKPOINT
@@ -191,7 +191,7 @@ def _check_size(recipe: Recipe, n_particles: int) -> None:
 
 def _open_batch(run: RecipeRun, resume: bool, chunk: int | None) -> Batch:
     """The batch of the recipe, new or resumed."""
-    items, journal = run.items, run.folder / JOURNAL_FOLDER / CHECKPOINT
+    items, journal = run.items, run.folder / JOURNAL / CHECKPOINT
     inputs = "\n".join(items.fingerprints()).encode("utf-8", "surrogateescape")
     subject = {
         "recipe": run.recipe.model_dump(mode="json"),
@@ -234,7 +234,7 @@ def _write_results(run: RecipeRun, batch: Batch) -> Part:
         writers: list[ResultWriter] = [
             run.summary,
             stack.enter_context(failure_writer(run.stage)),
-            stack.enter_context(time_writer(run.folder / JOURNAL_FOLDER / "times.csv")),
+            stack.enter_context(time_writer(run.folder / JOURNAL / "times.csv")),
         ]
         if outputs.descriptors:
             writers.append(stack.enter_context(descriptor_writer(run.stage)))
@@ -259,7 +259,7 @@ def _count_results(run: RecipeRun, batch: Batch) -> None:
     run.problems += run.tally.unread + run.tally.problems
     if not run.tally.n_read:
         batch.checkpoint.close()
-        shutil.rmtree(run.folder / JOURNAL_FOLDER, ignore_errors=True)
+        shutil.rmtree(run.folder / JOURNAL, ignore_errors=True)
         with contextlib.suppress(OSError):
             run.folder.rmdir()
         raise FileError(run.tally.unread[0])
@@ -366,7 +366,7 @@ def _read_particles(run: RecipeRun) -> Generator[Step, None, list[Particle]]:
 
 
 def _run_study(run: RecipeRun, name: str, study: Callable[..., Steps]) -> Part:
-    with StudyCheckpoint(run.folder / JOURNAL_FOLDER / f"{name}.sqlite", run.resume) as answers:
+    with StudyCheckpoint(run.folder / JOURNAL / f"{name}.sqlite", run.resume) as answers:
         try:
             result = yield from study(answers=answers)
         except RegolithError as error:

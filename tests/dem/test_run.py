@@ -33,12 +33,14 @@ from regolith_studio.jobs.coarsening_jobs import CoarseningRequest
 from regolith_studio.jobs.events import Partial, Progress
 from regolith_studio.jobs.repose_jobs import (
     ReposeRequest,
-    ReposeStudyRequest,
-    ReposeVariant,
     measure_result,
-    run_repose_study,
     simulate_prepared,
     simulate_repose,
+)
+from regolith_studio.jobs.repose_study import (
+    ReposeStudyRequest,
+    ReposeVariant,
+    run_repose_study,
     study_repose,
     values_in,
     with_value,
@@ -200,7 +202,8 @@ def test_that_shapes_are_varied_from_particles(tmp_path: Path) -> None:
         if isinstance(step, Progress) and "simulated" in step.message:
             break
     steps.close()
-    built = [read_dataset(tmp_path / "datasets" / f"n_facets-{n}").representatives[0].shape for n in (8, 14)]
+    journal = tmp_path / "journal" / "repose_study"
+    built = [read_dataset(journal / "datasets" / f"n_facets-{n}").representatives[0].shape for n in (8, 14)]
     assert [shape.n_facets for shape in built] == [8, 14]
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from regolith_studio.errors import FileError
+from regolith_studio.io import atomic
 from regolith_studio.io.atomic import staged_folder, write_bytes
 
 
@@ -69,6 +70,36 @@ def test_that_earlier_files_go_and_other_files_stay_in_a_folder_that_holds_both(
     found = {path.name: path.read_text() for path in (tmp_path / "out").iterdir()}
     assert found.pop("test.sha256")
     assert found == {"a": "2", "thesis.txt": "important"}
+
+
+def test_that_a_folder_with_a_journal_is_replaced_in_one_step_and_keeps_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """An interruption between two files would leave a mixed result."""
+
+    def interrupt(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    write(tmp_path / "out", a="1", b="1")
+    (tmp_path / "out" / "journal" / "deep").mkdir(parents=True)
+    (tmp_path / "out" / "journal" / "deep" / "study.sqlite").write_text("unfinished")
+    monkeypatch.setattr(Path, "replace", interrupt)
+    write(tmp_path / "out", a="2")
+    assert sorted(path.name for path in (tmp_path / "out").iterdir()) == ["a", "journal", "test.sha256"]
+    assert (tmp_path / "out" / "journal" / "deep" / "study.sqlite").read_text() == "unfinished"
+
+
+def test_that_a_system_that_cannot_exchange_folders_keeps_the_journal_too(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(atomic, "swap_folders", lambda *_: False)
+    write(tmp_path / "out", a="1")
+    (tmp_path / "out" / "journal").mkdir()
+    (tmp_path / "out" / "journal" / "study.sqlite").write_text("unfinished")
+    write(tmp_path / "out", a="2")
+    assert (tmp_path / "out" / "a").read_text() == "2"
+    assert (tmp_path / "out" / "journal" / "study.sqlite").read_text() == "unfinished"
+    assert [path.name for path in tmp_path.iterdir()] == ["out"]
 
 
 def test_that_a_folder_whose_stage_was_removed_is_not_said_to_be_written(tmp_path: Path) -> None:

@@ -20,7 +20,7 @@ from PySide6.QtWidgets import (
 )
 
 from regolith_studio.coarsening.weights import presets
-from regolith_studio.jobs.repose_jobs import SHAPE_KEYS, values_in
+from regolith_studio.jobs.repose_study import SHAPE_KEYS, values_in
 from regolith_studio.messages import N_
 from regolith_studio.studies.repose import ReposeStudy, ReposeStudyRun
 from regolith_studio.ui.theme import Theme

@@ -6,7 +6,7 @@ from pathlib import Path
 from regolith_studio.dem.run_io import RunSummary
 from regolith_studio.errors import RegolithError
 from regolith_studio.jobs.events import Failed, Job
-from regolith_studio.jobs.repose_jobs import SHAPE_KEYS, ReposeStudyRequest, run_repose_study
+from regolith_studio.jobs.repose_study import SHAPE_KEYS, ReposeStudyRequest, run_repose_study, study_place
 from regolith_studio.studies.repose import ReposeStudy, ReposeStudyRun
 from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.pages.repose.setup import SetupPanel
@@ -106,4 +106,4 @@ class ReposeStudyController:
 
     def _choose(self, run: ReposeStudyRun) -> None:
         if self._folder is not None:
-            self._show_run(RunSummary(self._folder / run.folder, run.document))
+            self._show_run(RunSummary(study_place(self._folder, run.folder), run.document))

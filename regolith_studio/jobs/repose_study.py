@@ -1,0 +1,302 @@
+"""Job for the angle of repose against a varied value: runs, their table and the figure, in one folder."""
+
+import contextlib
+import os
+import shutil
+from collections.abc import Generator, Sequence
+from dataclasses import asdict, dataclass, fields, replace
+from pathlib import Path
+from typing import Any
+
+from regolith_studio.coarsening.weights import presets
+from regolith_studio.dataset.folder_io import dataset_hash
+from regolith_studio.dataset.parameters import ContactParameters, LiftingCylinderTest
+from regolith_studio.dem.engine_process import EngineError
+from regolith_studio.dem.engines import engine_named
+from regolith_studio.dem.run_io import DOCUMENT, case_document, read_run
+from regolith_studio.errors import FileError, InputError
+from regolith_studio.geometry.particle import Particle
+from regolith_studio.io.atomic import JOURNAL, remove_quietly, staged_folder
+from regolith_studio.io.output_lock import output_lock
+from regolith_studio.jobs.coarsening_jobs import CoarseningRequest
+from regolith_studio.jobs.dataset_jobs import DatasetOptions, build_dataset_folder
+from regolith_studio.jobs.events import Partial, Progress, Started, Step, Steps
+from regolith_studio.jobs.repose_jobs import PROGRESS_STEPS, ReposeRequest, simulate_repose
+from regolith_studio.messages import N_
+from regolith_studio.studies.repose import ReposeStudy, runs_from
+
+CASE_KEYS = ("shapes", "cohesion", "n_particles", "coarse_graining")
+"""What of a case can be varied besides the values of Tables 1 and 2."""
+SHAPE_KEYS = ("n_facets", "preset")
+"""What of the shapes can be varied, each value being a dataset of its own: facets, weights of the loss."""
+
+
+@dataclass(frozen=True)
+class ReposeVariant:
+    """One value of what a study varies.
+
+    Parameters
+    ----------
+    varied, value
+        What, and to what.
+    dataset
+        Folder of the dataset.
+    request
+        How to run; its seed is the first of the repeats.
+    """
+
+    varied: str
+    value: float | str
+    dataset: Path
+    request: ReposeRequest
+
+
+STUDY = "repose_study"
+"""Stem of the files of a study, and name of its folder in the journal."""
+DATASETS = "datasets"
+"""Folder of a study of shapes with the dataset of each value."""
+
+
+def study_repose(rows: Sequence[ReposeVariant], folder: Path, repeats: int = 1) -> Steps:
+    """Run every row `repeats` times, each run in a folder of its own; returns :class:`ReposeStudy`.
+
+    Runs are kept in the journal of the folder until :func:`write_study` writes the result. Runs that the
+    journal or the folder holds already, finished and of the same case, are not run again: a study that was
+    stopped is resumed. A run that fails is a row without an angle.
+    """
+    plan = [(row, row.request.case.seed + k) for row in rows for k in range(repeats)]
+    yield Started(N_("Angle of repose: study"), PROGRESS_STEPS * len(plan))
+    done: list[tuple[str, float | str, str, dict[str, Any]]] = []
+    for number, (row, seed) in enumerate(plan):
+        request = replace(row.request, case=replace(row.request.case, seed=seed), overwrite=True)
+        name = f"{row.varied}_{row.value}_seed{seed}".replace("/", "-").replace(" ", "-")
+        document = _finished_run(study_place(folder, name), row.dataset, request)
+        if document is None:
+            place = folder / JOURNAL / STUDY / name
+            document = yield from _study_run(row, request, place, number, len(plan))
+        done.append((row.varied, row.value, name, document))
+        yield Progress(PROGRESS_STEPS * (number + 1), PROGRESS_STEPS * len(plan), name)
+        yield Partial(runs_from(done))
+    return runs_from(done)
+
+
+def study_place(folder: Path, name: str) -> Path:
+    """Where a study in `folder` has a run of this name: in the journal until the study is written."""
+    unfinished = folder / JOURNAL / STUDY / name
+    return unfinished if unfinished.is_dir() else folder / name
+
+
+def write_study(study: ReposeStudy, folder: Path) -> list[str]:
+    """Write table and figure of a study, and its runs beside them, in one step; returns the files' names.
+
+    Runs of earlier studies in the folder stay.
+
+    Raises
+    ------
+    FileError
+        If the folder cannot be written.
+    """
+    from regolith_studio.studies.figures.repose import write_repose_study  # matplotlib
+
+    journal = folder / JOURNAL / STUDY
+    with staged_folder(folder, STUDY) as stage:
+        files = write_repose_study(study, stage, STUDY)
+        for place in _runs_and_datasets(folder) | _runs_and_datasets(journal):
+            shutil.copytree(study_place(folder, place), stage / place, copy_function=_link)
+    remove_quietly(journal)
+    with contextlib.suppress(OSError):  # it holds the journal of another study
+        journal.parent.rmdir()
+    return [path.name for path in files]
+
+
+def _runs_and_datasets(folder: Path) -> set[str]:
+    """Paths of the runs and of the datasets in a folder of studies, relative to it."""
+    runs = {path.parent for path in folder.glob(f"[!.]*/{DOCUMENT}")}
+    return {path.relative_to(folder).as_posix() for path in (*runs, *folder.glob(f"{DATASETS}/[!.]*"))}
+
+
+def _link(source: str, target: str) -> None:
+    """Give a file a second name, or copy it where the file system has one name a file."""
+    try:
+        os.link(source, target)
+    except OSError:
+        shutil.copy2(source, target)
+
+
+def _study_run(
+    row: ReposeVariant, request: ReposeRequest, place: Path, number: int, total: int
+) -> Generator[Step, None, dict[str, Any]]:
+    steps = simulate_repose(row.dataset, place, request)
+    try:
+        while True:
+            try:
+                step = next(steps)
+            except StopIteration as end:
+                return dict(end.value.document)
+            if isinstance(step, Progress):
+                message = f"{row.varied} {row.value}: {step.message}"
+                yield Progress(PROGRESS_STEPS * number + step.done, PROGRESS_STEPS * total, message)
+    except EngineError as error:
+        return error.document
+    finally:
+        steps.close()
+
+
+def _finished_run(place: Path, dataset: Path, request: ReposeRequest) -> dict[str, Any] | None:
+    """The document of a finished run of the same case on the same dataset, if there is one."""
+    try:
+        document = read_run(place).document
+    except FileError:
+        return None
+    engine = engine_named(request.engine)
+    settings = asdict(engine.Settings() if request.settings is None else request.settings)
+    same = (
+        document["state"] == "finished"
+        and document["dataset"]["sha256"] == dataset_hash(dataset)
+        and document["case"] == case_document(request.case)
+        and document["engine"]["key"] == engine.key
+        and document["engine"]["settings"] == settings
+        and document["measurement"].get("settings", asdict(request.evaluation)) == asdict(request.evaluation)
+    )
+    return document if same else None
+
+
+def with_value(request: ReposeRequest, key: str, value: Any) -> ReposeRequest:
+    """The same request with one value of Table 1, Table 2 or the case changed.
+
+    Raises
+    ------
+    InputError
+        If there is no such value, or it cannot be this.
+    """
+    case = request.case
+    if key in CASE_KEYS:
+        return replace(request, case=replace(case, **{key: value}))
+    for part, kind in (("contact", ContactParameters), ("test", LiftingCylinderTest)):
+        if key in {each.name for each in fields(kind)}:
+            changed = replace(getattr(case, part), **{key: _to_float(key, value)})
+            return replace(request, case=replace(case, **{part: changed}))
+    known = [each.name for kind in (ContactParameters, LiftingCylinderTest) for each in fields(kind)]
+    raise InputError(f"{key!r} cannot be varied; these can: {', '.join([*known, *CASE_KEYS])}.")
+
+
+def _to_float(key: str, value: Any) -> float:
+    try:
+        return float(value)
+    except (TypeError, ValueError) as error:
+        raise InputError(f"The value of {key} must be a number, got {value!r}.") from error
+
+
+@dataclass(frozen=True, eq=False)
+class ReposeStudyRequest:
+    """What is varied, and how; picklable.
+
+    Parameters
+    ----------
+    key, values
+        Of Table 1, Table 2, the case, or :data:`SHAPE_KEYS`.
+    request
+        Of every run, but for the value.
+    dataset
+        Folder of the dataset; not needed where the shapes are varied.
+    repeats
+        Runs of each value, with seeds one after the other.
+    particles, coarsening
+        What datasets are made from where the shapes are varied.
+
+    Raises
+    ------
+    InputError
+        If a value cannot be used, or what the study needs is missing.
+    """
+
+    key: str
+    values: tuple[float | str, ...]
+    request: ReposeRequest
+    dataset: Path | None = None
+    repeats: int = 1
+    particles: tuple[Particle, ...] = ()
+    coarsening: CoarseningRequest | None = None
+
+    def __post_init__(self) -> None:
+        if not self.values:
+            raise InputError("A study needs values: write them with commas between them.")
+        if self.key in SHAPE_KEYS:
+            if not self.particles or self.coarsening is None:
+                raise InputError("Shapes are varied from open particles; open some, or the shipped sample.")
+            for value in self.values:
+                _with_shape_value(self.coarsening, self.key, value)
+            return
+        if self.dataset is None:
+            raise InputError(N_("There is no dataset yet: open one, or make one first."))
+        for value in self.values:
+            with_value(self.request, self.key, value)
+
+
+def values_in(key: str, text: str) -> tuple[float | str, ...]:
+    """Values written with commas between them: names, whole numbers or numbers, as the key has them.
+
+    Raises
+    ------
+    InputError
+        If one is none.
+    """
+    words = [word.strip() for word in text.split(",") if word.strip()]
+    if key in ("shapes", "cohesion", "preset"):
+        return tuple(dict.fromkeys(words))
+    whole = key in ("n_facets", "n_particles")
+    try:
+        return tuple(dict.fromkeys(int(word) if whole else float(word) for word in words))
+    except ValueError as error:
+        kind = "whole numbers" if whole else "numbers"
+        raise InputError(f"Values of this kind are {kind} with commas between them, got {text!r}.") from error
+
+
+def run_repose_study(study_request: ReposeStudyRequest, folder: Path) -> Steps:
+    """Run a study in a folder of its own and write its tables and figure; returns ``ReposeStudy``."""
+    rows: list[ReposeVariant] = []
+    if study_request.key not in SHAPE_KEYS:
+        assert study_request.dataset is not None
+        rows = [
+            ReposeVariant(
+                study_request.key,
+                value,
+                study_request.dataset,
+                with_value(study_request.request, study_request.key, value),
+            )
+            for value in study_request.values
+        ]
+    else:
+        yield Started("Angle of repose: datasets", len(study_request.values))
+        for number, value in enumerate(study_request.values):
+            place = folder / JOURNAL / STUDY / DATASETS / f"{study_request.key}-{value}"
+            yield from _build_variant_dataset(study_request, number, place)
+            rows.append(ReposeVariant(study_request.key, value, place, study_request.request))
+    with output_lock(folder):
+        study = yield from study_repose(rows, folder, study_request.repeats)
+        write_study(study, folder)
+    return study
+
+
+def _build_variant_dataset(study_request: ReposeStudyRequest, number: int, place: Path) -> Steps:
+    """A dataset of the open particles with one of the values; the same particles give the same bytes."""
+    assert study_request.coarsening is not None
+    value = study_request.values[number]
+    request = _with_shape_value(study_request.coarsening, study_request.key, value)
+    preset = str(value) if study_request.key == "preset" else None
+    options = DatasetOptions(name=f"{study_request.key} {value}", preset=preset, overwrite=True)
+    for step in build_dataset_folder(study_request.particles, request, place, options):
+        if isinstance(step, Progress):
+            yield Progress(number, len(study_request.values), f"dataset of {value}: {step.message}")
+
+
+def _with_shape_value(request: CoarseningRequest, key: str, value: float | str) -> CoarseningRequest:
+    """The request with another number of facets or other weights."""
+    if key == "preset":
+        known = presets()
+        if value not in known:
+            raise InputError(f"There is no preset {value!r}; there are {', '.join(known)}.")
+        return replace(request, weights=known[str(value)].weights)
+    if not isinstance(value, int) or not 4 <= value <= 1000:
+        raise InputError(f"A particle has between 4 and 1,000 facets, got {value}.")
+    return replace(request, n_facets=value, largest_error=None)
