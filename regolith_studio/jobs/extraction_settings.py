@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, field, fields
+from dataclasses import asdict, dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -10,8 +10,10 @@ from regolith_studio.errors import FileError, InputError
 from regolith_studio.imaging.extraction import (
     ExtractionSettings,
 )
+from regolith_studio.imaging.segmentation.classifier_document import training_document, training_from
 from regolith_studio.imaging.segmentation.denoising import DenoiseSettings
 from regolith_studio.imaging.segmentation.morphology import CleaningSettings
+from regolith_studio.imaging.segmentation.pixel_classifier import TrainingSet
 from regolith_studio.imaging.segmentation.segment import SegmentationSettings
 from regolith_studio.imaging.segmentation.splitting import SplittingSettings, TileSettings
 from regolith_studio.imaging.segmentation.thresholding import ThresholdSettings
@@ -42,9 +44,13 @@ class GrainSettings:
 
     def as_document(self) -> dict[str, Any]:
         """Plain JSON."""
+        how = self.segmentation
+        segmentation = asdict(replace(how, classifier=None))
+        if how.classifier is not None:
+            segmentation["classifier"] = training_document(how.classifier)
         return {
             "region": asdict(self.region),
-            "segmentation": asdict(self.segmentation),
+            "segmentation": segmentation,
             "extraction": asdict(self.extraction),
         }
 
@@ -60,10 +66,37 @@ class GrainSettings:
         segmentation = _section(document, "segmentation")
         parts = {name: _parse_settings(kind, _section(segmentation, name)) for name, kind in _PARTS.items()}
         return cls(
-            SegmentationSettings(**parts),
+            SegmentationSettings(**parts, classifier=_classifier(segmentation.get("classifier"))),
             _parse_settings(ExtractionSettings, _section(document, "extraction")),
             _parse_settings(RegionSettings, _section(document, "region")),
         )
+
+
+def _classifier(document: Any) -> TrainingSet | None:
+    if document is None:
+        return None
+    if not isinstance(document, Mapping):
+        raise InputError(f"“classifier” in a recipe is a trained classifier, got {document!r}.")
+    return training_from(document, "“classifier” in a recipe")
+
+
+def read_classifier(path: Path) -> TrainingSet:
+    """The training set of a classifier's file.
+
+    Raises
+    ------
+    FileError
+        If it cannot be read or holds no classifier.
+    InputError
+        As :class:`~regolith_studio.imaging.segmentation.pixel_classifier.TrainingSet`.
+    """
+    try:
+        document = json.loads(read_bytes(path, _LARGEST))
+    except (ValueError, RecursionError):
+        raise FileError(f"{path.name} is no classifier: it holds no JSON.") from None
+    if not isinstance(document, dict):
+        raise FileError(f"{path.name} is no classifier: it holds no group of settings.")
+    return training_from(document, path.name)
 
 
 def read_grain_settings(path: Path) -> GrainSettings:

@@ -17,6 +17,14 @@ from regolith_studio.imaging.bounding_boxes import Box
 from regolith_studio.imaging.connected_components import ComponentCounter, ConnectedComponents
 from regolith_studio.imaging.segmentation.denoising import DenoiseSettings, denoised, noise_of
 from regolith_studio.imaging.segmentation.morphology import CleaningSettings, cleaned
+from regolith_studio.imaging.segmentation.pixel_classifier import (
+    TrainingSet,
+    box_probability,
+    check_voxel_size,
+    probability_map,
+    probability_volume,
+    train,
+)
 from regolith_studio.imaging.segmentation.splitting import GrainSplitter, SplittingSettings, TileSettings
 from regolith_studio.imaging.segmentation.thresholding import (
     Histogram,
@@ -36,13 +44,28 @@ from regolith_studio.messages import N_, Message
 
 @dataclass(frozen=True)
 class SegmentationSettings:
-    """The recipe from grey values to labels."""
+    """The recipe from grey values to labels.
+
+    Parameters
+    ----------
+    classifier
+        Turns the grey values into the probability of a voxel to be grain, which `threshold` then takes;
+        without one the threshold takes the volume as it is.
+    """
 
     denoise: DenoiseSettings = field(default_factory=DenoiseSettings)
     threshold: ThresholdSettings = field(default_factory=ThresholdSettings)
     cleaning: CleaningSettings = field(default_factory=CleaningSettings)
     splitting: SplittingSettings = field(default_factory=SplittingSettings)
     tiles: TileSettings = field(default_factory=TileSettings)
+    classifier: TrainingSet | None = None
+
+    def __post_init__(self) -> None:
+        if self.classifier is not None and self.threshold.method != "probability":
+            raise InputError(
+                "With a classifier, the threshold is a probability from 0 to 1, not "
+                f"{self.threshold.method!r}."
+            )
 
 
 @dataclass(frozen=True)
@@ -244,12 +267,29 @@ def _found_bodies(
     source: SliceSource, settings: SegmentationSettings, scratch: ScratchArrays
 ) -> Generator[SegmentationProgress, None, _FoundBodies]:
     """Connected bodies with their provisional numbers, before they are parted."""
+    if settings.classifier is not None:
+        source = yield from _predicted(source, settings.classifier, scratch)
     values, seen, n_not_finite = yield from _denoised(source, settings, scratch)
     level = level_of(seen, settings.threshold, source.dtype)
     numbers: NDArray[np.int32] = scratch.zeros(source.shape, np.int32)
     bodies = yield from _numbered(values, level, settings, numbers)
     edges = np.asarray(source.voxel_size, dtype=np.float64)
     return _FoundBodies(numbers, bodies, edges, level, seen, n_not_finite)
+
+
+def _predicted(
+    source: SliceSource, training: TrainingSet, scratch: ScratchArrays
+) -> Generator[SegmentationProgress, None, Volume]:
+    """The map of probabilities that a classifier makes of grey values."""
+    yield SegmentationProgress(N_("Training the classifier"), 0, 1)
+    steps = probability_map(train(training), source, scratch)
+    while True:
+        try:
+            done, total = next(steps)
+        except StopIteration as end:
+            found: Volume = end.value
+            return found
+        yield SegmentationProgress(N_("Predicting grains"), done, total)
 
 
 def _parted(
@@ -282,8 +322,16 @@ def preview(
 def part_of(
     volume: Volume, box: Box, settings: SegmentationSettings | None = None, level: float | None = None
 ) -> tuple[Volume, SegmentationSettings]:
-    """A small part of a volume and its settings, for :func:`preview` and :func:`grains_over_heights`."""
+    """A small part of a volume and its settings, for :func:`preview` and :func:`grains_over_heights`.
+
+    With a classifier, the part holds the probabilities, which depend on voxels about it.
+    """
     settings = settings or SegmentationSettings()
+    if settings.classifier is not None:
+        classifier = train(settings.classifier)
+        check_voxel_size(classifier, volume)
+        part = box_probability(classifier, volume, box)
+        return probability_volume(part, volume), replace(settings, classifier=None)
     if level is not None and settings.threshold.is_automatic:
         manual = replace(settings.threshold, method="manual", value=level)
         settings = replace(settings, threshold=manual)

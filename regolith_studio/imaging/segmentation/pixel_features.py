@@ -1,0 +1,207 @@
+"""What a pixel classifier sees of a voxel: Gaussians of several widths, their differences, and gradients.
+
+A Gaussian along one axis of a block is a product with a banded matrix. Blocks whose margins are
+:attr:`FeatureSettings.margin` voxels therefore give what the whole volume gives, thin slices cost little more
+than their own voxels, and every n-th voxel can be had without the others.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from regolith_studio.errors import InputError
+from regolith_studio.geometry.arrays import IntArray
+from regolith_studio.imaging.bounding_boxes import Box, box_between, grown
+from regolith_studio.imaging.volume import Volume
+from regolith_studio.imaging.volume_slabs import SliceSource, slab_ranges, thick_slabs
+
+FloatBlock = NDArray[np.float32]
+
+_TRUNCATE = 3.0
+"""Standard deviations after which a Gaussian ends."""
+_CELL = 64
+"""Edge of the cells that scattered voxels are gathered in."""
+
+
+@dataclass(frozen=True)
+class FeatureSettings:
+    """Which features a voxel has.
+
+    Parameters
+    ----------
+    sigmas
+        Standard deviations of the Gaussians in voxels, ascending.
+    planar
+        Filter within slices along z only (2-D), in place of all directions (3-D).
+    """
+
+    sigmas: tuple[float, ...] = (1.0, 2.0, 4.0, 8.0)
+    planar: bool = False
+
+    def __post_init__(self) -> None:
+        ascending = all(a < b for a, b in pairwise(self.sigmas))
+        if not self.sigmas or not ascending or not all(0.3 <= each <= 32.0 for each in self.sigmas):
+            raise InputError(
+                f"The sigmas of a classifier's features ascend from 0.3 to at most 32 voxels, "
+                f"got {self.sigmas}."
+            )
+
+    @property
+    def margin(self) -> int:
+        """Voxels about a block that its features depend on."""
+        return _reach(self.sigmas[-1])
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Of the features, in their order."""
+        pairs = pairwise(self.sigmas)
+        return (
+            f"gaussian {self.sigmas[-1]:g}",
+            *(f"gaussian {a:g} - gaussian {b:g}" for a, b in pairs),
+            *(f"gradient magnitude {each:g}" for each in self.sigmas),
+        )
+
+
+def block_features(
+    values: NDArray[Any],
+    outer: Box,
+    box: Box,
+    shape: Sequence[int],
+    settings: FeatureSettings,
+    step: tuple[int, int, int] = (1, 1, 1),
+) -> FloatBlock:
+    """Features of the voxels of a box.
+
+    Beyond the border of the volume its outermost voxels are continued. What is no finite number counts as 0.
+
+    Parameters
+    ----------
+    values, outer
+        The grey values about the box, and where they lie: with a margin of
+        :attr:`FeatureSettings.margin` voxels where the volume has them.
+    shape
+        Voxels of the volume along x, y and z.
+    step
+        Of every how many voxels of the box along x, y and z features are taken.
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape (nx, ny, nz, n_features).
+    """
+    smooth, gradients = [], []
+    for sigma in settings.sigmas:
+        part = grown(box, _reach(sigma), outer)
+        cut = tuple(slice(a.start - b.start, a.stop - b.start) for a, b in zip(part, outer, strict=True))
+        single = np.array(values[cut], dtype=np.float32)
+        if values.dtype.kind == "f":
+            np.nan_to_num(single, copy=False, nan=0.0, posinf=0.0, neginf=0.0)
+        gaussian, gradient = _smoothed(single, part, box, shape, sigma, settings.planar, step)
+        smooth.append(gaussian)
+        gradients.append(gradient)
+    differences = [a - b for a, b in pairwise(smooth)]
+    return np.stack([smooth[-1], *differences, *gradients], axis=-1)
+
+
+def features_in(
+    volume: Volume, box: Box, settings: FeatureSettings, step: tuple[int, int, int] = (1, 1, 1)
+) -> FloatBlock:
+    """:func:`block_features` of a volume in memory or mapped from a file."""
+    outer = grown(box, settings.margin, box_between((0, 0, 0), volume.shape))
+    return block_features(volume.array[outer], outer, box, volume.shape, settings, step)
+
+
+def features_at(source: SliceSource, positions: IntArray, settings: FeatureSettings) -> FloatBlock:
+    """Features of scattered voxels, shape (n, n_features).
+
+    Parameters
+    ----------
+    positions
+        Voxels along x, y, z, shape (n, 3).
+
+    Raises
+    ------
+    InputError
+        If a voxel is not in the volume.
+    """
+    if len(positions) and not ((positions >= 0) & (positions < source.shape)).all():
+        raise InputError(f"Painted voxels lie outside of {source.name} of {source.shape} voxels.")
+    found = np.empty((len(positions), len(settings.names)), dtype=np.float32)
+    if not len(positions):
+        return found
+    low, high = int(positions[:, 2].min()), int(positions[:, 2].max()) + 1
+    nx, ny, _ = source.shape
+    ranges = [(low + first, low + stop) for first, stop in slab_ranges((nx, ny, high - low))]
+    for slab in thick_slabs(source, ranges, settings.margin):
+        inside = np.flatnonzero((positions[:, 2] >= slab.first) & (positions[:, 2] < slab.stop))
+        start = slab.first - slab.inner.start
+        outer = box_between((0, 0, start), (nx, ny, start + slab.values.shape[2]))
+        for rows in _cells(positions, inside):
+            here = positions[rows]
+            box = box_between(here.min(axis=0).tolist(), (here.max(axis=0) + 1).tolist())
+            block = block_features(slab.values, outer, box, source.shape, settings)
+            found[rows] = block[tuple((here - here.min(axis=0)).T)]
+    return found
+
+
+def _cells(positions: IntArray, rows: IntArray) -> list[IntArray]:
+    """The rows whose voxels share a cell of the grid of `_CELL` voxels."""
+    if not len(rows):
+        return []
+    _, cell = np.unique(positions[rows] // _CELL, axis=0, return_inverse=True)
+    order = np.argsort(cell, kind="stable")
+    return np.split(rows[order], np.flatnonzero(np.diff(cell[order])) + 1)
+
+
+def _reach(sigma: float) -> int:
+    return int(_TRUNCATE * sigma + 0.5)
+
+
+def _smoothed(
+    values: FloatBlock,
+    part: Box,
+    box: Box,
+    shape: Sequence[int],
+    sigma: float,
+    planar: bool,
+    step: tuple[int, int, int],
+) -> tuple[FloatBlock, FloatBlock]:
+    """Gaussian of one width in a box, and the magnitude of its gradient per voxel."""
+    weights = [
+        [_matrix(n, inner, outer, pace, 0.0 if planar and axis == 2 else sigma, order) for order in (0, 1)]
+        for axis, (n, inner, outer, pace) in enumerate(zip(shape, box, part, step, strict=True))
+    ]
+    # The axis along which most voxels fall away comes first.
+    first, second, third = np.argsort([len(each[0]) / each[0].shape[1] for each in weights])
+    once = _along(values, weights[first][0], first)
+    twice = _along(once, weights[second][0], second)
+    gaussian = _along(twice, weights[third][0], third)
+    squared = _along(twice, weights[third][1], third) ** 2
+    squared += _along(_along(once, weights[second][1], second), weights[third][0], third) ** 2
+    slope = _along(_along(values, weights[first][1], first), weights[second][0], second)
+    squared += _along(slope, weights[third][0], third) ** 2
+    return gaussian, np.sqrt(squared, out=squared)
+
+
+def _along(values: FloatBlock, weights: FloatBlock, axis: int) -> FloatBlock:
+    """Weighted sums along an axis; weights of shape (outputs, voxels along the axis)."""
+    return np.moveaxis(np.tensordot(weights, values, (1, axis)), 0, axis)
+
+
+def _matrix(n: int, inner: slice, outer: slice, step: int, sigma: float, order: int) -> FloatBlock:
+    """Weights of the voxels `outer` in a Gaussian (order 0) or slope (1) at every `step`-th of `inner`."""
+    reach = _reach(sigma)
+    offsets = np.arange(-reach, reach + 1)
+    kernel = np.exp(-0.5 * (offsets / sigma) ** 2) if sigma else np.ones(1)
+    kernel /= kernel.sum()
+    if order:
+        kernel = kernel * offsets / max(float((kernel * offsets**2).sum()), np.finfo(float).tiny)
+    outputs = np.arange(inner.start, inner.stop, step)
+    inputs = np.clip(outputs[:, None] + offsets, 0, n - 1) - outer.start
+    weights = np.zeros((len(outputs), outer.stop - outer.start))
+    np.add.at(weights, (np.arange(len(outputs))[:, None], inputs), kernel)
+    return weights.astype(np.float32)
