@@ -12,7 +12,7 @@ from unittest.mock import patch
 import psutil
 import shiboken6
 from PySide6.QtCore import QEvent, QPoint, QPointF, Qt, QTimer
-from PySide6.QtGui import QDesktopServices, QMouseEvent, QWheelEvent
+from PySide6.QtGui import QDesktopServices, QDrag, QMouseEvent, QWheelEvent
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import (
     QAbstractButton,
@@ -254,6 +254,7 @@ def _close_dialogs() -> None:
 
 
 def _close_popups() -> None:
+    QDrag.cancel()  # selected text that was dragged waits for a pointer, too
     while (popup := QApplication.activePopupWidget()) is not None:
         popup.close()
 

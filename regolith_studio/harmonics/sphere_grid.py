@@ -4,6 +4,7 @@ Legendre sums across the rings and sums of waves along them are separate product
 twentieth of the work of one product with all harmonics at all nodes.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -14,6 +15,8 @@ from regolith_studio.harmonics.legendre import harmonics
 
 GRIDS_KEPT = 8
 """As many as the models use for one l_max."""
+VALUES_AT_ONCE = 1_000_000
+"""At the nodes of a grid, 8 MB: rows are taken in blocks, so that thousands of expansions need no more."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,6 +101,20 @@ class SphereGrid:
         """Values (n, k) at the nodes of expansions (n, (l_max + 1)^2)."""
         return self.rings.values(coefficients)
 
+    def blocks(self, coefficients: FloatArray) -> Iterator[tuple[slice, FloatArray]]:
+        """Blocks of rows of `coefficients`, with their :meth:`values`."""
+        step = max(1, VALUES_AT_ONCE // len(self.weights))
+        for first in range(0, len(coefficients), step):
+            rows = slice(first, first + step)
+            yield rows, self.values(coefficients[rows])
+
+    def lowest(self, coefficients: FloatArray) -> FloatArray:
+        """Smallest value (n,) at the nodes of expansions (n, (l_max + 1)^2)."""
+        found = np.empty(len(coefficients))
+        for rows, values in self.blocks(coefficients):
+            found[rows] = values.min(axis=1)
+        return found
+
     def expanded(self, values: FloatArray) -> FloatArray:
         """Coefficients (n, (l_max + 1)^2) of functions given at the nodes (n, k)."""
         return self.rings.sums(values * self.weights)
@@ -121,3 +138,11 @@ def sphere_grid(degree: int, l_max: int) -> SphereGrid:
 def enclosed_volumes(radii: FloatArray, grid: SphereGrid) -> FloatArray:
     """Volumes (n,) of radius functions given at the nodes, shape (n, k): integral of r^3 / 3."""
     return np.asarray((radii * radii * radii) @ grid.weights / 3)
+
+
+def expanded_volumes(coefficients: FloatArray, grid: SphereGrid, exponential: bool = False) -> FloatArray:
+    """Volumes (n,) of expansions (n, (l_max + 1)^2) of r, or of ln r if `exponential`."""
+    found = np.empty(len(coefficients))
+    for rows, values in grid.blocks(coefficients):
+        found[rows] = enclosed_volumes(np.exp(values) if exponential else values, grid)
+    return found

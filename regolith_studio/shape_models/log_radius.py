@@ -6,11 +6,9 @@ import numpy as np
 
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.harmonics.coefficients import degrees
-from regolith_studio.harmonics.sphere_grid import enclosed_volumes, sphere_grid
+from regolith_studio.harmonics.sphere_grid import expanded_volumes, sphere_grid
 from regolith_studio.shape_models.realizations import EXPONENTIAL_DEGREE, Scale
 from regolith_studio.shape_models.sample import Sample
-
-_BATCH = 500
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,10 +51,9 @@ def log_shapes(sample: Sample) -> LogShapes:
     l_max = usable.l_max
     grid = sphere_grid(EXPONENTIAL_DEGREE * l_max + 1, l_max)
     rows = np.empty_like(usable.coefficients)
-    for first in range(0, len(usable), _BATCH):
-        radii = grid.values(usable.coefficients[first : first + _BATCH])
-        sizes = usable.equivalent_radii[first : first + _BATCH, None]
-        rows[first : first + _BATCH] = grid.expanded(np.log(np.maximum(radii, 1e-3 * sizes) / sizes))
+    for block, radii in grid.blocks(usable.coefficients):
+        sizes = usable.equivalent_radii[block, None]
+        rows[block] = grid.expanded(np.log(np.maximum(radii, 1e-3 * sizes) / sizes))
     return LogShapes(rows, usable.equivalent_radii, len(sample) - len(usable))
 
 
@@ -65,13 +62,12 @@ def sized(shapes: FloatArray, equivalent_radii: FloatArray, scale: Scale = "log_
     l_max = round(shapes.shape[1] ** 0.5) - 1
     if scale == "radius":
         grid = sphere_grid(3 * l_max // 2 + 1, l_max)
-        present = np.cbrt(3 * enclosed_volumes(grid.values(shapes), grid) / (4 * np.pi))
+        present = np.cbrt(3 * expanded_volumes(shapes, grid) / (4 * np.pi))
         return np.asarray(shapes * (equivalent_radii / present)[:, None])
     grid = sphere_grid(EXPONENTIAL_DEGREE * l_max + 1, l_max)
     rows = shapes.copy()
     rows[:, 0] = 0.0
-    volumes = enclosed_volumes(np.exp(grid.values(rows)), grid)
-    present = np.log(3 * volumes / (4 * np.pi)) / 3
+    present = np.log(3 * expanded_volumes(rows, grid, exponential=True) / (4 * np.pi)) / 3
     rows[:, 0] = np.sqrt(4 * np.pi) * (np.log(equivalent_radii) - present)
     return rows
 

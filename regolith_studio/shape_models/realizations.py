@@ -2,7 +2,6 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import lru_cache
 from math import isqrt
 from typing import Any, Literal
 
@@ -15,7 +14,7 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.harmonics.coefficients import ShCoefficients
 from regolith_studio.harmonics.legendre import harmonics
-from regolith_studio.harmonics.sphere_grid import enclosed_volumes, sphere_grid
+from regolith_studio.harmonics.sphere_grid import expanded_volumes, sphere_grid
 from regolith_studio.harmonics.surface import DEFAULT_LEVEL, reconstruct
 from regolith_studio.harmonics.synthesis import (
     icosphere_edges,
@@ -30,6 +29,8 @@ EXPONENTIAL_DEGREE = 3
 SAFE_SHARE = 0.15
 """Lowest radius on the coarse grid, as a share of the mean, above which the fine grid is not tested."""
 CLOSE_LEVEL = 5
+CLOSE_BLOCK = 1024
+"""Vertices of which the harmonics are held at once."""
 _PATCH = np.stack(np.meshgrid(*[np.linspace(-1, 1, 9)] * 3), axis=-1).reshape(-1, 3)
 """A cube of points: added to a unit vector they spread about its direction."""
 
@@ -95,12 +96,8 @@ class Realizations:
         """Radius of the sphere with each particle's volume, shape (n,)."""
         factor = 1.5 if self.scale == "radius" else EXPONENTIAL_DEGREE
         grid = sphere_grid(int(factor * self.l_max) + 1, self.l_max)
-        found = np.empty(len(self))
-        for first in range(0, len(self), 1000):
-            values = grid.values(self.coefficients[first : first + 1000])
-            radii = values if self.scale == "radius" else np.exp(values)
-            found[first : first + 1000] = np.cbrt(3 * enclosed_volumes(radii, grid) / (4 * np.pi))
-        return found
+        volumes = expanded_volumes(self.coefficients, grid, exponential=self.scale == "log_radius")
+        return np.asarray(np.cbrt(3 * volumes / (4 * np.pi)))
 
     def chosen(self, indices: ArrayLike) -> "Realizations":
         """Some of the particles, by index."""
@@ -144,7 +141,7 @@ def virtual_mesh(draws: Realizations, index: int, level: int = DEFAULT_LEVEL) ->
         sphere.vertices * (radius + icosphere_edges(level).shortfalls(radius, between))[:, None], sphere.faces
     )
     grid = sphere_grid(EXPONENTIAL_DEGREE * draws.l_max + 1, draws.l_max)
-    volume = enclosed_volumes(np.exp(grid.values(drawn.values[None])), grid)[0]
+    volume = expanded_volumes(drawn.values[None], grid, exponential=True)[0]
     return Mesh(flat.vertices * np.cbrt(volume / flat.volume), sphere.faces)
 
 
@@ -157,14 +154,27 @@ def positive_rows(coefficients: FloatArray) -> BoolArray:
     """
     l_max = isqrt(coefficients.shape[1]) - 1
     grid = sphere_grid(2 * l_max + 1, l_max)
-    lowest = grid.values(coefficients).min(axis=1)
+    lowest = grid.lowest(coefficients)
     positive: BoolArray = (lowest > 0) & (coefficients[:, 0] > 0)
     close = np.flatnonzero(positive & (lowest < SAFE_SHARE * coefficients[:, 0] / np.sqrt(4 * np.pi)))
     if len(close):
-        values = coefficients[close] @ _fine_basis(l_max)
-        for row, places in zip(close, values, strict=True):
-            positive[row] = places.min() > 0 and _lowest_about(coefficients[row], int(places.argmin())) > 0
+        values, vertices = _lowest_on_icosphere(coefficients[close])
+        for row, value, vertex in zip(close, values, vertices, strict=True):
+            positive[row] = value > 0 and _lowest_about(coefficients[row], int(vertex)) > 0
     return positive
+
+
+def _lowest_on_icosphere(coefficients: FloatArray) -> tuple[FloatArray, IntArray]:
+    """Lowest radius on the fine icosphere and its vertex, for each row; a block of vertices at a time."""
+    vertices, l_max = icosphere(CLOSE_LEVEL).vertices, isqrt(coefficients.shape[1]) - 1
+    lowest, found = np.full(len(coefficients), np.inf), np.zeros(len(coefficients), dtype=np.int64)
+    for first in range(0, len(vertices), CLOSE_BLOCK):
+        values = coefficients @ harmonics(vertices[first : first + CLOSE_BLOCK], l_max)
+        places = values.argmin(axis=1)
+        block = values[np.arange(len(values)), places]
+        found[block < lowest] = first + places[block < lowest]
+        lowest = np.minimum(lowest, block)
+    return lowest, found
 
 
 def _lowest_about(coefficients: FloatArray, vertex: int) -> float:
@@ -181,11 +191,6 @@ def acceptable(bounds: tuple[float, float] | None, coefficients: FloatArray) -> 
     if bounds is not None:
         l_max = isqrt(coefficients.shape[1]) - 1
         grid = sphere_grid(3 * l_max // 2 + 1, l_max)
-        sizes = np.cbrt(3 * np.abs(enclosed_volumes(grid.values(coefficients), grid)) / (4 * np.pi))
+        sizes = np.cbrt(3 * np.abs(expanded_volumes(coefficients, grid)) / (4 * np.pi))
         good &= (sizes >= bounds[0]) & (sizes <= bounds[1])
     return good
-
-
-@lru_cache(maxsize=2)
-def _fine_basis(l_max: int) -> FloatArray:
-    return harmonics(icosphere(CLOSE_LEVEL).vertices, l_max)

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats
 from regolith_studio.harmonics.coefficients import ShCoefficients
-from regolith_studio.harmonics.sphere_grid import enclosed_volumes, sphere_grid
+from regolith_studio.harmonics.sphere_grid import expanded_volumes, sphere_grid
 
 FEWEST = 2
 IDENTICAL = 1e-9
@@ -94,14 +94,14 @@ class Sample:
     def equivalent_radii(self) -> FloatArray:
         """Radius of the sphere with each particle's volume, shape (n,); exact by quadrature."""
         grid = sphere_grid(3 * self.l_max // 2 + 1, self.l_max)
-        volumes = enclosed_volumes(grid.values(self.coefficients), grid)
+        volumes = expanded_volumes(self.coefficients, grid)
         return np.asarray(np.cbrt(3 * volumes / (4 * np.pi)))
 
     @cached_property
     def lowest_radii(self) -> FloatArray:
         """Smallest radius of each particle on a grid of twice the degree, shape (n,)."""
         grid = sphere_grid(2 * self.l_max + 1, self.l_max)
-        return np.asarray((grid.values(self.coefficients)).min(axis=1))
+        return grid.lowest(self.coefficients)
 
     def particle(self, index: int) -> ShCoefficients:
         """The coefficients of one particle."""
