@@ -1,5 +1,6 @@
 """Make the main window with its session; bring events of worker threads and uncaught errors into it."""
 
+import linecache
 import sys
 import traceback
 from collections.abc import Callable, Sequence
@@ -51,7 +52,7 @@ def open_window(
     poster.setParent(window)
     if found:
         QTimer.singleShot(0, window, lambda: window.commands.open_paths(found, unit))
-    _release_particles_when_idle(window)
+    _release_memory_when_idle(window)
     return window
 
 
@@ -60,9 +61,14 @@ def _compile_in_background(runner: ThreadRunner) -> None:
     runner.submit(Job(compile_first, tuple(TASKS)), lambda _event: None, "compile")
 
 
-def _release_particles_when_idle(window: MainWindow) -> None:
+def _release_memory_when_idle(window: MainWindow) -> None:
+    """Let hidden pages drop closed particles, and linecache the sources (40 MB) that PySide has read.
+
+    PySide looks for its names in the source of every module that is imported after it.
+    """
     timer = QTimer(window, singleShot=True, interval=IDLE)
     timer.timeout.connect(window.pages.refresh_hidden)
+    timer.timeout.connect(linecache.clearcache)
     window.bindings.listen("tasks", lambda *_: timer.stop() if window.session.tasks else timer.start())
 
 
