@@ -2,7 +2,7 @@
 
 import shutil
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -17,6 +17,8 @@ from regolith_studio.errors import RegolithError
 if TYPE_CHECKING:
     from regolith_studio.dem.snapshot import ParticleState
     from regolith_studio.geometry.arrays import FloatArray
+    from regolith_studio.jobs.events import Steps
+    from regolith_studio.jobs.executor import Executor
     from regolith_studio.session.run_recipe import RecipeRun
 
 N_REPRESENTATIVES, N_DRAWN, N_HEAP = 12, 20, 300
@@ -31,16 +33,20 @@ def demo(
 ) -> None:
     """Run the whole chain on the shipped scan and particles, with Figs. 3 and 8 and one page about it."""
     from regolith_studio.io.atomic import staged_folder, write_bytes
+    from regolith_studio.jobs.events import Progress
+    from regolith_studio.jobs.executor import open_executor
     from regolith_studio.session.outputs import demo_page as page
 
     problems: list[str] = []
-    with staged_folder(output, "demo") as stage:
-        _shipped_particles(stage / page.PARTICLES, jobs, seed, problems)
-        _shipped_scan(stage / page.SCAN, jobs, seed, problems)
-        with _noted(problems):
-            _draw_population(stage / page.SCAN / "fit.json", stage / page.POPULATION, jobs, seed)
-        with _noted(problems):
-            _simulate_heap(stage / page.SCAN / "dataset", stage / page.HEAP, seed)
+    with staged_folder(output, "demo") as stage, open_executor(jobs) as executor:
+        _shipped_scan(stage / page.SCAN, executor, seed, problems)
+        with closing(_heap(stage / page.SCAN / "dataset", stage / page.HEAP, seed, problems)) as heap:
+            if executor.workers > 1:  # the engine is a process of its own: it works during the next steps
+                next((step for step in heap if isinstance(step, Progress)), None)
+            _shipped_particles(stage / page.PARTICLES, executor, seed, problems)
+            with _noted(problems):
+                _draw_population(stage / page.SCAN / "fit.json", stage / page.POPULATION, executor, seed)
+            run_with_progress(heap)
         problems = [each.replace(str(stage), str(output)) for each in problems]
         write_bytes(stage / page.PAGE, page.demo_page(stage, problems).encode("utf-8"))
         files = sorted(path.relative_to(stage).as_posix() for path in stage.rglob("*") if path.is_file())
@@ -61,25 +67,25 @@ def _noted(problems: list[str]) -> Iterator[None]:
         problems.append(str(error))
 
 
-def _run_recipe(folder: Path, jobs: int, problems: list[str], **entries: Any) -> "RecipeRun":
+def _run_recipe(folder: Path, executor: "Executor", problems: list[str], **entries: Any) -> "RecipeRun":
     """Run a recipe that nobody will resume."""
     from regolith_studio.io.atomic import JOURNAL
     from regolith_studio.session.recipe import recipe_of
     from regolith_studio.session.run_recipe import run_recipe
 
-    done: RecipeRun = run_with_progress(run_recipe(recipe_of(**entries), Path(), folder, jobs))
+    done: RecipeRun = run_with_progress(run_recipe(recipe_of(**entries), Path(), folder, executor))
     shutil.rmtree(folder / JOURNAL)
     problems += done.problems
     return done
 
 
-def _shipped_particles(folder: Path, jobs: int, seed: int, problems: list[str]) -> None:
+def _shipped_particles(folder: Path, executor: "Executor", seed: int, problems: list[str]) -> None:
     """Fits, polyhedra, dataset, Figs. 3 and 8 and the summary of the shipped particles."""
     from regolith_studio.session.outputs.summary import write_summary
     from regolith_studio.session.recipe import Outputs
 
     outputs = Outputs(fits=True, lmax_study=True, coarsening_study=True, summary=False)
-    done = _run_recipe(folder, jobs, problems, seed=seed, outputs=outputs)
+    done = _run_recipe(folder, executor, problems, seed=seed, outputs=outputs)
     with _noted(problems):
         done.summary.pictures = _pictures(done)
     write_summary(folder, done.recipe, done.summary, done.studies, done.problems)
@@ -100,13 +106,13 @@ def _pictures(done: "RecipeRun") -> tuple[tuple[str, str], ...]:
     return ((VIEWS, caption),)
 
 
-def _shipped_scan(folder: Path, jobs: int, seed: int, problems: list[str]) -> None:
+def _shipped_scan(folder: Path, executor: "Executor", seed: int, problems: list[str]) -> None:
     """Grains of the shipped scan, their fits, a dataset of their representatives, and an export."""
     from regolith_studio.session.recipe import Exports, Outputs, Representatives, VolumeEntry
 
     _run_recipe(
         folder,
-        jobs,
+        executor,
         problems,
         seed=seed,
         volumes=[VolumeEntry(file="sample:grey")],
@@ -116,7 +122,7 @@ def _shipped_scan(folder: Path, jobs: int, seed: int, problems: list[str]) -> No
     )
 
 
-def _draw_population(fit: Path, folder: Path, jobs: int, seed: int) -> None:
+def _draw_population(fit: Path, folder: Path, executor: "Executor", seed: int) -> None:
     """Virtual particles like the grains."""
     from regolith_studio.io.atomic import staged_folder
     from regolith_studio.jobs.model_jobs import GenerationRequest, draw, fit_model, groups_of
@@ -128,10 +134,10 @@ def _draw_population(fit: Path, folder: Path, jobs: int, seed: int) -> None:
     draws = run_with_progress(draw(model, request))
     made = GeneratedParticles(source, request, model, draws, groups_of(draws, model))
     with staged_folder(folder, "generate") as stage:
-        write_particles(stage, made, "stl", None, jobs)
+        write_particles(stage, made, "stl", None, executor)
 
 
-def _simulate_heap(dataset: Path, folder: Path, seed: int) -> None:
+def _heap(dataset: Path, folder: Path, seed: int, problems: list[str]) -> "Steps":
     """The lifting cylinder with few particles, and a picture of the heap."""
     from regolith_studio.dem.case import ReposeCase
     from regolith_studio.dem.engines.mujoco.settings import MujocoSettings
@@ -141,11 +147,12 @@ def _simulate_heap(dataset: Path, folder: Path, seed: int) -> None:
 
     settings = MujocoSettings(time_step=0.04, iterations=15, rest_energy=1e-3)
     request = ReposeRequest(ReposeCase(n_particles=N_HEAP, seed=seed), settings=settings)
-    done = run_with_progress(simulate_repose(dataset, folder, request))
-    (folder / TIMES).unlink()
-    title = f"Illustration: {N_HEAP} particles are too few for an angle of repose"
-    given = (read_shapes(folder), done.ending.particles, request.case.test, title)
-    draw_in_process(_draw_heap, given, folder / HEAP_PICTURE)
+    with _noted(problems):
+        done = yield from simulate_repose(dataset, folder, request)
+        (folder / TIMES).unlink()
+        title = f"Illustration: {N_HEAP} particles are too few for an angle of repose"
+        given = (read_shapes(folder), done.ending.particles, request.case.test, title)
+        draw_in_process(_draw_heap, given, folder / HEAP_PICTURE)
 
 
 def _draw_heap(

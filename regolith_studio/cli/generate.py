@@ -20,6 +20,7 @@ from regolith_studio.cli.options import (
 from regolith_studio.cli.terminal import print_errors, print_json, run_with_progress
 
 if TYPE_CHECKING:
+    from regolith_studio.jobs.executor import Executor
     from regolith_studio.jobs.model_jobs import GenerationRequest
     from regolith_studio.readers.shape_files import ShapeSource
     from regolith_studio.session.outputs.particles import GeneratedParticles
@@ -196,7 +197,7 @@ def _named(fitted: Any, names: str) -> Any:
 
 
 def write_particles(
-    folder: Path, made: "GeneratedParticles", format_: str, level: int | None, jobs: int
+    folder: Path, made: "GeneratedParticles", format_: str, level: int | None, jobs: "int | Executor"
 ) -> dict[str, Any]:
     """Write drawn particles into an existing folder, and what is known of them; returns the document."""
     from regolith_studio.harmonics.surface import level_for

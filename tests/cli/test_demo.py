@@ -7,10 +7,13 @@ from pathlib import Path
 
 import pytest
 
+from regolith_studio.cli import demo
 from regolith_studio.cli.entry import run
 from regolith_studio.dataset.folder_io import read_dataset
+from regolith_studio.jobs.events import Progress, Started, Steps
 from regolith_studio.readers.particles import sample_particles
 from regolith_studio.session.batch import inputs
+from regolith_studio.session.outputs import demo_page
 
 EXPECTED = {
     "index.html",
@@ -71,6 +74,32 @@ def check(folder: Path) -> str:
     assert len(read_dataset(folder / "scan" / "dataset")) == 12
     assert json.loads((folder / "heap" / "repose.json").read_text())["checks"]["particles_out"] > 290
     return text
+
+
+@pytest.mark.parametrize(
+    ("jobs", "steps"),
+    [
+        (1, ["scan", "particles", "population", "heap begun", "heap done"]),
+        (2, ["scan", "heap begun", "particles", "population", "heap done"]),
+    ],
+)
+def test_that_the_heap_is_simulated_during_the_other_steps_if_there_are_processes_for_it(
+    command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, jobs: int, steps: list[str]
+) -> None:
+    done: list[str] = []
+
+    def heap(*_: object) -> Steps:
+        yield Started("Angle of repose")
+        done.append("heap begun")
+        yield Progress(0, 1)
+        done.append("heap done")
+
+    for step in ("_shipped_scan", "_shipped_particles", "_draw_population"):
+        monkeypatch.setattr(demo, step, lambda *_, name=step: done.append(name.rpartition("_")[2]))
+    monkeypatch.setattr(demo, "_heap", heap)
+    monkeypatch.setattr(demo_page, "demo_page", lambda *_: "")
+    assert command("demo", "-o", tmp_path / "demo", "--jobs", jobs).code == 0
+    assert done == steps
 
 
 @pytest.mark.slow
