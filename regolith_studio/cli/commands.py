@@ -7,6 +7,7 @@ import typer
 
 from regolith_studio.cli import (
     check,
+    classify,
     coarsen,
     dataset,
     demo,
@@ -83,6 +84,7 @@ app.command("check")(check.check)
 app.command("forget")(forget.forget)
 app.command("install-desktop")(install_desktop.install_desktop)
 app.command("warm-up")(check.warm_up)
+app.add_typer(classify.app, name="classify")
 app.add_typer(study.app, name="study")
 app.add_typer(dataset.app, name="dataset")
 app.add_typer(repose.app, name="repose")

@@ -112,6 +112,15 @@ class GrainOptions:
             metavar="HOW",
         ),
     ] = "otsu"
+    classifier: Annotated[
+        Path | None,
+        typer.Option(
+            "--classifier",
+            help="Classifier that makes a probability map of a grey volume, as `classify train` or the "
+            "window writes it; the threshold is then probability:0.5 if omitted.",
+            metavar="FILE",
+        ),
+    ] = None
     dark: Annotated[bool, typer.Option("--dark", help="Grains are darker than the matrix.")] = False
     opening: Annotated[
         int,
@@ -176,17 +185,20 @@ class GrainOptions:
         from regolith_studio.imaging.segmentation.morphology import CleaningSettings
         from regolith_studio.imaging.segmentation.segment import SegmentationSettings
         from regolith_studio.imaging.segmentation.splitting import SplittingSettings
-        from regolith_studio.jobs.extraction_settings import GrainSettings
+        from regolith_studio.jobs.extraction_settings import GrainSettings, read_classifier
 
         if self.border not in ("exclude", "keep"):
             raise typer.BadParameter(f"Grains at the border are to exclude or to keep, not {self.border!r}.")
         least = min(self.min_voxels, CleaningSettings.min_voxels)
+        trained = read_classifier(self.classifier) if self.classifier else None
+        how = "probability" if trained and self.threshold == "otsu" else self.threshold
         return GrainSettings(
             SegmentationSettings(
                 DenoiseSettings(self.denoise),  # type: ignore[arg-type]  # checked by the settings
-                threshold_from(self.threshold, self.dark),
+                threshold_from(how, self.dark),
                 CleaningSettings(self.opening, self.closing, min_voxels=least),
                 SplittingSettings(self.split, self.h_maxima),
+                classifier=trained,
             ),
             ExtractionSettings(
                 exclude_border=self.border == "exclude",

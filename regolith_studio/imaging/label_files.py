@@ -1,6 +1,6 @@
-"""Label volumes as files for other programs: TIFF, NRRD and HDF5, written slab by slab.
+"""Volumes of labels or probabilities as files for other programs: TIFF, NRRD and HDF5, written slab by slab.
 
-Each holds the edges of a voxel in micrometres and is compressed without loss; equal labels give equal bytes.
+Each holds the edges of a voxel in micrometres and is compressed without loss; equal values give equal bytes.
 """
 
 import gzip
@@ -16,8 +16,8 @@ from regolith_studio.errors import InputError
 from regolith_studio.imaging.volume_slabs import SliceSource, slab_ranges
 from regolith_studio.io.atomic import staged_file
 
-DATASET = "labels"
-"""The name of the volume in an HDF5 file."""
+DATASETS = {"labels": "labels", "grey": "probability"}
+"""The name of the volume in an HDF5 file, by its kind."""
 _BIG_TIFF_BYTES = 2**31
 _CHUNK = (8, 128, 128)
 _LEVEL = 1
@@ -43,9 +43,18 @@ def write_label_file(path: Path, labels: SliceSource, highest: int) -> Iterator[
     FileError
         If the file cannot be written.
     """
+    stored = np.dtype(np.uint16 if highest < 2**16 else np.uint32)
+    return _write(path, labels, stored)
+
+
+def write_probability_file(path: Path, probabilities: SliceSource) -> Iterator[tuple[int, int]]:
+    """As :func:`write_label_file`, of probabilities from 0 to 255 in 8 bits."""
+    return _write(path, probabilities, np.dtype(np.uint8))
+
+
+def _write(path: Path, labels: SliceSource, stored: np.dtype[Any]) -> Iterator[tuple[int, int]]:
     write = _WRITERS[label_suffix(path)]
     ranges = slab_ranges(labels.shape)
-    stored = np.dtype(np.uint16 if highest < 2**16 else np.uint32)
 
     def slabs() -> _Slabs:
         for first, stop in ranges:
@@ -83,7 +92,7 @@ def _write_tiff(
         (f"PhysicalSize{axis}", edge), (f"PhysicalSize{axis}Unit", "µm"),
     )}  # fmt: skip
     ome = tifffile.OmeXml(UUID=str(uuid.uuid5(uuid.NAMESPACE_OID, f"{labels.name} {labels.shape}")))
-    ome.addimage(stored, (nz, ny, nx), (nz, 1, 1, ny, nx, 1), axes="ZYX", Name=DATASET, **sizes)
+    ome.addimage(stored, (nz, ny, nx), (nz, 1, 1, ny, nx, 1), axes="ZYX", Name=DATASETS[labels.kind], **sizes)
     options: dict[str, Any] = {"description": ome.tostring(declaration=True).encode()}
     big = nx * ny * nz * stored.itemsize > _BIG_TIFF_BYTES
     with tifffile.TiffWriter(stream, bigtiff=big) as file:
@@ -139,8 +148,9 @@ def _write_hdf5(
     edges = np.asarray(labels.voxel_size, float)[::-1]
     with h5py.File(stream.name, "w", locking=False) as file:
         dataset = file.create_dataset(
-            DATASET, shape, stored, chunks=chunks, compression="gzip", compression_opts=_LEVEL, shuffle=True
-        )
+            DATASETS[labels.kind], shape, stored,
+            chunks=chunks, compression="gzip", compression_opts=_LEVEL, shuffle=True,
+        )  # fmt: skip
         dataset.attrs["element_size_um"] = edges
         at = 0
         for slab in slabs:

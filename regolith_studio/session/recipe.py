@@ -114,6 +114,8 @@ class VolumeEntry(Strict):
         An ``extraction.json`` with all settings, as ``extract`` and the window write it.
     region, segmentation, extraction
         The settings themselves, in place of such a file.
+    classifier
+        The file of a classifier of voxels, whose probabilities are thresholded.
     """
 
     file: str
@@ -127,10 +129,13 @@ class VolumeEntry(Strict):
     region: dict[str, Any] = Field(default_factory=dict)
     segmentation: dict[str, Any] = Field(default_factory=dict)
     extraction: dict[str, Any] = Field(default_factory=dict)
+    classifier: str | None = None
 
     @model_validator(mode="after")
     def _one_way(self) -> Self:
-        if self.recipe is not None and (self.region or self.segmentation or self.extraction):
+        if self.recipe is not None and (
+            self.region or self.segmentation or self.extraction or self.classifier
+        ):
             raise ValueError("give settings or the recipe that holds them, not both")
         return self
 

@@ -3368,6 +3368,10 @@
         <translation>Stets positiv; Größen und Spektrum getrennt, sodass es extrapoliert.</translation>
     </message>
     <message>
+        <source>Predicting grains</source>
+        <translation>Körner werden vorhergesagt</translation>
+    </message>
+    <message>
         <source>Preferences</source>
         <translation>Einstellungen</translation>
     </message>
@@ -4976,6 +4980,10 @@
         <translation>Oben (von +z)</translation>
     </message>
     <message>
+        <source>Training the classifier</source>
+        <translation>Klassifikator wird trainiert</translation>
+    </message>
+    <message>
         <source>Transparent background</source>
         <translation>Durchsichtiger Hintergrund</translation>
     </message>
@@ -5370,6 +5378,10 @@
     <message>
         <source>Writing the results</source>
         <translation>Ergebnisse werden geschrieben</translation>
+    </message>
+    <message>
+        <source>Writing {name}</source>
+        <translation>{name} wird geschrieben</translation>
     </message>
     <message>
         <source>Young&apos;s modulus</source>

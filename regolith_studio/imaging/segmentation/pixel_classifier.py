@@ -33,6 +33,7 @@ from regolith_studio.imaging.volume_slabs import (
 
 ClassifierKind = Literal["network", "logistic"]
 CLASSIFIER_KINDS: tuple[ClassifierKind, ...] = get_args(ClassifierKind)
+MAX_CLASSES = 8
 MAX_PER_CLASS = 20_000
 """Painted voxels of a class that a classifier is trained on; of more, so many are drawn."""
 
@@ -189,6 +190,8 @@ def paint_from_labels(
         where = np.stack(np.nonzero(slab), axis=-1)
         found.append((where + np.array([0, 0, first]), slab[tuple(where.T)].astype(np.int64) - 1))
     positions, labels = (np.concatenate([each[k] for each in found]) for k in (0, 1))
+    if len(labels) and labels.max() >= len(classes):
+        raise InputError(f"{painted.name} holds label {labels.max() + 1}; classes are 1 to {len(classes)}.")
     kept = _at_most(labels, settings.seed)
     positions, labels = positions[kept], labels[kept]
     vectors = features_at(source, positions, settings.features)

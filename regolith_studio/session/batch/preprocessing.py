@@ -20,11 +20,17 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle, Source
 from regolith_studio.imaging.extraction import ExtractedParticle
 from regolith_studio.imaging.sample_volumes import SampleVolume, sample_file
+from regolith_studio.imaging.segmentation.classifier_document import training_document
 from regolith_studio.io.atomic import staged_folder
 from regolith_studio.io.json_text import json_bytes
 from regolith_studio.jobs.events import Steps
 from regolith_studio.jobs.executor import Executor
-from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput, read_grain_settings
+from regolith_studio.jobs.extraction_settings import (
+    GrainSettings,
+    VolumeInput,
+    read_classifier,
+    read_grain_settings,
+)
 from regolith_studio.jobs.model_jobs import GenerationRequest, fit_model, fit_request_for, sample_of_meshes
 from regolith_studio.jobs.particle_jobs import load_particles
 from regolith_studio.jobs.volume_jobs import extract_each, volume_sha256
@@ -102,8 +108,9 @@ def is_card(population: Population, base: Path) -> bool:
 def resolved(entry: VolumeEntry, base: Path) -> VolumeEntry:
     """The same volume whatever folder a recipe lies in."""
     settings = None if entry.recipe is None else str(base / entry.recipe)
+    classifier = None if entry.classifier is None else str(base / entry.classifier)
     file = entry.file if entry.file in SAMPLE_VOLUMES else str(base / entry.file)
-    return entry.model_copy(update={"file": file, "recipe": settings})
+    return entry.model_copy(update={"file": file, "recipe": settings, "classifier": classifier})
 
 
 def entry_of(volume: VolumeInput, settings: GrainSettings) -> VolumeEntry:
@@ -149,7 +156,7 @@ def _extract_grains(entry: VolumeEntry, base: Path, root: Path, finished: bool) 
     volume, settings = _volume_input(entry, base), _settings(entry, base)
     if not volume.path.exists():
         raise InputError(f"There is no volume {volume.path}.")
-    document = entry.model_dump(mode="json", exclude={"recipe"})
+    document = entry.model_dump(mode="json", exclude={"recipe", "classifier"})
     folder = root / f"volume-{_digest(document, settings.as_document(), volume_sha256(volume.path))}"
     if (folder / INDEX).is_file() and (finished or _is_whole(folder)):
         return folder
@@ -258,7 +265,11 @@ def _volume_input(entry: VolumeEntry, base: Path) -> VolumeInput:
 def _settings(entry: VolumeEntry, base: Path) -> GrainSettings:
     if entry.recipe is not None:
         return read_grain_settings(base / entry.recipe)
-    given = {"region": entry.region, "segmentation": entry.segmentation, "extraction": entry.extraction}
+    segmentation = entry.segmentation
+    if entry.classifier is not None:
+        trained = training_document(read_classifier(base / entry.classifier))
+        segmentation = {"threshold": {"method": "probability"}} | segmentation | {"classifier": trained}
+    given = {"region": entry.region, "segmentation": segmentation, "extraction": entry.extraction}
     _check_names(given, GrainSettings().as_document(), "")
     return GrainSettings.from_document(given)
 

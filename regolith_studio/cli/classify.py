@@ -1,0 +1,152 @@
+"""``classify``: train a classifier of voxels on a painted volume, and write maps of probabilities."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import numpy as np
+import typer
+
+from regolith_studio.cli.dataclass_options import with_dataclass_options
+from regolith_studio.cli.extract import VolumeOptions
+from regolith_studio.cli.options import Json, Seed, claim_json, claim_labels, output_path, usage_errors
+from regolith_studio.cli.terminal import CommandGroup, print_json, run_with_progress
+
+if TYPE_CHECKING:
+    from regolith_studio.imaging.segmentation.pixel_classifier import PixelClass, TrainingSet
+
+app = typer.Typer(
+    cls=CommandGroup,
+    help="Classifiers of voxels, trained on painted ones (section 2.1).",
+    no_args_is_help=True,
+    rich_markup_mode=None,
+)
+Scan = Annotated[Path, typer.Argument(metavar="SCAN", help="Volume of grey values.")]
+
+
+@app.command("train")
+@with_dataclass_options
+def train(
+    *,
+    scan: Scan,
+    labels: Annotated[
+        Path,
+        typer.Argument(
+            metavar="LABELS",
+            help="Volume of as many voxels: 0 where nothing is painted, else the number of a class, as label "
+            "editors and ilastik keep it.",
+        ),
+    ],
+    output: Annotated[
+        Path,
+        typer.Option(
+            "--output",
+            "-o",
+            help="File of the classifier.",
+            metavar="FILE.json",
+            parser=output_path,
+            callback=claim_json,
+        ),
+    ],
+    contents: VolumeOptions,
+    labels_dataset: Annotated[
+        str,
+        typer.Option("--labels-dataset", help="Name of the labels' dataset in an HDF5 file.", metavar="NAME"),
+    ] = "",
+    grain: Annotated[
+        str, typer.Option("--grain", help="Labels that are grain, such as 2 or 2,3.", metavar="LIST")
+    ] = "2",
+    model: Annotated[
+        str, typer.Option("--model", help="Classifier: network or logistic.", metavar="MODEL")
+    ] = "network",
+    sigmas: Annotated[
+        str,
+        typer.Option(
+            "--sigmas", help="Standard deviations of the Gaussians in voxels, ascending.", metavar="LIST"
+        ),
+    ] = "1,2,4,8",
+    planar: Annotated[
+        bool, typer.Option("--planar", help="Filter within slices along z only (2-D features).")
+    ] = False,
+    json: Json = False,
+    seed: Seed = 0,
+) -> None:
+    """Train a classifier on painted voxels, for `extract --classifier`."""
+    from regolith_studio.imaging.segmentation.pixel_classifier import ClassifierSettings
+    from regolith_studio.imaging.segmentation.pixel_features import FeatureSettings
+    from regolith_studio.jobs.classifier_jobs import train_on_labels, write_classifier
+    from regolith_studio.jobs.extraction_settings import VolumeInput
+
+    with usage_errors():
+        given = contents.of(scan)
+        features = FeatureSettings(_numbers(sigmas, "--sigmas"), planar)
+        settings = ClassifierSettings(features, model, seed=seed)  # type: ignore[arg-type]  # checked there
+        classes = _classes(grain)
+    edges = tuple(np.ravel(np.asarray(given.opened().voxel_size, dtype=float)).tolist())
+    painted = VolumeInput(labels, edges, "um", "labels", labels_dataset or None, axes=given.axes)
+    training: TrainingSet = run_with_progress(train_on_labels(given, painted, classes, settings))
+    write_classifier(output, training)
+    counts = {
+        each.name: int(np.count_nonzero(training.labels == k)) for k, each in enumerate(training.classes)
+    }
+    if json:
+        print_json({"classifier": str(output), "painted_voxels": counts})
+    else:
+        words = ", ".join(f"{count:,} of {name}" for name, count in counts.items() if count)
+        typer.echo(f"Trained on {words} voxels. Written to {output}.")
+
+
+@app.command("map")
+@with_dataclass_options
+def map_scan(
+    *,
+    scan: Scan,
+    classifier: Annotated[
+        Path, typer.Argument(metavar="CLASSIFIER", help="File of `classify train` or of the window.")
+    ],
+    output: Annotated[
+        Path,
+        typer.Option(
+            "--output",
+            "-o",
+            help="File for the probability of grain, 0 to 255, as TIFF, NRRD or HDF5.",
+            metavar="FILE",
+            parser=output_path,
+            callback=claim_labels,
+        ),
+    ],
+    contents: VolumeOptions,
+    json: Json = False,
+    seed: Seed = 0,
+) -> None:
+    """Write the map of probabilities that a classifier makes of a scan."""
+    from regolith_studio.jobs.classifier_jobs import map_probabilities
+    from regolith_studio.jobs.extraction_settings import read_classifier
+
+    del seed  # taken by every command; nothing here is random
+    with usage_errors():
+        given, training = contents.of(scan), read_classifier(classifier)
+    run_with_progress(map_probabilities(given, training, output, output.parent))
+    if json:
+        print_json({"probabilities": str(output)})
+    else:
+        typer.echo(f"Written to {output}.")
+
+
+def _numbers(text: str, option: str) -> tuple[float, ...]:
+    try:
+        return tuple(float(part) for part in text.split(","))
+    except ValueError:
+        raise typer.BadParameter(f"{option} takes numbers such as 1,2,4, got {text!r}.") from None
+
+
+def _classes(grain: str) -> tuple["PixelClass", ...]:
+    """The classes up to the highest label that may be painted, those in the list `grain` being grains."""
+    from regolith_studio.imaging.segmentation.pixel_classifier import MAX_CLASSES, PixelClass
+
+    try:
+        chosen = {int(part) for part in grain.split(",")}
+    except ValueError:
+        chosen = set()
+    if not chosen or not chosen <= set(range(1, MAX_CLASSES + 1)):
+        raise typer.BadParameter(f"--grain takes labels from 1 to {MAX_CLASSES}, such as 2,3, got {grain!r}.")
+    return tuple(PixelClass(f"label {k}", k in chosen) for k in range(1, MAX_CLASSES + 1))

@@ -1,0 +1,97 @@
+"""``classify`` and ``extract --classifier``, as a user would call them."""
+
+import json
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from regolith_studio.readers.volumes.read import read_volume
+
+
+def scan_of_two_minerals(folder: Path) -> tuple[Path, Path, NDArray[np.int64]]:
+    """Files of a scan and of its painted middle slice, and the balls, all slices first: 1 bright, 2 dark."""
+    z, y, x = np.mgrid[:32, :32, :56]
+    balls = np.zeros(x.shape, dtype=np.int64)
+    balls[(x - 16) ** 2 + (y - 16) ** 2 + (z - 16) ** 2 <= 10**2] = 1
+    balls[(x - 40) ** 2 + (y - 16) ** 2 + (z - 16) ** 2 <= 10**2] = 2
+    values = np.array([100.0, 140.0, 60.0])[balls] + np.random.default_rng(1).normal(0, 8, x.shape)
+    painted = np.zeros(x.shape, dtype=np.uint8)
+    painted[16] = balls[16] + 1
+    np.save(folder / "scan.npy", np.clip(np.rint(values), 0, 255).astype(np.uint8))
+    with h5py.File(folder / "painted.h5", "w") as file:  # as ilastik's export of labels
+        tags = {"axes": [{"key": key, "typeFlags": 2, "resolution": 0, "description": ""} for key in "zyx"]}
+        file["exported_data"] = painted
+        file["exported_data"].attrs["axistags"] = json.dumps(tags)
+    return folder / "scan.npy", folder / "painted.h5", balls
+
+
+def test_that_a_painted_slice_gives_the_grains_of_the_scan_and_of_the_recipe(command, tmp_path: Path) -> None:
+    scan, painted, balls = scan_of_two_minerals(tmp_path)
+    trained = command(
+        "classify", "train", scan, painted, "-o", tmp_path / "strokes", "--grain", "2,3", "--voxel-size", 2
+    )
+    assert trained.code == 0, trained.err
+    assert trained.out.startswith("Trained on 1,")
+    asked = ["--voxel-size", 2, "--min-voxels", 100, "--json"]
+    found = command("extract", scan, "-o", tmp_path / "x", "--classifier", tmp_path / "strokes.json", *asked)
+    assert found.code == 0, found.err
+    voxels = [particle["voxels"] for particle in found.json["particles"]]
+    assert np.allclose(sorted(voxels), sorted(np.bincount(balls.ravel())[1:]), rtol=0.1)
+    recipe = tmp_path / "x" / "extraction.json"
+    again = command("extract", scan, "-o", tmp_path / "y", "--recipe", recipe, *asked)
+    first, second = ((tmp_path / name / "particle_0001.stl").read_bytes() for name in "xy")
+    assert again.code == 0
+    assert first == second
+
+
+def test_that_the_map_of_probabilities_is_taken_as_one(command, tmp_path: Path) -> None:
+    scan, painted, balls = scan_of_two_minerals(tmp_path)
+    strokes, probability = tmp_path / "strokes.json", tmp_path / "probability.h5"
+    command("classify", "train", scan, painted, "-o", strokes, "--grain", "2,3", "--voxel-size", 2)
+    assert command("classify", "map", scan, strokes, "-o", probability, "--voxel-size", 2).code == 0
+    back = read_volume(probability)
+    assert (back.kind, back.dtype, back.voxel_size.tolist()) == ("grey", np.uint8, [2.0, 2.0, 2.0])
+    truth = balls.T > 0
+    found = back.array >= 128
+    assert (found & truth).sum() / (found | truth).sum() > 0.9
+    result = command("extract", probability, "-o", tmp_path / "x", "--threshold", "probability:0.5", "--json")
+    assert len(result.json["particles"]) == 2
+
+
+@pytest.mark.parametrize(
+    ("options", "code", "sentence"),
+    [
+        (["--grain", "none"], 2, "--grain takes labels from 1 to 8"),
+        (["--grain", "7"], 1, "No grain is painted; paint some voxels of grains, too."),
+        (["--grain", "1,2,3"], 1, "Only grains are painted; paint some of what is between them, too."),
+        (["--sigmas", "4,2"], 2, "ascend"),
+        (["--model", "forest"], 2, "A classifier is one of network, logistic"),
+    ],
+)
+def test_that_bad_input_to_the_training_gets_one_sentence(
+    command, tmp_path: Path, options: list[str], code: int, sentence: str
+) -> None:
+    scan, painted, _ = scan_of_two_minerals(tmp_path)
+    result = command(
+        "classify", "train", scan, painted, "-o", tmp_path / "s.json", "--voxel-size", 2, *options
+    )
+    assert result.code == code
+    assert sentence in " ".join(result.err.replace("│", "").split())
+    assert not (tmp_path / "s.json").exists()
+
+
+def test_that_a_classifier_that_does_not_fit_gets_one_sentence(command, tmp_path: Path) -> None:
+    scan, painted, _ = scan_of_two_minerals(tmp_path)
+    strokes = tmp_path / "strokes.json"
+    command("classify", "train", scan, painted, "-o", strokes, "--grain", "2,3", "--voxel-size", 2)
+    other = command("extract", scan, "-o", tmp_path / "x", "--classifier", strokes, "--voxel-size", 5)
+    assert other.code == 1
+    assert "trained on voxels of 2 x 2 x 2 µm, scan.npy has voxels of 5 x 5 x 5 µm" in other.err
+    level = command("extract", scan, "-o", tmp_path / "x", "--classifier", strokes, "--threshold", "90")
+    assert level.code == 2
+    assert "the threshold is a probability" in " ".join(level.err.replace("│", "").split())
+    absent = command("extract", scan, "-o", tmp_path / "x", "--classifier", painted, "--voxel-size", 2)
+    assert "painted.h5 is no classifier" in " ".join(absent.err.replace("│", "").split())
