@@ -40,7 +40,12 @@ class VolumeOptions:
         str, typer.Option("--unit", help="Unit of the voxel size: um, mm, m, nm or cm.", metavar="U")
     ] = ""
     dataset: Annotated[
-        str, typer.Option("--dataset", help="Name of the dataset in an HDF5 file.", metavar="NAME")
+        str,
+        typer.Option(
+            "--dataset",
+            help="Dataset of an HDF5 file, level of an OME-Zarr, or series of a DICOM folder.",
+            metavar="NAME",
+        ),
     ] = ""
     axes: Annotated[
         str,
@@ -306,8 +311,8 @@ def extract(
         Path,
         typer.Argument(
             metavar="VOLUME",
-            help="TIFF stack, folder of slices, TXM, Amira, HDF5, NRRD, MetaImage, NIfTI, NPY, raw, or the "
-            "header of a scanner beside its voxels.",
+            help="TIFF stack, folder of slices, TXM, DICOM, OME-Zarr, Amira, HDF5, NRRD, MetaImage, NIfTI, "
+            "NPY, raw, or the header of a scanner beside its voxels.",
         ),
     ],
     output: OptionalFolder = None,

@@ -44,7 +44,7 @@ from regolith_studio.jobs.label_jobs import write_labels
 from regolith_studio.jobs.particle_jobs import MeasuredParticle, measure_one
 from regolith_studio.messages import N_, Message
 from regolith_studio.readers.file_bytes import sha256_of
-from regolith_studio.readers.volumes.files import slice_names
+from regolith_studio.readers.volumes.files import member_folder, member_names
 from regolith_studio.readers.volumes.read import VolumeFile, describe_volume
 from regolith_studio.readers.volumes.region import RegionSettings
 
@@ -372,13 +372,13 @@ def _source_of(path: Path, volume: SliceSource) -> Source:
 
 
 def volume_sha256(path: Path) -> str:
-    """SHA-256 of a file, or of the slices of a folder one after the other."""
-    names = slice_names(path) if path.is_dir() else ()
+    """SHA-256 of a file, or of the files of a folder that are one volume one after the other."""
+    names = member_names(path)
     if not names:
         return sha256_of(path)
     digest = hashlib.sha256()
     for name in names:
-        digest.update(bytes.fromhex(sha256_of(path / name)))
+        digest.update(bytes.fromhex(sha256_of(member_folder(path) / name)))
     return digest.hexdigest()
 
 

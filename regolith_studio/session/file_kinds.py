@@ -8,6 +8,7 @@ from pathlib import Path
 from regolith_studio.errors import InputError
 from regolith_studio.readers.coefficient_tables import TABLE_SUFFIXES, TEXT_SUFFIXES
 from regolith_studio.readers.formats import mesh_suffixes
+from regolith_studio.readers.voxels.folders import dicom_names, is_zarr
 from regolith_studio.session.project import SUFFIX
 
 _SNIFFED = 200_000
@@ -82,6 +83,8 @@ def _kind_of_folder(folder: Path) -> FileKind:
     from regolith_studio.readers.volume_formats.slices import SLICE_SUFFIXES
 
     try:
+        if is_zarr(folder) or dicom_names(folder):
+            return FileKind.VOLUME
         slices = [path for path in folder.iterdir() if path.suffix.lower() in SLICE_SUFFIXES]
         if len(slices) < 2:
             return FileKind.PARTICLES

@@ -3028,8 +3028,8 @@
         <translation>Ein CT-Volumen mit Grauwerten oder Labels öffnen</translation>
     </message>
     <message>
-        <source>Open a CT volume: TIFF stack, folder of slices, TXM, Amira, HDF5, NRRD, MetaImage, NIfTI, NPY, raw, or the header of a scanner. Drop it here, or begin with the sample scan.</source>
-        <translation>Öffnen Sie ein CT-Volumen: TIFF-Stapel, Ordner mit Schichtbildern, TXM, Amira, HDF5, NRRD, MetaImage, NIfTI, NPY, Rohdaten oder die Beschreibung eines Scanners. Legen Sie es hier ab, oder beginnen Sie mit dem Beispielscan.</translation>
+        <source>Open a CT volume: TIFF stack, folder of slices, TXM, DICOM, OME-Zarr, Amira, HDF5, NRRD, MetaImage, NIfTI, NPY, raw, or the header of a scanner. Drop it here, or begin with the sample scan.</source>
+        <translation>Öffnen Sie ein CT-Volumen: TIFF-Stapel, Ordner mit Schichtbildern, TXM, DICOM, OME-Zarr, Amira, HDF5, NRRD, MetaImage, NIfTI, NPY, Rohdaten oder die Beschreibung eines Scanners. Legen Sie es hier ab, oder beginnen Sie mit dem Beispielscan.</translation>
     </message>
     <message>
         <source>Open a dataset</source>
@@ -3880,6 +3880,10 @@
         <translation>Abbildung speichern</translation>
     </message>
     <message>
+        <source>Save la&amp;bels …</source>
+        <translation>La&amp;bels speichern …</translation>
+    </message>
+    <message>
         <source>Save labels</source>
         <translation>Labels speichern</translation>
     </message>
@@ -4644,6 +4648,10 @@
         <translation>Im Ordner liegt ein nicht beendeter Lauf: setzen Sie ihn fort oder wählen Sie einen anderen Ordner.</translation>
     </message>
     <message>
+        <source>The folder holds {count} series; the longest was read.</source>
+        <translation>Der Ordner enthält {count} Serien; die längste wurde gelesen.</translation>
+    </message>
+    <message>
         <source>The folder is not empty: choose another one, or replace the dataset in it.</source>
         <translation>Der Ordner ist nicht leer: wählen Sie einen anderen oder ersetzen Sie den Datensatz darin.</translation>
     </message>
@@ -4794,6 +4802,10 @@
     <message>
         <source>The sizes of the classes appear here.</source>
         <translation>Die Größen der Klassen erscheinen hier.</translation>
+    </message>
+    <message>
+        <source>The slices state no positions; they were ordered by their numbers.</source>
+        <translation>Die Schichten nennen keine Positionen; sie wurden nach ihren Nummern geordnet.</translation>
     </message>
     <message>
         <source>The smallest radius must be below the largest, got {low:g} and {high:g}.</source>

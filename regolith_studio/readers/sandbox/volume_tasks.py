@@ -29,9 +29,9 @@ def prepare_volume(request: dict[str, Any]) -> SandboxMessage:
     path = Path(request["path"])
     try:
         row, _ = volume_format_of(path)
+        row.prepare()
     except FileError as error:
         raise FileError(message_about(path, str(error))) from None
-    row.prepare()
     return SandboxMessage({"format": row.key})
 
 
@@ -101,7 +101,7 @@ def volume_format_of(path: Path) -> tuple[VolumeFormat, tuple[str, ...]]:
     """
     rows = VOLUME_FORMATS
     if path.is_dir():
-        return rows["slices"], ()
+        return next((row for row in rows.values() if row.holds(path)), rows["slices"]), ()
     with path.open("rb") as file:
         head = file.read(_HEAD)
     if not head:

@@ -25,6 +25,8 @@ class VolumeFormat:
         Whether the first 1,024 bytes can only be this format.
     prepare
         Import the libraries that `open` needs.
+    holds
+        Whether a folder is a volume of this format.
     open
         Path and options of the request to an opened volume. Raises ``FileError`` with the end
         of a sentence that begins with the file's name.
@@ -36,6 +38,7 @@ class VolumeFormat:
     recognises: Callable[[bytes], bool]
     open: Callable[[Path, Mapping[str, Any]], OpenVolume]
     prepare: Callable[[], None] = lambda: None
+    holds: Callable[[Path], bool] = lambda _folder: False
 
 
 VOLUME_FORMATS: Registry[VolumeFormat] = Registry(__name__, "FORMAT", "volume_readers")

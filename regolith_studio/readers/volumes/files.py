@@ -6,9 +6,10 @@ from pathlib import Path
 
 from regolith_studio.errors import FileError
 from regolith_studio.io.natural_order import natural_key
-from regolith_studio.readers.error_messages import display_name
+from regolith_studio.readers.error_messages import display_name, message_about
 from regolith_studio.readers.sandbox.parent import checked_size
 from regolith_studio.readers.volume_formats import VOLUME_FORMATS, volume_suffixes
+from regolith_studio.readers.voxels.folders import dicom_names, is_dicom, is_zarr, zarr_names
 
 SLICE_SUFFIXES = (".tif", ".tiff", ".png", ".bmp")
 MIN_SLICES = 3
@@ -19,9 +20,9 @@ _NUMBER = re.compile(r"\d+")
 def volume_files(path: str | Path) -> tuple[Path, ...]:
     """The volumes that a path stands for, in the order of their names.
 
-    A file is a volume. A folder with three or more images whose names differ in a number only is one
-    volume, given as the folder itself; any other folder stands for the volume files in it (raw ones
-    apart, which must be described one by one).
+    A file is a volume. A folder of Zarr, with DICOM files, or with three or more images whose names differ
+    in a number only is one volume, given as the folder itself; any other folder stands for the volume files
+    in it (raw ones apart, which must be described one by one) and the folders in it that are volumes.
 
     Raises
     ------
@@ -32,15 +33,37 @@ def volume_files(path: str | Path) -> tuple[Path, ...]:
     if not path.is_dir():
         checked_size(path, largest=None)
         return (path,)
-    if slice_names(path):
+    if member_names(path):
         return (path,)
     suffixes = tuple(sorted(volume_suffixes() - set(VOLUME_FORMATS["raw"].suffixes)))
     found = [file for file in _visible_names(path) if file.lower().endswith(suffixes)]
+    found += [folder for folder in _visible_folders(path) if member_names(path / folder)]
     if not found:
         raise FileError(
             f"The folder {display_name(path)} holds no volume; volumes end in {', '.join(suffixes)}."
         )
     return tuple(path / file for file in sorted(found, key=natural_key))
+
+
+def member_names(path: Path) -> tuple[str, ...]:
+    """Names, relative to :func:`member_folder`, of the files that are one volume; empty if it is one file.
+
+    Raises
+    ------
+    FileError
+        If there are too many.
+    """
+    if not path.is_dir():
+        return dicom_names(path.parent) if path.is_file() and is_dicom(path) else ()
+    try:
+        return zarr_names(path) if is_zarr(path) else dicom_names(path) or slice_names(path)
+    except FileError as error:
+        raise FileError(message_about(path, str(error))) from None
+
+
+def member_folder(path: Path) -> Path:
+    """The folder of the files that are one volume."""
+    return path if path.is_dir() else path.parent
 
 
 def slice_names(folder: Path) -> tuple[str, ...]:
@@ -60,8 +83,8 @@ def slice_names(folder: Path) -> tuple[str, ...]:
     return tuple(sorted(names, key=natural_key))
 
 
-def slices_stamp(folder: Path, names: tuple[str, ...]) -> tuple[int, list[int]]:
-    """Bytes of the slices in all, and a fingerprint of their sizes and times.
+def members_stamp(folder: Path, names: tuple[str, ...]) -> tuple[int, list[int]]:
+    """Bytes of the files of a volume in all, and a fingerprint of their sizes and times.
 
     Raises
     ------
@@ -77,6 +100,10 @@ def slices_stamp(folder: Path, names: tuple[str, ...]) -> tuple[int, list[int]]:
 
 def _visible_names(folder: Path) -> list[str]:
     return [entry.name for entry in os.scandir(folder) if not entry.name.startswith(".") and entry.is_file()]
+
+
+def _visible_folders(folder: Path) -> list[str]:
+    return [entry.name for entry in os.scandir(folder) if not entry.name.startswith(".") and entry.is_dir()]
 
 
 def _without_counter(name: str) -> tuple[str, ...]:

@@ -19,8 +19,9 @@ from regolith_studio.readers.sandbox.parent import (
     checked_size,
     volume_sandbox,
 )
-from regolith_studio.readers.volumes.files import slice_names, slices_stamp
+from regolith_studio.readers.volumes.files import member_folder, member_names, members_stamp
 from regolith_studio.readers.volumes.header import RawLayout
+from regolith_studio.readers.voxels.folders import is_zarr
 from regolith_studio.readers.voxels.header import MAX_CACHED_BYTES, DatasetEntry, VoxelHeader
 from regolith_studio.readers.voxels.stored import PlainVoxels, plain_voxels
 
@@ -154,9 +155,11 @@ def open_slab_reader(
         With one sentence if it is not a volume, is damaged, or holds several and none was named.
     """
     reader = sandbox or volume_sandbox()
-    names = slice_names(path) if path.is_dir() else ()
-    if path.is_dir():
-        size, stamp = slices_stamp(path, names)
+    if not path.is_dir():
+        checked_size(path, largest=None)
+    names = member_names(path)
+    if path.is_dir() or names:
+        size, stamp = members_stamp(member_folder(path), names)
     else:
         size = checked_size(path, largest=None)
         stamp = [size, path.stat().st_mtime_ns]
@@ -164,7 +167,7 @@ def open_slab_reader(
         "stamp": stamp,
         "dataset": dataset,
         "raw": None if raw is None else raw.as_request(),
-        "names": list(names),
+        "names": [] if path.is_dir() and is_zarr(path) else list(names),
         "axes": axes,
     }
     reader.request_within("volume-prepare", path, START_SECONDS)

@@ -36,6 +36,12 @@ PAGE = Page(
             PAGE_MENU, "find_grains", N_("&Find grains"), "play", "F5", N_("Segment the whole volume")
         ),
         ActionSpec(
+            PAGE_MENU,
+            "save_labels",
+            N_("Save la&bels …"),
+            tip=N_("Write the volume of labels and a table of them for other programs"),
+        ),
+        ActionSpec(
             PAGE_MENU, "make_particles", N_("&Make particles"), tip=N_("Open the grains as particles")
         ),
     ),

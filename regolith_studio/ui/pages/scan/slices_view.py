@@ -104,8 +104,9 @@ class SlicesView(QWidget):
         column_of_words = QVBoxLayout(hint)
         words = remark(
             tr(
-                "Open a CT volume: TIFF stack, folder of slices, TXM, Amira, HDF5, NRRD, MetaImage, NIfTI, "
-                "NPY, raw, or the header of a scanner. Drop it here, or begin with the sample scan."
+                "Open a CT volume: TIFF stack, folder of slices, TXM, DICOM, OME-Zarr, Amira, HDF5, NRRD, "
+                "MetaImage, NIfTI, NPY, raw, or the header of a scanner. Drop it here, or begin with the "
+                "sample scan."
             )
         )
         words.setAlignment(Qt.AlignmentFlag.AlignCenter)

@@ -1,0 +1,245 @@
+"""DICOM series as pydicom writes them: voxels, edges and order right, 40 and more broken ones refused."""
+
+import io
+import re
+import shutil
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+from pydicom.dataset import Dataset, FileMetaDataset
+from pydicom.encaps import encapsulate
+from pydicom.uid import (
+    UID,
+    CTImageStorage,
+    ExplicitVRBigEndian,
+    ExplicitVRLittleEndian,
+    ImplicitVRLittleEndian,
+)
+
+from regolith_studio.errors import FileError
+from regolith_studio.jobs.volume_jobs import volume_sha256
+from regolith_studio.readers.volumes.files import volume_files
+from regolith_studio.readers.volumes.read import describe_volume, open_slabs, read_volume
+from regolith_studio.session.file_kinds import FileKind, kind_of
+from tests.readers.test_txm import marked
+from tests.readers.test_volume_mutations import answer_of, check_sentence, mutated
+
+SHAPE = (5, 6, 7)
+X, Y, Z, STEP = 0.010, 0.020, 0.050, np.array([0.0, 0.0, 0.050])
+"""Edges of a voxel in millimetres."""
+ORIGIN = np.array([-3.0, 4.0, 10.0])
+SERIES = "1.2.826.0.1.3680043.8.498.1"
+JPEG = UID("1.2.840.10008.1.2.4.70")
+Change = Callable[[Dataset], None]
+
+
+def dicom(
+    image: np.ndarray, number: int, syntax: UID = ExplicitVRLittleEndian, series: str = SERIES, **tags: object
+) -> bytes:
+    """One slice, at its place above the first one; tags of value None are left out."""
+    data = Dataset()
+    data.file_meta = FileMetaDataset()
+    data.file_meta.TransferSyntaxUID = syntax
+    data.file_meta.MediaStorageSOPClassUID = data.SOPClassUID = CTImageStorage
+    data.file_meta.MediaStorageSOPInstanceUID = data.SOPInstanceUID = f"{series}.{number}"
+    data.SeriesInstanceUID, data.InstanceNumber = series, number
+    data.SamplesPerPixel, data.PhotometricInterpretation = 1, "MONOCHROME2"
+    data.Rows, data.Columns = image.shape
+    data.BitsAllocated = data.BitsStored = 8 * image.dtype.itemsize
+    data.HighBit, data.PixelRepresentation = data.BitsStored - 1, int(image.dtype.kind == "i")
+    data.PixelSpacing = [Y, X]
+    data.ImageOrientationPatient = [1, 0, 0, 0, 1, 0]
+    data.ImagePositionPatient = (ORIGIN + number * STEP).tolist()
+    pixels = image.astype(image.dtype.newbyteorder(">" if syntax == ExplicitVRBigEndian else "<")).tobytes()
+    data.PixelData = encapsulate([pixels]) if syntax == JPEG else pixels + b"\0" * (len(pixels) % 2)
+    data["PixelData"].VR = "OW" if data.BitsAllocated > 8 else "OB"
+    for name, value in tags.items():
+        if value is None:
+            delattr(data, name)
+        else:
+            setattr(data, name, value)
+    file = io.BytesIO()
+    data.save_as(file, enforce_file_format=True)
+    return file.getvalue()
+
+
+def series(folder: Path, slices: np.ndarray | None = None, **options: object) -> Path:
+    """A folder of slices whose names are in another order than their places."""
+    folder.mkdir(exist_ok=True)
+    slices = marked(SHAPE) if slices is None else slices
+    for number, image in enumerate(slices):
+        name = f"IM{(number * 3 + 1) % len(slices):03d}.dcm"
+        (folder / name).write_bytes(dicom(image, number, **options))
+    return folder
+
+
+@pytest.mark.parametrize("syntax", [ExplicitVRLittleEndian, ImplicitVRLittleEndian, ExplicitVRBigEndian])
+@pytest.mark.parametrize("dtype", ["uint8", "uint16", "int16", "int32"])
+def test_that_every_voxel_is_in_its_place_with_its_edges(dtype: str, syntax: UID, tmp_path: Path) -> None:
+    slices = marked(SHAPE).astype(dtype) - (0 if dtype[0] == "u" else 100)
+    folder = series(tmp_path / "scan", slices.astype(dtype), syntax=syntax)
+    header = describe_volume(folder)
+    assert (header.shape, header.dtype, header.unit) == (SHAPE[::-1], np.dtype(dtype), "mm")
+    assert header.voxel_size == pytest.approx((X, Y, Z))
+    volume = read_volume(folder, kind="grey")
+    assert volume.voxel_size == pytest.approx((10.0, 20.0, 50.0))
+    assert np.array_equal(volume.array.T, slices)
+    assert np.array_equal(open_slabs(folder, kind="grey").read(2, 4).T, slices[2:4])
+
+
+def test_that_any_file_of_a_series_opens_all_of_it(tmp_path: Path) -> None:
+    folder = series(tmp_path / "scan")
+    for name in ("IM000.dcm", "IM003.dcm"):
+        assert np.array_equal(read_volume(folder / name, kind="grey").array.T, marked(SHAPE))
+        assert volume_sha256(folder / name) == volume_sha256(folder)
+    assert volume_files(folder) == (folder,)
+    assert volume_files(tmp_path) == (folder,)
+    assert kind_of(folder) is kind_of(folder / "IM000.dcm") is FileKind.VOLUME
+
+
+def test_that_files_without_a_suffix_are_known_by_their_content(tmp_path: Path) -> None:
+    folder = series(tmp_path / "scan")
+    for path in list(folder.iterdir()):
+        path.rename(folder / path.stem)
+    (folder / "DIRECTORY").write_text("none")
+    assert np.array_equal(read_volume(folder / "IM002", kind="grey").array.T, marked(SHAPE))
+
+
+@pytest.mark.parametrize("turned", [(0, 1, 0, 1, 0, 0), (-1, 0, 0, 0, 1, 0), (0, 1, 0, 0, 0, -1)])
+def test_that_slices_go_up_along_the_normal_of_their_rows_and_columns(turned: tuple, tmp_path: Path) -> None:
+    """The volume is right-handed, whatever way the scanner counted."""
+    normal = np.cross(turned[:3], turned[3:])
+    folder = tmp_path / "scan"
+    folder.mkdir()
+    for number, image in enumerate(marked(SHAPE)):
+        place = (ORIGIN - number * Z * normal).tolist()
+        data = dicom(image, number, ImageOrientationPatient=list(turned), ImagePositionPatient=place)
+        (folder / f"{number}.dcm").write_bytes(data)
+    assert np.array_equal(read_volume(folder, kind="grey").array.T, marked(SHAPE)[::-1])
+
+
+def test_that_slope_and_intercept_of_each_slice_are_applied(tmp_path: Path) -> None:
+    folder = tmp_path / "scan"
+    folder.mkdir()
+    for number, image in enumerate(marked(SHAPE)):
+        data = dicom(image, number, RescaleSlope=f"{number + 0.5}", RescaleIntercept="-1024")
+        (folder / f"{number}.dcm").write_bytes(data)
+    volume = read_volume(folder, kind="grey")
+    slopes = np.arange(SHAPE[0])[:, None, None] + 0.5
+    assert volume.dtype == np.float32
+    assert np.array_equal(volume.array.T, (marked(SHAPE) * slopes - 1024).astype(np.float32))
+
+
+def test_that_slices_without_positions_are_ordered_by_their_numbers_and_say_so(tmp_path: Path) -> None:
+    folder = series(tmp_path / "scan", ImagePositionPatient=None, SliceThickness="0.07")
+    header = describe_volume(folder)
+    assert header.voxel_size == pytest.approx((X, Y, 0.07))
+    assert "ordered by their numbers" in " ".join(header.notes)
+    assert np.array_equal(read_volume(folder, kind="grey").array.T, marked(SHAPE))
+
+
+def test_that_of_several_series_the_longest_is_read_or_that_of_the_file(tmp_path: Path) -> None:
+    folder = series(tmp_path / "scan")
+    for number, image in enumerate(marked((3, 4, 5))):
+        (folder / f"b{number}.dcm").write_bytes(dicom(image, number, series=f"{SERIES}.9"))
+    header = describe_volume(folder)
+    assert header.shape == SHAPE[::-1]
+    assert {(each.name, each.shape) for each in header.datasets} == {
+        (SERIES, (7, 6, 5)),
+        (f"{SERIES}.9", (5, 4, 3)),
+    }
+    assert "2 series; the longest" in " ".join(header.notes)
+    assert describe_volume(folder, dataset=f"{SERIES}.9").shape == (5, 4, 3)
+    assert describe_volume(folder / "b1.dcm").shape == (5, 4, 3)
+
+
+def with_slice(number: int, **tags: object) -> Change:
+    """A series whose slice `number` has other tags."""
+
+    def write(folder: Path) -> None:
+        series(folder)
+        (folder / f"IM{(number * 3 + 1) % 5:03d}.dcm").write_bytes(
+            dicom(marked(SHAPE)[number], number, **tags)
+        )
+
+    return write
+
+
+def bad_series() -> Iterator[tuple[Callable[[Path], object], str]]:
+    def cut(share: float) -> Callable[[Path], None]:
+        def write(folder: Path) -> None:
+            path = series(folder) / "IM002.dcm"
+            path.write_bytes(path.read_bytes()[: int(path.stat().st_size * share)])
+
+        return write
+
+    for share in (0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.99):
+        yield (
+            cut(share),
+            "begin as DICOM|broken DICOM|is damaged|header is damaged|are packed|states the position of some",
+        )
+    for z in (10.21, 10.26, 1e6, 11.0):
+        yield with_slice(4, ImagePositionPatient=[-3.0, 4.0, z]), "uneven slices"
+    for number in (0, 2):
+        yield with_slice(4, ImagePositionPatient=(ORIGIN + number * STEP).tolist()), "two slices at one place"
+    for x in (-3.1, -2.999, 7.0):
+        yield with_slice(2, ImagePositionPatient=[x, 4.0, 10.1]), "shifted against each other"
+    for turned in ([0, 1, 0, 1, 0, 0], [1, 0, 0, 0, 0.9, 0.4], [0, 0, 1, 0, 1, 0]):
+        yield with_slice(3, ImageOrientationPatient=turned), "lies in another direction"
+    for turned in ([1, 0, 0, 1, 0, 0], [2, 0, 0, 0, 1, 0], [0, 0, 0, 0, 0, 0]):
+        yield lambda folder, t=turned: series(folder, ImageOrientationPatient=t), "not at right angles"
+    yield with_slice(1, ImagePositionPatient=None), "position of some slices only"
+    yield lambda folder: series(folder, ImageOrientationPatient=None), "or no directions"
+    yield lambda folder: series(folder, ImagePositionPatient=None, InstanceNumber=7), "no order"
+    for spacing in ([0.02, 0.011], [0.0, 0.0], [5, 5]):
+        yield with_slice(2, PixelSpacing=spacing), "another size or pixel"
+    yield lambda folder: series(folder, syntax=JPEG), "pixels are packed"
+    for name, value in (
+        ("Rows", 0), ("Columns", 0), ("BitsAllocated", 12), ("BitsAllocated", 64), ("SamplesPerPixel", 3),
+        ("NumberOfFrames", 2),
+    ):  # fmt: skip
+        yield lambda folder, n=name, v=value: series(folder, **{n: v}), "not one grey image"
+    for name in ("Rows", "Columns", "BitsAllocated"):
+        yield lambda folder, n=name: series(folder, **{n: None}), "lacks the size"
+    for name, value in (("Rows", 60), ("Columns", 6000), ("BitsAllocated", 32), ("BitsAllocated", 8)):
+        yield lambda folder, n=name, v=value: series(folder, **{n: v}), "bytes of pixels and needs"
+    yield lambda folder: series(folder, PixelData=None), "0 bytes of pixels and needs"
+    yield with_slice(0, Rows=5), "another size or pixel"
+
+
+def test_that_each_broken_series_is_refused_with_the_sentence_of_its_kind(tmp_path: Path) -> None:
+    corpus = list(bad_series())
+    assert len(corpus) >= 40
+    for number, (write, pattern) in enumerate(corpus):
+        folder = tmp_path / f"{number}"
+        write(folder)
+        with pytest.raises(FileError) as caught:
+            read_volume(folder, voxel_size=1.0, kind="grey"), pytest.fail(f"{number}: {pattern}")
+        check_sentence(str(caught.value))
+        assert str(caught.value).startswith(f"{number} "), str(caught.value)
+        assert re.search(pattern, str(caught.value)), (number, pattern, str(caught.value))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("syntax", [ExplicitVRLittleEndian, ImplicitVRLittleEndian])
+def test_that_four_hundred_mutations_give_voxels_or_a_sentence(syntax: UID, tmp_path: Path) -> None:
+    folder = series(tmp_path / "scan", syntax=syntax)
+    path = folder / "IM002.dcm"
+    data = path.read_bytes()
+    assert answer_of(folder) == ""
+    rng = np.random.default_rng(31)
+    for _ in range(400):
+        path.write_bytes(mutated(data, rng))
+        check_sentence(answer_of(folder))
+
+
+def test_that_a_missing_library_is_named_with_its_command(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(__import__("sys").modules, "pydicom", None)
+    shutil.copytree(series(tmp_path / "scan"), tmp_path / "copy")
+    assert answer_of(tmp_path / "copy") == (
+        'is DICOM, which needs pydicom, an extra: pip install "regolith-studio[dicom]".'
+    )
