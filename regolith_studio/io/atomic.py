@@ -71,6 +71,21 @@ def write_bytes(path: Path, content: bytes) -> None:
         stream.write(content)
 
 
+def write_files(contents: Mapping[Path, bytes]) -> None:
+    """Write files that belong together: all are complete before the first takes its place, in their order.
+
+    Raises
+    ------
+    FileError
+        If one cannot be written.
+    """
+    with contextlib.ExitStack() as stack:
+        for path, content in reversed(list(contents.items())):
+            stream = stack.enter_context(staged_file(path))
+            stream.write(content)
+            stream.flush()
+
+
 @contextmanager
 def staged_folder(folder: Path, kind: str) -> Iterator[Path]:
     """A hidden folder beside `folder`, which takes its place if no exception is raised.

@@ -12,7 +12,7 @@ from typing import Any, Self
 import platformdirs
 from pydantic import BaseModel, ConfigDict, Field, PrivateAttr, ValidationError
 
-from regolith_studio.errors import FileError, InputError
+from regolith_studio.errors import FileError, InputError, os_error_reason
 from regolith_studio.io.atomic import write_bytes
 from regolith_studio.io.output_lock import output_lock
 
@@ -171,12 +171,12 @@ class UserPresets:
         FileError
             If the file cannot be written.
         """
-        presets = self.all()
         if not name or len(name) > MAX_NAME_LENGTH or not name.isprintable():
             raise InputError(f"A preset needs a name of 1 to {MAX_NAME_LENGTH} characters.")
-        if len(presets) >= MAX_PRESETS and name not in presets:
-            raise InputError(f"There are {MAX_PRESETS} own presets already; delete one first.")
-        self._write(presets | {name: values})
+        with self._changes() as presets:
+            if len(presets) >= MAX_PRESETS and name not in presets:
+                raise InputError(f"There are {MAX_PRESETS} own presets already; delete one first.")
+            presets[name] = values
 
     def remove(self, name: str) -> None:
         """Forget one; harmless if there is none of this name.
@@ -186,10 +186,17 @@ class UserPresets:
         FileError
             If the file cannot be written.
         """
-        self._write({key: values for key, values in self.all().items() if key != name})
+        with self._changes() as presets:
+            presets.pop(name, None)
 
-    def _write(self, presets: dict[str, dict[str, Any]]) -> None:
-        text = json.dumps({"presets": presets}, indent=1, ensure_ascii=False, allow_nan=False)
-        with contextlib.suppress(OSError):  # the writing says why
-            self.path.parent.mkdir(parents=True, exist_ok=True)
-        write_bytes(self.path, text.encode("utf-8") + b"\n")
+    @contextmanager
+    def _changes(self) -> Iterator[dict[str, dict[str, Any]]]:
+        """All presets, to be changed inside and then written, while other windows wait."""
+        try:
+            with _locked(self.path):
+                presets = self.all()
+                yield presets
+                text = json.dumps({"presets": presets}, indent=1, ensure_ascii=False, allow_nan=False)
+                write_bytes(self.path, text.encode("utf-8") + b"\n")
+        except OSError as error:
+            raise FileError(f"The file {self.path} cannot be written ({os_error_reason(error)}).") from error

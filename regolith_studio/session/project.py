@@ -1,6 +1,7 @@
 """A session on disk: the recipe that repeats it, and the project file that reopens it."""
 
 import dataclasses
+import hashlib
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -9,7 +10,7 @@ from typing import Any, Literal, Self
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from regolith_studio.errors import FileError, format_validation_error
-from regolith_studio.io.atomic import write_bytes
+from regolith_studio.io.atomic import write_files
 from regolith_studio.readers.file_bytes import read_bytes
 from regolith_studio.readers.particles import unique_name
 from regolith_studio.session.choices import Choices
@@ -32,7 +33,7 @@ from regolith_studio.session.recipe import (
 )
 from regolith_studio.session.results import ParticleEntry
 from regolith_studio.session.session import Session
-from regolith_studio.shape_models.io import write_model
+from regolith_studio.shape_models.io import model_bytes
 from regolith_studio.shape_models.protocol import FittedModel
 
 
@@ -43,7 +44,7 @@ class SessionRecipe:
     Parameters
     ----------
     recipe
-        Of all particles that have an origin; with models beside it, it must be written by :meth:`recipe_for`.
+        Of all particles that have an origin; what is to be written, with its model, says :meth:`files_for`.
     model
         Model of its population, if that is not a shipped card.
     without_source
@@ -88,26 +89,23 @@ class SessionRecipe:
         without_source = tuple(name for run_name, name in pairs if run_name is None)
         return cls(recipe, virtual.model if virtual else None, without_source)
 
-    def recipe_for(self, path: Path, absolute_path: bool = False) -> Recipe:
-        """The recipe to write to `path`; its model is written beside it.
+    def files_for(self, path: Path, absolute_path: bool = False) -> tuple[Recipe, dict[Path, bytes]]:
+        """The recipe to write to `path`, and the file of its model to write beside it, if it has one.
+
+        The name of that file changes with the model, so that no recipe can name the model of another.
 
         Parameters
         ----------
         absolute_path
             Give the model by its absolute path, because the recipe is written elsewhere.
-
-        Raises
-        ------
-        FileError
-            If the model cannot be written.
         """
         population = self.recipe.population
         if self.model is None or population is None:
-            return self.recipe
-        model = path.with_name(f"{path.stem}-model.json")
-        write_model(model, self.model, {"source": population.name, "notes": []})
+            return self.recipe, {}
+        content = model_bytes(self.model, {"source": population.name, "notes": []})
+        model = path.with_name(f"{path.stem}-model-{hashlib.sha256(content).hexdigest()[:8]}.json")
         named = population.model_copy(update={"sources": [str(model) if absolute_path else model.name]})
-        return self.recipe.model_copy(update={"population": named})
+        return self.recipe.model_copy(update={"population": named}), {model: content}
 
 
 def _in_recipe_order(origins: Sequence[ParticleSource]) -> list[ParticleSource]:
@@ -183,21 +181,16 @@ class Project(BaseModel):
         return cls(recipe=recipe, selected=session.choices.selected, page=page, pages=pages or {})
 
     def save(self, path: Path, model: FittedModel | None = None) -> None:
-        """Write it in one step.
-
-        Parameters
-        ----------
-        model
-            What the virtual particles were drawn from; it is written beside.
+        """Write it, with the model that virtual particles were drawn from beside it.
 
         Raises
         ------
         FileError
             If the file cannot be written.
         """
-        recipe = SessionRecipe(self.recipe, model).recipe_for(path)
+        recipe, models = SessionRecipe(self.recipe, model).files_for(path)
         whole = self.model_copy(update={"recipe": recipe})
-        write_bytes(path, whole.model_dump_json(indent=2).encode("utf-8") + b"\n")
+        write_files({**models, path: whole.model_dump_json(indent=2).encode("utf-8") + b"\n"})
 
     def open_in(self, session: Session, base: Path) -> int:
         """Restore the choices and particles in a session; returns the task's id.

@@ -21,17 +21,23 @@ N_TRIED, RADII = 50, (1e-9, 1e12)
 
 
 def write_model(path: Path, model: FittedModel, provenance: Mapping[str, Any] | None = None) -> None:
-    """Write a model; the same model gives the same bytes.
-
-    Parameters
-    ----------
-    provenance
-        Plain values that describe the sample and the settings of the fit.
+    """Write a model in one step.
 
     Raises
     ------
     FileError
         If it cannot be written.
+    """
+    write_bytes(path, model_bytes(model, provenance))
+
+
+def model_bytes(model: FittedModel, provenance: Mapping[str, Any] | None = None) -> bytes:
+    """The file of a model; the same model gives the same bytes.
+
+    Parameters
+    ----------
+    provenance
+        Plain values that describe the sample and the settings of the fit.
     """
     values, arrays = model.stored()
     document = {
@@ -45,7 +51,7 @@ def write_model(path: Path, model: FittedModel, provenance: Mapping[str, Any] | 
         "values": values,
         "arrays": arrays_document(arrays),
     }
-    write_bytes(path, json_bytes(document))
+    return json_bytes(document)
 
 
 def model_from(document: Mapping[str, Any]) -> FittedModel:

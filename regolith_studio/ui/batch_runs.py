@@ -7,6 +7,7 @@ from PySide6.QtCore import QObject
 from PySide6.QtWidgets import QWidget
 
 from regolith_studio.errors import RegolithError
+from regolith_studio.io.atomic import write_files
 from regolith_studio.jobs.events import Failed, Job
 from regolith_studio.messages import N_
 from regolith_studio.session.batch_job import ExecutorReady, run_recipe_job
@@ -92,7 +93,10 @@ class BatchRuns(QObject):
         session_recipe = SessionRecipe.of(
             self._session.particles, self._session.choices, request.outputs, dataset_request
         )
-        return session_recipe.recipe_for((request.folder / "drawn.json").absolute(), absolute_path=True)
+        path = (request.folder / "drawn.json").absolute()
+        recipe, models = session_recipe.files_for(path, absolute_path=True)
+        write_files(models)
+        return recipe
 
     def _show_executor(self, value: object) -> None:
         if isinstance(value, ExecutorReady) and self._dialog is not None:

@@ -10,7 +10,7 @@ from PySide6.QtGui import QGuiApplication
 from PySide6.QtWidgets import QDialog, QFileDialog, QWidget
 
 from regolith_studio.errors import RegolithError
-from regolith_studio.io.atomic import write_bytes
+from regolith_studio.io.atomic import write_files
 from regolith_studio.jobs.events import Job
 from regolith_studio.jobs.particle_jobs import measure_first
 from regolith_studio.messages import N_
@@ -164,7 +164,8 @@ class Commands(QObject):
             self._session.particles, self._session.choices, dataset_request=dataset_request
         )
         try:
-            write_bytes(Path(name), session_recipe.recipe_for(Path(name)).to_json().encode("utf-8"))
+            recipe, models = session_recipe.files_for(Path(name))
+            write_files({**models, Path(name): recipe.to_json().encode("utf-8")})
         except RegolithError as error:
             self._toast.problem(str(error))
             return

@@ -1,5 +1,6 @@
 """Project files in the window: saving, opening, autosaving, and recovery after a crash."""
 
+import hashlib
 import os
 from contextlib import suppress
 from pathlib import Path
@@ -41,6 +42,7 @@ class ProjectFiles(QObject):
         super().__init__(window)
         self._session, self._pages, self._toast, self._window = session, pages, toast, window
         self.path: Path | None = None
+        self._digest = ""
         self._saved: Project | None = None
         self._lock = _lock_of(autosave_path())
         self._recovered: dict[Path, QLockFile] = {}
@@ -68,18 +70,32 @@ class ProjectFiles(QObject):
 
     def save(self) -> bool:
         """Write the project into its file, asking for one the first time; says whether it was written."""
-        return self.save_as() if self.path is None else self._write(self.path)
+        if self.path is None:
+            return self.save_as()
+        question = tr(
+            "{name} has changed on the disk since this window opened or saved it. Replace it?",
+            name=self.path.name,
+        )
+        return (_digest(self.path) in ("", self._digest) or self._agreed(question)) and self._write(self.path)
 
     def save_as(self) -> bool:
         """Ask for a file and write the project into it."""
         start = str(self.path or Path.home() / f"project{SUFFIX}")
         name, _ = QFileDialog.getSaveFileName(self._window, tr("Save project"), start, tr(FILTER))
-        return bool(name) and self._write(Path(name).with_suffix(SUFFIX))
+        if not name:
+            return False
+        path = Path(name)
+        if path.suffix == SUFFIX:  # the dialog has asked whether it may be replaced
+            return self._write(path)
+        path = path.with_name(path.name + SUFFIX)
+        question = tr("{name} exists already. Replace it?", name=path.name)
+        return (not path.exists() or self._agreed(question)) and self._write(path)
 
     def open(self, path: Path) -> None:
         """Bring a project back."""
+        digest = _digest(path)
         if self._bring_back(path):
-            self.path = path
+            self.path, self._digest = path, digest
             self._saved = None
             self.changed.emit()
 
@@ -145,10 +161,21 @@ class ProjectFiles(QObject):
         except RegolithError as error:
             self._toast.problem(str(error))
             return False
-        self.path, self._saved = path, state
+        self.path, self._saved, self._digest = path, state, _digest(path)
         self._toast.note(" ".join((tr("Saved {path}.", path=path), *without(session_recipe))))
         self.changed.emit()
         return True
+
+    def _agreed(self, question: str) -> bool:
+        """Whether the user answers with yes."""
+        box = QMessageBox(QMessageBox.Icon.Question, tr("Save project"), question, parent=self._window)
+        box.setObjectName("replace_project")
+        yes, no = QMessageBox.StandardButton.Yes, QMessageBox.StandardButton.No
+        box.setStandardButtons(yes | no)
+        box.setDefaultButton(no)
+        agreed = box.exec() == yes.value
+        box.deleteLater()
+        return agreed
 
     def _bring_back(self, path: Path) -> bool:
         try:
@@ -205,6 +232,14 @@ class ProjectFiles(QObject):
             self._forget_recovered()
 
 
+def _digest(path: Path) -> str:
+    """SHA-256 of a file; empty if there is none that can be read."""
+    try:
+        return hashlib.sha256(path.read_bytes()).hexdigest()
+    except OSError:
+        return ""
+
+
 def autosave_path() -> Path:
     """Where this process keeps its state for the case of a crash."""
     return preferences_path().with_name(f"autosave-{os.getpid()}{SUFFIX}")
@@ -225,7 +260,7 @@ def _saved_at(path: Path) -> str:
 
 def _remove(autosave: Path) -> None:
     """With the model that may lie beside it."""
-    for path in (autosave, *autosave.parent.glob(f"{autosave.stem}-model.*")):
+    for path in (autosave, *autosave.parent.glob(f"{autosave.stem}-model*")):
         path.unlink(missing_ok=True)
 
 

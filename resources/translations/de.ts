@@ -6788,6 +6788,14 @@
         <translation>{name} um {error} %</translation>
     </message>
     <message>
+        <source>{name} exists already. Replace it?</source>
+        <translation>{name} gibt es schon. Ersetzen?</translation>
+    </message>
+    <message>
+        <source>{name} has changed on the disk since this window opened or saved it. Replace it?</source>
+        <translation>{name} hat sich auf dem Datenträger geändert, seit dieses Fenster die Datei geöffnet oder gespeichert hat. Ersetzen?</translation>
+    </message>
+    <message>
         <source>{name} has changes that are not saved.</source>
         <translation>{name} hat Änderungen, die nicht gespeichert sind.</translation>
     </message>

@@ -9,7 +9,7 @@ import pytest
 
 from regolith_studio.errors import FileError
 from regolith_studio.io import atomic
-from regolith_studio.io.atomic import staged_folder, write_bytes
+from regolith_studio.io.atomic import staged_folder, write_bytes, write_files
 
 
 def write_and_fail(folder: Path) -> None:
@@ -114,6 +114,18 @@ def test_that_a_folder_whose_stage_was_removed_is_not_said_to_be_written(tmp_pat
     with pytest.raises(FileError, match="cannot be written"):
         write_bytes(tmp_path / "place" / "a.txt", b"a")
     assert not (tmp_path / "place").exists()
+
+
+def test_that_files_that_belong_together_are_all_replaced_or_none(tmp_path: Path) -> None:
+    model, project = tmp_path / "model.json", tmp_path / "gone" / "project"
+    model.write_text("old")
+    for files in ({model: b"new", project: b"new"}, {project: b"new", model: b"new"}):
+        with pytest.raises(FileError, match="project cannot be written"):
+            write_files(files)
+        assert {path.name: path.read_text() for path in tmp_path.iterdir()} == {"model.json": "old"}
+    project.parent.mkdir()
+    write_files(files)
+    assert (model.read_text(), project.read_text()) == ("new", "new")
 
 
 def test_that_a_place_that_cannot_be_written_is_one_sentence(tmp_path: Path) -> None:

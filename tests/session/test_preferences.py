@@ -1,11 +1,13 @@
 """The preferences survive a restart, and a damaged file costs nothing but them."""
 
 import os
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
 
-from regolith_studio.session.preferences import RECENT_LIMIT, Preferences, preferences_path
+from regolith_studio.session.preferences import RECENT_LIMIT, Preferences, UserPresets, preferences_path
 
 
 def test_that_two_windows_keep_what_each_of_them_has_changed(tmp_path: Path) -> None:
@@ -25,6 +27,19 @@ def test_that_two_windows_keep_what_each_of_them_has_changed(tmp_path: Path) -> 
     assert sorted(found.units.values()) == ["mm", "um"]
     assert found.window == {"theme": "light", "page.scan": {"zoom": 2, "tool": "brush"}, "tour": True}
     assert [each.name for each in tmp_path.iterdir()] == ["preferences.json"]
+
+
+@pytest.mark.slow
+def test_that_presets_saved_by_two_processes_at_the_same_time_are_all_kept(tmp_path: Path) -> None:
+    code = (
+        "import sys; from pathlib import Path; from regolith_studio.session.preferences import UserPresets\n"
+        "for k in range(40): UserPresets('weights', Path(sys.argv[1])).save(f'{sys.argv[2]}{k}', {'x': k})"
+    )
+    words = [sys.executable, "-c", code, str(tmp_path)]
+    for process in [subprocess.Popen([*words, name]) for name in ("a", "b")]:
+        assert process.wait(120) == 0
+    assert len(UserPresets("weights", tmp_path).all()) == 80
+    assert [path.name for path in tmp_path.iterdir()] == ["presets-weights.json"]
 
 
 def test_that_preferences_read_back(tmp_path: Path) -> None:

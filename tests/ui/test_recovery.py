@@ -104,13 +104,14 @@ def test_that_the_next_crash_is_offered_where_the_first_is_declined(shown, prefe
 
 def test_that_a_copy_is_never_seen_without_its_lock(shown, preferences, monkeypatch):
     window = shown(MainWindow(Session(InlineRunner(), Choices(method=QUICK)), preferences, "image"))
-    seen, write = [], project.write_bytes
+    seen, write = [], project.write_files
 
-    def watched(path, content):
-        write(path, content)
+    def watched(contents):
+        write(contents)
+        (path,) = contents
         seen.append(path.with_name(f"{path.name}.lock").exists())
 
-    monkeypatch.setattr(project, "write_bytes", watched)
+    monkeypatch.setattr(project, "write_files", watched)
     window.projects._autosave()
     assert seen == [True]
 

@@ -119,6 +119,48 @@ def test_that_a_project_is_saved_and_brought_back(window, wait, tmp_path, monkey
     assert window.preferences.recent[0] == str(target)
 
 
+def test_that_what_another_window_has_saved_is_not_replaced_without_asking(window, tmp_path, monkeypatch):
+    target = tmp_path / "work.regolith"
+    asked, answers = [], [QMessageBox.StandardButton.No, QMessageBox.StandardButton.Yes]
+
+    def answer_next(box):
+        asked.append(box.text())
+        return answers.pop(0).value
+
+    monkeypatch.setattr(QMessageBox, "exec", answer_next)
+    monkeypatch.setattr(
+        "regolith_studio.ui.project_files.QFileDialog.getSaveFileName", lambda *_: (str(target), "")
+    )
+    assert window.projects.save()
+    assert window.projects.save()
+    assert not asked, "nobody else has saved it"
+    target.write_text("saved by another window")
+    window.session.choose(n_facets=15)
+    assert not window.projects.save()
+    assert target.read_text() == "saved by another window"
+    assert window.projects.modified
+    assert window.projects.save()
+    assert '"n_facets": 15' in target.read_text()
+    assert asked == 2 * [
+        "work.regolith has changed on the disk since this window opened or saved it. Replace it?"
+    ]
+
+
+def test_that_a_project_whose_name_was_completed_replaces_none_without_asking(window, tmp_path, monkeypatch):
+    other = tmp_path / "sample 1.5.regolith"
+    other.write_text("of yesterday")
+    monkeypatch.setattr(
+        "regolith_studio.ui.project_files.QFileDialog.getSaveFileName",
+        lambda *_: (str(tmp_path / "sample 1.5"), ""),
+    )
+    monkeypatch.setattr(QMessageBox, "exec", lambda _: QMessageBox.StandardButton.No.value)
+    assert not window.projects.save_as()
+    assert other.read_text() == "of yesterday"
+    other.unlink()
+    assert window.projects.save_as()
+    assert [path.name for path in tmp_path.glob("sample*")] == ["sample 1.5.regolith"]
+
+
 def test_that_a_crash_leaves_a_state_that_can_be_brought_back(window, wait):
     window.session.choose(n_facets=13)
     window.projects._autosave()
