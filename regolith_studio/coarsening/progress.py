@@ -87,6 +87,8 @@ class CoarseningProgress:
         About `centre`, where it differs from that of the step before; else ``None``.
     centre
         The particle's centroid in its own frame, shape (3,).
+    recent
+        The last steps with this one, for a listener who is not told of each.
     """
 
     step: int
@@ -94,6 +96,7 @@ class CoarseningProgress:
     loss: float
     polyhedron: ConvexPolyhedron | None
     centre: FloatArray
+    recent: "tuple[CoarseningProgress, ...]" = ()
 
     @property
     def mesh(self) -> Mesh | None:

@@ -1,6 +1,7 @@
 """Jobs that coarsen one particle, with every improved polyhedron as a partial result, or a sample."""
 
 import time
+from collections import deque
 from collections.abc import Generator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
@@ -38,6 +39,9 @@ from regolith_studio.jobs.events import (
 from regolith_studio.jobs.executor import Executor, open_executor
 from regolith_studio.jobs.particle_jobs import FIT_DEGREE
 from regolith_studio.messages import N_
+
+N_RECENT = 200
+"""Steps that come with each progress."""
 
 
 @dataclass(frozen=True)
@@ -230,7 +234,7 @@ def _run_coarsening(mesh: Mesh, request: CoarseningRequest) -> Generator[Step, N
         steps = coarsening_steps(_target(mesh), request.n_facets, **common)
     else:
         steps = fewest_facets(_target(mesh), request.largest_error, **common)
-    tried = ""
+    tried, recent = "", deque[CoarseningProgress](maxlen=N_RECENT)
     while True:
         try:
             step = next(steps)
@@ -239,5 +243,6 @@ def _run_coarsening(mesh: Mesh, request: CoarseningRequest) -> Generator[Step, N
         if isinstance(step, Trial):
             tried = f"{step.n_facets} facets: {100 * step.largest_error:.2g} %"
             continue
-        yield Partial(step)
+        recent.append(step)
+        yield Partial(replace(step, recent=tuple(recent)))
         yield Progress(step.step, step.steps, tried)

@@ -1,9 +1,8 @@
 """Evaluates shape models against a sample: studies with their figures, distributions side by side."""
 
-from collections.abc import Callable, Generator, Sequence
+from collections.abc import Generator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -22,15 +21,14 @@ from regolith_studio.studies.population import (
     default_draws,
     descriptors_of,
 )
+from regolith_studio.studies.population_curves import (
+    PopulationPanel,
+    components_panels,
+    density_panels,
+    pair_panels,
+    quantile_panels,
+)
 from regolith_studio.studies.population_distances import WEIGHTINGS
-
-if TYPE_CHECKING:  # imports matplotlib, which the page does not need before an evaluation
-    from matplotlib.figure import Figure
-
-
-DOTS_PER_INCH = 110
-FIGURE_COLUMNS = 5
-"""Panels in a row: a window is wider than a page."""
 
 MIN_FOR_PROCESSES = 400
 """Particles to be measured beyond which processes are started: some seconds of work, and fits that this
@@ -39,10 +37,10 @@ process could not be stopped at."""
 
 @dataclass(frozen=True, eq=False)
 class ModelEvaluationResult:
-    """A study, and its figures as PNG by name: number, volume, pairs, quantiles and maybe components."""
+    """A study, and the panels of its figures by name: number, volume, pairs, quantiles, components."""
 
     study: PopulationStudy
-    pictures: dict[str, bytes]
+    panels: Mapping[str, tuple[PopulationPanel, ...]]
 
 
 def evaluate_models(sample: Sample, models: Sequence[str] | None, **options: Any) -> Steps:
@@ -59,47 +57,29 @@ def evaluate_models(sample: Sample, models: Sequence[str] | None, **options: Any
         try:
             step: Step = next(steps)
         except StopIteration as end:
-            return (yield from draw_evaluation_figures(end.value, shown))
+            return (yield from evaluation_panels(end.value, shown))
         if isinstance(step, Progress):
             shown = step
         if isinstance(step, Partial):
-            step = Partial((yield from draw_evaluation_figures(step.value, shown)))
+            step = Partial((yield from evaluation_panels(step.value, shown)))
         yield step
 
 
-def draw_evaluation_figures(
+def evaluation_panels(
     study: PopulationStudy, shown: Progress
 ) -> Generator[Step, None, ModelEvaluationResult]:
-    """The study with its figures, drawn one by one; how far the work is stays as `shown`."""
-    from regolith_studio.studies.figures import population as figures
-
-    drawings: dict[str, Callable[[], Figure | None]] = {
-        **{name: partial(figures.density_figure, study, name, FIGURE_COLUMNS) for name in WEIGHTINGS},
-        "quantiles": partial(figures.quantile_figure, study, FIGURE_COLUMNS),
-        "components": partial(figures.components_figure, study),
-    }
-    at_figures, pictures = replace(shown, message="figures"), {}
-    for name, draw_one in drawings.items():
-        figure = draw_one()
-        yield at_figures
-        if figure is not None:
-            pictures[name] = png_of(figure)
-            yield at_figures
-    panels = figures.pair_panels(study)
+    """The study with the panels of its figures; how far the work is stays as `shown`."""
+    at_figures = replace(shown, message="figures")
+    panels = {name: density_panels(study, name) for name in WEIGHTINGS}
+    panels |= {"quantiles": quantile_panels(study), "components": components_panels(study)}
+    yield at_figures
+    pairs = pair_panels(study)
     while True:
         try:
-            next(panels)
+            next(pairs)
         except StopIteration as end:
-            pictures["pairs"] = png_of(end.value)
-            return ModelEvaluationResult(study, pictures)
+            return ModelEvaluationResult(study, panels | {"pairs": end.value})
         yield at_figures
-
-
-def png_of(figure: "Figure") -> bytes:
-    """The figure as PNG."""
-    from regolith_studio.studies.figures.files import png_bytes
-
-    return png_bytes(figure, DOTS_PER_INCH)
 
 
 MAX_COMPARED = 1000

@@ -140,6 +140,17 @@ def scrolled_column(panels: Sequence[QWidget]) -> QScrollArea:
     return area
 
 
+def scrolled(part: QWidget) -> QScrollArea:
+    """A part with a scroll bar at its right where it is higher than its place."""
+    area = QScrollArea()
+    area.setWidgetResizable(True)
+    area.setFrameShape(QScrollArea.Shape.NoFrame)
+    area.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+    area.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+    area.setWidget(part)
+    return area
+
+
 class _Column(QScrollArea):
     """A column as wide as its content needs, in any language and font size.
 

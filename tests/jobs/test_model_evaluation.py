@@ -1,4 +1,4 @@
-"""Judging models for the window: pictures, told one by one."""
+"""Judging models for the window: the curves of its figures."""
 
 import numpy as np
 import pytest
@@ -8,8 +8,7 @@ from regolith_studio.jobs.model_evaluation import ModelEvaluationResult, evaluat
 from regolith_studio.jobs.model_jobs import GenerationRequest, draw
 from regolith_studio.shape_models.materials import materials
 from regolith_studio.shape_models.sample import Sample
-
-PNG = b"\x89PNG"
+from regolith_studio.studies.population_curves import CONTAINED, common_grid, contours, pair_density
 
 
 @pytest.fixture(scope="module")
@@ -24,12 +23,27 @@ def job_steps() -> tuple[list[Step], ModelEvaluationResult]:
             return steps, end.value
 
 
-@pytest.mark.slow
 def test_that_a_judgement_has_its_figures(job_steps: tuple[list[Step], ModelEvaluationResult]) -> None:
     _, judged = job_steps
-    assert set(judged.pictures) == {"number", "volume", "pairs", "quantiles"}
-    assert all(picture.startswith(PNG) for picture in judged.pictures.values())
+    panels = judged.panels
+    assert set(panels) == {"number", "volume", "pairs", "quantiles", "components"}
+    assert not panels["components"]
+    assert [panel.x for panel in panels["number"]] == list(judged.study.keys)
+    assert all(panel.curves[0].source == "measured" for panel in panels["pairs"])
     assert judged.study.models[0].key == "log_field"
+
+
+def test_that_half_of_the_particles_lie_inside_the_contour_that_says_so() -> None:
+    """Counted by matplotlib's test of points in a polygon, for a normal cloud."""
+    from matplotlib.path import Path
+
+    cloud = np.random.default_rng(1).normal(size=(1200, 2)) * [1.0, 3.0]
+    x, y = common_grid([cloud])
+    values, levels = pair_density(cloud, x, y)
+    for level, share in zip(levels, sorted(CONTAINED, reverse=True), strict=True):
+        across, up = contours(values, np.array([level]), x, y)
+        outline = Path(np.stack([across, up], axis=1)[1:-1])
+        assert outline.contains_points(cloud).mean() == pytest.approx(share, abs=0.02)
 
 
 def test_that_it_can_be_stopped_between_figures_and_never_goes_back(
@@ -40,8 +54,8 @@ def test_that_it_can_be_stopped_between_figures_and_never_goes_back(
     assert [step.done for step in progress] == sorted(step.done for step in progress)
     figures = [step for step in progress if step.message == "figures"]
     partials = [step for step in steps if isinstance(step, Partial)]
-    n_drawn, n_pictures, n_panels = 4, 3, 3 + 3
-    assert len(figures) == (n_drawn + n_pictures + n_panels) * (len(partials) + 1)
+    n_histograms, n_densities = 1, 3 * 2
+    assert len(figures) == (n_histograms + n_densities) * (len(partials) + 1)
     assert {step.done for step in figures} == {figures[0].total}
 
 

@@ -105,3 +105,34 @@ def test_that_the_animation_runs_through_all_degrees(window, tmp_path, monkeypat
         assert file.n_frames > 20
     assert "animation" in window.toast.sentence.text()
     QApplication.processEvents()
+
+
+def test_that_annealing_is_shown_step_by_step(window, wait):
+    """At least 20 pictures of a run, in order, and in the end the polyhedron that has its errors."""
+    page, seen_steps = window.page, []
+    page.replay.shown.connect(lambda step: seen_steps.append(step.step))
+    window.session.choose(method="annealing")
+    wait(lambda: window.session.results.coarsened is not None and not page.replay.playing, SECONDS)
+    wait(lambda: seen_steps[-1:] == [100])
+    assert len(seen_steps) >= 20
+    assert seen_steps == sorted(set(seen_steps))
+    drawn = page.three_views.shapes[-1].polyhedron
+    assert drawn is window.session.results.coarsened.polyhedron
+
+
+@pytest.mark.slow
+def test_that_explore_finds_and_takes_the_number_of_facets_from_which_on_nothing_is_gained(window, settled):
+    window.session.choose(selected="bead-2", method="quadric", target="particle")
+    settled(window, SECONDS)
+    button = window.page.coarsening.enough
+    button.click()
+    settled(window, SECONDS)
+    offered = window.page.coarsening._sufficient
+    assert str(offered) in button.text()
+    if button.isEnabled():
+        button.click()
+        settled(window, SECONDS)
+        assert window.session.choices.n_facets == offered
+    window.session.choose(seed=3)
+    settled(window, SECONDS)
+    assert button.text() == "Find the sufficient number"

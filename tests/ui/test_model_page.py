@@ -164,8 +164,14 @@ def test_that_models_are_judged_on_the_sample_that_was_fitted(page):
     page.judge()
     assert page.evaluation.ranking.rowCount() == 1
     assert page.evaluation.ranking.item(0, 0).text() == MODELS["gaussian_field"].label
-    assert not page.evaluation.pictures["number"].is_empty()
-    assert page.evaluation.pictures["components"].is_empty()
+    shown = page.evaluation.figures["number"].plots
+    assert [plot.curves[0].label for plot in shown] == ["measured"] * len(KEYS)
+    for plot in shown:  # histograms have the area 1
+        areas = [np.trapezoid(curve.y, curve.x) for curve in plot.curves]
+        assert areas == pytest.approx([1.0] * len(areas), rel=1e-9)
+    assert len(page.evaluation.figures["pairs"].plots) == 3
+    tabs = page.evaluation.tabs
+    assert not tabs.isTabVisible(tabs.indexOf(page.evaluation.figures["components"]))
     tables = page.evaluation.tables
     assert tables["distances"].rowCount() == 2 * len(KEYS)
     headers = [tables["distances"].horizontalHeaderItem(at).text() for at in range(6)]

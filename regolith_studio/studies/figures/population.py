@@ -1,6 +1,5 @@
 """Figs. 4, 5 and 6: densities of descriptors, measured and virtual."""
 
-from collections.abc import Generator
 from math import ceil
 from pathlib import Path
 
@@ -9,14 +8,13 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
-from scipy.stats import gaussian_kde
 
 from regolith_studio.descriptors.catalogue import CATALOGUE
-from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.io.tables import write_table
 from regolith_studio.shape_models.models import MODELS
 from regolith_studio.studies.figures.files import write_figure
 from regolith_studio.studies.population import PopulationStudy
+from regolith_studio.studies.population_curves import QUANTILES, common_grid, histogram_edges, pair_density
 from regolith_studio.studies.population_distances import WEIGHTINGS, class_weights
 from regolith_studio.studies.population_tables import (
     distance_table,
@@ -30,12 +28,7 @@ COLOURS = ("#d55e00", "#0072b2", "#009e73", "#cc79a7", "#e69f00", "#56b4e9")
 """Okabe and Ito's palette; the measured sample is black and grey."""
 MEASURED = "#bbbbbb"
 GREYS = ("#e4e4e4", "#c8c8c8", "#a8a8a8", "#888888")
-N_BINS = 40
 N_COLUMNS = 3
-GRID = 60
-CONTAINED = (0.95, 0.75, 0.5, 0.25)
-"""Shares of the particles inside the contours of Fig. 6."""
-MOST_FOR_DENSITY = 1500
 
 
 def density_figure(study: PopulationStudy, weighting: str = "number", columns: int = N_COLUMNS) -> Figure:
@@ -43,8 +36,7 @@ def density_figure(study: PopulationStudy, weighting: str = "number", columns: i
     figure, axes = _panels(len(study.keys), columns)
     for axis, column in zip(axes, range(len(study.keys)), strict=False):
         tables = [study.measured, study.cut, *(model.table for model in study.models)]
-        low, high = np.percentile(np.concatenate([table[:, column] for table in tables]), [0.1, 99.9])
-        bins = np.linspace(low, max(high, low + 1e-12), N_BINS + 1).tolist()
+        bins = histogram_edges(tables, column).tolist()
         weights = [class_weights(table, weighting, size_column(study)) for table in tables]
         measured = study.measured[:, column]
         axis.hist(measured, bins, weights=weights[0], density=True, color=MEASURED, label="measured")
@@ -80,15 +72,14 @@ def density_figure(study: PopulationStudy, weighting: str = "number", columns: i
 def quantile_figure(study: PopulationStudy, columns: int = N_COLUMNS) -> Figure:
     """Quantiles (0.5 to 99.5 %) of each model against those of the sample: equal ones lie on the line."""
     figure, axes = _panels(len(study.keys), columns)
-    shares = np.linspace(0.5, 99.5, 100)
     for column, axis in enumerate(axes):
-        measured = np.percentile(study.measured[:, column], shares)
+        measured = np.percentile(study.measured[:, column], QUANTILES)
         axis.plot(measured[[0, -1]], measured[[0, -1]], color="black", linewidth=0.8)
         if study.cut_degree < study.l_max:
-            cut = np.percentile(study.cut[:, column], shares)
+            cut = np.percentile(study.cut[:, column], QUANTILES)
             axis.plot(measured, cut, ":", color="black", label=cut_label(study))
         for model, colour in zip(study.models, COLOURS, strict=False):
-            found = np.percentile(model.table[:, column], shares)
+            found = np.percentile(model.table[:, column], QUANTILES)
             axis.plot(measured, found, ".", color=colour, markersize=3, label=MODELS[model.key].label)
         axis.set_xlabel(f"measured {_label(study, column)}")
     for axis in axes[::columns]:
@@ -103,17 +94,6 @@ def pair_figure(study: PopulationStudy, keys: tuple[str, ...] | None = None) -> 
 
     Kernel densities with Scott's bandwidth n^(-1/6) times the covariance; the measured sample is filled.
     """
-    steps = pair_panels(study, keys)
-    while True:
-        try:
-            next(steps)
-        except StopIteration as end:
-            figure: Figure = end.value
-            return figure
-
-
-def pair_panels(study: PopulationStudy, keys: tuple[str, ...] | None = None) -> Generator[None, None, Figure]:
-    """:func:`pair_figure` panel by panel, for one who must not be kept waiting."""
     wanted = [key for key in keys or study.keys[:3] if key in study.keys]
     pairs = [
         [study.keys.index(a), study.keys.index(b)] for i, a in enumerate(wanted) for b in wanted[i + 1 :]
@@ -123,19 +103,17 @@ def pair_panels(study: PopulationStudy, keys: tuple[str, ...] | None = None) -> 
     axes = figure.subplots(rows, len(pairs), squeeze=False)
     for column, pair in enumerate(pairs):
         tables = [study.measured[:, pair], *(model.table[:, pair] for model in study.models)]
-        x, y = _common_grid(tables)
-        measured = _density(tables[0], x, y)
-        yield
+        x, y = common_grid(tables)
+        measured = pair_density(tables[0], x, y)
         for row, drawn in enumerate(tables[1:]):
             axis = axes[row, column]
             values, levels = measured
             ends = [*levels, max(values.max(), levels[-1]) * 1.01]
             axis.contourf(x, y, values, levels=ends, colors=GREYS[: len(levels)])
-            values, levels = _density(drawn, x, y)
+            values, levels = pair_density(drawn, x, y)
             axis.contour(x, y, values, levels=levels, colors=COLOURS[row % len(COLOURS)], linewidths=1)
             axis.set_xlabel(_label(study, pair[0]))
             axis.set_ylabel(_label(study, pair[1]))
-            yield
     handles = [Line2D([], [], color=MEASURED, linewidth=6, label="measured")]
     handles += [
         Line2D([], [], color=colour, label=MODELS[model.key].label)
@@ -203,20 +181,3 @@ def _label(study: PopulationStudy, column: int) -> str:
     power = {1: "", 2: "²", 3: "³", 5: "⁵"}
     suffix = f" ({unit}{power[row.dimension]})" if row.dimension else ""
     return f"{row.label.lower()}{suffix}"
-
-
-def _common_grid(tables: list[FloatArray]) -> tuple[FloatArray, FloatArray]:
-    """Places along both axes that hold nearly all particles of all tables (n, 2), with a margin."""
-    ends = np.array([np.percentile(table, [0.5, 99.5], axis=0) for table in tables])
-    low, high = ends[:, 0].min(axis=0), ends[:, 1].max(axis=0)
-    margin = 0.15 * (high - low)
-    x, y = (np.linspace(low[i] - margin[i], high[i] + margin[i], GRID) for i in range(2))
-    return x, y
-
-
-def _density(table: FloatArray, x: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Kernel density at the places, shape (GRID, GRID), and the levels whose contours hold the shares."""
-    few = table[:: max(1, len(table) // MOST_FOR_DENSITY)].T
-    density = gaussian_kde(few)
-    values = density(np.stack(np.meshgrid(x, y)).reshape(2, -1)).reshape(GRID, GRID)
-    return values, np.unique(np.quantile(density(few), [1 - share for share in CONTAINED]))

@@ -8,6 +8,7 @@ from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import (
     QFormLayout,
     QHBoxLayout,
+    QPushButton,
     QSpinBox,
     QToolButton,
     QVBoxLayout,
@@ -72,10 +73,14 @@ class CoarseningPanel(QWidget):
     )
     valueChanged = Signal(dict)  # noqa: N815
     editingFinished = Signal()  # noqa: N815
+    searchRequested = Signal()  # noqa: N815
 
     def __init__(self) -> None:
         super().__init__()
         self.setObjectName("coarsening")
+        self._sufficient = 0
+        self.enough = QPushButton()
+        self.enough.setObjectName("sufficient_facets")
         self.stop_at = ChoiceBox("stop_at", tr("Stopping criterion"), STOPS)
         self.stop_at.setToolTip(self.stop_at.accessibleName())
         self.stop_at.setMinimumContentsLength(max(len(tr(label)) for label in STOPS.values()))
@@ -103,6 +108,7 @@ class CoarseningPanel(QWidget):
         self._connect()
         self._show_settings()
         self._show_amount()
+        self.show_search(running=False)
 
     def value(self) -> dict[str, Any]:
         """The edited choices."""
@@ -138,6 +144,34 @@ class CoarseningPanel(QWidget):
         """Show why a request could not be met, what meeting it costs, or nothing."""
         self.outcome.setText(translate(sentence) if sentence else "")
         self.outcome.setVisible(bool(sentence))
+
+    def show_search(self, *, running: bool) -> None:
+        """Offer to search the number of facets from which on nothing is gained."""
+        self._sufficient = 0
+        self.enough.setText(tr("Searching …") if running else tr("Find the sufficient number"))
+        self.enough.setToolTip(tr("Coarsens this particle at several numbers of facets."))
+        self.enough.setEnabled(not running)
+
+    def show_sufficient(self, count: int, *, saturated: bool, now: int) -> None:
+        """Show the number of facets from which on nothing is gained, and offer it.
+
+        Parameters
+        ----------
+        saturated
+            Whether more facets than `count` were tried in vain; else the errors still fall there.
+        now
+            The chosen number.
+        """
+        self._sufficient = count
+        if not saturated:
+            words = tr("Errors still fall at {count} facets", count=count)
+        elif now == count:
+            words = tr("Nothing is gained beyond {count} facets", count=count)
+        else:
+            words = tr("Take {count} facets: more gain nothing", count=count)
+        self.enough.setText(words)
+        self.enough.setToolTip(tr("No error falls by more than 0.1 % with more facets."))
+        self.enough.setEnabled(now != count)
 
     def set_theme(self, theme: Theme) -> None:
         """Take the colours of a theme."""
@@ -178,6 +212,7 @@ class CoarseningPanel(QWidget):
         layout.addWidget(heading(tr("Coarsened polyhedron")))
         layout.addLayout(form)
         layout.addLayout(amount)
+        layout.addWidget(self.enough)
         layout.addWidget(self.more)
         layout.addWidget(FixedHeightText((self.outcome,), LINES))
 
@@ -190,6 +225,7 @@ class CoarseningPanel(QWidget):
         for slider in self._amounts.values():
             slider.editingFinished.connect(self.editingFinished)
         self.stop_at.activated.connect(self._change_stop)
+        self.enough.clicked.connect(self._take_or_search)
         self.target.activated.connect(lambda _: self._announce("target"))
         self.method.activated.connect(self._change_method)
         self.seed.valueChanged.connect(lambda _: self._announce("seed"))
@@ -200,6 +236,13 @@ class CoarseningPanel(QWidget):
         self.valueChanged.emit({name: now[name] for name in names})
         self.editingFinished.emit()
 
+    def _take_or_search(self) -> None:
+        if not self._sufficient:
+            self.searchRequested.emit()
+            return
+        self.n_facets.setValue(self._sufficient)
+        self._announce("n_facets")
+
     def _change_stop(self) -> None:
         self._show_amount()
         self._announce("stop_at")
@@ -207,6 +250,7 @@ class CoarseningPanel(QWidget):
     def _show_amount(self) -> None:
         for key, slider in self._amounts.items():
             slider.setVisible(key == self.stop_at.value())
+        self.enough.setVisible(self.stop_at.value() == "facets")
 
     def _change_method(self) -> None:
         self._show_settings()

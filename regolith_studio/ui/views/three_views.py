@@ -9,6 +9,7 @@ from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QImage
 from PySide6.QtWidgets import QSplitter, QWidget
 
+from regolith_studio.coarsening.progress import CoarseningProgress
 from regolith_studio.geometry.arrays import BoolArray, FloatArray
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.oriented_box import minimum_volume_box
@@ -136,6 +137,11 @@ class ThreeViews(QSplitter):
             tr("{count} facets", count=solid.n_facets),
         )
         self.comparison.set_shapes(self._shapes, POLYHEDRON)
+
+    def show_step(self, step: CoarseningProgress) -> None:
+        """Say which step of a run the polyhedron belongs to."""
+        words = tr("step {at} of {total}, loss {loss:.4g}", at=step.step, total=step.steps, loss=step.loss)
+        self.frames[POLYHEDRON].set_detail(words)
 
     def set_heat(self, heat: bool) -> None:
         """Colour the fit by its distance from the particle, or in its own colour."""

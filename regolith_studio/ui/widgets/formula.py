@@ -1,5 +1,6 @@
 """Formulas in matplotlib's mathtext, drawn as vector outlines in the text colour of the theme."""
 
+from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from functools import cache
 from threading import Thread
@@ -9,7 +10,7 @@ import shiboken6
 from matplotlib.path import Path as OutlinePath
 from matplotlib.textpath import TextPath
 from PySide6.QtCore import QCoreApplication, QObject, QRectF, QSize, Qt, Signal
-from PySide6.QtGui import QPainter, QPainterPath, QPaintEvent
+from PySide6.QtGui import QPainter, QPainterPath, QPaintEvent, QResizeEvent
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from regolith_studio.studies.matplotlib_lock import MATPLOTLIB_LOCK
@@ -18,22 +19,27 @@ EM = 100.0
 """Font size of the outlines, which are scaled when drawn."""
 MAGNIFICATION = 1.25
 """Size of the letters of a formula in units of the widget's font."""
-LEADING = 0.62
+LEADING = 0.4
 """Space between two lines in units of the letters."""
-MIN_SCALE = 0.55
-"""A formula is scaled down to the available height at most by this factor; to the width without limit."""
-MIN_HEIGHT = 0.75
-"""Minimum height of the widget as a share of its size hint."""
+GAP, INDENT = 0.12, 1.0
+"""Space between two pieces of a line, and before what is continued on the next, in units of the letters."""
+MIN_LINE_HEIGHT = 20.0
+"""Pixels of the lowest line."""
+BREAK = "\u200b"
+"""Stands in a line where it may be continued on the next one; the pieces are valid mathtext by themselves."""
 THREAD_NAME = "formulas"
 """Name of the thread that makes outlines."""
-CACHE_SIZE = 512
-"""Lines whose outlines are kept."""
+CACHE_SIZE = 2048
+"""Pieces whose outlines are kept."""
+
+LOWEST_LINE = QRectF(0.0, -0.75 * EM, 1.0, 0.95 * EM)
+"""Of a row, in units of the outlines: a letter with a descender."""
 
 _outlines: dict[str, QPainterPath] = {}
 
 
 class FormulaLabel(QWidget):
-    """Lines of mathtext from top to bottom, scaled with the font of the widget.
+    """Lines of mathtext from top to bottom, scaled with the font of the widget, broken at its width.
 
     An outline takes up to 40 ms to make: missing ones are made by a thread, one at a time, and nothing is
     drawn until all are there; :func:`prepare` makes them ahead.
@@ -62,16 +68,16 @@ class FormulaLabel(QWidget):
             return
         self._asked = lines
         self.setToolTip(self._words)
-        self.setAccessibleDescription("; ".join(lines).replace("$", ""))
-        if all(line in _outlines for line in lines):
+        self.setAccessibleDescription("; ".join(lines).replace("$", "").replace(BREAK, ""))
+        if all(piece in _outlines for piece in pieces(lines)):
             self.take()
         else:
             self.update()
             _outline_maker().want(self)
 
     def missing(self) -> str | None:
-        """A line without outline, if there is one."""
-        return next((line for line in self._asked if line not in _outlines), None)
+        """A piece of a line without outline, if there is one."""
+        return next((piece for piece in pieces(self._asked) if piece not in _outlines), None)
 
     def take(self) -> None:
         """Show the lines of :meth:`set_lines`."""
@@ -79,13 +85,23 @@ class FormulaLabel(QWidget):
         self.updateGeometry()
         self.update()
 
+    def rows(self) -> list[list[tuple[float, str]]]:
+        """The pieces of each row and where they begin, in units of the outlines, broken at the width."""
+        room = (self.width() - 2) / self._scale()
+        return [row for line in self._lines for row in _broken(line.split(BREAK), room)]
+
     def sizeHint(self) -> QSize:
-        scale = self._scale()
-        widest = max((outline(line).boundingRect().right() for line in self._lines), default=0.0)
-        return QSize(round(widest * scale) + 2, round(self._height() * scale) + 2)
+        scale, rows = self._scale(), self.rows()
+        widest = max(map(_row_width, rows), default=0.0)
+        return QSize(round(widest * scale) + 2, round(_height(rows) * scale) + 2)
 
     def minimumSizeHint(self) -> QSize:
-        return QSize(40, round(MIN_HEIGHT * self.sizeHint().height()))
+        return QSize(40, self.sizeHint().height())
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        if event.size().width() != event.oldSize().width():
+            self.updateGeometry()
 
     def paintEvent(self, event: QPaintEvent) -> None:  # noqa: ARG002
         if not self._lines or self._lines != self._asked:
@@ -94,28 +110,59 @@ class FormulaLabel(QWidget):
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         painter.setPen(Qt.PenStyle.NoPen)
         painter.setBrush(self.palette().windowText())
-        natural = self._scale()
-        widest = max(outline(line).boundingRect().right() for line in self._lines)
-        wide = (self.width() - 2) / max(widest * natural, 1.0)
-        high = (self.height() - 2) / max(self._height() * natural, 1.0)
-        scale = natural * min(max(MIN_SCALE, min(1.0, high)), wide)
-        painter.translate(1, (self.height() - self._height() * scale) / 2)
+        rows = self.rows()
+        scale = min(self._scale(), (self.width() - 2) / max(1.0, *map(_row_width, rows)))
+        painter.translate(1, (self.height() - _height(rows) * scale) / 2)
         painter.scale(scale, scale)
-        for line in self._lines:
-            path, box = outline(line), _line_box(line)
+        for row in rows:
+            box = _row_box(row)
             painter.translate(0, -box.top())
-            painter.drawPath(path)
+            for begin, piece in row:
+                painter.drawPath(outline(piece).translated(begin, 0))
             painter.translate(0, box.bottom() + LEADING * EM)
         painter.end()
 
     def _scale(self) -> float:
         """Pixels of the widget for one unit of an outline."""
-        return MAGNIFICATION * self.fontMetrics().height() / 1.35 / EM
+        least = MIN_LINE_HEIGHT / LOWEST_LINE.height()
+        return max(MAGNIFICATION * self.fontMetrics().height() / 1.35 / EM, least)
 
-    def _height(self) -> float:
-        """Of all lines, in units of the outlines."""
-        boxes = [_line_box(line).height() for line in self._lines]
-        return sum(boxes) + LEADING * EM * max(0, len(boxes) - 1)
+
+def pieces(lines: Iterable[str]) -> tuple[str, ...]:
+    """What the lines consist of between the places where they may be broken."""
+    return tuple(piece for line in lines for piece in line.split(BREAK))
+
+
+def _broken(parts: Sequence[str], room: float) -> list[list[tuple[float, str]]]:
+    """Rows of pieces with the place where each begins, none wider than `room` unless it is a single piece."""
+    rows: list[list[tuple[float, str]]] = [[]]
+    end = 0.0
+    for piece in parts:
+        begin = end + GAP * EM if rows[-1] else 0.0
+        if rows[-1] and begin + outline(piece).boundingRect().right() > room:
+            rows.append([])
+            begin = INDENT * EM
+        rows[-1].append((begin, piece))
+        end = begin + outline(piece).boundingRect().right()
+    return rows
+
+
+def _row_width(row: Sequence[tuple[float, str]]) -> float:
+    begin, last = row[-1]
+    return begin + outline(last).boundingRect().right()
+
+
+def _row_box(row: Sequence[tuple[float, str]]) -> QRectF:
+    """Bounding box of a row, at least as high as a letter with a descender."""
+    box = LOWEST_LINE
+    for _, piece in row:
+        box = box.united(outline(piece).boundingRect())
+    return box
+
+
+def _height(rows: Sequence[Sequence[tuple[float, str]]]) -> float:
+    """Of all rows, in units of the outlines."""
+    return sum(_row_box(row).height() for row in rows) + LEADING * EM * max(0, len(rows) - 1)
 
 
 class _OutlineMaker(QObject):
@@ -175,7 +222,7 @@ class _OutlineMaker(QObject):
     def _go_on(self, line: str) -> None:
         self._busy = False
         if line not in _outlines:  # the thread has raised
-            for label in [each for each in self._labels if line in each.lines()]:
+            for label in [each for each in self._labels if line in pieces(each.lines())]:
                 del self._labels[label]
             self._ahead = tuple(each for each in self._ahead if each != line)
         self._begin()
@@ -188,9 +235,10 @@ def _outline_maker() -> _OutlineMaker:
 
 def prepare(lines: tuple[str, ...]) -> bool:
     """Whether the outlines of these lines are made; if not, they are being made."""
-    if all(line in _outlines for line in lines):
+    wanted = pieces(lines)
+    if all(piece in _outlines for piece in wanted):
         return True
-    _outline_maker().prepare(lines)
+    _outline_maker().prepare(wanted)
     return False
 
 
@@ -236,9 +284,3 @@ def _outlined(line: str) -> QPainterPath:
         elif code == OutlinePath.CLOSEPOLY:
             made.closeSubpath()
     return made
-
-
-def _line_box(line: str) -> QRectF:
-    """Bounding box of a line, at least as high as a letter with a descender."""
-    least = QRectF(0.0, -0.75 * EM, 1.0, 0.95 * EM)
-    return outline(line).boundingRect().united(least)

@@ -1,4 +1,4 @@
-"""The controls at the left of the page: representatives, sizes, folder, and what a recipe holds of them."""
+"""The controls at the right of the page: representatives, sizes, folder, and what a recipe holds of them."""
 
 import re
 from collections.abc import Mapping
@@ -72,8 +72,8 @@ class RepresentativesPanel(QWidget):
             heading(tr("1  Representatives")),
             FixedHeightText((self.population,), *POPULATION_LINES),
             self.weighting,
-            self.start,
             self.count,
+            self.start,
         ):
             layout.addWidget(widget)
         self._wanted = 10
@@ -243,7 +243,7 @@ class FolderPanel(QWidget):
 
 @dataclass(frozen=True)
 class DatasetControls:
-    """The panels at the left of the page, set from a recipe and converted to one."""
+    """The panels at the right of the page, set from a recipe and converted to one."""
 
     representatives: RepresentativesPanel
     sizes: SizesPanel

@@ -12,7 +12,7 @@ from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.labels import heading
 from regolith_studio.ui.widgets.thumbnails import Painting, paint_thumbnail
 
-SIZE, CELL = 92, QSize(128, 136)
+SIZE, CELL = 120, QSize(140, 164)
 """Size of a thumbnail, and of a cell with its caption, in pixels."""
 
 

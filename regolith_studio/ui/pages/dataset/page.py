@@ -1,4 +1,4 @@
-"""Controls on the left in the order of the work; curves above, representatives and exports below."""
+"""Controls on the right in the order of the work; curves above, representatives and exports below."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
@@ -432,7 +432,7 @@ class DatasetPage(PageWidget):
         self.folder.name.textChanged.connect(lambda _: self._update_request())
 
     def _place(self) -> None:
-        left = scrolled_column((self.representatives, self.sizes, self.folder, self.targets))
+        controls = scrolled_column((self.representatives, self.sizes, self.folder, self.targets))
         upper = equal_parts(Qt.Orientation.Horizontal, (self.quality, self.distribution))
         upper.setObjectName("dataset_upper")
         lower = [(self.losses, tr("Limits of the formats")), (self.exports, tr("Exported"))]
@@ -440,13 +440,13 @@ class DatasetPage(PageWidget):
         self._lower, self._shapes = tabs("dataset_lower", lower), tabs("dataset_shapes", shapes)
         middle = stacked((upper, self._shapes, self._lower), (330, 330, 150), stretch=1)
         middle.setObjectName("dataset_middle")
-        right = QWidget()
-        column = QVBoxLayout(right)
-        column.setContentsMargins(0, 10, 4, 4)
+        results = QWidget()
+        column = QVBoxLayout(results)
+        column.setContentsMargins(10, 10, 2, 8)
         column.addWidget(self.result)
         column.addWidget(middle, 1)
-        whole = side_by_side((left, right), (320, 1200), stretch=1)
+        whole = side_by_side((results, controls), (1200, 320), stretch=0)
         whole.setObjectName("dataset_whole")
         layout = QHBoxLayout(self)
-        layout.setContentsMargins(8, 0, 4, 0)
+        layout.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(whole)

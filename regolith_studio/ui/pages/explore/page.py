@@ -5,14 +5,18 @@ from functools import partial
 
 from PySide6.QtWidgets import QHBoxLayout, QMainWindow, QVBoxLayout, QWidget
 
+from regolith_studio.coarsening.progress import CoarseningProgress
 from regolith_studio.messages import join_messages
 from regolith_studio.scene.cameras import DIRECTIONS
 from regolith_studio.scene.shapes import PARTICLE
+from regolith_studio.session.results import Results
 from regolith_studio.ui.latest_job import LatestJob
 from regolith_studio.ui.layout import padded, scrolled_column, side_by_side, stacked
 from regolith_studio.ui.page import PageContext, PageWidget
+from regolith_studio.ui.pages.explore.facet_search import FacetSearch
 from regolith_studio.ui.pages.explore.pictures import PictureExport
 from regolith_studio.ui.pages.explore.plot_area import PlotArea
+from regolith_studio.ui.pages.explore.replay import RunReplay
 from regolith_studio.ui.panels.coarsening import CoarseningPanel
 from regolith_studio.ui.panels.fit import FitPanel
 from regolith_studio.ui.panels.loss import LossPanel
@@ -51,6 +55,8 @@ class ExplorePage(PageWidget):
         self.verdict = VerdictPanel()
         self.three_views.hovered.connect(self._show_status)
         self.pictures = PictureExport(context, self.three_views, self)
+        self.replay = RunReplay(self)
+        self.facet_search = FacetSearch(context, self.coarsening, self)
         self._place()
         self._wire(context)
 
@@ -80,6 +86,7 @@ class ExplorePage(PageWidget):
         }
 
     def on_close(self) -> None:
+        self.replay.stop()
         self.three_views.release()
 
     def _place(self) -> None:
@@ -131,6 +138,9 @@ class ExplorePage(PageWidget):
         bindings.refresh("fit", self._show_star_point)
         bindings.refresh("fit choices", self._show_findings, ("l_max",), slow=True)
         bindings.refresh("surface", self._show_fit)
+        bindings.listen("coarsening", lambda: self.replay.follow(session.results, session.choices.method))
+        self.replay.shown.connect(self._show_step)
+        self.replay.ended.connect(self._show_coarsening)
         bindings.refresh("coarsening", self._show_coarsening)
         bindings.refresh(
             "coarsening comparison", lambda: self.verdict.show_results(session.results, session.choices)
@@ -160,9 +170,17 @@ class ExplorePage(PageWidget):
     def _show_fit(self) -> None:
         self.three_views.show_fit(self._session.results.surface, self._session.results.surface_l_max)
 
+    def _show_step(self, step: CoarseningProgress) -> None:
+        """Show one step of a run, and where it stands in the curve of the loss."""
+        self.three_views.show_polyhedron(Results(best=step))
+        self.three_views.show_step(step)
+        self.plots.loss_curve.plot.set_marker(float(step.step))
+
     def _show_coarsening(self) -> None:
         results = self._session.results
-        self.three_views.show_polyhedron(results)
+        if not self.replay.playing:
+            self.three_views.show_polyhedron(results)
+            self.plots.loss_curve.plot.set_marker(None)
         coarse = results.coarsened
         said = [each for each in (coarse.reason, coarse.warning) if each] if coarse else []
         self.coarsening.set_outcome(join_messages(said) if said else None)

@@ -14,7 +14,7 @@ from regolith_studio.scene import surfaces
 from regolith_studio.scene.comparison import OTHER, show_other
 from regolith_studio.scene.lecture_scenes import show_move
 from regolith_studio.scene.shapes import FIT, SceneShape
-from regolith_studio.ui.layout import side_by_side, stacked
+from regolith_studio.ui.layout import scrolled, side_by_side, stacked
 from regolith_studio.ui.pages.lecture import texts
 from regolith_studio.ui.pages.lecture.playback_bar import PlaybackBar
 from regolith_studio.ui.theme import Theme, current_theme
@@ -290,7 +290,7 @@ class AnnealingView(QWidget):
         column.addWidget(QLabel(tr("Exact method:")))
         column.addWidget(self.exact_formula)
         column.addStretch(1)
-        above = side_by_side([*self.frames.values(), texts], [500, 500, 560], stretch=2)
+        above = side_by_side([*self.frames.values(), scrolled(texts)], [500, 500, 560], stretch=2)
         below = side_by_side([self.loss, self.chance, self.terms], [560, 420, 560], stretch=0)
         for row in (above, below):
             for place in range(row.count()):

@@ -9,13 +9,12 @@ from regolith_studio.descriptors.catalogue import CATALOGUE, LOSS_KEYS
 from regolith_studio.jobs.lecture_jobs import AnnealingLesson, AnnealingStep, DegreeStep
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.translation.numbers import number_text
+from regolith_studio.ui.widgets.formula import BREAK
 
 TERMS = (JACCARD, *LOSS_KEYS)
 REFUSED, ACCEPTED, LUCKY, START = "refused", "accepted", "lucky", "start"
 DEGREE = "l<sub>max</sub>"
 """The outcome of a step as rich text."""
-A_LINE = 4
-"""Terms of the loss on one line."""
 GENERAL_LOSS = r"$L=\alpha_J\,J+\sum_i\alpha_i\,\varepsilon_i$"
 GENERAL_SERIES = r"$r(\theta,\varphi)=\sum_{l=0}^{l_{max}}\,\sum_{m=-l}^{l}c_{lm}\,Y_{lm}(\theta,\varphi)$"
 
@@ -53,11 +52,8 @@ def loss_lines(weights: LossWeights, found: Evaluation) -> tuple[str, ...]:
         for key in TERMS
         if weights[key]
     ]
-    total = rf"={_number(found.loss)}$"
-    if len(parts) <= A_LINE:
-        return (GENERAL_LOSS, "$L=" + "+".join(parts) + total)
-    first, rest = "+".join(parts[:A_LINE]), "+".join(parts[A_LINE:])
-    return (GENERAL_LOSS, f"$L={first}$", rf"$\quad +{rest}{total}")
+    pieces = [f"$L={parts[0]}$", *(f"$+{part}$" for part in parts[1:]), rf"$={_number(found.loss)}$"]
+    return (GENERAL_LOSS, BREAK.join(pieces))
 
 
 def temperature_line(settings: AnnealingSettings, k: int) -> str:
@@ -76,8 +72,9 @@ def proposal_line(step: AnnealingStep, lesson: AnnealingLesson) -> str:
         return r"$p_i^{\prime}\sim N(p_i,\,\sigma),\quad \sigma=\frac{1}{n}\sum_j|p_j|$"
     i, sigma = step.move.plane + 1, step.move.sigma * lesson.scale
     return (
-        rf"$p_{{{i}}}^{{\prime}}\sim N(p_{{{i}}},\,\sigma),\quad \sigma={_number(sigma)}\;\mu m,\quad"
-        rf" |p_{{{i}}}^{{\prime}}-p_{{{i}}}|={_number(step.distance)}\;\mu m$"
+        rf"$p_{{{i}}}^{{\prime}}\sim N(p_{{{i}}},\,\sigma),$"
+        rf"{BREAK}$\;\sigma={_number(sigma)}\;\mu m,${BREAK}"
+        rf"$\;|p_{{{i}}}^{{\prime}}-p_{{{i}}}|={_number(step.distance)}\;\mu m$"
     )
 
 
@@ -99,7 +96,7 @@ def decision_line(step: AnnealingStep) -> str:
         return rf"$\Delta L={_signed(change)}<0\quad\Rightarrow\quad$ " + tr("accept")
     sign, end = ("<", tr("accept")) if move.accepted else (r"\geq ", tr("refuse"))
     drawn = rf"u={_number(move.drawn)}{sign}T(k)"
-    return rf"$\Delta L={_signed(change)}\geq 0,\quad {drawn}\quad\Rightarrow\quad$ {end}"
+    return rf"$\Delta L={_signed(change)}\geq 0,${BREAK}$\;{drawn}${BREAK}$\;\Rightarrow\;$ {end}"
 
 
 def outcome_of(step: AnnealingStep) -> str:
@@ -162,8 +159,8 @@ def degree_lines(step: DegreeStep) -> tuple[str, ...]:
     count = (step.l_max + 1) ** 2
     return (
         GENERAL_SERIES,
-        rf"$l_{{max}}={step.l_max}:\quad (l_{{max}}+1)^2={count}$ " + tr("coefficients") + ","
-        rf"$\quad \frac{{c_{{00}}}}{{\sqrt{{4\pi}}}}={_number(step.mean_radius)}\;\mu m$",
+        rf"$l_{{max}}={step.l_max}:$ {BREAK}$\;(l_{{max}}+1)^2={count}$ " + tr("coefficients") + f",{BREAK}"
+        rf"$\;\frac{{c_{{00}}}}{{\sqrt{{4\pi}}}}={_number(step.mean_radius)}\;\mu m$",
     )
 
 
@@ -198,10 +195,11 @@ def field_lines(amplitudes: Sequence[float]) -> tuple[str, ...]:
         rf"{_in_formula(100 * value, '.2g')}\%_{{\,{degree}}}"
         for degree, value in enumerate(amplitudes, start=1)
     ]
-    listed = r",\;".join(shown[:6] + ([r"\ldots"] if len(shown) > 6 else []))
+    listed = rf",${BREAK}$\;".join(shown[:6] + ([r"\ldots"] if len(shown) > 6 else []))
     return (
         r"$\ln\frac{r(\theta,\varphi)}{\bar{r}}=\sum_{l=1}^{l_{max}}\sum_{m=-l}^{l}\sqrt{A_l}\;z_{lm}\,"
-        r"Y_{lm}(\theta,\varphi),\quad z_{lm}\sim N(0,1)$",
+        rf"Y_{{lm}}(\theta,\varphi),${BREAK}$\;"
+        r"z_{lm}\sim N(0,1)$",
         rf"$\sqrt{{A_l/4\pi}}={listed}$",
     )
 

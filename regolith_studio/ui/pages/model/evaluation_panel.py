@@ -3,16 +3,13 @@
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from PySide6.QtCore import QRectF, QSize, Qt, Signal
-from PySide6.QtGui import QPainter, QPaintEvent, QPixmap
+from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import (
     QAbstractItemView,
     QCheckBox,
     QHBoxLayout,
     QHeaderView,
     QLabel,
-    QScrollArea,
-    QSizePolicy,
     QSpinBox,
     QStackedLayout,
     QTableWidget,
@@ -29,10 +26,13 @@ from regolith_studio.shape_models.models import MODELS
 from regolith_studio.studies.population import PopulationStudy
 from regolith_studio.studies.population_tables import distance_table, pair_table, ranking_table, target_table
 from regolith_studio.ui.layout import tabs
+from regolith_studio.ui.pages.model.population_plots import PanelGrid
 from regolith_studio.ui.pages.model.table_view import StudyTableView
+from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import tr, translate
 from regolith_studio.ui.translation.numbers import localized, number_text
 from regolith_studio.ui.widgets.headline import Headline
+from regolith_studio.ui.widgets.heat_table import centred_remark
 from regolith_studio.ui.widgets.labels import remark, with_subscripts
 from regolith_studio.ui.widgets.study_frame import StudyFrame
 
@@ -76,60 +76,6 @@ NOISE = 1.2
 TOLD_APART = 0.6
 """Share that a classifier may tell right of an indistinguishable model; half of them is chance."""
 NUMBERS = Qt.AlignmentFlag.AlignCenter
-MIN_FIGURE_SCALE = 0.55
-"""Scale below which figures are scrolled instead of shrunk."""
-MIN_PICTURE_HEIGHT = 80
-"""Pixels."""
-
-
-class PictureLabel(QWidget):
-    """Shows PNG data scaled to the available size, or a placeholder text.
-
-    Parameters
-    ----------
-    placeholder
-        Text without picture.
-    min_scale
-        Minimum height as a share of the picture's height, for labels in a scroll area.
-    """
-
-    def __init__(self, placeholder: str, min_scale: float = 0.0) -> None:
-        super().__init__()
-        self._min_scale = min_scale
-        self._placeholder = placeholder
-        self._picture = QPixmap()
-        self.setAccessibleName(placeholder)
-        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
-        self.setMinimumSize(120, MIN_PICTURE_HEIGHT)
-
-    def set_picture(self, content: bytes | None) -> None:
-        """Show another PNG, or the placeholder."""
-        self._picture = QPixmap()
-        if content:
-            self._picture.loadFromData(content)
-        self.setMinimumHeight(max(MIN_PICTURE_HEIGHT, int(self._min_scale * self._picture.height())))
-        self.update()
-
-    def is_empty(self) -> bool:
-        """Whether the placeholder is shown."""
-        return self._picture.isNull()
-
-    def sizeHint(self) -> QSize:
-        return QSize(600, 360)
-
-    def paintEvent(self, event: QPaintEvent) -> None:  # noqa: ARG002
-        painter = QPainter(self)
-        if self._picture.isNull():
-            painter.setPen(self.palette().placeholderText().color())
-            flags = Qt.AlignmentFlag.AlignCenter | Qt.TextFlag.TextWordWrap
-            painter.drawText(self.rect().adjusted(20, 10, -20, -10), int(flags), self._placeholder)
-        else:
-            painter.setRenderHint(QPainter.RenderHint.SmoothPixmapTransform)
-            size = self._picture.size().scaled(self.size(), Qt.AspectRatioMode.KeepAspectRatio)
-            left, top = (self.width() - size.width()) / 2, (self.height() - size.height()) / 2
-            place = QRectF(left, top, size.width(), size.height())
-            painter.drawPixmap(place, self._picture, QRectF(self._picture.rect()))
-        painter.end()
 
 
 class EvaluationPanel(QWidget):
@@ -148,8 +94,7 @@ class EvaluationPanel(QWidget):
         self.verdict = Headline("model_verdict", (tr("W / noise"), tr("Told apart")))
         for place, tip in enumerate((TIPS[1], TIPS[4])):
             self.verdict.caption(place, self.verdict.captions[place].text(), tr(tip))
-        self.pictures = {name: PictureLabel(tr(WAITING), MIN_FIGURE_SCALE) for name in FIGURES}
-        self.places = {name: _scrolled(label) for name, label in self.pictures.items()}
+        self.figures = {name: PanelGrid(name) for name in FIGURES}
         self.tabs = tabs("model_figures", [(self._ranked(), tr("Ranking"))])
         self.tables = {
             name: StudyTableView(f"model_{name}", tr(title)) for name, (title, _) in TABLES.items()
@@ -157,7 +102,7 @@ class EvaluationPanel(QWidget):
         for name, (title, _) in TABLES.items():
             self.tabs.addTab(self.tables[name], tr(title))
         for name, title in FIGURES.items():
-            self.tabs.addTab(self.places[name], tr(title))
+            self.tabs.addTab(self.figures[name], tr(title))
         inside = QWidget()
         column = QVBoxLayout(inside)
         column.setContentsMargins(0, 4, 0, 0)
@@ -182,6 +127,11 @@ class EvaluationPanel(QWidget):
         """Show the progress of a study, that it is being stopped, or that none is running."""
         self.frame.show_task(task)
         self._show_stopping(task is not None and task.id == self._stopped)
+
+    def set_theme(self, theme: Theme) -> None:
+        """Take the colours of a theme."""
+        for grid in self.figures.values():
+            grid.set_theme(theme)
 
     def _stop(self, number: int) -> None:
         """Show the request at once, as starting processes take seconds to end."""
@@ -209,10 +159,10 @@ class EvaluationPanel(QWidget):
 
     def show_judged(self, judged: ModelEvaluationResult | None) -> None:
         """Show a study, complete or not, or nothing."""
-        for name, label in self.pictures.items():
-            label.set_picture(judged.pictures.get(name) if judged else None)
-            at = self.tabs.indexOf(self.places[name])
-            self.tabs.setTabVisible(at, name != "components" or (judged is not None and not label.is_empty()))
+        for name, grid in self.figures.items():
+            if judged is not None:
+                grid.set_panels(judged.panels[name], judged.study)
+            self.tabs.setTabVisible(self.tabs.indexOf(grid), judged is not None and bool(judged.panels[name]))
         for name, view in self.tables.items():
             self.tabs.setTabVisible(self.tabs.indexOf(view), judged is not None)
             if judged is not None:
@@ -295,14 +245,6 @@ class EvaluationPanel(QWidget):
         column.addWidget(self.notes)
         page = QWidget()
         self._stack = QStackedLayout(page)
-        self._stack.addWidget(PictureLabel(tr(WAITING)))
+        self._stack.addWidget(centred_remark(tr(WAITING)))
         self._stack.addWidget(filled)
         return page
-
-
-def _scrolled(label: PictureLabel) -> QScrollArea:
-    area = QScrollArea()
-    area.setWidgetResizable(True)
-    area.setFrameShape(QScrollArea.Shape.NoFrame)
-    area.setWidget(label)
-    return area

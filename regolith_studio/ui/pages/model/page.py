@@ -86,7 +86,7 @@ class ModelPage(PageWidget):
     # --- the page of the window ----------------------------------------------------------------
 
     def set_theme(self, theme: Theme) -> None:
-        for part in (self.live, self.gallery, self.distributions):
+        for part in (self.live, self.gallery, self.distributions, self.evaluation):
             part.set_theme(theme)
 
     def commands(self) -> Mapping[str, Callable[..., object]]:
@@ -347,8 +347,8 @@ class ModelPage(PageWidget):
         below = tabs("model_tabs", [*shown, (self.evaluation, tr("Judgement"))])
         middle = stacked([self.live, below], [380, 420], stretch=1)
         middle.setObjectName("model_rows")
-        parts = [scrolled_column([self.source, self.drawing]), padded(middle, 2, 10, 10, 8)]
-        columns = side_by_side(parts, [310, 900], stretch=1)
+        parts = [padded(middle, 10, 10, 2, 8), scrolled_column([self.source, self.drawing])]
+        columns = side_by_side(parts, [900, 310], stretch=0)
         columns.setObjectName("model_columns")
         layout = QHBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)

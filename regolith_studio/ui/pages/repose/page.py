@@ -415,12 +415,11 @@ class ReposePage(PageWidget):
         column.addWidget(below, 1)
         pictures = stacked([self.player, results], [480, 380], stretch=0)
         pictures.setObjectName("repose_pictures")
-        controls = scrolled_column([self.setup])
-        parts = [padded(controls, 6, 0, 0, 0), padded(pictures, 0, 10, 0, 0)]
-        columns = side_by_side(parts, [350, 1180], stretch=1)
+        parts = [padded(pictures, 10, 10, 2, 8), scrolled_column([self.setup])]
+        columns = side_by_side(parts, [1180, 350], stretch=0)
         columns.setObjectName("repose_columns")
         layout = QHBoxLayout(self)
-        layout.setContentsMargins(0, 0, 8, 8)
+        layout.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(columns)
 
     def _connect(self) -> None:

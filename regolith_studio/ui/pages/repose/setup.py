@@ -227,8 +227,6 @@ class SetupPanel(QWidget):
         form.addRow(tr("Engine"), self.engine)
         form.addRow(tr("Gravity of"), self.gravity)
         column.addLayout(form)
-        column.addWidget(self.run)
-        column.addWidget(FixedHeightText((self.problem, self.scaling_report), LINES, MAX_LINES))
         column.addWidget(Collapsible(tr("Test (Table 2)"), self.test))
         column.addWidget(Collapsible(tr("Contact (Table 1)"), self.contact))
         column.addWidget(Collapsible(tr("Evaluation (section 3.3)"), self.evaluation))
@@ -239,6 +237,8 @@ class SetupPanel(QWidget):
             inside.addWidget(numerics)
         column.addWidget(Collapsible(tr("Numerics of the engine"), forms))
         column.addWidget(remark(tr("* not given in the paper: a choice, yours to change.")))
+        column.addWidget(self.run)
+        column.addWidget(FixedHeightText((self.problem, self.scaling_report), LINES, MAX_LINES))
 
     def _connect(self) -> None:
         self.open_button.clicked.connect(self.datasetWanted)

@@ -5,7 +5,7 @@ from functools import partial
 
 from PySide6.QtCore import Signal
 from PySide6.QtGui import QAction, QMouseEvent
-from PySide6.QtWidgets import QHBoxLayout, QLabel, QMenu, QToolButton, QWidget
+from PySide6.QtWidgets import QMenu, QSizePolicy, QToolButton, QVBoxLayout, QWidget
 
 from regolith_studio.messages import N_
 from regolith_studio.session.choices import Choices
@@ -13,8 +13,12 @@ from regolith_studio.session.study_requests import loss_names
 from regolith_studio.studies.loss_variants import ALONE, PAPER_LOSSES
 from regolith_studio.ui.translation import tr, translate
 from regolith_studio.ui.widgets.combo_box import ChoiceBox
+from regolith_studio.ui.widgets.fixed_height_text import FixedHeightText
+from regolith_studio.ui.widgets.labels import heading, remark
 
 ARROW = "  ▾"
+LINES = 2
+"""Visible lines of the remark."""
 BOXES = {"exact": N_("exact minimum volume"), "trimesh": N_("trimesh's heuristic (paper)")}
 BOX_TIP = N_(
     "Diameters and aspect ratio come from this box. The heuristic of the paper's program is no minimum; "
@@ -25,7 +29,7 @@ EQUAL_TIP = N_("Losses can be compared at equal numbers of facets only; choose t
 
 
 class LossSelector(QWidget):
-    """A row of controls above the studies."""
+    """The controls of the studies."""
 
     valueChanged = Signal()  # noqa: N815
 
@@ -37,24 +41,24 @@ class LossSelector(QWidget):
         self.rows.setObjectName("study_rows")
         self.rows.setAccessibleName(tr("Losses of figures 7 and 8"))
         self.rows.setToolTip(tr("Losses that are the rows of figures 7 and 8"))
+        self.rows.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
         self.menu = self._menu()
         self.rows.clicked.connect(self._open)
         self.box = ChoiceBox("study_box", tr("Bounding box of the diameters"), BOXES)
-        self.box.setMinimumContentsLength(max(len(tr(each)) for each in BOXES.values()))
         self.box.setToolTip(tr(BOX_TIP))
-        self.remark = QLabel()
+        self.remark = remark()
         self.remark.setObjectName("study_facets_remark")
         self.remark.setToolTip(tr(EQUAL_TIP))
-        row = QHBoxLayout(self)
-        row.setContentsMargins(0, 0, 0, 4)
-        row.setSpacing(8)
-        row.addWidget(QLabel(tr("Losses")))
-        row.addWidget(self.rows)
-        row.addSpacing(16)
-        row.addWidget(QLabel(tr("Bounding box")))
-        row.addWidget(self.box)
-        row.addSpacing(16)
-        row.addWidget(self.remark, 1)
+        column = QVBoxLayout(self)
+        column.setContentsMargins(0, 0, 0, 0)
+        for part in (
+            heading(tr("Loss functions")),
+            self.rows,
+            heading(tr("Bounding box")),
+            self.box,
+            FixedHeightText((self.remark,), LINES),
+        ):
+            column.addWidget(part)
         self.box.currentIndexChanged.connect(lambda _index: self.valueChanged.emit())
         self.set_names(PAPER_LOSSES)
 

@@ -18,7 +18,14 @@ from regolith_studio.session.outputs.studies import STUDIES
 from regolith_studio.session.study_requests import chosen_rows
 from regolith_studio.studies.sweeps import SWEEPS
 from regolith_studio.ui.dialogs.folder import FolderDialog
-from regolith_studio.ui.layout import side_by_side, stacked, tabs
+from regolith_studio.ui.layout import (
+    CONTROLS_WIDTH,
+    padded,
+    scrolled_column,
+    side_by_side,
+    stacked,
+    tabs,
+)
 from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.pages.studies.controller import SweepController
 from regolith_studio.ui.pages.studies.gallery import MAX_PARTICLES, GalleryPanel
@@ -206,11 +213,12 @@ class StudiesPage(PageWidget):
         below = _titled(tr("What the polyhedra look like (Fig. 7)"), _framed(self.gallery))
         rows = stacked([above, below], [370, 500], stretch=1)
         rows.setObjectName("studies_rows")
+        parts = [padded(rows, 10, 10, 2, 8), scrolled_column([self.bar])]
+        columns = side_by_side(parts, [1200, CONTROLS_WIDTH], stretch=0)
+        columns.setObjectName("studies_columns")
         layout = QVBoxLayout(self)
-        layout.setContentsMargins(10, 10, 10, 8)
-        layout.setSpacing(0)
-        layout.addWidget(self.bar)
-        layout.addWidget(rows, 1)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.addWidget(columns)
 
 
 def write_studies(studies: tuple[tuple[str, object], ...], folder: Path) -> Steps:
