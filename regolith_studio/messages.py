@@ -13,6 +13,31 @@ def N_(text: str) -> str:  # noqa: N802  # the usual name of this mark
     return text
 
 
+class Number(str):
+    """A number in a sentence: formatted as in English, and with the signs of the language where it is shown.
+
+    Parameters
+    ----------
+    value, form
+        As for ``format``.
+    unit
+        Behind it.
+    """
+
+    __slots__ = ()
+
+    def __new__(cls, value: float, form: str, unit: str = "") -> "Number":
+        return cls.of_text(format(value, form) + unit)
+
+    @classmethod
+    def of_text(cls, text: str) -> "Number":
+        """The number that was formatted as `text`."""
+        return super().__new__(cls, text)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Number.of_text, (str(self),)
+
+
 class Message(str):
     """An English sentence that remembers its template and its values.
 
@@ -50,11 +75,13 @@ def join_messages(parts: Iterable[str], separator: str = " ") -> Message:
 
 def count_message(one: str, many: str, count: int, **values: Any) -> Message:
     """The template for one thing, or that for several with their number as ``{count}``."""
-    return Message(one if count == 1 else many, count=f"{count:,}", **values)
+    return Message(one if count == 1 else many, count=Number(count, ","), **values)
 
 
 def to_json(text: str) -> Any:
     """A text as plain JSON that keeps template and values of a message."""
+    if isinstance(text, Number):
+        return {"number": str(text)}
     if not isinstance(text, Message):
         return text
     values = {name: to_json(each) if isinstance(each, str) else each for name, each in text.values.items()}
@@ -65,6 +92,8 @@ def from_json(document: Any) -> str:
     """The text that :func:`to_json` was given."""
     if not isinstance(document, dict):
         return str(document)
+    if "number" in document:
+        return Number.of_text(document["number"])
     values = document["values"].items()
     read = {name: from_json(each) if isinstance(each, dict) else each for name, each in values}
     return Message(document["template"], **read)

@@ -4,7 +4,7 @@ import json
 import pickle
 
 from regolith_studio.errors import InputError
-from regolith_studio.messages import N_, Message, count_message, from_json, join_messages, to_json
+from regolith_studio.messages import N_, Message, Number, count_message, from_json, join_messages, to_json
 
 GRAINS = Message(N_("{grains} of {body}"), grains=3, body=Message(N_("one body")))
 
@@ -34,3 +34,11 @@ def test_that_texts_are_joined_with_their_values():
     both = join_messages([GRAINS, "plain {text}"])
     assert both == "3 of one body plain {text}"
     assert both.values["part_0"] is GRAINS
+
+
+def test_that_a_number_stays_one_in_another_process_and_in_json():
+    sentence = Message("{share} of the surface", share=Number(0.123456, ".3g", " %"))
+    assert sentence == "0.123 % of the surface"
+    for copy in (pickle.loads(pickle.dumps(sentence)), from_json(json.loads(json.dumps(to_json(sentence))))):
+        assert isinstance(copy.values["share"], Number)
+        assert copy.values["share"] == "0.123 %"

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from regolith_studio.coarsening.weights import JACCARD, LossWeights
-from regolith_studio.messages import N_, Message
+from regolith_studio.messages import N_, Message, Number
 
 MAX_FACETS = 100_000
 """Sphericities that ask for more facets count as unreachable."""
@@ -99,7 +99,8 @@ def sphericity_reason(sphericity: float, n_facets: int) -> str | None:
     if sphericity <= limit:
         return None
     digits = next((d for d in range(3, 9) if f"{sphericity:.{d}f}" != f"{limit:.{d}f}"), 9)
-    values = {"sphericity": f"{sphericity:.{digits}f}", "faces": n_facets, "most": f"{limit:.{digits}f}"}
+    shown, most = Number(sphericity, f".{digits}f"), Number(limit, f".{digits}f")
+    values = {"sphericity": shown, "faces": n_facets, "most": most}
     if (needed := min_facets(sphericity)) is None:
         template = N_(
             "Sphericity {sphericity} needs more than 100,000 facets; with {faces} the most is {most}."

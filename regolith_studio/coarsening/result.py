@@ -9,7 +9,7 @@ from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.half_spaces import HalfSpaces
 from regolith_studio.geometry.mesh import Mesh
-from regolith_studio.messages import N_, Message
+from regolith_studio.messages import N_, Message, Number
 
 COSTLY_OVERLAP = 1.5
 """Above so many times the Jaccard distance with the sphericity free, a result has a warning."""
@@ -129,9 +129,9 @@ class CoarseningResult:
                 " free it is {free}, and the sphericity is off by {error} %. The preset Shape first leaves it"
                 " free."
             ),
-            kept=f"{self.jaccard_distance:.3f}",
-            free=f"{free.jaccard_distance:.3f}",
-            error=f"{100 * free.sphericity_error:.2g}",
+            kept=Number(self.jaccard_distance, ".3f"),
+            free=Number(free.jaccard_distance, ".3f"),
+            error=Number(100 * free.sphericity_error, ".2g"),
         )
 
     @property

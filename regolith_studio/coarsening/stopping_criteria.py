@@ -17,7 +17,7 @@ from regolith_studio.coarsening.target import Target
 from regolith_studio.coarsening.weights import JACCARD, LossWeights
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.mesh import Mesh
-from regolith_studio.messages import N_, Message
+from regolith_studio.messages import N_, Message, Number
 
 
 @dataclass(frozen=True)
@@ -164,8 +164,8 @@ def _least(failed: Sequence[Trial], limit: float) -> CoarseningResult:
             " least is {error} %, with {count} facets."
         ),
         faces=failed[-1].n_facets,
-        limit=f"{100 * limit:g}",
-        error=f"{100 * least.largest_error:.2g}",
+        limit=Number(100 * limit, "g"),
+        error=Number(100 * least.largest_error, ".2g"),
         count=least.n_facets,
     )
     return replace(least.result, reason=reason)

@@ -19,7 +19,7 @@ from regolith_studio.geometry.topology import (
     neighbours,
     pinched_corners,
 )
-from regolith_studio.messages import N_, Message, count_message
+from regolith_studio.messages import N_, Message, Number, count_message
 
 MAX_FACES_SEARCHED = 200_000
 """Meshes with more faces are not searched for self-intersections."""
@@ -226,10 +226,14 @@ def _sentences(found: MeshHealth, searched: bool) -> Sequence[str]:
         (
             seams > 0,
             Message(
-                N_("{count} vertices lie exactly on another: seams cut the surface."), count=f"{seams:,}"
+                N_("{count} vertices lie exactly on another: seams cut the surface."),
+                count=Number(seams, ","),
             ),
         ),
-        (found.bodies > 1, Message(N_("It consists of {count} separate bodies."), count=f"{found.bodies:,}")),
+        (
+            found.bodies > 1,
+            Message(N_("It consists of {count} separate bodies."), count=Number(found.bodies, ",")),
+        ),
         (
             found.open_edges > 0,
             count_message(
@@ -241,13 +245,13 @@ def _sentences(found: MeshHealth, searched: bool) -> Sequence[str]:
         (
             found.non_manifold_edges > 0,
             count_message(
-                N_("It is not a simple surface: 1 edge belongs to three faces or more."),
-                N_("It is not a simple surface: {count} edges belong to three faces or more."),
+                N_("It is not manifold: 1 edge belongs to three faces or more."),
+                N_("It is not manifold: {count} edges belong to three faces or more."),
                 found.non_manifold_edges,
             ),
         ),
-        (not found.consistent_winding, N_("Its faces do not all look the same way: some are turned round.")),
-        (found.volume < 0.0, N_("It is inside out: its faces look inwards.")),
+        (not found.consistent_winding, N_("Its faces are not oriented consistently.")),
+        (found.volume < 0.0, N_("Its normals point inwards.")),
         (found.volume == 0.0, N_("It encloses no volume.")),
         (
             0 < found.inverted_bodies < found.bodies,

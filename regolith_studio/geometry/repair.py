@@ -14,7 +14,7 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.mesh_health import MeshHealth, body_volumes, inspect, unit_size
 from regolith_studio.geometry.non_manifold import split_non_manifold_edges
 from regolith_studio.geometry.topology import edge_table, find_bodies, neighbours
-from regolith_studio.messages import N_, Message, count_message
+from regolith_studio.messages import N_, Message, Number, count_message
 
 TOLERANCES = (1e-7, 1e-6, 1e-5)
 """Shares of the mesh's size within which the vertices of an open mesh may be joined."""
@@ -53,7 +53,7 @@ class Repair:
     dropped_bodies, kept_volume_share
         How many bodies were left out, and the share of the volume of all that the kept one has.
     given
-        The mesh as it came; ``None`` if nothing was changed.
+        The mesh before the repair; ``None`` if nothing was changed.
     """
 
     mesh: Mesh
@@ -150,7 +150,7 @@ def _merge_equal_vertices(draft: _Draft) -> _Draft:
     vertices, faces = merged_vertices(draft.vertices, draft.faces)
     joined = used - len(vertices)
     template = N_("Joined {count} vertices with another at the same place.")
-    action = Message(template, count=f"{joined:,}") if joined else ""
+    action = Message(template, count=Number(joined, ",")) if joined else ""
     return draft.changed(action, vertices=vertices, faces=faces)
 
 
@@ -226,8 +226,8 @@ def _wind(draft: _Draft) -> _Draft:
     turned = parts.turned ^ (share > 0.5)[parts.body]
     faces = np.where(turned[:, None], draft.faces[:, ::-1], draft.faces)
     count = int(np.count_nonzero(turned))
-    one = N_("Turned 1 face that looked the wrong way.")
-    many = N_("Turned {count} faces that looked the wrong way.")
+    one = N_("Reoriented 1 face.")
+    many = N_("Reoriented {count} faces.")
     text = count_message(one, many, count) if count else ""
     draft = draft.changed(text, faces=faces)
     return _split_non_manifold(draft) if table.non_manifold_edges else draft
@@ -252,8 +252,8 @@ def _make_orientable(draft: _Draft) -> _Draft:
     else:
         raise GeometryError("The mesh is one-sided like a Möbius strip: its faces have no outside.")
     cut = len(draft.faces) - len(kept)
-    template = N_("Cut out {count} faces that made the surface one-sided.")
-    text = Message(template, count=f"{cut:,}") if cut else ""
+    template = N_("Removed {count} faces that made the surface non-orientable.")
+    text = Message(template, count=Number(cut, ",")) if cut else ""
     return draft.changed(text, faces=draft.faces[kept])
 
 
@@ -264,8 +264,8 @@ def _split_non_manifold(draft: _Draft) -> _Draft:
     count = edge_table(faces, len(draft.vertices)).non_manifold_edges
     vertices, faces = split_non_manifold_edges(draft.vertices, faces)
     text = count_message(
-        N_("Took the surface apart along 1 edge where more than two faces met."),
-        N_("Took the surface apart along {count} edges where more than two faces met."),
+        N_("Split the surface along 1 edge of more than two faces."),
+        N_("Split the surface along {count} edges of more than two faces."),
         count,
     )
     return draft.changed(text, vertices=vertices, faces=faces[:, ::-1] if inside_out else faces)
@@ -285,7 +285,7 @@ def _keep_largest(draft: _Draft) -> _Draft:
     share = volumes[largest] / volumes.sum() if volumes.sum() > 0.0 else 1.0
     text = Message(
         N_("Kept the largest of {count} bodies, with {share} of their volume."),
-        count=f"{parts.count:,}",
+        count=Number(parts.count, ","),
         share=_percent(share),
     )
     return draft.changed(
@@ -341,7 +341,7 @@ def _face_outwards(draft: _Draft) -> _Draft:
     _require_volume(draft.vertices, draft.faces)
     if Mesh(draft.vertices, draft.faces).volume > 0.0:
         return draft
-    return draft.changed(N_("Turned all faces: the mesh was inside out."), faces=draft.faces[:, ::-1])
+    return draft.changed(N_("Reoriented all faces: the normals pointed inwards."), faces=draft.faces[:, ::-1])
 
 
 def _require_volume(vertices: FloatArray, faces: IntArray) -> None:
@@ -365,7 +365,7 @@ def _size(mesh: Mesh) -> float:
 def _percent(share: float) -> str:
     if share > 0.999:
         return "over 99.9 %"
-    return f"{100 * share:.3g} %" if share > 0.9 else f"{100 * share:.2g} %"
+    return Number(100 * share, ".3g", " %") if share > 0.9 else Number(100 * share, ".2g", " %")
 
 
 def _count(count: int, one: str, many: str) -> str:

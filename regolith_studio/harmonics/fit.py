@@ -21,7 +21,7 @@ from regolith_studio.harmonics.reference_surface import REFERENCES, Ellipsoid
 from regolith_studio.harmonics.star_point import STAR_POINT_RULES, centre_of_mass, least_hidden_volume
 from regolith_studio.harmonics.transform import SAMPLING_DEGREE, RayGrid, analyse, band_limited, ray_grid
 from regolith_studio.harmonics.visibility import hidden_surface_share
-from regolith_studio.messages import N_, Message
+from regolith_studio.messages import N_, Message, Number
 
 HIDDEN_TOLERANCE = 0.01
 """Hidden share of the surface from which on a fit carries a warning."""
@@ -101,10 +101,10 @@ class HarmonicFit:
         """The notes, and a sentence with the number where the expansion misses the radius."""
         if not self.radial_error > RADIAL_TOLERANCE:
             return self.notes
-        values = {"degree": self.l_max, "error": f"{self.radial_error:.1%}"}
+        values = {"degree": self.l_max, "error": Number(self.radial_error, ".1%")}
         if self.largest_radial_error is None:
             return (*self.notes, Message(MISSES, **values))
-        return (*self.notes, Message(MISSES_AT_MOST, most=f"{self.largest_radial_error:.0%}", **values))
+        return (*self.notes, Message(MISSES_AT_MOST, most=Number(self.largest_radial_error, ".0%"), **values))
 
     def truncated(self, l_max: int) -> "HarmonicFit":
         """The fit cut at `l_max`, with the radial error that it has there.
@@ -211,5 +211,5 @@ def _about_hidden(fit: HarmonicFit) -> tuple[str, ...]:
         "{surface} of the surface and {volume} of the volume are hidden from the star point and cannot be"
         " kept by a radius function."
     )
-    surface, volume = f"{fit.hidden_surface_share:.1%}", f"{fit.unrepresentable_volume_share:.1%}"
+    surface, volume = Number(fit.hidden_surface_share, ".1%"), Number(fit.unrepresentable_volume_share, ".1%")
     return (Message(template, surface=surface, volume=volume),)

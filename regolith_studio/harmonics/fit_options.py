@@ -37,7 +37,7 @@ class FitOptions:
         AUTOMATIC,
         N_("Star point"),
         N_(
-            "Where radii begin. Automatic: the centre of mass or, where that is not inside, "
+            "Origin of the radii. Automatic: the centre of mass or, where that is not inside, "
             "the point that hides the least volume."
         ),
         choices={
@@ -64,8 +64,8 @@ class FitOptions:
         "sphere",
         N_("Reference surface"),
         N_(
-            "What radii are divided by before they are expanded. An ellipsoid lowers the oscillation on "
-            "flat and elongated grains."
+            "Surface by which the radii are divided before the expansion. An ellipsoid reduces oscillations "
+            "on flat and elongated particles."
         ),
         choices={"sphere": N_("Sphere"), "ellipsoid": N_("Best-fit ellipsoid")},
     )

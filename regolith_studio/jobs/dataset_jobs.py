@@ -334,7 +334,7 @@ def list_library(root: Path, results: Path | None = None) -> Steps:
     results
         Where simulations are kept if not below `root`; those of its datasets are listed too.
     """
-    yield Started(N_("Looking for datasets"))
+    yield Started(N_("Searching for datasets"))
     found: list[CatalogEntry] = []
     for entry in _entries(root, results):
         found.append(entry)

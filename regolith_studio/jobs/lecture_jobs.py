@@ -219,7 +219,7 @@ class DegreeStep:
 def trace_degrees(mesh: Mesh, fit: HarmonicFit, level: int = 4) -> Steps:
     """The fit at every degree from 0 on; partial results and the result are tuples of :class:`DegreeStep`."""
     degrees = range(fit.l_max + 1)
-    yield Started(N_("Growing the fit"), len(degrees))
+    yield Started(N_("Fitting degree by degree"), len(degrees))
     truth = describe(mesh, LOSS_KEYS)
     steps: tuple[DegreeStep, ...] = ()
     for degree, surface in gallery(fit, degrees, level):

@@ -114,7 +114,7 @@ def find_faults(particle: Particle, visibility: StarPointVisibility | None = Non
     Returns the corners (k, 3, 3) of the triangles of each kind, as ``defect_triangles`` names them, and
     ``hidden``.
     """
-    yield Started(N_("Looking for faults"))
+    yield Started(N_("Checking the mesh"))
     found: dict[str, FloatArray] = defect_triangles(particle)
     if visibility is not None and visibility.hidden_surface_share > 0.0:
         hidden = hidden_faces(particle.mesh, np.array(visibility.star_point))

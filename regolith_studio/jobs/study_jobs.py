@@ -72,7 +72,7 @@ def study_population(
     options
         Further ones of :func:`~regolith_studio.studies.population.population_study`.
     """
-    yield Started(N_("Judging models"), 0)
+    yield Started(N_("Evaluating models"), 0)
     if answers is not None:
         inputs = hash_of_rows(sample.coefficients, (*sample.names, sample.unit))
         answers.open("population", (models, sorted(options.items())), inputs)

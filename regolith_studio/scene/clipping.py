@@ -28,7 +28,7 @@ DIRECTIONS = {
     "longest": N_("along Dmax"),
     "intermediate": N_("along Dint"),
     "shortest": N_("along Dmin"),
-    "eye": N_("to the eye"),
+    "eye": N_("towards the viewer"),
 }
 """Directions a section can be moved in; those of the box are its edges."""
 SHADE = 0.84

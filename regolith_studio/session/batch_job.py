@@ -37,7 +37,9 @@ def run_recipe_job(
     """
     from regolith_studio.session.run_recipe import run_recipe  # with all that a batch needs, figures included
 
-    yield Started(N_("Looking for the cluster") if settings.runner == "dask" else N_("Starting the workers"))
+    yield Started(
+        N_("Connecting to the cluster") if settings.runner == "dask" else N_("Starting the workers")
+    )
     with contextlib.closing(settings.open()) as executor:
         yield Partial(ExecutorReady(executor.workers, executor.dashboard))
         return (yield from run_recipe(recipe, base, folder, executor, resume))

@@ -54,7 +54,7 @@ class Choices(FitOptions):
     l_max: int = setting(
         10,
         "Maximum degree",
-        "Degree at which the series of Eq. 4 is cut: 0 is a sphere; the paper uses 10.",
+        "Degree at which the series is cut: 0 is a sphere, 10 keeps the form, 30 nearly all details.",
         minimum=0,
         maximum=FIT_DEGREE,
     )

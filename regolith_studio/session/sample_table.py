@@ -34,7 +34,7 @@ Filter = Callable[[ParticleEntry], bool]
 
 
 def health_word(entry: ParticleEntry) -> str:
-    """One word that says most: ``sound``, ``coarse``, ``mended``, ``doubtful`` or ``unsound``.
+    """One word that says most: ``sound``, ``coarse``, ``repaired``, ``doubtful`` or ``unsound``.
 
     Coarse: of few voxels. Mended: with a note on what was changed. Doubtful: with faults that leave a
     volume and an area, such as tunnels and crossing faces. ``unknown`` until it is measured.
@@ -47,7 +47,7 @@ def health_word(entry: ParticleEntry) -> str:
         return "doubtful"
     if all(is_remark(note) for note in entry.particle.notes):
         return "coarse" if entry.particle.notes else "sound"
-    return "mended"
+    return "repaired"
 
 
 def health_sentences(entry: ParticleEntry) -> tuple[str, ...]:

@@ -151,22 +151,29 @@ class Session:
         """Load the particles that ship with the program; returns the task's id."""
         return self._load(N_("Reading the sample"), Job(load_sample), SampleSource())
 
-    def open_recipe(self, recipe: Recipe, base: Path) -> int:
+    def open_recipe(self, recipe: Recipe, base: Path, *, keep_selected: bool = False) -> int:
         """Restore the particles of a recipe: read, extract or draw them; returns the task's id.
 
         Parameters
         ----------
         base
             Folder that relative files are looked up in.
+        keep_selected
+            Whether the particle on screen stays there if it is among the restored ones.
         """
+        if keep_selected:
+            return self._restore(recipe, base, self.choices.selected)
         if recipe.only_files and recipe.inputs == [SAMPLE]:
             return self.open_sample()
         if recipe.only_files and len(recipe.openings) == 1 and SAMPLE not in recipe.inputs:
             ((files, unit, repair),) = recipe.openings
             return self.open([base / file for file in files], unit, repair=repair)
 
+        return self._restore(recipe, base)
+
+    def _restore(self, recipe: Recipe, base: Path, selected: str = "") -> int:
         def take(restored: RestoredParticles) -> None:
-            self._replace_particles(restored.loaded, restored.refs)
+            self._replace_particles(restored.loaded, restored.refs, selected=selected)
 
         title = N_("Restoring particles")
         job = Job(restore_particles, (recipe, base))
@@ -382,7 +389,11 @@ class Session:
         return self._board.start("load", title, job, Reactions(take, failed=self.failure_reporter(title)))
 
     def _replace_particles(
-        self, loaded: LoadedParticles, refs: Sequence[ParticleRef | None] = (), add: bool = False
+        self,
+        loaded: LoadedParticles,
+        refs: Sequence[ParticleRef | None] = (),
+        add: bool = False,
+        selected: str = "",
     ) -> None:
         if loaded.problems:
             self.events.problems.emit(loaded.problems)
@@ -393,10 +404,11 @@ class Session:
             ParticleEntry(particle.name, particle, ref=ref)
             for particle, ref in zip(fresh, found_refs, strict=True)
         )
-        first = self.particles[len(kept)].id
+        is_open = any(entry.id == selected for entry in self.particles)
+        shown = selected if is_open else self.particles[len(kept)].id
         self._live.clear_cache()
         self._studied.clear()
-        self._history.restart(self.choices.replaced(selected=first))
+        self._history.restart(self.choices.replaced(selected=shown))
         self.update(
             "lmax_study", "coarsening_study", lmax_study=None, coarsening_study=None, outdated=frozenset()
         )

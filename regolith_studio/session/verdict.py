@@ -9,7 +9,7 @@ from regolith_studio.coarsening.result import CoarseningResult
 from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.descriptors.catalogue import CATALOGUE, LOSS_KEYS
 from regolith_studio.jobs.coarsening_jobs import ParticleComparison
-from regolith_studio.messages import N_, Message, join_messages
+from regolith_studio.messages import N_, Message, Number, join_messages
 
 CLOSE = 1e-3
 """Relative error up to which a descriptor counts as met."""
@@ -59,7 +59,7 @@ def polyhedron_verdict(
     parts = [_met(coarsened, chosen)]
     if fewer is not None:
         template = N_("More facets do not help here: {count} facets had a loss of {loss}.")
-        parts.append(Message(template, count=fewer[0], loss=f"{fewer[1]:.4g}"))
+        parts.append(Message(template, count=fewer[0], loss=Number(fewer[1], ".4g")))
     if against_particle is not None:
         parts.append(cost_of_imitating_the_fit(against_particle))
     return PolyhedronVerdict(
@@ -99,4 +99,4 @@ def _symbol(key: str) -> str:
 
 
 def _percent(share: float) -> str:
-    return f"{100 * share:.3g} %"
+    return Number(100 * share, ".3g", " %")

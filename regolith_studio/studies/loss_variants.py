@@ -10,7 +10,7 @@ from regolith_studio.coarsening.coarsen import DEFAULT_METHOD
 from regolith_studio.coarsening.weights import JACCARD, WEIGHT_KEYS, LossWeights, presets
 from regolith_studio.descriptors.catalogue import CATALOGUE, LOSS_KEYS
 from regolith_studio.errors import InputError
-from regolith_studio.messages import N_, Message, join_messages
+from regolith_studio.messages import N_, Message, Number, join_messages
 
 PAPER_LOSSES = (
     "quadric",
@@ -207,4 +207,4 @@ def _check_factors(like: LossVariant, factors: Sequence[float]) -> None:
 
 def _scaled(key: str, factor: float) -> Message:
     name = Message(N_("Overlap") if key == JACCARD else CATALOGUE[key].label)
-    return Message(N_("{name} × {factor}"), name=name, factor=f"{factor:g}")
+    return Message(N_("{name} × {factor}"), name=name, factor=Number(factor, "g"))

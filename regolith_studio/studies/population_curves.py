@@ -154,7 +154,7 @@ def contours(
     """Contours of a density with values[row of y, column of x], with NaN between them."""
     lines = [np.full((1, 2), np.nan)]
     for level in levels:
-        for line in find_contours(values, level):
+        for line in find_contours(values, level):  # type: ignore[no-untyped-call]
             lines += [line, np.full((1, 2), np.nan)]
     rows, columns = np.concatenate(lines).T
     places = np.arange(GRID)

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from regolith_studio.io.tables import Column, Table
-from regolith_studio.messages import N_, Message
+from regolith_studio.messages import N_, Message, Number
 from regolith_studio.studies.population import N_FLOOR_SPLITS, ModelEvaluation, PopulationStudy
 from regolith_studio.studies.population_distances import CONFIDENCE, N_RESAMPLES, WEIGHTINGS, distances
 
@@ -111,7 +111,7 @@ AT_LEAST, AT_MOST = N_("at least {limit}"), N_("at most {limit}")
 def target_table(study: PopulationStudy) -> Table:
     """What a model of a real sample should reach, and what each of the models does."""
     rows = [
-        (model.key, name, value, Message(sign, limit=f"{limit:g}"), N_("yes") if reached else N_("no"))
+        (model.key, name, value, Message(sign, limit=Number(limit, "g")), N_("yes") if reached else N_("no"))
         for model in study.models
         for name, value, sign, limit in _targets(study, model)
         for reached in [value >= limit if sign == AT_LEAST else value <= limit]
@@ -127,7 +127,7 @@ def _targets(study: PopulationStudy, model: ModelEvaluation) -> Iterator[tuple[s
     if paper is not None and paper is not model and "aspect_ratio" in study.keys:
         column = study.keys.index("aspect_ratio")
         gain = paper.distances.wasserstein.mean(axis=0)[0, column] / far[0, column]
-        yield N_("aspect ratio, times nearer than the paper's model"), gain, AT_LEAST, LEAST_GAIN
+        yield N_("aspect ratio, times nearer than the Gaussian field"), gain, AT_LEAST, LEAST_GAIN
     if columns := [study.keys.index(key) for key in AT_NOISE if key in study.keys]:
         worst = (far / np.percentile(noise, 95, axis=0))[:, columns].max()
         yield N_("r_eq, A, AR, S: the worst, over the 95th percentile of noise"), worst, AT_MOST, 1.0
@@ -138,7 +138,7 @@ def _targets(study: PopulationStudy, model: ModelEvaluation) -> Iterator[tuple[s
     if pairs := [i for i, pair in enumerate(study.pairs) if set(pair) <= set(PAPERS_PAIRS)]:
         worst = 100 * model.distances.energy.mean(axis=0)[pairs].max()
         yield N_("pairs of r_eq, A, AR: the largest energy distance [%]"), worst, AT_MOST, MOST_ENERGY
-    yield N_("draws thrown away [%]"), 100 * model.rejected.mean(), AT_MOST, 0.0
+    yield N_("rejected draws [%]"), 100 * model.rejected.mean(), AT_MOST, 0.0
     yield N_("median novelty"), model.novelty.mean(), AT_LEAST, LEAST_NOVELTY
 
 

@@ -71,7 +71,12 @@ ROWS: tuple[ActionSpec, ...] = (
         N_("For regolith-studio run"),
     ),
     ActionSpec(
-        N_("&File"), "run_batch", N_("Run as a &batch …"), "", "Ctrl+Alt+R", N_("Here or on a cluster")
+        N_("&File"),
+        "run_batch",
+        N_("Run as a &batch …"),
+        "",
+        "Ctrl+Alt+R",
+        N_("On this computer or on a cluster"),
     ),
     ActionSpec(N_("&File"), BREAK, ""),
     ActionSpec(N_("&File"), "save_project", N_("&Save project"), "", "Ctrl+S"),
@@ -98,13 +103,13 @@ ROWS: tuple[ActionSpec, ...] = (
     ActionSpec(N_("&Theme"), "theme_system", N_("As the &system")),
     ActionSpec(N_("&Theme"), "theme_light", N_("&Light")),
     ActionSpec(N_("&Theme"), "theme_dark", N_("&Dark")),
-    ActionSpec(N_("&View"), "tasks", N_("&Tasks"), "", "Ctrl+T", N_("What is running")),
+    ActionSpec(N_("&View"), "tasks", N_("&Tasks"), "", "Ctrl+T", N_("Running tasks")),
     ActionSpec(N_("&View"), "log", N_("L&og"), "", "Ctrl+Shift+L", N_("Messages so far")),
     ActionSpec(
         N_("&View"), "standard_layout", N_("Standard la&yout"), "", "", N_("Restore sizes and borders")
     ),
     ActionSpec(N_("&View"), BREAK, ""),
-    ActionSpec(N_("&Help"), "tour", N_("&Tour"), "tour", "", N_("A walk through the window")),
+    ActionSpec(N_("&Help"), "tour", N_("&Tour"), "tour", "", N_("Tour of the window")),
     ActionSpec(N_("&Help"), "guide", N_("&Guide"), "", "", N_("The manual of the program")),
     ActionSpec(
         N_("&Help"), "explain", N_("&Explain this page"), "help", "F1", N_("What the guide says of the page")

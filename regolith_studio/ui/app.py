@@ -23,15 +23,26 @@ from regolith_studio.ui.tour import TOUR_SEEN
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.views.factory import best_kind
 
+FILLED_CHECK = 100
+"""Milliseconds between two looks at whether the views of the first start are filled."""
 IDLE = 3_000
 """Milliseconds without work after which hidden pages forget closed particles."""
 
 
 def show_recovery_and_tour(window: MainWindow) -> None:
-    """Offer what a crash has left; start the tour at the first start."""
+    """Offer what a crash has left; start the tour at the first start, when there is something to see."""
     window.projects.offer_recovery()
-    if not window.preferences.window.get(TOUR_SEEN):
-        window.show_tour()
+    if window.preferences.window.get(TOUR_SEEN):
+        return
+    timer = QTimer(window, interval=FILLED_CHECK)
+
+    def start_when_filled() -> None:
+        if window.session.results.polyhedron is not None or not window.session.tasks:
+            timer.stop()
+            window.show_tour()
+
+    timer.timeout.connect(start_when_filled)
+    timer.start()
 
 
 def open_window(
@@ -90,7 +101,7 @@ def make_excepthook(report: Callable[[str, str], None]) -> Hook:
             report(str(reason), details)
         else:
             name = type(reason).__name__
-            report(tr("Something went wrong in the program ({name}); the work goes on.", name=name), details)
+            report(tr("Internal error ({name}); the program continues.", name=name), details)
 
     return hook
 

@@ -112,7 +112,7 @@ class BatchRuns(QObject):
         self._toast.problem(failure.sentence, failure.details)
 
     def _stopped(self) -> None:
-        self._end(tr("Stopped. What was done is kept: run again into the same folder to go on."))
+        self._end(tr("Stopped. Finished parts are kept: run again into the same folder to resume."))
 
     def _end(self, sentence: str, report: bool = False) -> None:
         self._task = 0

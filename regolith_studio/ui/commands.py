@@ -150,7 +150,7 @@ class Commands(QObject):
             self._preferences.add_recent(path, unit)
         self._preferences.save()
         self._remember_open()
-        self._try(lambda: self._session.open_recipe(kept.recipe, Path.cwd()))
+        self._try(lambda: self._session.open_recipe(kept.recipe, Path.cwd(), keep_selected=True))
 
     def save_recipe(self) -> None:
         """Ask for a file and write the present choices into it."""
@@ -204,7 +204,7 @@ class Commands(QObject):
             self._session.undo()
             return
         before, self._before = self._before, None
-        self._try(lambda: self._session.open_recipe(before, Path.cwd()))
+        self._try(lambda: self._session.open_recipe(before, Path.cwd(), keep_selected=True))
 
     @property
     def can_undo(self) -> bool:

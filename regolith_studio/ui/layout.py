@@ -6,11 +6,7 @@ from PySide6.QtCore import QEvent, QObject, QSize, Qt
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QScrollArea, QSizePolicy, QSplitter, QTabWidget, QVBoxLayout, QWidget
 
-from regolith_studio.ui.widgets.fixed_height_text import FixedHeightText
-
 CONTROLS_WIDTH = 290
-FOLDED = 32
-"""Pixels of height that are kept for buttons which find no room beside a box."""
 
 
 class Splitter(QSplitter):
@@ -152,13 +148,7 @@ def scrolled(part: QWidget) -> QScrollArea:
 
 
 class _Column(QScrollArea):
-    """A column as wide as its content needs, in any language and font size.
-
-    What height is left when it gets its size is for texts that have use for it; later, nothing moves.
-    """
-
-    _shared = 0
-    """Height that has been shared among the texts."""
+    """A column as wide as its content needs, in any language and font size."""
 
     def minimumSizeHint(self) -> QSize:
         inside = self.widget()
@@ -170,28 +160,6 @@ class _Column(QScrollArea):
         if event.type() == QEvent.Type.LayoutRequest:
             self.updateGeometry()
         return super().eventFilter(watched, event)
-
-    def resizeEvent(self, event: QResizeEvent) -> None:
-        super().resizeEvent(event)
-        self._share_height()
-
-    def changeEvent(self, event: QEvent) -> None:
-        super().changeEvent(event)
-        if event.type() in (QEvent.Type.FontChange, QEvent.Type.StyleChange):
-            self._shared = 0
-            self._share_height()
-
-    def _share_height(self) -> None:
-        inside = self.widget()
-        if self.height() == self._shared or inside is None:
-            return
-        self._shared = self.height()
-        texts = inside.findChildren(FixedHeightText)
-        for each in texts:
-            each.take_spare_lines(0)
-        left = self.height() - inside.sizeHint().height() - FOLDED
-        for each in texts:
-            left -= each.line * each.take_spare_lines(left // each.line)
 
 
 def padded(part: QWidget, left: int, top: int, right: int, bottom: int) -> QWidget:

@@ -21,7 +21,7 @@ from regolith_studio.ui.commands import Commands
 from regolith_studio.ui.dialogs.closing import may_close, worth_asking
 from regolith_studio.ui.dialogs.command_palette import CommandPalette
 from regolith_studio.ui.dialogs.guide import guide_dialog
-from regolith_studio.ui.dialogs.help import about_dialog
+from regolith_studio.ui.dialogs.help import CitationLinks, about_dialog
 from regolith_studio.ui.dialogs.shortcuts import ShortcutsDialog
 from regolith_studio.ui.layout import scale_borders
 from regolith_studio.ui.page import PageContext, PageWidget
@@ -72,6 +72,7 @@ class MainWindow(QMainWindow):
         self.statusBar().addWidget(self.tasks, 1)
         self.statusBar().setSizeGripEnabled(False)
         self.menus = Actions(self, self._command_table(), self.pages.pages, self.pages.run)
+        CitationLinks(self.menus.by_name["about"].trigger, self)
         self.shortcuts = Shortcuts(self.menus.by_name, tuple(self.pages.pages), preferences)
         self.pages.changed.connect(self.menus.show_page)
         self._apply_theme()
@@ -110,7 +111,7 @@ class MainWindow(QMainWindow):
             "run_batch": self.batches.ask,
             "save_project": self.projects.save,
             "save_project_as": self.projects.save_as,
-            "repair": self._choose_repair,
+            "repair": lambda repair: self.session.choose(repair=repair),
             "palette": self._open_palette,
             "preferences": self.appearance.ask,
             "standard_layout": partial(self.window_state.restore_standard, self),
@@ -152,9 +153,6 @@ class MainWindow(QMainWindow):
 
     def _open_palette(self) -> None:
         CommandPalette(self.menus.palette(self.pages.pages, self.pages.run), self).open()
-
-    def _choose_repair(self, repair: bool) -> None:
-        self.session.choose(repair=repair)
 
     def _show_choices(self) -> None:
         self.menus.by_name["undo"].setEnabled(self.commands.can_undo)

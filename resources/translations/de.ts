@@ -60,6 +60,10 @@
         <translation>Eine Ansicht &amp;vergrößern</translation>
     </message>
     <message>
+        <source>&amp;Evaluate models</source>
+        <translation>Modelle &amp;auswerten</translation>
+    </message>
+    <message>
         <source>&amp;Explain this page</source>
         <translation>Diese Seite &amp;erklären</translation>
     </message>
@@ -98,10 +102,6 @@
     <message>
         <source>&amp;Help</source>
         <translation>&amp;Hilfe</translation>
-    </message>
-    <message>
-        <source>&amp;Judge models</source>
-        <translation>Modelle &amp;beurteilen</translation>
     </message>
     <message>
         <source>&amp;Keep only these</source>
@@ -240,8 +240,8 @@
         <translation>({low:.4g} bis {high:.4g})</translation>
     </message>
     <message>
-        <source>* not given in the paper: a choice, yours to change.</source>
-        <translation>* im Artikel nicht angegeben: eine Wahl, die Sie ändern können.</translation>
+        <source>* not given in the paper: an assumption that can be changed</source>
+        <translation>* im Artikel nicht angegeben: eine Annahme, die sich ändern lässt</translation>
     </message>
     <message>
         <source>, one that bounds no facet at the moment</source>
@@ -292,8 +292,8 @@
         <translation>1 Korn aus {bodies} zusammenhängenden Körpern</translation>
     </message>
     <message>
-        <source>1 keeps the size of the particles; the paper uses 10.</source>
-        <translation>1 lässt die Größe der Partikel, wie sie ist; der Artikel nimmt 10.</translation>
+        <source>1 keeps the size of the particles; 10 makes them ten times larger.</source>
+        <translation>1 erhält die Größe der Partikel; 10 macht sie zehnmal so groß.</translation>
     </message>
     <message>
         <source>1 m in the file is 1 mm of the particles, coarse graining applied; y up</source>
@@ -324,8 +324,8 @@
         <translation>1 Arbeitsprozess</translation>
     </message>
     <message>
-        <source>1 − volume of the intersection / volume of the union; “IoU” in the paper</source>
-        <translation>1 − Volumen des Durchschnitts / Volumen der Vereinigung; „IoU“ in der Arbeit</translation>
+        <source>1 − volume of the intersection / volume of the union</source>
+        <translation>1 − Volumen der Schnittmenge / Volumen der Vereinigung</translation>
     </message>
     <message>
         <source>2  Grains</source>
@@ -368,8 +368,12 @@
         <translation>&lt;b&gt;Formen werden verändert:&lt;/b&gt; {how}</translation>
     </message>
     <message>
-        <source>&lt;b&gt;{label}&lt;/b&gt; does not carry: {lost}.</source>
-        <translation>&lt;b&gt;{label}&lt;/b&gt; überträgt nicht: {lost}.</translation>
+        <source>&lt;b&gt;{count} facets&lt;/b&gt; are sufficient: with more, no error falls by more than {gain:.1%}.</source>
+        <translation>&lt;b&gt;{count} Facetten&lt;/b&gt; genügen: mit mehr sinkt kein Fehler um mehr als {gain:.1%}.</translation>
+    </message>
+    <message>
+        <source>&lt;b&gt;{label}&lt;/b&gt; does not contain: {lost}.</source>
+        <translation>&lt;b&gt;{label}&lt;/b&gt; enthält nicht: {lost}.</translation>
     </message>
     <message>
         <source>A</source>
@@ -440,16 +444,12 @@
         <translation>Eine Simulation des Schüttwinkels würde abgebrochen.</translation>
     </message>
     <message>
-        <source>A study of the angle of repose would be stopped; it can go on later.</source>
-        <translation>Eine Studie des Schüttwinkels würde abgebrochen; sie kann später weitergehen.</translation>
+        <source>A study of the angle of repose would be stopped; it can be resumed later.</source>
+        <translation>Eine Studie des Schüttwinkels würde abgebrochen; sie lässt sich später fortsetzen.</translation>
     </message>
     <message>
         <source>A volume of labels has no histogram of grey values.</source>
         <translation>Ein Labelvolumen hat kein Histogramm der Grauwerte.</translation>
-    </message>
-    <message>
-        <source>A walk through the window</source>
-        <translation>Ein Gang durch das Fenster</translation>
     </message>
     <message>
         <source>About Regolith Studio</source>
@@ -458,6 +458,10 @@
     <message>
         <source>About {time} on one core, up to {longer} while other work runs.</source>
         <translation>Etwa {time} auf einem Kern, bis zu {longer}, wenn anderes läuft.</translation>
+    </message>
+    <message>
+        <source>Accuracy of a classifier of drawn and measured particles: at 0.5 they are indistinguishable</source>
+        <translation>Trefferquote eines Klassifikators von gezogenen und gemessenen Partikeln: bei 0,5 sind sie nicht zu unterscheiden</translation>
     </message>
     <message>
         <source>Activity</source>
@@ -486,6 +490,10 @@
     <message>
         <source>Against the particle itself {symbol} is {error} off, Jaccard distance {distance}.</source>
         <translation>Gegen das Partikel selbst weicht {symbol} um {error} ab, Jaccard-Distanz {distance}.</translation>
+    </message>
+    <message>
+        <source>Algorithms step by step</source>
+        <translation>Verfahren Schritt für Schritt</translation>
     </message>
     <message>
         <source>All default keys</source>
@@ -628,10 +636,6 @@
         <translation>Wie die Datei sagt, sonst Schichten zuerst (z, y, x)</translation>
     </message>
     <message>
-        <source>As the paper gives them; a star where it gives none</source>
-        <translation>Wie im Artikel; ein Stern, wo er nichts angibt</translation>
-    </message>
-    <message>
         <source>As the system</source>
         <translation>Wie das System</translation>
     </message>
@@ -672,8 +676,12 @@
         <translation>Zurück zu den Werten der Vorlage</translation>
     </message>
     <message>
-        <source>Before the fall</source>
-        <translation>Vor dem Fall</translation>
+        <source>Bayes&apos; criterion above its lowest</source>
+        <translation>Bayes-Kriterium über seinem kleinsten Wert</translation>
+    </message>
+    <message>
+        <source>Before the lift</source>
+        <translation>Vor dem Heben</translation>
     </message>
     <message>
         <source>Before the repair:</source>
@@ -744,12 +752,12 @@
         <translation>Von Hand: Linie ziehen</translation>
     </message>
     <message>
-        <source>By number (Fig. 4)</source>
-        <translation>Anzahl (Abb. 4)</translation>
+        <source>By number</source>
+        <translation>Nach Anzahl</translation>
     </message>
     <message>
-        <source>By volume (Fig. 5)</source>
-        <translation>Volumen (Abb. 5)</translation>
+        <source>By volume</source>
+        <translation>Nach Volumen</translation>
     </message>
     <message>
         <source>Byte order</source>
@@ -770,10 +778,6 @@
     <message>
         <source>Cards (*.json)</source>
         <translation>Karten (*.json)</translation>
-    </message>
-    <message>
-        <source>Carries: {what}</source>
-        <translation>Überträgt: {what}</translation>
     </message>
     <message>
         <source>Cement 116 (synthetic)</source>
@@ -816,6 +820,10 @@
         <translation>Längeneinheit ändern …</translation>
     </message>
     <message>
+        <source>Change of each error when one weight of the loss is changed.</source>
+        <translation>Änderung jedes Fehlers, wenn ein Gewicht der Verlustfunktion geändert wird.</translation>
+    </message>
+    <message>
         <source>Changed from {preset}.</source>
         <translation>Geändert gegenüber {preset}.</translation>
     </message>
@@ -830,6 +838,10 @@
     <message>
         <source>Checking the dataset</source>
         <translation>Datensatz wird geprüft</translation>
+    </message>
+    <message>
+        <source>Checking the mesh</source>
+        <translation>Netz wird geprüft</translation>
     </message>
     <message>
         <source>Checks</source>
@@ -882,6 +894,10 @@
     <message>
         <source>Classifier</source>
         <translation>Klassifikator</translation>
+    </message>
+    <message>
+        <source>Classifier accuracy</source>
+        <translation>Trefferquote des Klassifikators</translation>
     </message>
     <message>
         <source>Clear &amp;filter</source>
@@ -952,6 +968,10 @@
         <translation>Verfahren der Vergröberung</translation>
     </message>
     <message>
+        <source>Coarsens this particle at several numbers of facets.</source>
+        <translation>Vergröbert dieses Partikel mit mehreren Anzahlen von Facetten.</translation>
+    </message>
+    <message>
         <source>Cohesion</source>
         <translation>Kohäsion</translation>
     </message>
@@ -978,6 +998,10 @@
     <message>
         <source>Commands that fit</source>
         <translation>Passende Befehle</translation>
+    </message>
+    <message>
+        <source>Commands, undo and projects</source>
+        <translation>Befehle, Rückgängig und Projekte</translation>
     </message>
     <message>
         <source>Compare the angle against</source>
@@ -1036,6 +1060,10 @@
         <translation>Zusammenhängende Teile der Oberfläche; ein Partikel hat einen</translation>
     </message>
     <message>
+        <source>Connecting to the cluster</source>
+        <translation>Verbindung mit dem Cluster wird hergestellt</translation>
+    </message>
+    <message>
         <source>Consistent orientation</source>
         <translation>Einheitliche Orientierung</translation>
     </message>
@@ -1044,16 +1072,24 @@
         <translation>Komponenten der Mischung, durch Kommas getrennt, die häufigste zuerst.</translation>
     </message>
     <message>
+        <source>Constituents with sizes and spectra of their own, in the radius itself.</source>
+        <translation>Bestandteile mit eigenen Größen und Spektren, im Radius selbst.</translation>
+    </message>
+    <message>
         <source>Constituents with sizes and spectra of their own; their number by Bayes&apos; criterion.</source>
         <translation>Komponenten mit eigenen Größen und Spektren; ihre Anzahl nach dem Kriterium von Bayes.</translation>
     </message>
     <message>
-        <source>Contact (Table 1)</source>
-        <translation>Kontakt (Tabelle 1)</translation>
+        <source>Contact</source>
+        <translation>Kontakt</translation>
     </message>
     <message>
         <source>Contact time in steps</source>
         <translation>Kontaktzeit in Schritten</translation>
+    </message>
+    <message>
+        <source>Contains: {what}</source>
+        <translation>Enthält: {what}</translation>
     </message>
     <message>
         <source>Contents</source>
@@ -1140,16 +1176,12 @@
         <translation>Strg + Ziehen</translation>
     </message>
     <message>
-        <source>Ctrl+Shift+P finds any command by a few letters, Ctrl+Z takes back any choice, Ctrl+S keeps the project. The tour is in the Help menu. Have fun with the grains.</source>
-        <translation>Strg+Umschalt+P findet jeden Befehl nach wenigen Buchstaben, Strg+Z nimmt jede Wahl zurück, Strg+S sichert das Projekt. Der Rundgang steht im Menü Hilfe. Viel Freude mit den Körnern!</translation>
+        <source>Ctrl+Shift+P finds any command by a few letters, Ctrl+Z takes back any choice, Ctrl+S keeps the project. The tour is in the Help menu.</source>
+        <translation>Strg+Umschalt+P findet jeden Befehl nach wenigen Buchstaben, Strg+Z nimmt jede Wahl zurück, Strg+S sichert das Projekt. Der Rundgang steht im Menü Hilfe.</translation>
     </message>
     <message>
         <source>Cut all views</source>
         <translation>Alle Ansichten schneiden</translation>
-    </message>
-    <message>
-        <source>Cut out {count} faces that made the surface one-sided.</source>
-        <translation>{count} Flächen, die die Oberfläche einseitig machten, wurden herausgeschnitten.</translation>
     </message>
     <message>
         <source>Cylinder diameter</source>
@@ -1192,8 +1224,8 @@
         <translation>Übliche Tasten</translation>
     </message>
     <message>
-        <source>Degree at which the series of Eq. 4 is cut: 0 is a sphere; the paper uses 10.</source>
-        <translation>Grad, bei dem die Reihe von Gl. 4 abbricht: 0 ist eine Kugel; der Artikel nimmt 10.</translation>
+        <source>Degree at which the series is cut: 0 is a sphere, 10 keeps the form, 30 nearly all details.</source>
+        <translation>Grad, bei dem die Reihe abgebrochen wird: 0 ist eine Kugel, 10 behält die Form, 30 fast alle Einzelheiten.</translation>
     </message>
     <message>
         <source>Degree l</source>
@@ -1222,6 +1254,14 @@
     <message>
         <source>Denoising</source>
         <translation>Rauschunterdrückung</translation>
+    </message>
+    <message>
+        <source>Density by number</source>
+        <translation>Dichte nach Anzahl</translation>
+    </message>
+    <message>
+        <source>Density by volume</source>
+        <translation>Dichte nach Volumen</translation>
     </message>
     <message>
         <source>Descriptor</source>
@@ -1256,12 +1296,12 @@
         <translation>Durchmesser in µm = Anteil; mit @volume dahinter zählt das Volumen.</translation>
     </message>
     <message>
-        <source>Diameters and aspect ratio come from this box. The heuristic of the paper&apos;s program is no minimum; it is here to compare numbers.</source>
-        <translation>Durchmesser und Seitenverhältnis kommen aus diesem Quader. Die Heuristik im Programm des Artikels ist kein Minimum; sie steht hier zum Vergleich der Zahlen.</translation>
+        <source>Diameters and aspect ratio come from this box. The heuristic is no minimum; it is offered for comparison.</source>
+        <translation>Durchmesser und Seitenverhältnis stammen von diesem Quader. Die Heuristik ist kein Minimum; sie dient dem Vergleich.</translation>
     </message>
     <message>
-        <source>Diameters in µm; each particle moves to the nearest (Table 1 of the paper).</source>
-        <translation>Durchmesser in µm; jedes Partikel rückt zum nächsten (Tabelle 1 des Artikels).</translation>
+        <source>Diameters in µm; each particle moves to the nearest.</source>
+        <translation>Durchmesser in µm; jedes Partikel erhält den nächstgelegenen.</translation>
     </message>
     <message>
         <source>Direction of the section</source>
@@ -1288,6 +1328,10 @@
         <translation>Nicht mehr fragen</translation>
     </message>
     <message>
+        <source>Does not contain: {what}</source>
+        <translation>Enthält nicht: {what}</translation>
+    </message>
+    <message>
         <source>Done</source>
         <translation>Fertig</translation>
     </message>
@@ -1296,15 +1340,15 @@
         <translation>Fertig: {count} Dateien in {folder}.</translation>
     </message>
     <message>
-        <source>Drag it. At 0 the fit is a sphere, at 10 it keeps what the paper keeps, at 30 nearly everything. The series of Eq. 4 is cut here.</source>
-        <translation>Ziehen Sie daran. Bei 0 ist der Fit eine Kugel, bei 10 behält er, was der Artikel behält, bei 30 fast alles. Hier wird die Reihe von Gl. 4 abgebrochen.</translation>
+        <source>Drag it. At 0 the fit is a sphere, at 10 it keeps the form, at 30 nearly all details.</source>
+        <translation>Ziehen Sie daran. Bei 0 ist der Fit eine Kugel, bei 10 behält er die Form, bei 30 fast alle Einzelheiten.</translation>
     </message>
     <message>
         <source>Draw</source>
         <translation>Ziehen</translation>
     </message>
     <message>
-        <source>Draw anew</source>
+        <source>Draw again</source>
         <translation>Neu ziehen</translation>
     </message>
     <message>
@@ -1328,7 +1372,7 @@
         <translation>Virtuelle Partikel mit den Formen und Größen einer Probe ziehen</translation>
     </message>
     <message>
-        <source>Draw {number}. The radius strays by {found:.1%} from its mean; {expected:.1%} is expected over many draws. Degree {loudest} is the strongest: {share:.2g} %.</source>
+        <source>Draw {number}. The radius deviates by {found:.1%} from its mean; {expected:.1%} is expected over many draws. Degree {loudest} is the strongest: {share:.2g} %.</source>
         <translation>Ziehung {number}. Der Radius weicht um {found:.1%} von seinem Mittel ab; über viele Ziehungen sind {expected:.1%} zu erwarten. Grad {loudest} ist der stärkste: {share:.2g} %.</translation>
     </message>
     <message>
@@ -1354,6 +1398,10 @@
     <message>
         <source>Drawing the turntable</source>
         <translation>Drehung wird gezeichnet</translation>
+    </message>
+    <message>
+        <source>Drawn</source>
+        <translation>Gezogen</translation>
     </message>
     <message>
         <source>Drop mesh files or folders anywhere in the window to open them.</source>
@@ -1424,6 +1472,10 @@
         <translation>Energie</translation>
     </message>
     <message>
+        <source>Energy at rest</source>
+        <translation>Energie in Ruhe</translation>
+    </message>
+    <message>
         <source>Energy distance</source>
         <translation>Energiedistanz</translation>
     </message>
@@ -1434,18 +1486,6 @@
     <message>
         <source>Engines</source>
         <translation>Rechenkerne</translation>
-    </message>
-    <message>
-        <source>Eq. 4 with its numbers</source>
-        <translation>Gl. 4 mit ihren Zahlen</translation>
-    </message>
-    <message>
-        <source>Eq. 9 of the exact method</source>
-        <translation>Gl. 9 des exakten Verfahrens</translation>
-    </message>
-    <message>
-        <source>Eq. 9 with its numbers</source>
-        <translation>Gl. 9 mit ihren Zahlen</translation>
     </message>
     <message>
         <source>Equivalent diameter [µm]</source>
@@ -1484,24 +1524,48 @@
         <translation>Fehler</translation>
     </message>
     <message>
-        <source>Errors against l_max, facets and weights, and what the polyhedra look like</source>
-        <translation>Fehler gegen l_max, Facetten und Gewichte, und wie die Polyeder aussehen</translation>
+        <source>Errors against l_max, facets and weights, and the polyhedra</source>
+        <translation>Fehler gegen l_max, Facetten und Gewichte, und die Polyeder</translation>
+    </message>
+    <message>
+        <source>Errors of fit and polyhedron</source>
+        <translation>Fehler von Fit und Polyeder</translation>
+    </message>
+    <message>
+        <source>Errors still fall at {count} facets</source>
+        <translation>Fehler sinken bei {count} Facetten noch</translation>
     </message>
     <message>
         <source>Euler number</source>
         <translation>Euler-Zahl</translation>
     </message>
     <message>
-        <source>Evaluation (section 3.3)</source>
-        <translation>Auswertung (Abschnitt 3.3)</translation>
+        <source>Evaluate</source>
+        <translation>Auswerten</translation>
+    </message>
+    <message>
+        <source>Evaluate every model, not only the chosen one.</source>
+        <translation>Jedes Modell auswerten, nicht nur das gewählte.</translation>
+    </message>
+    <message>
+        <source>Evaluating models</source>
+        <translation>Modelle werden ausgewertet</translation>
+    </message>
+    <message>
+        <source>Evaluation</source>
+        <translation>Auswertung</translation>
+    </message>
+    <message>
+        <source>Evaluation of the heap</source>
+        <translation>Auswertung der Schüttung</translation>
     </message>
     <message>
         <source>Every edge belongs to exactly two triangles</source>
         <translation>Jede Kante gehört zu genau zwei Dreiecken</translation>
     </message>
     <message>
-        <source>Every open particle. Click a row to put it on screen; the arrow keys walk through the list. The icon tells the health of the mesh. Drop your own files anywhere in the window.</source>
-        <translation>Alle geöffneten Partikel. Ein Klick auf eine Zeile zeigt eines davon; die Pfeiltasten wandern durch die Liste. Das Symbol sagt, wie gesund das Netz ist. Eigene Dateien lassen sich irgendwo im Fenster ablegen.</translation>
+        <source>Every open particle. Click a row to put it on screen; the arrow keys walk through the list. The icon shows the health of the mesh. Drop your own files anywhere in the window.</source>
+        <translation>Alle geöffneten Partikel. Ein Klick auf eine Zeile zeigt eines davon; die Pfeiltasten bewegen sich durch die Liste. Das Symbol zeigt den Zustand des Netzes. Eigene Dateien lassen sich irgendwo im Fenster ablegen.</translation>
     </message>
     <message>
         <source>Every run is kept in {folder}.</source>
@@ -1600,8 +1664,8 @@
         <translation>Faktoren auf das Gewicht der Überdeckung</translation>
     </message>
     <message>
-        <source>Fewer facets make a faster simulation. The views say how many facets, vertices and triangles the polyhedron really has, and a sentence appears here if a wish cannot be met.</source>
-        <translation>Weniger Facetten machen die Simulation schneller. Über der Ansicht steht, wie viele Facetten, Ecken und Dreiecke das Polyeder wirklich hat; hier erscheint ein Satz, wenn ein Wunsch nicht erfüllbar ist.</translation>
+        <source>Fewer facets make a faster simulation. The views say how many facets, vertices and triangles the polyhedron really has, and a sentence appears here if a request cannot be met.</source>
+        <translation>Weniger Facetten machen die Simulation schneller. Über der Ansicht steht, wie viele Facetten, Ecken und Dreiecke das Polyeder wirklich hat; hier erscheint ein Satz, wenn eine Anforderung nicht erfüllbar ist.</translation>
     </message>
     <message>
         <source>Fewest particles</source>
@@ -1616,20 +1680,20 @@
         <translation>Feld in log r</translation>
     </message>
     <message>
-        <source>Figure 7, fifth column: aspect ratio and IoU</source>
-        <translation>Bild 7, fünfte Spalte: Seitenverhältnis und IoU</translation>
+        <source>Figure 7, fifth column: aspect ratio and overlap</source>
+        <translation>Bild 7, fünfte Spalte: Seitenverhältnis und Überdeckung</translation>
     </message>
     <message>
-        <source>Figure 7, fourth column; the surface area enters the loss as sphericity, as Eq. 8 has it</source>
-        <translation>Bild 7, vierte Spalte; die Oberfläche geht, wie in Gl. 8, als Sphärizität in den Verlust ein</translation>
+        <source>Figure 7, fourth column; the surface area enters the loss as sphericity</source>
+        <translation>Bild 7, vierte Spalte; die Oberfläche geht als Sphärizität in die Verlustfunktion ein</translation>
     </message>
     <message>
         <source>Figure 8, first row: all weights are 0, the quadric start is the result</source>
         <translation>Bild 8, erste Zeile: alle Gewichte sind 0, der Anfang aus der Quadrik-Dezimierung ist das Ergebnis</translation>
     </message>
     <message>
-        <source>Figure 8, fourth row: IoU only</source>
-        <translation>Bild 8, vierte Zeile: nur IoU</translation>
+        <source>Figure 8, fourth row: overlap only</source>
+        <translation>Bild 8, vierte Zeile: nur Überdeckung</translation>
     </message>
     <message>
         <source>Figure 8: every term of Eq. 9 with weight 1</source>
@@ -1640,8 +1704,8 @@
         <translation>Abbildung und JSON sind in {name}.</translation>
     </message>
     <message>
-        <source>Figures 7 and 8: every descriptor of section 2.2, without IoU</source>
-        <translation>Bilder 7 und 8: jeder Deskriptor von Abschnitt 2.2, ohne IoU</translation>
+        <source>Figures 7 and 8: every descriptor, without overlap</source>
+        <translation>Bilder 7 und 8: jeder Deskriptor, ohne Überdeckung</translation>
     </message>
     <message>
         <source>Fill a cylinder with the particles of a dataset, lift it, measure the pile</source>
@@ -1704,6 +1768,10 @@
         <translation>Die Körner in einem CT-Volumen finden und Partikel daraus machen</translation>
     </message>
     <message>
+        <source>Find the sufficient number</source>
+        <translation>Genügende Anzahl suchen</translation>
+    </message>
+    <message>
         <source>Finding bodies</source>
         <translation>Körper werden gesucht</translation>
     </message>
@@ -1718,6 +1786,10 @@
     <message>
         <source>Fine</source>
         <translation>Fein</translation>
+    </message>
+    <message>
+        <source>Finished runs are not repeated</source>
+        <translation>Fertige Läufe werden nicht wiederholt</translation>
     </message>
     <message>
         <source>First</source>
@@ -1774,6 +1846,10 @@
     <message>
         <source>Fitting a model of shapes</source>
         <translation>Formmodell wird angepasst</translation>
+    </message>
+    <message>
+        <source>Fitting degree by degree</source>
+        <translation>Fit Grad für Grad</translation>
     </message>
     <message>
         <source>Fitting spherical harmonics</source>
@@ -1868,10 +1944,6 @@
         <translation>Von</translation>
     </message>
     <message>
-        <source>From &lt;b&gt;{count} facets&lt;/b&gt; on nothing is gained: no error falls by more than {gain:.1%}.</source>
-        <translation>Ab &lt;b&gt;{count} Facetten&lt;/b&gt; wird nichts mehr gewonnen: kein Fehler sinkt um mehr als {gain:.1%}.</translation>
-    </message>
-    <message>
         <source>From X-ray micro-CT to DEM-ready regolith particles whose geometry is right.</source>
         <translation>Von der Röntgen-Mikro-CT zu DEM-fertigen Regolithpartikeln, deren Geometrie stimmt.</translation>
     </message>
@@ -1904,12 +1976,8 @@
         <translation>Gauß (schnell)</translation>
     </message>
     <message>
-        <source>Gaussian field (the paper&apos;s)</source>
-        <translation>Gaußfeld (des Artikels)</translation>
-    </message>
-    <message>
-        <source>Go on with the run that has not ended</source>
-        <translation>Den nicht beendeten Lauf fortsetzen</translation>
+        <source>Gaussian field</source>
+        <translation>Gaußfeld</translation>
     </message>
     <message>
         <source>Go to the table of particles</source>
@@ -1972,16 +2040,8 @@
         <translation>Gruppe</translation>
     </message>
     <message>
-        <source>Growing the fit</source>
-        <translation>Fit wächst</translation>
-    </message>
-    <message>
         <source>Guide</source>
         <translation>Handbuch</translation>
-    </message>
-    <message>
-        <source>Half-spaces of Eq. 5; n facets in general position have 2n−4 vertices and 4n−12 triangles.</source>
-        <translation>Halbräume von Gl. 5; n Facetten in allgemeiner Lage haben 2n−4 Ecken und 4n−12 Dreiecke.</translation>
     </message>
     <message>
         <source>Harmonics fit, {degree}</source>
@@ -1994,10 +2054,6 @@
     <message>
         <source>Health of the mesh</source>
         <translation>Zustand des Netzes</translation>
-    </message>
-    <message>
-        <source>Here or on a cluster</source>
-        <translation>Hier oder auf einem Cluster</translation>
     </message>
     <message>
         <source>Hertz and Mindlin stiffness, restitution, friction of rest apart from friction of motion</source>
@@ -2060,10 +2116,6 @@
         <translation>Wie weit ein Höcker vorstehen muss, um ein eigenes Korn zu sein. Werden Körner zerteilt: größer. Bleiben Körner verbunden: kleiner.</translation>
     </message>
     <message>
-        <source>How many are enough? Press Find: the curve falls to the sampling noise of the population.</source>
-        <translation>Wie viele genügen? Drücken Sie „Repräsentanten finden“: die Kurve fällt bis zum Stichprobenrauschen der Population.</translation>
-    </message>
-    <message>
         <source>How many facets</source>
         <translation>Wie viele Facetten</translation>
     </message>
@@ -2088,12 +2140,16 @@
         <translation>Im Rahmen: {counts}.</translation>
     </message>
     <message>
-        <source>Independent normal coefficients; draws with a negative radius are thrown away.</source>
+        <source>Independent normal coefficients; draws with a negative radius are rejected.</source>
         <translation>Unabhängige normalverteilte Koeffizienten; Ziehungen mit negativem Radius werden verworfen.</translation>
     </message>
     <message>
         <source>Intermediate diameter</source>
         <translation>Mittlerer Durchmesser</translation>
+    </message>
+    <message>
+        <source>Internal error ({name}); the program continues.</source>
+        <translation>Interner Fehler ({name}); das Programm läuft weiter.</translation>
     </message>
     <message>
         <source>Intersecting pairs</source>
@@ -2132,24 +2188,20 @@
         <translation>Es hat {count} Tunnel (Euler-Zahl {euler}).</translation>
     </message>
     <message>
-        <source>It is inside out: its faces look inwards.</source>
-        <translation>Es ist umgestülpt: seine Flächen zeigen nach innen.</translation>
-    </message>
-    <message>
-        <source>It is not a simple surface: 1 edge belongs to three faces or more.</source>
-        <translation>Es ist keine einfache Oberfläche: 1 Kante gehört zu drei oder mehr Flächen.</translation>
-    </message>
-    <message>
-        <source>It is not a simple surface: {count} edges belong to three faces or more.</source>
-        <translation>Es ist keine einfache Oberfläche: {count} Kanten gehören zu drei oder mehr Flächen.</translation>
-    </message>
-    <message>
         <source>It is not closed: 1 edge belongs to one face only.</source>
         <translation>Es ist nicht geschlossen: 1 Kante gehört zu nur einer Fläche.</translation>
     </message>
     <message>
         <source>It is not closed: {count} edges belong to one face only.</source>
         <translation>Es ist nicht geschlossen: {count} Kanten gehören zu nur einer Fläche.</translation>
+    </message>
+    <message>
+        <source>It is not manifold: 1 edge belongs to three faces or more.</source>
+        <translation>Es ist keine Mannigfaltigkeit: 1 Kante gehört zu drei oder mehr Flächen.</translation>
+    </message>
+    <message>
+        <source>It is not manifold: {count} edges belong to three faces or more.</source>
+        <translation>Es ist keine Mannigfaltigkeit: {count} Kanten gehören zu drei oder mehr Flächen.</translation>
     </message>
     <message>
         <source>It was kept at {moment}.</source>
@@ -2168,12 +2220,16 @@
         <translation>Seine Einstellungen sind übernommen; zum Öffnen ist es zu groß: nehmen Sie „Als Stapel ausführen“.</translation>
     </message>
     <message>
-        <source>Its faces do not all look the same way: some are turned round.</source>
-        <translation>Seine Flächen zeigen nicht alle zur selben Seite: einige sind verdreht.</translation>
+        <source>Its faces are not oriented consistently.</source>
+        <translation>Seine Flächen sind nicht einheitlich orientiert.</translation>
     </message>
     <message>
         <source>Its name says how many voxels are in it, and its size agrees.</source>
         <translation>Ihr Name sagt, wie viele Voxel sie hat, und ihre Größe stimmt damit überein.</translation>
+    </message>
+    <message>
+        <source>Its normals point inwards.</source>
+        <translation>Seine Normalen zeigen nach innen.</translation>
     </message>
     <message>
         <source>Its surface touches itself in 1 corner.</source>
@@ -2194,22 +2250,6 @@
     <message>
         <source>Joined {count} vertices with another at the same place.</source>
         <translation>{count} Ecken wurden mit einer anderen an derselben Stelle vereinigt.</translation>
-    </message>
-    <message>
-        <source>Judge</source>
-        <translation>Beurteilen</translation>
-    </message>
-    <message>
-        <source>Judge every model, not only the chosen one.</source>
-        <translation>Jedes Modell beurteilen, nicht nur das gewählte.</translation>
-    </message>
-    <message>
-        <source>Judgement</source>
-        <translation>Beurteilung</translation>
-    </message>
-    <message>
-        <source>Judging models</source>
-        <translation>Modelle werden beurteilt</translation>
     </message>
     <message>
         <source>KS / noise</source>
@@ -2360,8 +2400,8 @@
         <translation>Ausgelassen: {names}.</translation>
     </message>
     <message>
-        <source>Left: the particle as it was read; the shipped ones are synthetic. Middle: its spherical-harmonics fit. Right: the convex polyhedron that a DEM solver will roll. Drag to turn: all three turn together.</source>
-        <translation>Links: das Partikel, wie es gelesen wurde; die mitgelieferten sind synthetisch. Mitte: sein Fit mit Kugelflächenfunktionen. Rechts: das konvexe Polyeder, das ein DEM-Programm rollen lässt. Zum Drehen ziehen: alle drei drehen sich gemeinsam.</translation>
+        <source>Left: the particle as it was read; the shipped ones are synthetic. Middle: its spherical-harmonics fit. Right: the convex polyhedron for a DEM solver. Drag to turn: all three turn together.</source>
+        <translation>Links: das Partikel, wie es gelesen wurde; die mitgelieferten sind synthetisch. Mitte: sein Fit mit Kugelflächenfunktionen. Rechts: das konvexe Polyeder für ein DEM-Programm. Zum Drehen ziehen: alle drei drehen sich gemeinsam.</translation>
     </message>
     <message>
         <source>Length unit</source>
@@ -2444,10 +2484,6 @@
         <translation>&amp;Blickrichtung</translation>
     </message>
     <message>
-        <source>Look again</source>
-        <translation>Nochmals suchen</translation>
-    </message>
-    <message>
         <source>Looking at the volume</source>
         <translation>Volumen wird angesehen</translation>
     </message>
@@ -2456,56 +2492,36 @@
         <translation>{name} wird angesehen</translation>
     </message>
     <message>
-        <source>Looking for datasets</source>
-        <translation>Datensätze werden gesucht</translation>
-    </message>
-    <message>
-        <source>Looking for faults</source>
-        <translation>Mängel werden gesucht</translation>
-    </message>
-    <message>
-        <source>Looking for the cluster</source>
-        <translation>Cluster wird gesucht</translation>
-    </message>
-    <message>
         <source>Looking through the slices</source>
         <translation>Schichten werden durchgesehen</translation>
-    </message>
-    <message>
-        <source>Loses: {what}</source>
-        <translation>Verliert: {what}</translation>
     </message>
     <message>
         <source>Loss</source>
         <translation>Verlust</translation>
     </message>
     <message>
-        <source>Loss (Eq. 9)</source>
-        <translation>Verlust (Gl. 9)</translation>
+        <source>Loss L</source>
+        <translation>Verlust L</translation>
     </message>
     <message>
-        <source>Loss L (Eq. 9)</source>
-        <translation>Verlust L (Gl. 9)</translation>
+        <source>Loss functions</source>
+        <translation>Verlustfunktionen</translation>
+    </message>
+    <message>
+        <source>Loss functions that are the rows of the studies</source>
+        <translation>Verlustfunktionen, die die Zeilen der Studien bilden</translation>
     </message>
     <message>
         <source>Losses</source>
         <translation>Verluste</translation>
     </message>
     <message>
-        <source>Losses (Fig. 8)</source>
-        <translation>Verluste (Bild 8)</translation>
-    </message>
-    <message>
         <source>Losses can be compared at equal numbers of facets only; choose the number beside Facets n.</source>
         <translation>Verluste lassen sich nur bei gleich vielen Facetten vergleichen; die Zahl wird neben Facetten n gewählt.</translation>
     </message>
     <message>
-        <source>Losses of figures 7 and 8</source>
-        <translation>Verluste der Bilder 7 und 8</translation>
-    </message>
-    <message>
-        <source>Losses that are the rows of figures 7 and 8</source>
-        <translation>Verluste, die die Zeilen der Bilder 7 und 8 sind</translation>
+        <source>Losses of the studies</source>
+        <translation>Verlustfunktionen der Studien</translation>
     </message>
     <message>
         <source>Lower cut</source>
@@ -2592,12 +2608,16 @@
         <translation>Mittlere Energiedistanz von Paaren von Deskriptoren: 0 bei gleichen Verteilungen</translation>
     </message>
     <message>
-        <source>Mean of {count} sections. Two perpendicular sections give {asymmetric:.1f}° (flanks apart) and {symmetric:.1f}° (both flanks alike).</source>
-        <translation>Mittel von {count} Schnitten. Zwei senkrechte Schnitte geben {asymmetric:.1f}° (Flanken einzeln) und {symmetric:.1f}° (beide Flanken gleich).</translation>
+        <source>Mean error of the descriptors against mean Jaccard distance: lower left is better.</source>
+        <translation>Mittlerer Fehler der Deskriptoren gegen mittlere Jaccard-Distanz: links unten ist besser.</translation>
     </message>
     <message>
-        <source>Mean rotation of a round particle; long ones are turned less.</source>
-        <translation>Mittlere Drehung eines runden Partikels; lange werden weniger gedreht.</translation>
+        <source>Mean of {count} sections. Two perpendicular sections give {asymmetric:.1f}° (one angle a flank) and {symmetric:.1f}° (one angle for both).</source>
+        <translation>Mittel von {count} Schnitten. Zwei senkrechte Schnitte geben {asymmetric:.1f}° (ein Winkel je Flanke) und {symmetric:.1f}° (ein Winkel für beide).</translation>
+    </message>
+    <message>
+        <source>Mean rotation of a round particle; elongated ones are rotated less.</source>
+        <translation>Mittlere Drehung eines runden Partikels; längliche werden weniger gedreht.</translation>
     </message>
     <message>
         <source>Measure positions</source>
@@ -2606,6 +2626,10 @@
     <message>
         <source>Measure the pile of another program</source>
         <translation>Den Schüttkegel eines anderen Programms vermessen</translation>
+    </message>
+    <message>
+        <source>Measured {quantity}</source>
+        <translation>Gemessen: {quantity}</translation>
     </message>
     <message>
         <source>Measuring</source>
@@ -2648,6 +2672,10 @@
         <translation>Netzdateien enthalten keine Einheit. Die Antwort wird für ihren Ordner behalten.</translation>
     </message>
     <message>
+        <source>Message</source>
+        <translation>Meldung</translation>
+    </message>
+    <message>
         <source>Messages so far</source>
         <translation>Bisherige Meldungen</translation>
     </message>
@@ -2688,12 +2716,12 @@
         <translation>Spiegelbilder</translation>
     </message>
     <message>
-        <source>Mixture of fields</source>
-        <translation>Mischung von Feldern</translation>
+        <source>Mixture of Gaussian fields</source>
+        <translation>Mischung von Gaußfeldern</translation>
     </message>
     <message>
-        <source>Mixture of the paper&apos;s fields</source>
-        <translation>Mischung von Feldern des Artikels</translation>
+        <source>Mixture of fields</source>
+        <translation>Mischung von Feldern</translation>
     </message>
     <message>
         <source>Model</source>
@@ -2704,12 +2732,12 @@
         <translation>Modelle (*.json)</translation>
     </message>
     <message>
-        <source>Models are fitted to one half of the sample and judged on the other, beside the noise of sampling.</source>
-        <translation>Modelle werden an eine Hälfte der Probe angepasst und an der anderen beurteilt, neben dem Rauschen der Stichprobe.</translation>
+        <source>Models are evaluated on measured particles: fit one to a sample first.</source>
+        <translation>Modelle werden an gemessenen Partikeln ausgewertet: passen Sie zuerst eines an eine Probe an.</translation>
     </message>
     <message>
-        <source>Models are judged on measured particles: fit one to a sample first.</source>
-        <translation>Modelle werden an gemessenen Partikeln beurteilt: passen Sie zuerst eines an eine Probe an.</translation>
+        <source>Models are fitted to one half of the sample and evaluated on the other, beside the sampling noise.</source>
+        <translation>Modelle werden an eine Hälfte der Probe angepasst und an der anderen ausgewertet, neben dem Rauschen der Stichprobe.</translation>
     </message>
     <message>
         <source>Moon</source>
@@ -2780,6 +2808,10 @@
         <translation>Nanometer (nm)</translation>
     </message>
     <message>
+        <source>Nearest particles whose ellipsoid may be used.</source>
+        <translation>Nächste Partikel, deren Ellipsoid verwendet werden kann.</translation>
+    </message>
+    <message>
         <source>Negative where the mesh is inside out</source>
         <translation>Negativ, wo das Netz umgestülpt ist</translation>
     </message>
@@ -2818,6 +2850,10 @@
     <message>
         <source>No dataset yet.</source>
         <translation>Noch kein Datensatz.</translation>
+    </message>
+    <message>
+        <source>No error falls by more than 0.1 % with more facets.</source>
+        <translation>Mit mehr Facetten sinkt kein Fehler um mehr als 0,1 %.</translation>
     </message>
     <message>
         <source>No grain became a particle: {border} touch the border of the volume, {small} are too small.</source>
@@ -2892,6 +2928,14 @@
         <translation>Mit diesen Werten noch nicht gerechnet.</translation>
     </message>
     <message>
+        <source>Not significant.</source>
+        <translation>Nicht signifikant.</translation>
+    </message>
+    <message>
+        <source>Nothing is gained beyond {count} facets</source>
+        <translation>Ab {count} Facetten kein Gewinn mehr</translation>
+    </message>
+    <message>
         <source>Nothing is running.</source>
         <translation>Nichts ist in Arbeit.</translation>
     </message>
@@ -2914,6 +2958,10 @@
     <message>
         <source>Number of particles</source>
         <translation>Anzahl der Partikel</translation>
+    </message>
+    <message>
+        <source>Number of parts</source>
+        <translation>Anzahl der Bestandteile</translation>
     </message>
     <message>
         <source>Number of processes</source>
@@ -2952,16 +3000,24 @@
         <translation>Des Netzes; der Hinweis einer Zelle sagt, was gefunden und repariert wurde</translation>
     </message>
     <message>
+        <source>Of this program: mass and sieve size; the rest by overlap</source>
+        <translation>Von diesem Programm: Masse und Siebgröße, das Übrige durch Überdeckung</translation>
+    </message>
+    <message>
+        <source>Of this program: outer size instead of volume, since a convex body cannot have both</source>
+        <translation>Von diesem Programm: äußere Größe statt Volumen, da ein konvexer Körper nicht beides haben kann</translation>
+    </message>
+    <message>
+        <source>On this computer or on a cluster</source>
+        <translation>Auf diesem Rechner oder auf einem Cluster</translation>
+    </message>
+    <message>
         <source>One after the other, then all</source>
         <translation>Eine nach der anderen, dann alle</translation>
     </message>
     <message>
         <source>One particle, its spherical-harmonics fit and its polyhedron side by side</source>
         <translation>Ein Partikel, sein Fit mit Kugelflächenfunktionen und sein Polyeder nebeneinander</translation>
-    </message>
-    <message>
-        <source>One particle, three ways to see it</source>
-        <translation>Ein Partikel, dreimal gesehen</translation>
     </message>
     <message>
         <source>One step</source>
@@ -2980,8 +3036,8 @@
         <translation>Eine Umdrehung: GIF, WebP, PNG-Dateien</translation>
     </message>
     <message>
-        <source>One weight for each term of the loss (Eq. 9), with the presets of the paper. A weight of 0 lets a descriptor go. Reset brings the preset back.</source>
-        <translation>Ein Gewicht für jeden Term der Verlustfunktion (Gl. 9), mit den Vorlagen des Artikels. Das Gewicht 0 gibt einen Deskriptor frei. Zurücksetzen bringt die Vorlage zurück.</translation>
+        <source>One weight for each term of the loss, with presets. A weight of 0 leaves a descriptor out. Reset brings the preset back.</source>
+        <translation>Ein Gewicht für jeden Term der Verlustfunktion, mit Vorlagen. Das Gewicht 0 lässt einen Deskriptor weg. Zurücksetzen bringt die Vorlage zurück.</translation>
     </message>
     <message>
         <source>Only equivalent radii from … to …</source>
@@ -3064,6 +3120,10 @@
         <translation>Öffnen Sie zuerst ein Partikel.</translation>
     </message>
     <message>
+        <source>Open a source</source>
+        <translation>Quelle öffnen</translation>
+    </message>
+    <message>
         <source>Open a volume</source>
         <translation>Volumen öffnen</translation>
     </message>
@@ -3136,10 +3196,6 @@
         <translation>Volumen öffnen …</translation>
     </message>
     <message>
-        <source>Open what to draw from</source>
-        <translation>Öffnen, woraus gezogen wird</translation>
-    </message>
-    <message>
         <source>Open …</source>
         <translation>Öffnen …</translation>
     </message>
@@ -3156,6 +3212,10 @@
         <translation>Reihenfolge der Achsen des Feldes</translation>
     </message>
     <message>
+        <source>Origin of the radii. Automatic: the centre of mass or, where that is not inside, the point that hides the least volume.</source>
+        <translation>Ursprung der Radien. Automatisch: der Schwerpunkt oder, wo dieser nicht im Inneren liegt, der Punkt, der am wenigsten Volumen verdeckt.</translation>
+    </message>
+    <message>
         <source>Other</source>
         <translation>Andere</translation>
     </message>
@@ -3166,14 +3226,6 @@
     <message>
         <source>Otsu</source>
         <translation>Otsu</translation>
-    </message>
-    <message>
-        <source>Our own: mass and sieve size, the rest by overlap</source>
-        <translation>Eigene: Masse und Siebgröße, das Übrige durch Überdeckung</translation>
-    </message>
-    <message>
-        <source>Our own: the outer size counts and the volume gives way, since a convex body has only one of the two</source>
-        <translation>Eigene: die äußere Größe zählt und das Volumen gibt nach, denn ein konvexer Körper hat nur eines von beiden</translation>
     </message>
     <message>
         <source>Overlap</source>
@@ -3212,8 +3264,8 @@
         <translation>Seite {title}</translation>
     </message>
     <message>
-        <source>Pairs (Fig. 6)</source>
-        <translation>Paare (Abb. 6)</translation>
+        <source>Pairs</source>
+        <translation>Paare</translation>
     </message>
     <message>
         <source>Pairs in numbers</source>
@@ -3224,8 +3276,12 @@
         <translation>Paare von Dreiecken, die sich schneiden</translation>
     </message>
     <message>
-        <source>Parametric, with facets: size, form, roughness and hull ratio go together as in the sample.</source>
-        <translation>Parametrisch, mit Facetten: Größe, Form, Rauheit und Hüllenverhältnis hängen zusammen wie in der Probe.</translation>
+        <source>Parametric, with facets: size, form, roughness and hull ratio are correlated as in the sample.</source>
+        <translation>Parametrisch, mit Facetten: Größe, Form, Rauheit und Hüllenverhältnis sind korreliert wie in der Probe.</translation>
+    </message>
+    <message>
+        <source>Pareto front</source>
+        <translation>Pareto-Front</translation>
     </message>
     <message>
         <source>Part of the volume to work on: X0:X1,Y0:Y1,Z0:Z1 in voxels, or in lengths with a unit, such as 0.2:1.5mm,:,100:300. Particles keep their places in the whole volume.</source>
@@ -3246,6 +3302,10 @@
     <message>
         <source>Particle mass</source>
         <translation>Masse der Partikel</translation>
+    </message>
+    <message>
+        <source>Particle, fit and polyhedron</source>
+        <translation>Partikel, Fit und Polyeder</translation>
     </message>
     <message>
         <source>Particle, {name}</source>
@@ -3274,14 +3334,6 @@
     <message>
         <source>Particles of labels</source>
         <translation>Partikel der Labels</translation>
-    </message>
-    <message>
-        <source>Particles that may lend their ellipsoid.</source>
-        <translation>Partikel, die ihr Ellipsoid leihen dürfen.</translation>
-    </message>
-    <message>
-        <source>Parting touching grains</source>
-        <translation>Berührende Körner werden getrennt</translation>
     </message>
     <message>
         <source>Parts</source>
@@ -3336,6 +3388,10 @@
         <translation>Polyeder (STL)</translation>
     </message>
     <message>
+        <source>Polyhedra by loss function (Fig. 7)</source>
+        <translation>Polyeder nach Verlustfunktion (Bild 7)</translation>
+    </message>
+    <message>
         <source>Polyhedra by loss function and particle</source>
         <translation>Polyeder nach Verlustfunktion und Partikel</translation>
     </message>
@@ -3364,8 +3420,8 @@
         <translation>Positionen (*.npz *.csv *.txt *.dat *.xyz *.dump *.lammpstrj *.vtk *.vtp *.vtu);;Alle Dateien (*)</translation>
     </message>
     <message>
-        <source>Positive by construction; sizes and spectrum apart, so that it extrapolates.</source>
-        <translation>Stets positiv; Größen und Spektrum getrennt, sodass es extrapoliert.</translation>
+        <source>Positive by construction; size and spectrum are modelled separately, so that it extrapolates.</source>
+        <translation>Stets positiv; Größe und Spektrum werden getrennt modelliert, sodass es extrapoliert.</translation>
     </message>
     <message>
         <source>Predicting grains</source>
@@ -3388,8 +3444,12 @@
         <translation>Vorlage: {label}</translation>
     </message>
     <message>
-        <source>Press Find: the particles that stand for all appear here, with their weights.</source>
-        <translation>Drücken Sie „Repräsentanten finden“: die Partikel, die für alle stehen, erscheinen hier mit ihren Gewichten.</translation>
+        <source>Press Find representatives: the error against their number, and the sampling noise.</source>
+        <translation>Drücken Sie „Repräsentanten finden“: Fehler gegen ihre Anzahl, und das Stichprobenrauschen.</translation>
+    </message>
+    <message>
+        <source>Press Find representatives: they appear here with their weights.</source>
+        <translation>Drücken Sie „Repräsentanten finden“: sie erscheinen hier mit ihren Gewichten.</translation>
     </message>
     <message>
         <source>Preview</source>
@@ -3420,6 +3480,10 @@
         <translation>Fortschritt des Stapels</translation>
     </message>
     <message>
+        <source>Progress of the coarsening</source>
+        <translation>Verlauf der Vergröberung</translation>
+    </message>
+    <message>
         <source>Progress of the export</source>
         <translation>Fortschritt des Exports</translation>
     </message>
@@ -3430,6 +3494,18 @@
     <message>
         <source>Projects (*.regolith)</source>
         <translation>Projekte (*.regolith)</translation>
+    </message>
+    <message>
+        <source>Published contact parameters</source>
+        <translation>Veröffentlichte Kontaktparameter</translation>
+    </message>
+    <message>
+        <source>Published cylinder</source>
+        <translation>Veröffentlichter Zylinder</translation>
+    </message>
+    <message>
+        <source>Published values; * where none is published</source>
+        <translation>Veröffentlichte Werte; * wo keiner veröffentlicht ist</translation>
     </message>
     <message>
         <source>Quadric decimation</source>
@@ -3540,6 +3616,10 @@
         <translation>Bezugsfläche</translation>
     </message>
     <message>
+        <source>Refresh</source>
+        <translation>Aktualisieren</translation>
+    </message>
+    <message>
         <source>Region of interest</source>
         <translation>Auszuwertender Bereich</translation>
     </message>
@@ -3564,8 +3644,8 @@
         <translation>Relativer Fehler [%]</translation>
     </message>
     <message>
-        <source>Relative errors of volume, sphericity, diameters, aspect ratio and hull (Eq. 8): blue for the fit, orange for the polyhedron. The second tab has the numbers with their units.</source>
-        <translation>Relative Fehler von Volumen, Sphärizität, Durchmessern, Seitenverhältnis und Hülle (Gl. 8): blau für den Fit, orange für das Polyeder. Der zweite Reiter hat die Zahlen mit ihren Einheiten.</translation>
+        <source>Relative errors of volume, sphericity, diameters, aspect ratio and hull: blue for the fit, orange for the polyhedron. The second tab has the numbers with their units.</source>
+        <translation>Relative Fehler von Volumen, Sphärizität, Durchmessern, Seitenverhältnis und Hülle: blau für den Fit, orange für das Polyeder. Der zweite Reiter hat die Zahlen mit ihren Einheiten.</translation>
     </message>
     <message>
         <source>Remarks</source>
@@ -3584,12 +3664,28 @@
         <translation>{count} doppelte Flächen wurden entfernt.</translation>
     </message>
     <message>
+        <source>Removed {count} faces that made the surface non-orientable.</source>
+        <translation>{count} Flächen, die die Oberfläche nicht orientierbar machten, wurden entfernt.</translation>
+    </message>
+    <message>
         <source>Removed {count} faces without area.</source>
         <translation>{count} Flächen ohne Inhalt wurden entfernt.</translation>
     </message>
     <message>
         <source>Removes specks and thin bridges, in voxels.</source>
         <translation>Entfernt Flecken und dünne Brücken, in Voxeln.</translation>
+    </message>
+    <message>
+        <source>Reoriented 1 face.</source>
+        <translation>1 Fläche wurde umorientiert.</translation>
+    </message>
+    <message>
+        <source>Reoriented all faces: the normals pointed inwards.</source>
+        <translation>Alle Flächen wurden umorientiert: die Normalen zeigten nach innen.</translation>
+    </message>
+    <message>
+        <source>Reoriented {count} faces.</source>
+        <translation>{count} Flächen wurden umorientiert.</translation>
     </message>
     <message>
         <source>Repair &amp;meshes on opening</source>
@@ -3636,14 +3732,6 @@
         <translation>Spektrum zurücksetzen</translation>
     </message>
     <message>
-        <source>Rest: energy</source>
-        <translation>Ruhe: Energie</translation>
-    </message>
-    <message>
-        <source>Rest: time</source>
-        <translation>Ruhe: Zeit</translation>
-    </message>
-    <message>
         <source>Restarts</source>
         <translation>Neustarts</translation>
     </message>
@@ -3670,6 +3758,10 @@
     <message>
         <source>Resume</source>
         <translation>Fortsetzen</translation>
+    </message>
+    <message>
+        <source>Resume the unfinished run</source>
+        <translation>Unfertigen Lauf fortsetzen</translation>
     </message>
     <message>
         <source>Retries</source>
@@ -3700,16 +3792,16 @@
         <translation>Rollwiderstand</translation>
     </message>
     <message>
-        <source>Root mean squared relative error of each descriptor against l&lt;sub&gt;max&lt;/sub&gt;, as in Fig. 3 of the paper.</source>
-        <translation>Wurzel des mittleren quadratischen relativen Fehlers jedes Deskriptors gegen l&lt;sub&gt;max&lt;/sub&gt;, wie in Bild 3 des Artikels.</translation>
+        <source>Root mean squared relative error of each descriptor against l&lt;sub&gt;max&lt;/sub&gt;.</source>
+        <translation>Wurzel des mittleren quadrierten relativen Fehlers jedes Deskriptors gegen l&lt;sub&gt;max&lt;/sub&gt;.</translation>
     </message>
     <message>
         <source>Root mean squared relative error of each descriptor against the number of facets.</source>
         <translation>Wurzel des mittleren quadratischen relativen Fehlers jedes Deskriptors gegen die Anzahl der Facetten.</translation>
     </message>
     <message>
-        <source>Root mean squared relative error of each descriptor, one row a loss function, as in Fig. 8 of the paper.</source>
-        <translation>Wurzel des mittleren quadratischen relativen Fehlers jedes Deskriptors, eine Zeile je Verlustfunktion, wie in Bild 8 des Artikels.</translation>
+        <source>Root mean squared relative error of each descriptor, one row a loss function.</source>
+        <translation>Wurzel des mittleren quadrierten relativen Fehlers jedes Deskriptors, eine Zeile je Verlustfunktion.</translation>
     </message>
     <message>
         <source>Root mean squared relative error over the descriptors that have a weight (Eq. 10)</source>
@@ -3724,16 +3816,16 @@
         <translation>Dreht gemessene Oberflächen in ihren Ellipsoiden: neue Partikel, Größen und Formen wie in der Probe.</translation>
     </message>
     <message>
+        <source>Rotation [rad]</source>
+        <translation>Drehung [rad]</translation>
+    </message>
+    <message>
         <source>Roughness</source>
         <translation>Rauheit</translation>
     </message>
     <message>
         <source>Roundness</source>
         <translation>Rundheit</translation>
-    </message>
-    <message>
-        <source>Rows of Fig. 8</source>
-        <translation>Zeilen von Bild 8</translation>
     </message>
     <message>
         <source>Run</source>
@@ -3752,16 +3844,24 @@
         <translation>Als Stapel ausführen</translation>
     </message>
     <message>
+        <source>Run on</source>
+        <translation>Rechnet auf</translation>
+    </message>
+    <message>
+        <source>Run on:</source>
+        <translation>Rechnet auf:</translation>
+    </message>
+    <message>
         <source>Run the test</source>
         <translation>Versuch durchführen</translation>
     </message>
     <message>
-        <source>Run the values of the study, or go on</source>
-        <translation>Die Werte der Studie rechnen oder fortfahren</translation>
-    </message>
-    <message>
         <source>Running</source>
         <translation>In Arbeit</translation>
+    </message>
+    <message>
+        <source>Running tasks</source>
+        <translation>Laufende Aufgaben</translation>
     </message>
     <message>
         <source>Running the recipe</source>
@@ -3788,12 +3888,8 @@
         <translation>Läufe der Studie</translation>
     </message>
     <message>
-        <source>Runs that are there already are not run again</source>
-        <translation>Vorhandene Läufe werden nicht wiederholt</translation>
-    </message>
-    <message>
-        <source>Runs that became piles are compared here.</source>
-        <translation>Läufe, die zu Schüttkegeln wurden, werden hier verglichen.</translation>
+        <source>Runs that ended in a pile are compared here.</source>
+        <translation>Hier werden Läufe verglichen, die mit einer Schüttung endeten.</translation>
     </message>
     <message>
         <source>S&amp;maller letters</source>
@@ -3992,6 +4088,18 @@
         <translation>Befehle und Tasten suchen</translation>
     </message>
     <message>
+        <source>Searching for datasets</source>
+        <translation>Datensätze werden gesucht</translation>
+    </message>
+    <message>
+        <source>Searching for the sufficient number of facets</source>
+        <translation>Genügende Anzahl von Facetten wird gesucht</translation>
+    </message>
+    <message>
+        <source>Searching …</source>
+        <translation>Wird gesucht …</translation>
+    </message>
+    <message>
         <source>Second</source>
         <translation>Zweiter</translation>
     </message>
@@ -4002,10 +4110,6 @@
     <message>
         <source>Sections</source>
         <translation>Schnitte</translation>
-    </message>
-    <message>
-        <source>See why it works</source>
-        <translation>Sehen, warum es geht</translation>
     </message>
     <message>
         <source>Seed</source>
@@ -4032,6 +4136,10 @@
         <translation>Segmentierung</translation>
     </message>
     <message>
+        <source>Select a format to see what its files do not contain.</source>
+        <translation>Wählen Sie ein Format, um zu sehen, was seine Dateien nicht enthalten.</translation>
+    </message>
+    <message>
         <source>Selection of grains</source>
         <translation>Auswahl der Körner</translation>
     </message>
@@ -4042,6 +4150,10 @@
     <message>
         <source>Separate touching grains</source>
         <translation>Berührende Körner trennen</translation>
+    </message>
+    <message>
+        <source>Separating touching grains</source>
+        <translation>Berührende Körner werden getrennt</translation>
     </message>
     <message>
         <source>Separation of grains</source>
@@ -4104,16 +4216,16 @@
         <translation>Anteil des Volumens in weggelassenen Körpern</translation>
     </message>
     <message>
-        <source>Share that a classifier tells right: 0.5 cannot be told apart</source>
-        <translation>Anteil, den ein Klassifikator richtig zuordnet: bei 0,5 nicht zu unterscheiden</translation>
-    </message>
-    <message>
         <source>Shift the picture</source>
         <translation>Das Bild verschieben</translation>
     </message>
     <message>
         <source>Show in &amp;Explore</source>
         <translation>In Er&amp;kunden zeigen</translation>
+    </message>
+    <message>
+        <source>Show in the view</source>
+        <translation>In der Ansicht zeigen</translation>
     </message>
     <message>
         <source>Show particles</source>
@@ -4128,24 +4240,28 @@
         <translation>Die offenen Partikel zeigen</translation>
     </message>
     <message>
+        <source>Show the other half</source>
+        <translation>Andere Hälfte zeigen</translation>
+    </message>
+    <message>
         <source>Show the whole particle</source>
         <translation>Das ganze Partikel zeigen</translation>
+    </message>
+    <message>
+        <source>Show the whole text</source>
+        <translation>Ganzen Text zeigen</translation>
     </message>
     <message>
         <source>Show triangles</source>
         <translation>Dreiecke zeigen</translation>
     </message>
     <message>
-        <source>Show where</source>
-        <translation>Zeigen, wo</translation>
-    </message>
-    <message>
         <source>Sieve classes, the same for all</source>
         <translation>Siebklassen, für alle gleich</translation>
     </message>
     <message>
-        <source>Simulated annealing (paper)</source>
-        <translation>Simuliertes Abkühlen (Artikel)</translation>
+        <source>Simulated annealing</source>
+        <translation>Simuliertes Abkühlen</translation>
     </message>
     <message>
         <source>Single diameters, the same for all</source>
@@ -4196,8 +4312,8 @@
         <translation>Körper</translation>
     </message>
     <message>
-        <source>Something went wrong in the program ({name}); the work goes on.</source>
-        <translation>Im Programm ist etwas schiefgegangen ({name}); die Arbeit geht weiter.</translation>
+        <source>Source of the model</source>
+        <translation>Quelle des Modells</translation>
     </message>
     <message>
         <source>Spectrum</source>
@@ -4252,8 +4368,20 @@
         <translation>Die Sphärizität {sphericity} braucht mehr als 100,000 Facetten; mit {faces} sind höchstens {most} möglich.</translation>
     </message>
     <message>
+        <source>Split the surface along 1 edge of more than two faces.</source>
+        <translation>Die Oberfläche wurde entlang 1 Kante mit mehr als zwei Flächen getrennt.</translation>
+    </message>
+    <message>
+        <source>Split the surface along {count} edges of more than two faces.</source>
+        <translation>Die Oberfläche wurde entlang {count} Kanten mit mehr als zwei Flächen getrennt.</translation>
+    </message>
+    <message>
         <source>Standard la&amp;yout</source>
         <translation>&amp;Standardanordnung</translation>
+    </message>
+    <message>
+        <source>Standard set</source>
+        <translation>Standardauswahl</translation>
     </message>
     <message>
         <source>Star &amp;point</source>
@@ -4278,6 +4406,10 @@
     <message>
         <source>Start the &amp;study</source>
         <translation>&amp;Studie starten</translation>
+    </message>
+    <message>
+        <source>Start the study, or resume it</source>
+        <translation>Studie beginnen oder fortsetzen</translation>
     </message>
     <message>
         <source>Starting the workers</source>
@@ -4380,12 +4512,12 @@
         <translation>Abgebrochen. Wählen Sie einen anderen Startwert oder kehren Sie zu dieser Seite zurück, um neu zu beginnen.</translation>
     </message>
     <message>
-        <source>Stopped. What was done is kept: run again into the same folder to go on.</source>
-        <translation>Abgebrochen. Was fertig ist, bleibt: noch einmal in denselben Ordner ausführen setzt es fort.</translation>
+        <source>Stopped. Finished parts are kept: run again into the same folder to resume.</source>
+        <translation>Abgebrochen. Fertige Teile bleiben erhalten: ein neuer Lauf in denselben Ordner setzt fort.</translation>
     </message>
     <message>
-        <source>Stopped; what is finished is kept, and the start button goes on there.</source>
-        <translation>Abgebrochen; was fertig ist, bleibt, und der Startknopf fährt dort fort.</translation>
+        <source>Stopped; finished runs are kept, and the start button resumes.</source>
+        <translation>Abgebrochen; fertige Läufe bleiben erhalten, und der Startknopf setzt fort.</translation>
     </message>
     <message>
         <source>Stopping criterion</source>
@@ -4420,6 +4552,10 @@
         <translation>Oberfläche</translation>
     </message>
     <message>
+        <source>Surface by which the radii are divided before the expansion. An ellipsoid reduces oscillations on flat and elongated particles.</source>
+        <translation>Fläche, durch die die Radien vor der Entwicklung geteilt werden. Ein Ellipsoid verringert Schwingungen bei flachen und länglichen Partikeln.</translation>
+    </message>
+    <message>
         <source>Surface energy</source>
         <translation>Oberflächenenergie</translation>
     </message>
@@ -4452,16 +4588,8 @@
         <translation>Tabelle 1</translation>
     </message>
     <message>
-        <source>Table 1 of the paper</source>
-        <translation>Tabelle 1 des Artikels</translation>
-    </message>
-    <message>
         <source>Table 2</source>
         <translation>Tabelle 2</translation>
-    </message>
-    <message>
-        <source>Table 2 of the paper</source>
-        <translation>Tabelle 2 des Artikels</translation>
     </message>
     <message>
         <source>Table of errors</source>
@@ -4478,14 +4606,6 @@
     <message>
         <source>Take settings from a file</source>
         <translation>Einstellungen aus einer Datei nehmen</translation>
-    </message>
-    <message>
-        <source>Take the other half away</source>
-        <translation>Die andere Hälfte wegnehmen</translation>
-    </message>
-    <message>
-        <source>Take {count} facets</source>
-        <translation>{count} Facetten nehmen</translation>
     </message>
     <message>
         <source>Tangential force</source>
@@ -4512,12 +4632,12 @@
         <translation>Lehre</translation>
     </message>
     <message>
-        <source>Term of Eq. 9</source>
-        <translation>Term von Gl. 9</translation>
+        <source>Term of the loss</source>
+        <translation>Term der Verlustfunktion</translation>
     </message>
     <message>
-        <source>Test (Table 2)</source>
-        <translation>Versuch (Tabelle 2)</translation>
+        <source>Test</source>
+        <translation>Versuch</translation>
     </message>
     <message>
         <source>That is all of the file&apos;s {count:,} bytes.</source>
@@ -4644,8 +4764,8 @@
         <translation>Die Dateien der {count} geöffneten Partikel, wie jetzt eingestellt</translation>
     </message>
     <message>
-        <source>The folder holds a run that has not ended: go on with it, or choose another folder.</source>
-        <translation>Im Ordner liegt ein nicht beendeter Lauf: setzen Sie ihn fort oder wählen Sie einen anderen Ordner.</translation>
+        <source>The folder contains an unfinished run: resume it, or choose another folder.</source>
+        <translation>Der Ordner enthält einen unfertigen Lauf: setzen Sie ihn fort, oder wählen Sie einen anderen Ordner.</translation>
     </message>
     <message>
         <source>The folder holds {count} series; the longest was read.</source>
@@ -4684,6 +4804,14 @@
         <translation>Der Verlust fällt, während die Vergröberung läuft; das Spektrum zeigt, welche Grade erhalten bleiben. Nichts davon blockiert das Fenster: was in Arbeit ist, steht in der Statuszeile und lässt sich dort abbrechen.</translation>
     </message>
     <message>
+        <source>The loss of the exact method</source>
+        <translation>Der Verlust des exakten Verfahrens</translation>
+    </message>
+    <message>
+        <source>The loss with its numbers</source>
+        <translation>Der Verlust mit seinen Zahlen</translation>
+    </message>
+    <message>
         <source>The manual of the program</source>
         <translation>Das Handbuch des Programms</translation>
     </message>
@@ -4700,8 +4828,12 @@
         <translation>Das der Probe nächste zuerst</translation>
     </message>
     <message>
-        <source>The other half is then new to the model, as in its judgement.</source>
-        <translation>Die andere Hälfte ist dem Modell dann neu, wie bei seiner Beurteilung.</translation>
+        <source>The number of facets follows from it: n facets have at most 4n−12 triangles.</source>
+        <translation>Die Anzahl der Facetten folgt daraus: n Facetten haben höchstens 4n−12 Dreiecke.</translation>
+    </message>
+    <message>
+        <source>The other half is then unknown to the model, as in its evaluation.</source>
+        <translation>Die andere Hälfte ist dem Modell dann unbekannt, wie bei seiner Auswertung.</translation>
     </message>
     <message>
         <source>The page Lecture shows the ideas one step at a time, each formula with its numbers: the annealing, the degrees of the fit, a random field. Ctrl+Space plays, the page keys step, Ctrl++ enlarges the letters, F11 fills the screen.</source>
@@ -4710,18 +4842,6 @@
     <message>
         <source>The pages follow the work: find grains in a scan, model their shape and draw new ones, build a dataset for Rocky, YADE or LAMMPS, and measure the angle of repose.</source>
         <translation>Die Seiten folgen der Arbeit: Körner in einem Scan finden, ihre Form modellieren und neue ziehen, einen Datensatz für Rocky, YADE oder LAMMPS bauen und den Schüttwinkel messen.</translation>
-    </message>
-    <message>
-        <source>The paper has 10.</source>
-        <translation>Im Artikel sind es 10.</translation>
-    </message>
-    <message>
-        <source>The paper&apos;s outlook: constituents with sizes and spectra of their own, in the radius itself.</source>
-        <translation>Der Ausblick des Artikels: Komponenten mit eigenen Größen und Spektren, im Radius selbst.</translation>
-    </message>
-    <message>
-        <source>The paper&apos;s virtual particles have 10.</source>
-        <translation>Die virtuellen Partikel des Artikels haben 10.</translation>
     </message>
     <message>
         <source>The particle</source>
@@ -4748,12 +4868,8 @@
         <translation>Die Darstellung erscheint, sobald die Partikel vermessen sind.</translation>
     </message>
     <message>
-        <source>The polyhedra of six particles as each loss function makes them, as in Fig. 7 of the paper.</source>
-        <translation>Die Polyeder von sechs Partikeln, wie jede Verlustfunktion sie macht, wie in Bild 7 des Artikels.</translation>
-    </message>
-    <message>
-        <source>The polyhedron has as many facets as surely have no more triangles than this.</source>
-        <translation>Das Polyeder hat so viele Facetten, wie sicher nicht mehr Dreiecke als diese haben.</translation>
+        <source>The polyhedra of six particles, one row a loss function.</source>
+        <translation>Die Polyeder von sechs Partikeln, eine Zeile je Verlustfunktion.</translation>
     </message>
     <message>
         <source>The polyhedron is not finished yet.</source>
@@ -4776,8 +4892,8 @@
         <translation>Das Ergebnis hat {real} statt {faces} Facetten: Das Partikel ist konvex und hat selbst {facets} Facetten, und es fand sich kein anderes Polyeder, das alle Deskriptoren trifft.</translation>
     </message>
     <message>
-        <source>The results are the same bytes whoever works, and a run that was stopped can go on.</source>
-        <translation>Die Ergebnisse sind Byte für Byte dieselben, wer auch arbeitet, und ein abgebrochener Lauf lässt sich fortsetzen.</translation>
+        <source>The results do not depend on the number of processes, and a stopped run can be resumed.</source>
+        <translation>Die Ergebnisse hängen nicht von der Anzahl der Prozesse ab, und ein abgebrochener Lauf lässt sich fortsetzen.</translation>
     </message>
     <message>
         <source>The run was stopped before it was measured.</source>
@@ -4798,6 +4914,10 @@
     <message>
         <source>The series of a fit has no random numbers.</source>
         <translation>Die Reihe einer Anpassung hat keine Zufallszahlen.</translation>
+    </message>
+    <message>
+        <source>The series with its numbers</source>
+        <translation>Die Reihe mit ihren Zahlen</translation>
     </message>
     <message>
         <source>The sizes of the classes appear here.</source>
@@ -4828,8 +4948,8 @@
         <translation>Der Sternpunkt und die von ihm verdeckte Oberfläche</translation>
     </message>
     <message>
-        <source>The start: the convex hull, decimated to {count} planes. In each step one plane is moved at random, and the move is taken or not.</source>
-        <translation>Der Anfang: die konvexe Hülle, auf {count} Ebenen dezimiert. In jedem Schritt wird eine Ebene zufällig verschoben, und der Zug wird angenommen oder nicht.</translation>
+        <source>The start: the convex hull, decimated to {count} planes. In each step one plane is moved at random, and the move is accepted or rejected.</source>
+        <translation>Der Anfang: die konvexe Hülle, auf {count} Ebenen dezimiert. In jedem Schritt wird eine Ebene zufällig verschoben, und der Zug wird angenommen oder abgelehnt.</translation>
     </message>
     <message>
         <source>The table is on the clipboard.</source>
@@ -4864,7 +4984,7 @@
         <translation>Es gibt keine Partikel zur Auswahl: öffnen Sie zuerst welche.</translation>
     </message>
     <message>
-        <source>There are no representatives yet: press Find first.</source>
+        <source>There are no representatives yet: press Find representatives first.</source>
         <translation>Es gibt noch keine Repräsentanten: drücken Sie zuerst „Repräsentanten finden“.</translation>
     </message>
     <message>
@@ -4920,20 +5040,12 @@
         <translation>Sie werden zuerst nach Kugelflächenfunktionen entwickelt.</translation>
     </message>
     <message>
-        <source>This may be chance.</source>
-        <translation>Das kann Zufall sein.</translation>
-    </message>
-    <message>
         <source>This one misses {missed}.</source>
         <translation>Dieses verfehlt {missed}.</translation>
     </message>
     <message>
         <source>This run was not finished: {state}.</source>
         <translation>Dieser Lauf wurde nicht beendet: {state}.</translation>
-    </message>
-    <message>
-        <source>Those of Fig. 8</source>
-        <translation>Die von Bild 8</translation>
     </message>
     <message>
         <source>Three-dimensional views: {how}</source>
@@ -4948,8 +5060,8 @@
         <translation>Durch den Körper, bei einem geschlossenen Netz</translation>
     </message>
     <message>
-        <source>Tick a format to see what it carries and what it loses.</source>
-        <translation>Kreuzen Sie ein Format an, um zu sehen, was es überträgt und was es verliert.</translation>
+        <source>Time at rest</source>
+        <translation>Zeit in Ruhe</translation>
     </message>
     <message>
         <source>Time of the run</source>
@@ -4968,20 +5080,8 @@
         <translation>An den Anfang</translation>
     </message>
     <message>
-        <source>Told apart</source>
-        <translation>Unterschieden</translation>
-    </message>
-    <message>
         <source>Tolerance</source>
         <translation>Toleranz</translation>
-    </message>
-    <message>
-        <source>Took the surface apart along 1 edge where more than two faces met.</source>
-        <translation>Die Oberfläche wurde entlang 1 Kante getrennt, an der mehr als zwei Flächen zusammenkamen.</translation>
-    </message>
-    <message>
-        <source>Took the surface apart along {count} edges where more than two faces met.</source>
-        <translation>Die Oberfläche wurde entlang {count} Kanten getrennt, an denen mehr als zwei Flächen zusammenkamen.</translation>
     </message>
     <message>
         <source>Tools</source>
@@ -4990,6 +5090,10 @@
     <message>
         <source>Top (from +z)</source>
         <translation>Oben (von +z)</translation>
+    </message>
+    <message>
+        <source>Tour of the window</source>
+        <translation>Rundgang durch das Fenster</translation>
     </message>
     <message>
         <source>Training the classifier</source>
@@ -5012,10 +5116,6 @@
         <translation>Tunnel</translation>
     </message>
     <message>
-        <source>Turn [rad]</source>
-        <translation>Drehung [rad]</translation>
-    </message>
-    <message>
         <source>Turn all views together</source>
         <translation>Alle Ansichten gemeinsam drehen</translation>
     </message>
@@ -5026,18 +5126,6 @@
     <message>
         <source>Turn the particle</source>
         <translation>Das Partikel drehen</translation>
-    </message>
-    <message>
-        <source>Turned 1 face that looked the wrong way.</source>
-        <translation>1 Fläche, die zur falschen Seite zeigte, wurde gedreht.</translation>
-    </message>
-    <message>
-        <source>Turned all faces: the mesh was inside out.</source>
-        <translation>Alle Flächen wurden gedreht: das Netz war umgestülpt.</translation>
-    </message>
-    <message>
-        <source>Turned {count} faces that looked the wrong way.</source>
-        <translation>{count} Flächen, die zur falschen Seite zeigten, wurden gedreht.</translation>
     </message>
     <message>
         <source>Two surfaces on either side of a line</source>
@@ -5092,8 +5180,24 @@
         <translation>Diesen Datensatz verwenden</translation>
     </message>
     <message>
+        <source>Use {count} facets</source>
+        <translation>{count} Facetten verwenden</translation>
+    </message>
+    <message>
+        <source>Use {count} facets: more gain nothing</source>
+        <translation>{count} Facetten verwenden: mehr bringen nichts</translation>
+    </message>
+    <message>
         <source>Usual</source>
         <translation>Üblich</translation>
+    </message>
+    <message>
+        <source>Usually 10.</source>
+        <translation>Üblich sind 10.</translation>
+    </message>
+    <message>
+        <source>Usually 10; at most the degree of the sample.</source>
+        <translation>Üblich sind 10; höchstens der Grad der Probe.</translation>
     </message>
     <message>
         <source>V</source>
@@ -5212,10 +5316,6 @@
         <translation>Wasserstein-Distanz {apart:.1%} des Mittels, Kolmogorow-Smirnow-Distanz {gap:.2f}; Mittel {measured} gemessen, {drawn} gezogen</translation>
     </message>
     <message>
-        <source>Watch it work</source>
-        <translation>Bei der Arbeit zusehen</translation>
-    </message>
-    <message>
         <source>Weight of {name}</source>
         <translation>Gewicht: {name}</translation>
     </message>
@@ -5244,6 +5344,10 @@
         <translation>Gewichte</translation>
     </message>
     <message>
+        <source>Weights of the loss</source>
+        <translation>Gewichte der Verlustfunktion</translation>
+    </message>
+    <message>
         <source>Weights of the loss (Eq. 9)</source>
         <translation>Gewichte der Verlustfunktion (Gl. 9)</translation>
     </message>
@@ -5252,24 +5356,12 @@
         <translation>Gewichte des Verlusts, geöffnete Partikel</translation>
     </message>
     <message>
-        <source>What each error becomes when one weight of the loss is changed: which weights matter.</source>
-        <translation>Was aus jedem Fehler wird, wenn ein Gewicht des Verlusts geändert wird: auf welche Gewichte es ankommt.</translation>
-    </message>
-    <message>
-        <source>What happened</source>
-        <translation>Was geschehen ist</translation>
-    </message>
-    <message>
         <source>What has been exported is listed here, with the command that loads it.</source>
         <translation>Was exportiert wurde, steht hier, mit dem Befehl, der es lädt.</translation>
     </message>
     <message>
         <source>What is laid over it, or shown to the right of the line</source>
         <translation>Was darübergelegt oder rechts der Linie gezeigt wird</translation>
-    </message>
-    <message>
-        <source>What is running</source>
-        <translation>Was in Arbeit ist</translation>
     </message>
     <message>
         <source>What is varied</source>
@@ -5284,36 +5376,12 @@
         <translation>Wonach es aussieht: {looks}</translation>
     </message>
     <message>
-        <source>What matters to you</source>
-        <translation>Worauf es Ihnen ankommt</translation>
-    </message>
-    <message>
-        <source>What overlap costs in descriptors, and descriptors in overlap: lower left is better.</source>
-        <translation>Was Überdeckung an Deskriptoren kostet, und Deskriptoren an Überdeckung: links unten ist besser.</translation>
-    </message>
-    <message>
-        <source>What radii are divided by before they are expanded. An ellipsoid lowers the oscillation on flat and elongated grains.</source>
-        <translation>Wodurch Radien geteilt werden, bevor sie entwickelt werden. Ein Ellipsoid mindert das Schwingen bei flachen und länglichen Körnern.</translation>
-    </message>
-    <message>
-        <source>What the fit and the polyhedron keep</source>
-        <translation>Was Fit und Polyeder bewahren</translation>
-    </message>
-    <message>
         <source>What the guide says of the page</source>
         <translation>Was das Handbuch zu der Seite sagt</translation>
     </message>
     <message>
-        <source>What the polyhedra look like (Fig. 7)</source>
-        <translation>Wie die Polyeder aussehen (Bild 7)</translation>
-    </message>
-    <message>
         <source>What the volume holds</source>
         <translation>Was das Volumen enthält</translation>
-    </message>
-    <message>
-        <source>What to draw from</source>
-        <translation>Woraus gezogen wird</translation>
     </message>
     <message>
         <source>Whatever it looks like</source>
@@ -5322,14 +5390,6 @@
     <message>
         <source>Wheel</source>
         <translation>Rad</translation>
-    </message>
-    <message>
-        <source>Where radii begin. Automatic: the centre of mass or, where that is not inside, the point that hides the least volume.</source>
-        <translation>Wo Radien beginnen. Automatisch: der Schwerpunkt oder, wo dieser nicht im Inneren liegt, der Punkt, der am wenigsten Volumen verdeckt.</translation>
-    </message>
-    <message>
-        <source>Where to go from here</source>
-        <translation>Wie es weitergeht</translation>
     </message>
     <message>
         <source>Which radius counts where a ray crosses the surface more than once. Keep the volume: the cube root of the signed sum of r³ over all crossings.</source>
@@ -5346,14 +5406,6 @@
     <message>
         <source>Wipe</source>
         <translation>Wischen</translation>
-    </message>
-    <message>
-        <source>Work done by</source>
-        <translation>Ausführung durch</translation>
-    </message>
-    <message>
-        <source>Work done by:</source>
-        <translation>Ausführung durch:</translation>
     </message>
     <message>
         <source>Working on particles</source>
@@ -5524,8 +5576,8 @@
         <translation>Seitenverhältnis</translation>
     </message>
     <message>
-        <source>aspect ratio, times nearer than the paper&apos;s model</source>
-        <translation>Seitenverhältnis, wievielmal näher als das Modell des Artikels</translation>
+        <source>aspect ratio, times nearer than the Gaussian field</source>
+        <translation>Seitenverhältnis, wievielmal näher als das Gaußfeld</translation>
     </message>
     <message>
         <source>at least {limit}</source>
@@ -5548,12 +5600,12 @@
         <translation>vorher</translation>
     </message>
     <message>
-        <source>being computed; the first one takes longer …</source>
-        <translation>wird berechnet; das erste dauert länger …</translation>
+        <source>being computed …</source>
+        <translation>wird berechnet …</translation>
     </message>
     <message>
-        <source>being found …</source>
-        <translation>wird gesucht …</translation>
+        <source>being computed; the first one takes longer …</source>
+        <translation>wird berechnet; das erste dauert länger …</translation>
     </message>
     <message>
         <source>below the sampling noise for N ≥ {count}</source>
@@ -5696,16 +5748,16 @@
         <translation>scheibig</translation>
     </message>
     <message>
+        <source>does not change</source>
+        <translation>ändert sich nicht</translation>
+    </message>
+    <message>
         <source>doubtful</source>
         <translation>zweifelhaft</translation>
     </message>
     <message>
         <source>drag the bars</source>
         <translation>Balken ziehen</translation>
-    </message>
-    <message>
-        <source>drawings from each fit</source>
-        <translation>Ziehungen je Fit</translation>
     </message>
     <message>
         <source>drawn by OpenGL in the window</source>
@@ -5724,8 +5776,8 @@
         <translation>gezogen; die Quelle enthält keine gemessenen Partikel</translation>
     </message>
     <message>
-        <source>draws thrown away [%]</source>
-        <translation>verworfene Ziehungen [%]</translation>
+        <source>draws from each fit</source>
+        <translation>Ziehungen je Fit</translation>
     </message>
     <message>
         <source>duplicate faces</source>
@@ -5796,8 +5848,8 @@
         <translation>Abbildungen</translation>
     </message>
     <message>
-        <source>finer and finer bumps</source>
-        <translation>immer feinere Höcker</translation>
+        <source>finer details</source>
+        <translation>feinere Einzelheiten</translation>
     </message>
     <message>
         <source>first</source>
@@ -5976,6 +6028,10 @@
         <translation>Mittel von |n·x|/|x| über die Oberfläche (Bullard und Garboczi)</translation>
     </message>
     <message>
+        <source>measured</source>
+        <translation>gemessen</translation>
+    </message>
+    <message>
         <source>measured above, drawn below</source>
         <translation>oben gemessen, unten gezogen</translation>
     </message>
@@ -5984,16 +6040,16 @@
         <translation>gemessene Partikel</translation>
     </message>
     <message>
+        <source>measured, cut at l = {degree}</source>
+        <translation>gemessen, bei l = {degree} abgebrochen</translation>
+    </message>
+    <message>
         <source>measured; draw particles to compare</source>
         <translation>gemessen; ziehen Sie Partikel zum Vergleich</translation>
     </message>
     <message>
         <source>median novelty</source>
         <translation>mediane Neuheit</translation>
-    </message>
-    <message>
-        <source>mended</source>
-        <translation>ausgebessert</translation>
     </message>
     <message>
         <source>middle edge of the bounding box</source>
@@ -6014,6 +6070,10 @@
     <message>
         <source>model</source>
         <translation>Modell</translation>
+    </message>
+    <message>
+        <source>n facets in general position have 2n−4 vertices and 4n−12 triangles.</source>
+        <translation>n Facetten in allgemeiner Lage haben 2n−4 Ecken und 4n−12 Dreiecke.</translation>
     </message>
     <message>
         <source>nearly an ellipsoid</source>
@@ -6046,10 +6106,6 @@
     <message>
         <source>none besides what edges and faces do</source>
         <translation>keines außer dem, was Kanten und Flächen bewirken</translation>
-    </message>
-    <message>
-        <source>none is better in both</source>
-        <translation>keiner ist in beidem besser</translation>
     </message>
     <message>
         <source>none of these</source>
@@ -6132,8 +6188,8 @@
         <translation>vorgeschlagen</translation>
     </message>
     <message>
-        <source>pull-off force 3/2 π w R*, shared by the contact points; hardly steepens a heap: take LAMMPS</source>
-        <translation>Abreißkraft 3/2 π w R*, auf die Kontaktpunkte verteilt; macht einen Kegel kaum steiler: nehmen Sie LAMMPS</translation>
+        <source>pull-off force 3/2 π w R*, shared by the contact points; little effect on a heap: use LAMMPS</source>
+        <translation>Abreißkraft 3/2 π w R*, auf die Kontaktpunkte verteilt; wirkt sich auf eine Schüttung kaum aus: verwenden Sie LAMMPS</translation>
     </message>
     <message>
         <source>r_eq {low:.3g} to {high:.3g} µm</source>
@@ -6152,12 +6208,16 @@
         <translation>erreicht</translation>
     </message>
     <message>
-        <source>refuse</source>
+        <source>reject</source>
         <translation>ablehnen</translation>
     </message>
     <message>
-        <source>refused</source>
+        <source>rejected</source>
         <translation>abgelehnt</translation>
+    </message>
+    <message>
+        <source>rejected draws [%]</source>
+        <translation>verworfene Ziehungen [%]</translation>
     </message>
     <message>
         <source>reoriented faces</source>
@@ -6304,10 +6364,6 @@
         <translation>Feder, Dämpfer und Gleiter (wo der Widerstand über 0 ist)</translation>
     </message>
     <message>
-        <source>stays what it is</source>
-        <translation>bleibt, was er ist</translation>
-    </message>
-    <message>
         <source>std. dev.</source>
         <translation>Std.-Abw.</translation>
     </message>
@@ -6318,6 +6374,10 @@
     <message>
         <source>step {at} of {total}</source>
         <translation>Schritt {at} von {total}</translation>
+    </message>
+    <message>
+        <source>step {at} of {total}, loss {loss:.4g}</source>
+        <translation>Schritt {at} von {total}, Verlust {loss:.4g}</translation>
     </message>
     <message>
         <source>surface at {x:.3g} mm: {z:.3g} mm ({taken})</source>
@@ -6380,12 +6440,12 @@
         <translation>bis</translation>
     </message>
     <message>
-        <source>to the eye</source>
-        <translation>zum Auge</translation>
+        <source>towards the viewer</source>
+        <translation>zum Betrachter</translation>
     </message>
     <message>
-        <source>trimesh&apos;s heuristic (paper)</source>
-        <translation>Heuristik von trimesh (Artikel)</translation>
+        <source>trimesh&apos;s heuristic</source>
+        <translation>Heuristik von trimesh</translation>
     </message>
     <message>
         <source>true moments of inertia (fit.csv)</source>
@@ -6760,20 +6820,20 @@
         <translation>{model}: {near:.2g}-mal so weit von der Probe wie zwei ihrer Hälften voneinander.</translation>
     </message>
     <message>
-        <source>{moved}: the half-spaces bound no polyhedron any more. Refused without asking T(k).</source>
-        <translation>{moved}: die Halbräume begrenzen kein Polyeder mehr. Abgelehnt, ohne T(k) zu fragen.</translation>
+        <source>{moved}: the half-spaces bound no polyhedron any more. Rejected without drawing u.</source>
+        <translation>{moved}: die Halbräume begrenzen kein Polyeder mehr. Abgelehnt, ohne u zu ziehen.</translation>
     </message>
     <message>
         <source>{moved}: the loss falls from {before} to {after}. Better, so it is accepted.</source>
         <translation>{moved}: der Verlust fällt von {before} auf {after}. Besser, also angenommen.</translation>
     </message>
     <message>
-        <source>{moved}: the loss {how}. Accepted all the same: luck, of which there was {chance}.</source>
-        <translation>{moved}: der Verlust {how}. Trotzdem angenommen: Glück, das es mit {chance} gab.</translation>
+        <source>{moved}: the loss {how}. Accepted with probability {chance}.</source>
+        <translation>{moved}: der Verlust {how}. Mit der Wahrscheinlichkeit {chance} angenommen.</translation>
     </message>
     <message>
-        <source>{moved}: the loss {how}. Refused; there was a chance of {chance} that it would have been taken.</source>
-        <translation>{moved}: der Verlust {how}. Abgelehnt; mit einer Wahrscheinlichkeit von {chance} wäre es angenommen worden.</translation>
+        <source>{moved}: the loss {how}. Rejected; the acceptance probability was {chance}.</source>
+        <translation>{moved}: der Verlust {how}. Abgelehnt; die Annahmewahrscheinlichkeit war {chance}.</translation>
     </message>
     <message>
         <source>{name} (mean)</source>
@@ -6804,12 +6864,12 @@
         <translation>Nur {name}</translation>
     </message>
     <message>
-        <source>{name} stands for 1 particle ({share})</source>
-        <translation>{name} steht für 1 Partikel ({share})</translation>
+        <source>{name} represents 1 particle ({share})</source>
+        <translation>{name} vertritt 1 Partikel ({share})</translation>
     </message>
     <message>
-        <source>{name} stands for {count} particles ({share})</source>
-        <translation>{name} steht für {count} Partikel ({share})</translation>
+        <source>{name} represents {count} particles ({share})</source>
+        <translation>{name} vertritt {count} Partikel ({share})</translation>
     </message>
     <message>
         <source>{name} was not read from a file whose unit could be changed.</source>
@@ -6848,8 +6908,8 @@
         <translation>{name}: {edges} Voxel zu {voxel}, {what} ({dtype}).</translation>
     </message>
     <message>
-        <source>{name}: {faces} facets, {vertices} vertices, stands for {count} particles</source>
-        <translation>{name}: {faces} Facetten, {vertices} Ecken, steht für {count} Partikel</translation>
+        <source>{name}: {faces} facets, {vertices} vertices, represents {count} particles</source>
+        <translation>{name}: {faces} Facetten, {vertices} Ecken, vertritt {count} Partikel</translation>
     </message>
     <message>
         <source>{noun} {at} of {last}</source>
@@ -6920,8 +6980,8 @@
         <translation>{value:+.3g} Prozentpunkte ({low:+.3g} bis {high:+.3g})</translation>
     </message>
     <message>
-        <source>{who}, watched at {link}</source>
-        <translation>{who}, zu beobachten unter {link}</translation>
+        <source>{who}, dashboard at {link}</source>
+        <translation>{who}, Übersicht unter {link}</translation>
     </message>
     <message>
         <source>{words} (Eq. {number})</source>

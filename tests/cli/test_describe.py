@@ -49,7 +49,7 @@ def test_that_the_table_tells_sound_mended_and_broken_meshes_apart(command, tmp_
     ends = {
         line.split()[0]: line.split()[-1] for line in command("describe", tmp_path).out.splitlines() if line
     }
-    assert (ends["whole"], ends["inside-out"]) == ("yes", "mended")
+    assert (ends["whole"], ends["inside-out"]) == ("yes", "repaired")
     left = command("describe", tmp_path / "inside-out.ply", "--no-repair").out
     assert left.splitlines()[1].split()[-1] == "no"
 

@@ -93,7 +93,7 @@ def test_that_an_inside_out_cube_has_negative_volume():
     health = inspect(turned_round(CUBE))
     assert health.volume == pytest.approx(-1.0)
     assert not health.sound
-    assert "It is inside out: its faces look inwards." in health.problems
+    assert "Its normals point inwards." in health.problems
 
 
 def test_that_one_turned_face_breaks_the_winding_only():
@@ -152,7 +152,7 @@ def test_that_two_cubes_on_one_edge_have_a_crowded_edge():
     faces = np.where(both.faces == 8, 6, np.where(both.faces == 9, 7, both.faces))
     health = inspect(Mesh(both.vertices, faces))
     assert (health.non_manifold_edges, health.watertight) == (1, False)
-    assert "It is not a simple surface: 1 edge belongs to three faces or more." in health.problems
+    assert "It is not manifold: 1 edge belongs to three faces or more." in health.problems
 
 
 def test_that_a_moebius_strip_has_no_consistent_winding():

@@ -53,8 +53,8 @@ def boxes(*places, weld=True):
 
 
 BROKEN = {
-    "inside out": (turned_round(CUBE), "Turned all faces: the mesh was inside out."),
-    "one face turned": (turned_round(CUBE, [4]), "Turned 1 face that looked the wrong way."),
+    "inside out": (turned_round(CUBE), "Reoriented all faces: the normals pointed inwards."),
+    "one face turned": (turned_round(CUBE, [4]), "Reoriented 1 face."),
     "most faces turned": (turned_round(CUBE, slice(2, 11)), "Turned 3 faces that looked the wrong way."),
     "a triangular hole": (without(CUBE, 0), "Filled 1 hole with 8.3 % of the surface."),
     "a square hole": (without(CUBE, 0, 6), "Filled 1 hole with 17 % of the surface."),
@@ -95,7 +95,7 @@ BROKEN = {
     ),
     "a fin on an edge": (
         Mesh(np.concatenate([CUBE.vertices, [[-1, -1, 0.5]]]), np.concatenate([CUBE.faces, [[0, 1, 8]]])),
-        "Took the surface apart along 1 edge where more than two faces met.",
+        "Split the surface along 1 edge of more than two faces.",
     ),
     "everything at once": (
         turned_round(

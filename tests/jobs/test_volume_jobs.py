@@ -57,7 +57,7 @@ def test_that_a_grey_file_tells_its_stages_and_gives_particles() -> None:
     assert titles[1:] == [
         "Denoising",
         "Finding bodies",
-        "Parting touching grains",
+        "Separating touching grains",
         "Numbering grains",
         "Extracting particles",
     ]

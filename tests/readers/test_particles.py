@@ -163,7 +163,7 @@ def test_that_the_source_tells_path_hash_and_unit(cube, tmp_path):
 def test_that_repair_can_be_switched_off_and_the_problems_stay(cube, accepted):
     inside_out = cube.obj().replace(b"f 1 2 4 3", b"f 3 4 2 1")
     particle = accepted("cube.obj", inside_out, repair=False)
-    assert particle.notes == ("Its faces do not all look the same way: some are turned round.",)
+    assert particle.notes == ("Its faces are not oriented consistently.",)
     mended = accepted("cube.obj", inside_out)
     assert mended.mesh.volume == pytest.approx(1.0)
     assert mended.notes[1:] == ("Turned 2 faces that looked the wrong way.",)

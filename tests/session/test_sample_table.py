@@ -91,11 +91,11 @@ def test_that_health_is_one_word(sample: tuple[ParticleEntry, ...]) -> None:
     assert health_word(sample[0]) == "sound"
     assert health_word(ParticleEntry("a", Particle("a", torn), inspect(torn))) == "unsound"
     noted = Particle("a", whole, notes=("A hole was closed.",))
-    assert health_word(ParticleEntry("a", noted, inspect(whole))) == "mended"
+    assert health_word(ParticleEntry("a", noted, inspect(whole))) == "repaired"
     few = Particle("a", whole, notes=("Only 9.8 voxels in diameter: coarse.",))
     assert health_word(ParticleEntry("a", few, inspect(whole))) == "coarse"
     both = Particle("a", whole, notes=(*few.notes, *noted.notes))
-    assert health_word(ParticleEntry("a", both, inspect(whole))) == "mended"
+    assert health_word(ParticleEntry("a", both, inspect(whole))) == "repaired"
     through = replace(inspect(whole), problems=("It has 1 tunnel through it.",))
     assert health_word(ParticleEntry("a", both, through)) == "doubtful"
     assert health_word(ParticleEntry("a", noted)) == "unknown"

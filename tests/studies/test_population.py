@@ -184,7 +184,7 @@ def test_that_targets_compare_with_the_papers_model_and_the_noise(
     assert {row[0] for row in table.rows} == {model.key for model in study.models}
     model = next(each for each in study.models if each.key != "gaussian_field")
     rows = {row[1]: row for row in table.rows if row[0] == model.key}
-    thrown = rows["draws thrown away [%]"]
+    thrown = rows["rejected draws [%]"]
     assert (thrown[4] == "yes") == (model.rejected.sum() == 0)
     column = study.keys.index("convexity")
     ratio = model.distances.kolmogorov[:, 0, column].mean() / study.floor.kolmogorov[:, 0, column].mean()

@@ -17,7 +17,6 @@ from PySide6.QtWidgets import (
 from regolith_studio.jobs.runners.run_job import InlineRunner
 from regolith_studio.session.choices import Choices, Kind
 from regolith_studio.session.session import Session
-from regolith_studio.ui.layout import scrolled_column
 from regolith_studio.ui.main_window import MainWindow
 from regolith_studio.ui.widgets.fixed_height_text import FixedHeightText
 
@@ -174,34 +173,28 @@ def test_that_no_control_of_the_lecture_moves_with_its_sentences(window, watched
         watched.does(f"degree {step}", page.degrees.playback.go, step)
 
 
-def test_that_long_texts_are_scrolled_by_keys_and_short_ones_are_passed_by(shown, app):
+def test_that_a_long_note_is_two_lines_high_and_its_button_shows_all(shown, app):
     label = QLabel("short")
     label.setWordWrap(True)
-    texts = FixedHeightText((label,), 3)
+    texts = FixedHeightText((label,))
     texts.resize(200, texts.sizeHint().height())
     shown(texts)
-    assert texts.focusPolicy() == Qt.FocusPolicy.NoFocus
+    assert not texts.more.isVisible()
     usual = texts.sizeHint()
-    label.setText("a text of many words " * 40)
+    assert usual.height() // texts.line == 2
+    words = "a text of many words " * 12
+    label.setText(words)
     for _ in range(3):
         app.processEvents()
     assert texts.sizeHint().height() == usual.height()
-    assert texts.focusPolicy() & Qt.FocusPolicy.TabFocus
-    for _ in range(200):
-        QTest.keyClick(texts, Qt.Key.Key_Down)
-    bar = texts.verticalScrollBar()
-    assert bar.value() == bar.maximum() > 0
-    assert label.visibleRegion().boundingRect().bottom() >= label.height() - 2
-
-
-def test_that_a_high_column_shows_more_lines_and_a_low_one_no_fewer_than_usual(shown, app):
-    label = QLabel("one\ntwo")
-    texts = FixedHeightText((label,), 2, 5)
-    column = scrolled_column([texts])
-    shown(column)
-    line = texts.fontMetrics().lineSpacing()
-    for height, lines in ((800, 5), (60, 2), (800, 5)):
-        column.resize(300, height)
-        for _ in range(3):
-            app.processEvents()
-        assert texts.height() // line == lines
+    assert texts.more.focusPolicy() & Qt.FocusPolicy.TabFocus
+    assert texts.rect().contains(texts.more.geometry())
+    QTest.mouseClick(texts.more, Qt.MouseButton.LeftButton)
+    shown_texts = [each for each in QApplication.topLevelWidgets() if each.inherits("QWhatsThat")]
+    assert len(shown_texts) == 1
+    assert texts.whole_text() == words
+    shown_texts[0].close()
+    label.setText("short")
+    for _ in range(3):
+        app.processEvents()
+    assert not texts.more.isVisible()

@@ -1,13 +1,23 @@
 """Labels that show all that they say."""
 
 import pytest
-from PySide6.QtCore import QPoint
-from PySide6.QtWidgets import QVBoxLayout, QWidget
+from PySide6.QtCore import QPoint, QUrl
+from PySide6.QtGui import QDesktopServices
+from PySide6.QtWidgets import QDialog, QLabel, QVBoxLayout, QWidget
 
+from regolith_studio.jobs.runners.run_job import InlineRunner
+from regolith_studio.session.session import Session
+from regolith_studio.ui.main_window import MainWindow
 from regolith_studio.ui.widgets.headline import Headline
-from regolith_studio.ui.widgets.labels import WrappedLabel, with_subscripts
+from regolith_studio.ui.widgets.labels import (
+    CITATION,
+    WrappedLabel,
+    heading,
+    with_citations,
+    with_subscripts,
+)
 
-WORDS = "In each step one plane is moved at random, and the move is taken or not. " * 3
+WORDS = "In each step one plane is moved at random, and the move is accepted or rejected. " * 3
 
 
 def test_that_a_whole_label_has_all_its_lines_where_there_is_no_room_for_them(app):
@@ -53,3 +63,17 @@ def test_that_a_sentence_goes_below_its_figures_where_it_is_narrow_and_high(widt
     headline.show_values(("0.4583", "9.32%", "23.0%"), "All weighted descriptors are met but CH. " * 4)
     app.processEvents()
     assert headline.height() == before
+
+
+def test_that_references_to_the_paper_are_links_to_its_citation(shown, preferences, wait):
+    window = shown(MainWindow(Session(InlineRunner()), preferences, "image"))
+    for words in ("Weights of the loss (Eq. 9)", "Bild 8: jeder Term", "not given in the paper"):
+        assert with_citations(words).count(f'href="{CITATION}"') == 1
+    assert with_citations("no reference & none") == "no reference & none"
+    label = shown(heading("Weights of the loss (Eq. 9)"))
+    assert label.openExternalLinks()
+    QDesktopServices.openUrl(QUrl(CITATION))
+    wait(lambda: window.findChild(QDialog, "about_dialog") is not None)
+    dialog = window.findChild(QDialog, "about_dialog")
+    assert any("Geometry-Preserving" in each.text() for each in dialog.findChildren(QLabel))
+    dialog.close()

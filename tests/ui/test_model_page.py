@@ -220,7 +220,7 @@ def test_that_what_cannot_be_done_is_said(page):
         "No particle is open",
         "There is no model to draw from",
         "There are no drawn particles yet",
-        "Models are judged on measured particles",
+        "Models are evaluated on measured particles",
         "There is no model to save",
         "A card is made of a fitted sample",
     ]
@@ -256,16 +256,16 @@ def test_that_stop_answers_before_the_work_has_ended(shown):
     panel = shown(EvaluationPanel())
     asked = []
     panel.cancelRequested.connect(asked.append)
-    panel.show_task(Task(3, "judge", "Judging models"))
+    panel.show_task(Task(3, "judge", "Evaluating models"))
     words = panel.frame.stop.text()
     panel.frame.stop.click()
     assert asked == [3]
     for _ in range(2):
         assert not panel.frame.stop.isEnabled()
         assert panel.frame.stop.text() == "Stopping …"
-        panel.show_task(Task(3, "judge", "Judging models", 1, 10))
+        panel.show_task(Task(3, "judge", "Evaluating models", 1, 10))
     panel.show_task(None)
-    panel.show_task(Task(4, "judge", "Judging models"))
+    panel.show_task(Task(4, "judge", "Evaluating models"))
     assert panel.frame.stop.isEnabled()
     assert panel.frame.stop.text() == words
 

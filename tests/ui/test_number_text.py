@@ -7,7 +7,7 @@ from PySide6.QtTest import QTest
 
 from regolith_studio.descriptors.describe import describe
 from regolith_studio.geometry.sphere_points import icosphere
-from regolith_studio.messages import Message
+from regolith_studio.messages import Message, Number
 from regolith_studio.ui.panels.descriptor_table import DescriptorTablePanel
 from regolith_studio.ui.translation import tr, translate
 from regolith_studio.ui.widgets.labels import grouped_number, short_number
@@ -48,9 +48,11 @@ def test_that_a_german_window_writes_commas_and_only_numbers_change(speaking):
         "63,00",
         "12.260",
     )
-    found = Message("{name}: {error}, {count}", name="apollo.1", error="0.76 %", count="2,918")
-    assert translate(found) == "apollo.1: 0,76 %, 2.918"
-    assert str(found) == "apollo.1: 0.76 %, 2,918"
+    found = Message(
+        "{name}: {error}, {count}", name="12.5", error=Number(0.76, ".2f", " %"), count=Number(2918, ",")
+    )
+    assert translate(found) == "12.5: 0,76 %, 2.918"
+    assert str(found) == "12.5: 0.76 %, 2,918"
     assert tr("at most {reach:.3g} in {name}", reach=0.25, name="a.b") == "at most 0,25 in a.b"
 
 

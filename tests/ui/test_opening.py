@@ -103,6 +103,7 @@ def test_that_a_unit_is_changed_afterwards_and_undo_goes_back(opening, monkeypat
     write_ball(tmp_path / "b" / "two.stl", 30.0)
     press("opening_add")
     commands.open_paths([tmp_path / "b" / "two.stl"], "um")
+    session.select("two")
     before = size(session)
     assert before == pytest.approx(50_000.0, rel=0.1)
     monkeypatch.setattr(
@@ -111,8 +112,10 @@ def test_that_a_unit_is_changed_afterwards_and_undo_goes_back(opening, monkeypat
     commands.change_unit("one")
     assert names(session) == ["one", "two"]
     assert size(session) == pytest.approx(before / 1000.0, rel=1e-6)
+    assert session.choices.selected == "two"
     commands.undo()
     assert size(session) == pytest.approx(before, rel=1e-6)
+    assert session.choices.selected == "two"
 
 
 def test_that_the_unit_of_a_particle_without_a_file_is_refused(opening):

@@ -222,7 +222,7 @@ def test_that_health_is_told_by_an_icon():
     assert health_word(entry("a")) == "unknown"
     assert health_word(measured("a", 1.0)) == "sound"
     mended = Particle("a", icosphere(1), notes=("A hole was closed.",))
-    assert health_word(ParticleEntry("a", mended, inspect(mended.mesh))) == "mended"
+    assert health_word(ParticleEntry("a", mended, inspect(mended.mesh))) == "repaired"
     open_mesh = type(mended.mesh)(mended.mesh.vertices, mended.mesh.faces[1:])
     assert health_word(ParticleEntry("a", Particle("a", open_mesh), inspect(open_mesh))) == "unsound"
 

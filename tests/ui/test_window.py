@@ -154,7 +154,7 @@ def test_that_meshes_are_left_as_they_are_where_the_menu_says_so(window, wait, t
     window.commands.redo()
     window.commands.open_paths([path], "um")
     wait(lambda: [entry.id for entry in window.session.particles] == ["egg"], SECONDS)
-    assert window.session.particles[0].particle.notes == ("It is inside out: its faces look inwards.",)
+    assert window.session.particles[0].particle.notes == ("Its normals point inwards.",)
 
 
 @pytest.mark.parametrize(

@@ -12,7 +12,7 @@ from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.descriptors.comparison import relative_errors
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.half_spaces import HalfSpaces
-from regolith_studio.messages import N_, Message, join_messages
+from regolith_studio.messages import N_, Message, Number, join_messages
 
 CONSTRAINT_KEYS = ("volume", "sphericity", "min_diameter", "max_diameter", "aspect_ratio")
 """Descriptors in the order of :mod:`regolith_studio.coarsening.exact.constraints`."""
@@ -151,7 +151,7 @@ def _listed(missed: Mapping[str, float], request: ConstraintRequest) -> Message:
 
 def _per_cent(error: float) -> str:
     """Two digits, and no power of ten for errors of 100 per cent and more."""
-    return f"{100 * error:.2g}" if error < 0.995 else f"{100 * error:.0f}"
+    return Number(100 * error, ".2g") if error < 0.995 else Number(100 * error, ".0f")
 
 
 def own_planes(target: Target, below: int) -> HalfSpaces | None:

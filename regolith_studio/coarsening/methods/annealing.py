@@ -102,7 +102,7 @@ class AnnealingMethod:
     """
 
     key = "annealing"
-    label = N_("Simulated annealing (paper)")
+    label = N_("Simulated annealing")
     Settings = AnnealingSettings
 
     def run(

@@ -39,7 +39,7 @@ from regolith_studio.imaging.segmentation.thresholding import (
 from regolith_studio.imaging.volume import Volume
 from regolith_studio.imaging.volume_slabs import ScratchArrays, SliceSource, slab_ranges, thick_slabs
 from regolith_studio.io.tables import Column, Table
-from regolith_studio.messages import N_, Message
+from regolith_studio.messages import N_, Message, Number
 
 
 @dataclass(frozen=True)
@@ -136,9 +136,9 @@ class Segmentation:
         return Message(
             template,
             counts=self.counts,
-            level=f"{self.level:g}",
+            level=Number(self.level, "g"),
             small=self.n_small,
-            voxels=f"{self.n_not_finite:,}",
+            voxels=Number(self.n_not_finite, ","),
         )
 
 
@@ -302,7 +302,7 @@ def _parted(
         numbers, found.bodies, found.edges, settings.splitting, settings.cleaning.fill_pores, settings.tiles
     )
     for done, total in splitter.steps(least):
-        yield SegmentationProgress(N_("Parting touching grains"), done, total)
+        yield SegmentationProgress(N_("Separating touching grains"), done, total)
     return (yield from _renumbered(numbers, splitter.n_grains, least)), splitter.n_grains
 
 

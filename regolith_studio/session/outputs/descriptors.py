@@ -20,7 +20,7 @@ def described(particle: Particle, facts: MeasuredParticle) -> dict[str, Any]:
     """One particle as ``describe --json`` prints it: name, descriptors by key, health, source.
 
     ``health`` is that of the mesh that was measured, with what its star point cannot see;
-    ``health_before_repair`` is that of the mesh as it came, and ``repair`` says what was done in between.
+    ``health_before_repair`` is that of the mesh as it was read, and ``repair`` says what was done in between.
     """
     entry: dict[str, Any] = {"name": particle.name, "group": particle.group, "unit": "um"}
     entry |= dict(facts.descriptors or {})
@@ -64,7 +64,7 @@ def short_table(particles: Sequence[Particle], facts: Sequence[MeasuredParticle]
 def _soundness(particle: Particle, facts: MeasuredParticle) -> str:
     if not facts.health.sound:
         return "no"
-    return "mended" if particle.repair is not None and particle.repair.actions else "yes"
+    return "repaired" if particle.repair is not None and particle.repair.actions else "yes"
 
 
 class TableItem(Protocol):

@@ -94,8 +94,8 @@ class GaussianRadiusModel:
     """Unbiased estimates: mu = mean of c_00, A_0 its variance (n - 1), A_l = mean of c_lm^2."""
 
     key = KEY
-    label = N_("Gaussian field (the paper's)")
-    summary = N_("Independent normal coefficients; draws with a negative radius are thrown away.")
+    label = N_("Gaussian field")
+    summary = N_("Independent normal coefficients; draws with a negative radius are rejected.")
     Settings = GaussianFieldSettings
 
     def fit(self, sample: Sample, settings: GaussianFieldSettings | None = None) -> GaussianField:

@@ -95,10 +95,8 @@ class GaussianMixtureModel:
     """Expectation and maximisation on c_00 and the power of each degree."""
 
     key = KEY
-    label = N_("Mixture of the paper's fields")
-    summary = N_(
-        "The paper's outlook: constituents with sizes and spectra of their own, in the radius itself."
-    )
+    label = N_("Mixture of Gaussian fields")
+    summary = N_("Constituents with sizes and spectra of their own, in the radius itself.")
     Settings = MixtureSettings
 
     def fit(self, sample: Sample, settings: MixtureSettings | None = None) -> GaussianMixture:

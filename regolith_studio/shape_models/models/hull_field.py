@@ -219,7 +219,7 @@ class HullFieldModel:
     key = KEY
     label = N_("Field drawn to its hull")
     summary = N_(
-        "Parametric, with facets: size, form, roughness and hull ratio go together as in the sample."
+        "Parametric, with facets: size, form, roughness and hull ratio are correlated as in the sample."
     )
     Settings = HullFieldSettings
 

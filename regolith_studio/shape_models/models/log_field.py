@@ -150,7 +150,9 @@ class LogFieldModel:
 
     key = KEY
     label = N_("Field in log r")
-    summary = N_("Positive by construction; sizes and spectrum apart, so that it extrapolates.")
+    summary = N_(
+        "Positive by construction; size and spectrum are modelled separately, so that it extrapolates."
+    )
     Settings = LogFieldSettings
 
     def fit(self, sample: Sample, settings: LogFieldSettings | None = None) -> LogField:

@@ -74,11 +74,11 @@ class SampleMatchedSettings:
     turn: float = field(
         default=0.45,
         metadata={
-            "label": N_("Turn [rad]"),
+            "label": N_("Rotation [rad]"),
             "maximum": 2.0,
             "step": 0.1,
             "decimals": 2,
-            "tip": N_("Mean rotation of a round particle; long ones are turned less."),
+            "tip": N_("Mean rotation of a round particle; elongated ones are rotated less."),
         },
     )
     n_neighbours: int = field(
@@ -86,7 +86,7 @@ class SampleMatchedSettings:
         metadata={
             "label": N_("Neighbours"),
             "minimum": 1,
-            "tip": N_("Particles that may lend their ellipsoid."),
+            "tip": N_("Nearest particles whose ellipsoid may be used."),
         },
     )
     size_jitter: float = field(

@@ -87,7 +87,7 @@ class BatchDialog(QDialog):
         for key, box in self.results.items():
             box.setObjectName(f"batch_{key}")
             box.setChecked(getattr(Outputs(), key))
-        self.resume = QCheckBox(tr("Go on with the run that has not ended"))
+        self.resume = QCheckBox(tr("Resume the unfinished run"))
         self.resume.setObjectName("batch_resume")
         self.resume.setChecked(True)
         self.workers = WorkersField()
@@ -148,7 +148,7 @@ class BatchDialog(QDialog):
         who = tr_count(N_("1 worker"), N_("{count} workers"), executor.workers)
         link = f'<a href="{executor.dashboard}">{executor.dashboard}</a>'
         self.dashboard.setText(
-            tr("{who}, watched at {link}", who=who, link=link) if executor.dashboard else who
+            tr("{who}, dashboard at {link}", who=who, link=link) if executor.dashboard else who
         )
         self.dashboard.show()
 
@@ -183,10 +183,12 @@ class BatchDialog(QDialog):
         form.addRow(tr("Write:"), grid)
         form.addRow(tr("Into:"), self.folder)
         form.addRow("", self.resume)
-        form.addRow(tr("Work done by:"), self.workers)
+        form.addRow(tr("Run on:"), self.workers)
         layout = QVBoxLayout(self)
         layout.addLayout(form)
-        promise = tr("The results are the same bytes whoever works, and a run that was stopped can go on.")
+        promise = tr(
+            "The results do not depend on the number of processes, and a stopped run can be resumed."
+        )
         layout.addWidget(remark(promise))
         layout.addStretch(1)
         for widget in (self.state, self.dashboard, self.bar, self.box):
@@ -208,7 +210,7 @@ class BatchDialog(QDialog):
             sentence = str(error)
         else:
             blocked = is_unfinished(request.folder) and not request.resume
-            begun = tr("The folder holds a run that has not ended: go on with it, or choose another folder.")
+            begun = tr("The folder contains an unfinished run: resume it, or choose another folder.")
             sentence = begun if blocked else ""
         self.state.setText(sentence)
         self.go.setEnabled(not sentence)

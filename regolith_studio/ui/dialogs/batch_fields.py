@@ -135,7 +135,7 @@ class WorkersField(QWidget):
         super().__init__()
         self.executor = QComboBox()
         self.executor.setObjectName("batch_place")
-        self.executor.setAccessibleName(tr("Work done by"))
+        self.executor.setAccessibleName(tr("Run on"))
         for key, label in PLACES.items():
             self.executor.addItem(tr(label), key)
         self.count = QSpinBox()

@@ -1,8 +1,10 @@
 """About the program."""
 
+from collections.abc import Callable
 from importlib.metadata import PackageNotFoundError, metadata, version
 
-from PySide6.QtCore import Qt
+from PySide6.QtCore import QObject, Qt, QUrl, Slot
+from PySide6.QtGui import QDesktopServices
 from PySide6.QtWidgets import (
     QDialog,
     QDialogButtonBox,
@@ -15,7 +17,7 @@ from PySide6.QtWidgets import (
 from regolith_studio import __version__
 from regolith_studio.ui.icons import pixmap
 from regolith_studio.ui.translation import tr
-from regolith_studio.ui.widgets.labels import heading, remark
+from regolith_studio.ui.widgets.labels import CITATION, heading, remark
 
 PAPER = (
     "Geometry-Preserving Mesh Coarsening of Stochastically Generated Regolith Particles"
@@ -53,6 +55,32 @@ def about_dialog(parent: QWidget, renderer: str) -> QDialog:
     row.addWidget(mark)
     row.addLayout(text, 1)
     return _closed(dialog, row)
+
+
+class CitationLinks(QObject):
+    """Opens the citation of the paper for every link of a label to it.
+
+    Parameters
+    ----------
+    show
+        Opens the dialog that cites the paper.
+    """
+
+    def __init__(self, show: Callable[[], object], parent: QObject) -> None:
+        super().__init__(parent)
+        self._show = show
+        # PySide6 takes a text, not the bytes that its stubs declare
+        QDesktopServices.setUrlHandler(QUrl(CITATION).scheme(), self, "open")  # type: ignore[arg-type]
+        self.destroyed.connect(_follow_no_links)
+
+    @Slot(QUrl)
+    def open(self, _address: QUrl) -> None:
+        """Show the citation."""
+        self._show()
+
+
+def _follow_no_links() -> None:
+    QDesktopServices.unsetUrlHandler(QUrl(CITATION).scheme())
 
 
 def _licences() -> str:

@@ -35,7 +35,7 @@ FACETS = NumberSpec(
     FACETS_LIMITS[0],
     60,
     limit=FACETS_LIMITS[1],
-    tip=N_("Half-spaces of Eq. 5; n facets in general position have 2n−4 vertices and 4n−12 triangles."),
+    tip=N_("n facets in general position have 2n−4 vertices and 4n−12 triangles."),
 )
 TRIANGLES = NumberSpec(
     "",
@@ -43,7 +43,7 @@ TRIANGLES = NumberSpec(
     4 * FACETS_LIMITS[0] - 12,
     228,
     limit=4 * FACETS_LIMITS[1] - 12,
-    tip=N_("The polyhedron has as many facets as surely have no more triangles than this."),
+    tip=N_("The number of facets follows from it: n facets have at most 4n−12 triangles."),
 )
 ERROR = NumberSpec(
     "",
@@ -60,8 +60,6 @@ ERROR = NumberSpec(
 )
 TARGET_LABELS = {"fit": N_("Spherical-harmonics fit"), "particle": N_("Particle")}
 SEED_LIMIT = 2**31 - 1
-LINES = 2
-"""Visible lines of the reason why a request could not be met."""
 
 
 class CoarseningPanel(QWidget):
@@ -168,7 +166,7 @@ class CoarseningPanel(QWidget):
         elif now == count:
             words = tr("Nothing is gained beyond {count} facets", count=count)
         else:
-            words = tr("Take {count} facets: more gain nothing", count=count)
+            words = tr("Use {count} facets: more gain nothing", count=count)
         self.enough.setText(words)
         self.enough.setToolTip(tr("No error falls by more than 0.1 % with more facets."))
         self.enough.setEnabled(now != count)
@@ -214,7 +212,7 @@ class CoarseningPanel(QWidget):
         layout.addLayout(amount)
         layout.addWidget(self.enough)
         layout.addWidget(self.more)
-        layout.addWidget(FixedHeightText((self.outcome,), LINES))
+        layout.addWidget(FixedHeightText((self.outcome,)))
 
     def _connect(self) -> None:
         self.n_facets.valueChanged.connect(lambda n: self.valueChanged.emit({"n_facets": int(n)}))

@@ -14,9 +14,7 @@ from regolith_studio.ui.widgets.heat_table import HeatTable
 from regolith_studio.ui.widgets.labels import plain_symbol
 from regolith_studio.ui.widgets.study_frame import StudyFrame
 
-PLACEHOLDER = N_(
-    "Root mean squared relative error of each descriptor, one row a loss function, as in Fig. 8 of the paper."
-)
+PLACEHOLDER = N_("Root mean squared relative error of each descriptor, one row a loss function.")
 HEADERS = (*(plain_symbol(CATALOGUE[key].symbol) for key in LOSS_KEYS), "Jaccard")
 KEYS = (*LOSS_KEYS, JACCARD)
 

@@ -23,10 +23,8 @@ L_MAX = NumberSpec(
     N_("Maximum degree"),
     0,
     FIT_DEGREE,
-    tip=N_("Degree at which the series of Eq. 4 is cut: 0 is a sphere; the paper uses 10."),
+    tip=N_("Degree at which the series is cut: 0 is a sphere, 10 keeps the form, 30 nearly all details."),
 )
-LINES, MAX_LINES = 4, 7
-"""Visible lines of warnings, in low and in high windows."""
 
 
 class FitPanel(QWidget):
@@ -56,7 +54,7 @@ class FitPanel(QWidget):
         for widget in (
             self.l_max,
             self.more,
-            FixedHeightText((self.findings, self.warnings), LINES, MAX_LINES),
+            FixedHeightText((self.warnings, self.findings)),
         ):
             layout.addWidget(widget)
         self.set_findings(None)

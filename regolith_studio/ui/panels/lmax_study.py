@@ -16,9 +16,7 @@ from regolith_studio.ui.widgets.number_fields import DecimalField
 from regolith_studio.ui.widgets.plots.curves import CurvePlot, PlotCurve
 from regolith_studio.ui.widgets.study_frame import StudyFrame
 
-PLACEHOLDER = N_(
-    "Root mean squared relative error of each descriptor against l<sub>max</sub>, as in Fig. 3 of the paper."
-)
+PLACEHOLDER = N_("Root mean squared relative error of each descriptor against l<sub>max</sub>.")
 
 
 class LmaxStudyPanel(QWidget):

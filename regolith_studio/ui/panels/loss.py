@@ -22,8 +22,6 @@ OWN = "own:"
 """Prefix of the keys of own presets."""
 SLIDER_END = 2.0
 LARGEST = 100.0
-LINES = 3
-"""Visible lines of the origin of a preset."""
 
 
 def weight_spec(key: str) -> NumberSpec:
@@ -149,7 +147,7 @@ class LossPanel(QWidget):
         layout.addWidget(heading(tr("Weights of the loss (Eq. 9)")))
         layout.addWidget(self.bar)
         layout.addLayout(grid)
-        layout.addWidget(FixedHeightText((self.origin,), LINES))
+        layout.addWidget(FixedHeightText((self.origin,)))
 
     def _connect(self) -> None:
         self.bar.chosen.connect(self._take)

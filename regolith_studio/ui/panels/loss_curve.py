@@ -16,9 +16,7 @@ class LossCurvePanel(QWidget):
     def __init__(self) -> None:
         super().__init__()
         self.setObjectName("loss_curve")
-        self.plot = CurvePlot(
-            tr("Step"), tr("Loss (Eq. 9)"), tr("The loss appears when the coarsening begins.")
-        )
+        self.plot = CurvePlot(tr("Step"), tr("Loss"), tr("The loss appears when the coarsening begins."))
         self.plot.canvas.setLimits(xMin=-0.5)  # there is no step before the first
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)

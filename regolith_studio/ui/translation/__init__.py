@@ -7,8 +7,8 @@ keeps ``resources/translations`` in step with the code by lupdate and lrelease.
 
 from PySide6.QtCore import QCoreApplication
 
-from regolith_studio.messages import Message
-from regolith_studio.ui.translation.numbers import NumberFormatter, localized_if_number
+from regolith_studio.messages import Message, Number
+from regolith_studio.ui.translation.numbers import NumberFormatter, localized
 
 _FORMATTER = NumberFormatter()
 
@@ -29,10 +29,12 @@ def tr_count(one: str, many: str, count: int, **values: object) -> str:
 
 def translate(text: str) -> str:
     """A text of the layers below in the language of the window, with its values translated and filled in."""
+    if isinstance(text, Number):
+        return localized(text)
     if not isinstance(text, Message):
         return tr(text)
     values = {
-        name: translate(each) if isinstance(each, Message) else localized_if_number(each)
+        name: translate(each) if isinstance(each, Message | Number) else each
         for name, each in text.values.items()
     }
     return tr(text.template, **values)

@@ -10,8 +10,6 @@ from typing import Any
 
 from PySide6.QtCore import QLocale
 
-_NUMBER = re.compile(r"[+-]?\d[\d,]*(\.\d+)?(e[+-]?\d+)?\s?[%°]?")
-
 
 def localized(text: str) -> str:
     """A text with numbers as Python writes them, with the decimal and group signs of the language.
@@ -25,11 +23,6 @@ def localized(text: str) -> str:
 def number_text(value: float, form: str) -> str:
     """A number in a format of Python, such as ``.3g``, with the signs of the language."""
     return localized(format(value, form))
-
-
-def localized_if_number(value: Any) -> Any:
-    """A number that a layer below has formatted, localized; anything else as it is."""
-    return localized(value) if isinstance(value, str) and _NUMBER.fullmatch(value) else value
 
 
 def with_decimal_point(text: str) -> str:

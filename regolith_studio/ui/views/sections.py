@@ -57,7 +57,7 @@ class Sections(QObject):
         self.changed.emit()
 
     def set_flipped(self, flipped: bool) -> None:
-        """Take the other half away."""
+        """Show the other half."""
         self.flipped = flipped
         self.changed.emit()
 

@@ -12,7 +12,7 @@ DEFINITIONS = {
     "volume": N_("volume that the surface encloses"),
     "surface_area": N_("area of the surface"),
     "convex_hull_volume": N_("volume of the convex hull"),
-    JACCARD: N_("1 − volume of the intersection / volume of the union; “IoU” in the paper"),
+    JACCARD: N_("1 − volume of the intersection / volume of the union"),
 }
 """In place of a formula that only repeats the symbol."""
 

@@ -2,17 +2,19 @@
 
 from collections.abc import Sequence
 
-from PySide6.QtCore import QEvent, QSize, Qt
+from PySide6.QtCore import QEvent, QPoint, QSize, Qt
 from PySide6.QtGui import QResizeEvent
-from PySide6.QtWidgets import QLabel, QScrollArea, QSizePolicy, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QLabel, QScrollArea, QSizePolicy, QToolButton, QVBoxLayout, QWhatsThis, QWidget
 
 from regolith_studio.ui.translation import tr
 
+NOTE_LINES = 2
+"""Visible lines of a note between controls."""
+SIGN = "i"
+
 
 class FixedHeightText(QScrollArea):
-    """Labels in a scroll area with the height of a fixed number of lines.
-
-    Further lines are scrolled by the mouse or, with the focus, by the arrow keys.
+    """Labels with the height of a fixed number of lines; where they are longer, a button shows all.
 
     Parameters
     ----------
@@ -20,14 +22,11 @@ class FixedHeightText(QScrollArea):
         From top to bottom; hidden ones take no space.
     lines
         Visible at once.
-    max_lines
-        Visible where a column is high enough for them, see
-        :func:`~regolith_studio.ui.layout.scrolled_column`.
     """
 
-    def __init__(self, texts: Sequence[QLabel], lines: int, max_lines: int = 0) -> None:
+    def __init__(self, texts: Sequence[QLabel], lines: int = NOTE_LINES) -> None:
         super().__init__()
-        self._lines, self._spare, self._max_lines = lines, 0, max(lines, max_lines)
+        self._lines, self._texts = lines, tuple(texts)
         self._inside = QWidget()
         column = QVBoxLayout(self._inside)
         column.setContentsMargins(0, 0, 0, 0)
@@ -39,32 +38,36 @@ class FixedHeightText(QScrollArea):
         self.setProperty("role", "texts")
         self.setWidgetResizable(True)
         self.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        self.setVerticalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
         self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)
         self.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         self.setAccessibleName(tr("Remarks"))
         self.setWidget(self._inside)
-        self.verticalScrollBar().rangeChanged.connect(self._update_focus_policy)
+        self.more = QToolButton(self)
+        self.more.setObjectName("whole_text")
+        self.more.setText(SIGN)
+        self.more.setAutoRaise(True)
+        self.more.setToolTip(tr("Show the whole text"))
+        self.more.setAccessibleName(self.more.toolTip())
+        self.more.clicked.connect(self._show_all)
+        self.more.hide()
+        self.verticalScrollBar().rangeChanged.connect(self._offer_more)
 
     @property
     def line(self) -> int:
         """Height of one line."""
         return self.fontMetrics().lineSpacing()
 
-    def take_spare_lines(self, lines: int) -> int:
-        """Show up to so many more lines; returns how many are used."""
-        taken = max(0, min(lines, self._max_lines - self._lines))
-        if taken != self._spare:
-            self._spare = taken
-            self.updateGeometry()
-        return taken
+    def whole_text(self) -> str:
+        """All that the visible labels say."""
+        return "<br>".join(each.text() for each in self._texts if each.text() and not each.isHidden())
 
     def sizeHint(self) -> QSize:
-        lines = (self._lines + self._spare) * self.line
-        return QSize(super().sizeHint().width(), lines + 2 * self.frameWidth())
+        return QSize(super().sizeHint().width(), self._lines * self.line + 2 * self.frameWidth())
 
     def minimumSizeHint(self) -> QSize:
-        bar = self.verticalScrollBar().sizeHint().width()
-        return QSize(self._inside.minimumSizeHint().width() + bar, self.sizeHint().height())
+        button = self.more.sizeHint().width()
+        return QSize(self._inside.minimumSizeHint().width() + button, self.sizeHint().height())
 
     def changeEvent(self, event: QEvent) -> None:
         super().changeEvent(event)
@@ -73,9 +76,16 @@ class FixedHeightText(QScrollArea):
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)
-        self._update_focus_policy()
+        self._offer_more()
 
-    def _update_focus_policy(self, *_range: int) -> None:
-        """Accept the focus by Tab only if there is something to scroll."""
-        more = self.verticalScrollBar().maximum() > 0
-        self.setFocusPolicy(Qt.FocusPolicy.TabFocus if more else Qt.FocusPolicy.NoFocus)
+    def _offer_more(self, *_range: int) -> None:
+        """Show the button only if a part of the text cannot be seen."""
+        needed = self.verticalScrollBar().maximum() > 0
+        size = QSize(self.more.sizeHint().width(), min(self.line + 4, self.height()))
+        self.setViewportMargins(0, 0, size.width() if needed else 0, 0)
+        self.more.resize(size)
+        self.more.move(self.width() - size.width(), 0)
+        self.more.setVisible(needed)
+
+    def _show_all(self) -> None:
+        QWhatsThis.showText(self.mapToGlobal(QPoint(0, self.height())), self.whole_text(), self)

@@ -10,6 +10,14 @@ from PySide6.QtWidgets import QLabel, QSizePolicy, QWidget
 from regolith_studio.ui.translation.numbers import localized, number_text
 
 _TAG = re.compile(r"(<[^<>]*>)")
+_CITED = re.compile(
+    r"((?:Eq|Fig|Gl|Abb)\. \d+"
+    r"|(?:Figures?|Bilder|Bild|Abbildung(?:en)?|Tab(?:le|elle)|[Ss]ection|Abschnitt) \d[\d.]*"
+    r"(?: (?:and|und) \d+)?|\bthe paper\b|\b(?:im|des|der) Artikels?\b)"
+)
+"""References to the paper in the languages of the window."""
+CITATION = "regolith:citation"
+"""Address of the citation, see :class:`regolith_studio.ui.dialogs.help.CitationLinks`."""
 _SYMBOL = re.compile(r"\b([lDA])_(min|max|l)\b")
 _SUBSCRIPT = re.compile(r"([A-Za-zΨ])_([A-Za-z0-9]+)")
 
@@ -35,16 +43,36 @@ def unbroken(rich: str) -> str:
     return "".join(part if part.startswith("<") else part.replace(" ", "&nbsp;") for part in _TAG.split(rich))
 
 
+def with_citations(words: str) -> str:
+    """Rich text in which every reference to the paper is a link; a text without one is returned unchanged."""
+    rich = words if _TAG.search(words) else html.escape(words, quote=False)
+    linked, count = _CITED.subn(rf'<a href="{CITATION}">\1</a>', rich)
+    return linked if count else words
+
+
+class CitingLabel(QLabel):
+    """A label whose references to the paper open its citation."""
+
+    def __init__(self, text: str = "") -> None:
+        super().__init__()
+        self.setOpenExternalLinks(True)
+        self.setText(text)
+
+    def setText(self, text: str) -> None:
+        """Show another text."""
+        super().setText(with_citations(text))
+
+
 def heading(text: str) -> QLabel:
     """The heading of a group of controls."""
-    label = QLabel(text)
+    label = CitingLabel(text)
     label.setProperty("role", "heading")
     return label
 
 
 def remark(text: str = "", role: str = "remark") -> QLabel:
     """A wrapped text in a muted colour, or in that of a warning if `role` is ``warning``."""
-    label = QLabel(text)
+    label = CitingLabel(text)
     label.setProperty("role", role)
     label.setWordWrap(True)
     return label

@@ -18,7 +18,7 @@ RIGHT = int(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
 HEALTH_ICONS = {
     "sound": "sound",
     "coarse": "doubtful",
-    "mended": "doubtful",
+    "repaired": "doubtful",
     "doubtful": "doubtful",
     "unsound": "unsound",
     "unknown": "unknown",

@@ -201,7 +201,7 @@ class PresetForm(ParameterForm):
         self._known = {SHIPPED: {}} | {
             key: dict(values) for key, values in kept.items() if self._fits(values)
         }
-        tip = tr("As the paper gives them; a star where it gives none")
+        tip = tr("Published values; * where none is published")
         entries = [PresetEntry(SHIPPED, self._label, tip)]
         entries += [
             PresetEntry(key, key.removeprefix("own:"), tr("Own preset"), own=True)

@@ -108,7 +108,7 @@ class Toast(QFrame):
 def show_details(parent: QWidget, sentence: str, details: str) -> None:
     """Show a dialog with the whole report, which can be copied."""
     dialog = QDialog(parent)
-    dialog.setWindowTitle(tr("What happened"))
+    dialog.setWindowTitle(tr("Message"))
     dialog.resize(680, 380)
     layout = QVBoxLayout(dialog)
     first = QLabel(sentence)

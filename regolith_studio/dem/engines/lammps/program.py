@@ -53,7 +53,7 @@ class LammpsSettings:
     step_share: float = field(
         default=0.15, metadata={"label": N_("Step, in Rayleigh's time"), "minimum": 0.01, "maximum": 0.5}
     )
-    rest: float = field(default=25.0, metadata={"label": N_("Rest: time"), "minimum": 1.0, "maximum": 1e5})
+    rest: float = field(default=25.0, metadata={"label": N_("Time at rest"), "minimum": 1.0, "maximum": 1e5})
     snapshots: int = field(default=80, metadata={"label": N_("Snapshots"), "minimum": 2, "maximum": 10_000})
     restarts: int = field(default=4, metadata={"label": N_("Restarts"), "minimum": 0, "maximum": 20})
 

@@ -20,7 +20,7 @@ REPRESENTS = EngineCapabilities(
     normal=N_("unilateral constraint, no bounce; penetration is reported, stiffness is not used"),
     tangential=N_("Coulomb friction in an elliptic cone, one coefficient (the static one)"),
     cohesion=N_(
-        "pull-off force 3/2 π w R*, shared by the contact points; hardly steepens a heap: take LAMMPS"
+        "pull-off force 3/2 π w R*, shared by the contact points; little effect on a heap: use LAMMPS"
     ),
     rolling=N_("Coulomb friction against rolling and spinning"),
     coarse_graining=N_("by size; scaling the surface energy keeps cohesion over weight"),

@@ -60,10 +60,10 @@ class YadeSettings:
         default=4.0, metadata={"label": N_("Filling speed"), "minimum": 0.1, "maximum": 100.0}
     )
     rest_energy: float = field(
-        default=5e-3, metadata={"label": N_("Rest: energy"), "minimum": 1e-9, "maximum": 0.1, "decimals": 9}
+        default=5e-3, metadata={"label": N_("Energy at rest"), "minimum": 1e-9, "maximum": 0.1, "decimals": 9}
     )
     rest_time: float = field(
-        default=2.0, metadata={"label": N_("Rest: time"), "minimum": 0.1, "maximum": 1000.0}
+        default=2.0, metadata={"label": N_("Time at rest"), "minimum": 0.1, "maximum": 1000.0}
     )
     max_rest_time: float = field(
         default=20.0, metadata={"label": N_("Longest wait"), "minimum": 1.0, "maximum": 1e5}

@@ -21,9 +21,7 @@ from regolith_studio.ui.widgets.number_fields import NumbersLine
 from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec
 
 MAX_REPRESENTATIVES = 200
-POPULATION_LINES, SIZES_LINES, ASKED_LINES, STATE_LINES = (1, 2), (1, 3), (3, 3), (2, 3)
-"""Visible lines of the texts between the controls, in low and in high windows."""
-COUNT = NumberSpec("N", N_("Number of representatives"), 1, MAX_REPRESENTATIVES, tip=N_("The paper has 10."))
+COUNT = NumberSpec("N", N_("Number of representatives"), 1, MAX_REPRESENTATIVES, tip=N_("Usually 10."))
 WEIGHTINGS = {
     "number": N_("Each particle counts equally"),
     "volume": N_("Particles count by their volume"),
@@ -38,7 +36,7 @@ SIZES = {
     "discrete": (N_("Single diameters, the same for all"), "25=85.5,37=12.6,56=1.7,84=0.23,125=0.03"),
 }
 HINTS = {
-    "classes": N_("Diameters in µm; each particle moves to the nearest (Table 1 of the paper)."),
+    "classes": N_("Diameters in µm; each particle moves to the nearest."),
     "log-normal": N_("Median in µm, deviation of ln d; @volume behind it counts volume."),
     "rosin-rammler": N_("Scale, shape, smallest, largest; @volume behind it counts volume."),
     "sieve": N_("Openings in µm = shares between them; @volume behind it counts volume."),
@@ -70,7 +68,7 @@ class RepresentativesPanel(QWidget):
         layout.setContentsMargins(0, 0, 0, 0)
         for widget in (
             heading(tr("1  Representatives")),
-            FixedHeightText((self.population,), *POPULATION_LINES),
+            FixedHeightText((self.population,)),
             self.weighting,
             self.count,
             self.start,
@@ -141,7 +139,7 @@ class SizesPanel(QWidget):
         self.numbers.setAccessibleName(tr("Numbers of the size distribution"))
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
-        texts = FixedHeightText((self.hint, self.problem), *SIZES_LINES)
+        texts = FixedHeightText((self.hint, self.problem))
         for widget in (heading(tr("2  Sizes")), self.kind, self.numbers, texts):
             layout.addWidget(widget)
         self.kind.currentIndexChanged.connect(lambda _: self._show_kind())
@@ -218,8 +216,8 @@ class FolderPanel(QWidget):
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         asked, there = (
-            FixedHeightText((self.shapes,), *ASKED_LINES),
-            FixedHeightText((self.state,), *STATE_LINES),
+            FixedHeightText((self.shapes,)),
+            FixedHeightText((self.state,)),
         )
         for widget in (heading(tr("3  Dataset")), self.name, asked):
             layout.addWidget(widget)

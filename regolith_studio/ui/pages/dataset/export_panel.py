@@ -39,7 +39,7 @@ COARSE_GRAINING = NumberSpec(
     1,
     20,
     limit=1000,
-    tip=N_("1 keeps the size of the particles; the paper uses 10."),
+    tip=N_("1 keeps the size of the particles; 10 makes them ten times larger."),
 )
 PARTICLES = NumberSpec(
     "", N_("Particles drawn"), 1, 5000, limit=1_000_000, tip=N_("For formats that list single bodies.")
@@ -60,8 +60,8 @@ class ExportPanel(QWidget):
         self.coarse_graining, self.particles = NumberSlider(COARSE_GRAINING), NumberSlider(PARTICLES)
         self.coarse_graining.field.setObjectName("dataset_coarse_graining")
         self.particles.field.setObjectName("dataset_particles")
-        self.contact = PresetForm(ContactParameters, "export_contact", tr("Table 1 of the paper"))
-        self.test = PresetForm(LiftingCylinderTest, "export_test", tr("Table 2 of the paper"))
+        self.contact = PresetForm(ContactParameters, "export_contact", tr("Published contact parameters"))
+        self.test = PresetForm(LiftingCylinderTest, "export_test", tr("Published cylinder"))
         self.times = ParameterForm(ScriptTimes, "export")
         self.lossy = QCheckBox(tr("Allow formats that change shapes"))
         self.lossy.setObjectName("dataset_lossy")
@@ -171,8 +171,8 @@ class ExportPanel(QWidget):
         box = QCheckBox(exporter.label)
         box.setObjectName(f"dataset_to_{key}")
         lines = [
-            tr("Carries: {what}", what="; ".join(map(tr, exporter.carries))),
-            tr("Loses: {what}", what="; ".join(map(tr, exporter.loses))),
+            tr("Contains: {what}", what="; ".join(map(tr, exporter.carries))),
+            tr("Does not contain: {what}", what="; ".join(map(tr, exporter.loses))),
         ]
         lines += [tr("Shapes are changed: {how}", how=tr(exporter.alters))] if exporter.alters else []
         box.setToolTip("\n".join([*lines, tr("Units: {units}", units=tr(exporter.units))]))
@@ -233,13 +233,13 @@ class LossesLabel(QScrollArea):
             lost = "; ".join(map(tr, each.loses))
             lines.append(
                 "<p>"
-                + tr("<b>{label}</b> does not carry: {lost}.", label=each.label, lost=lost)
+                + tr("<b>{label}</b> does not contain: {lost}.", label=each.label, lost=lost)
                 + changed
                 + "<br>"
                 + tr("Units: {units}", units=tr(each.units))
                 + ".</p>"
             )
-        self.label.setText("".join(lines) or tr("Tick a format to see what it carries and what it loses."))
+        self.label.setText("".join(lines) or tr("Select a format to see what its files do not contain."))
 
 
 class ExportsList(QWidget):

@@ -48,7 +48,7 @@ class LibraryPanel(QWidget):
         self._context, self._theme = context, current_theme()
         self._entries: tuple[CatalogEntry, ...] = ()
         self._pictures: dict[tuple[str, str], QIcon] = {}
-        self.choose, self.again = QPushButton(tr("Folder …")), QPushButton(tr("Look again"))
+        self.choose, self.again = QPushButton(tr("Folder …")), QPushButton(tr("Refresh"))
         self.place = ElidedLabel("", role="remark")
         self.words = QLineEdit(placeholderText=tr("Filter"), clearButtonEnabled=True)
         self.tree, self.facts = QTreeWidget(), remark(tr(EMPTY))
@@ -88,7 +88,7 @@ class LibraryPanel(QWidget):
             self.place.setText(str(root))
             self._entries = ()
             job = Job(list_library, (Path(root), self._results()))
-            self._context.start(tr("Looking for datasets"), job, self._take, lane=LANE)
+            self._context.start(tr("Searching for datasets"), job, self._take, lane=LANE)
 
     def suggest(self, root: Path) -> None:
         """List this folder if none has been chosen yet; else update the list."""

@@ -318,7 +318,7 @@ class DatasetPage(PageWidget):
         """Let the dataset be built, or say at the button why it cannot."""
         reason = self.sizes.reason()
         if self._chosen is None:
-            reason = tr("There are no representatives yet: press Find first.")
+            reason = tr("There are no representatives yet: press Find representatives first.")
         self.folder.build.setEnabled(not reason)
         self.folder.build.setToolTip(reason)
 
@@ -438,7 +438,7 @@ class DatasetPage(PageWidget):
         lower = [(self.losses, tr("Limits of the formats")), (self.exports, tr("Exported"))]
         shapes = [(self.gallery, tr("Representatives")), (self.library, tr("Library"))]
         self._lower, self._shapes = tabs("dataset_lower", lower), tabs("dataset_shapes", shapes)
-        middle = stacked((upper, self._shapes, self._lower), (330, 330, 150), stretch=1)
+        middle = stacked((upper, self._shapes, self._lower), (260, 330, 120), stretch=1)
         middle.setObjectName("dataset_middle")
         results = QWidget()
         column = QVBoxLayout(results)

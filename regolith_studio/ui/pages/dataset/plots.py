@@ -34,7 +34,7 @@ class QualityPlot(CurvePlot):
         super().__init__(
             tr("Number of representatives"),
             tr("Distance to the population [deviations]"),
-            tr("How many are enough? Press Find: the curve falls to the sampling noise of the population."),
+            tr("Press Find representatives: the error against their number, and the sampling noise."),
             log_y=True,
         )
         self.setObjectName("dataset_quality")

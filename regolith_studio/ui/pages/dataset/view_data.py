@@ -23,8 +23,8 @@ def chosen_particles(particles: Sequence[Particle], chosen: ChosenParticles) -> 
         particle = particles[place]
         share = localized(f"{100 * one.weight / total:.1f} %")
         tip = tr_count(
-            N_("{name} stands for 1 particle ({share})"),
-            N_("{name} stands for {count} particles ({share})"),
+            N_("{name} represents 1 particle ({share})"),
+            N_("{name} represents {count} particles ({share})"),
             one.n_members,
             name=particle.name,
             share=share,
@@ -39,7 +39,7 @@ def shapes(dataset: Dataset) -> list[GalleryItem]:
     for one, weight in zip(dataset.representatives, dataset.weights, strict=True):
         solid = one.shape
         tip = tr(
-            "{name}: {faces} facets, {vertices} vertices, stands for {count} particles",
+            "{name}: {faces} facets, {vertices} vertices, represents {count} particles",
             name=one.name,
             faces=solid.n_facets,
             vertices=solid.n_vertices,

@@ -39,7 +39,7 @@ class SectionPanel(QWidget):
         self.direction.setMinimumContentsLength(7)
         self.flipped = QCheckBox(tr("Flip"))
         self.flipped.setObjectName("section_flipped")
-        self.flipped.setToolTip(tr("Take the other half away"))
+        self.flipped.setToolTip(tr("Show the other half"))
         self.place = NumberSlider(PLACE)
         self.place.setObjectName("section_place")
         self.plot = CurvePlot("y [µm]", "z [µm]", tr("Turn the cross-section on in the tool bar."))

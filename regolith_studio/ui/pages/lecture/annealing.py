@@ -61,12 +61,12 @@ class AnnealingView(QWidget):
         self.link = CameraLink([frame.view for frame in self.frames.values()])
         self.sentence = WrappedLabel(tr(WAIT))
         self.sentence.setObjectName("annealing_sentence")
-        self.loss_formula = FormulaLabel(tr("Eq. 9 with its numbers"))
+        self.loss_formula = FormulaLabel(tr("The loss with its numbers"))
         self.rule = FormulaLabel(tr("The proposal, T(k) and the decision with their numbers"))
-        self.exact_formula = FormulaLabel(tr("Eq. 9 of the exact method"))
-        self.loss = CurvePlot(tr("Step k"), tr("Loss L (Eq. 9)"), tr(WAIT))
+        self.exact_formula = FormulaLabel(tr("The loss of the exact method"))
+        self.loss = CurvePlot(tr("Step k"), tr("Loss L"), tr(WAIT))
         self.chance = CurvePlot(tr("Step k"), tr("Probability"), tr(WAIT))
-        self.terms = BarPlot(tr("Term of Eq. 9"), "α ε", tr(WAIT), unit="")
+        self.terms = BarPlot(tr("Term of the loss"), "α ε", tr(WAIT), unit="")
         self._plots = (self.loss, self.chance, self.terms)
         for plot, name in zip(self._plots, ("loss", "chance", "terms"), strict=True):
             plot.setObjectName(f"annealing_{name}")
@@ -172,7 +172,7 @@ class AnnealingView(QWidget):
         exact = lesson.exact if lesson is not None else None
         if lesson is None or exact is None:
             frame.view.draw(surfaces.clear)
-            frame.set_texts(tr("Exact method"), tr("being found …"))
+            frame.set_texts(tr("Exact method"), tr("being computed …"))
             self.exact_formula.set_lines()
             return
         veil = SceneShape(FIT, lesson.imitated)
@@ -218,7 +218,7 @@ class AnnealingView(QWidget):
         for outcome, label, colour in (
             (texts.ACCEPTED, tr("better"), self._theme.good),
             (texts.LUCKY, tr("worse, accepted"), self._theme.fit),
-            (texts.REFUSED, tr("refused"), self._theme.bad),
+            (texts.REFUSED, tr("rejected"), self._theme.bad),
         ):
             chosen = [
                 (float(step.number), step.move.proposed.loss)

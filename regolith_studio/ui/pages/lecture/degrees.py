@@ -48,7 +48,7 @@ class DegreesView(QWidget):
         self.link = CameraLink([frame.view for frame in self.frames.values()])
         self.sentence = remark(tr(WAIT), role="")
         self.sentence.setObjectName("degrees_sentence")
-        self.formula = FormulaLabel(tr("Eq. 4 with its numbers"))
+        self.formula = FormulaLabel(tr("The series with its numbers"))
         self.errors = CurvePlot(tr("Degree l<sub>max</sub>"), tr("Error [%]"), tr(WAIT), log_y=True)
         self.errors.setObjectName("degrees_errors")
         self.playback = PlaybackBar("degrees", N_("degree"), self._is_ready)

@@ -61,7 +61,7 @@ class FieldView(QWidget):
         )
         self.spectrum = SpectrumEditor(tr("No material."))
         self.spectrum.setObjectName("field_spectrum")
-        self.reset, self.another = QPushButton(tr("Reset the spectrum")), QPushButton(tr("Draw anew"))
+        self.reset, self.another = QPushButton(tr("Reset the spectrum")), QPushButton(tr("Draw again"))
         self.reset.setObjectName("field_reset")
         self.another.setObjectName("field_another")
         self._arrange()
@@ -160,8 +160,8 @@ def _sentence(drawn: DrawnField, amplitudes: FloatArray, seed: int) -> str:
     loudest = int(amplitudes.argmax()) + 1
     expected = float(np.sqrt(((2 * np.arange(1, len(amplitudes) + 1) + 1) * amplitudes**2).sum()))
     return tr(
-        "Draw {number}. The radius strays by {found:.1%} from its mean; {expected:.1%} is expected over many"
-        " draws. Degree {loudest} is the strongest: {share:.2g} %.",
+        "Draw {number}. The radius deviates by {found:.1%} from its mean; {expected:.1%} is expected"
+        " over many draws. Degree {loudest} is the strongest: {share:.2g} %.",
         number=seed + 1,
         found=float(drawn.values.std()),
         expected=expected,

@@ -207,7 +207,7 @@ class LecturePage(PageWidget):
         self.degrees.show_particle(entry.particle.mesh, entry.id)
         show = self.degrees.show_steps
         job = Job(trace_degrees, (entry.particle.mesh, fit))
-        self._context.start(tr("Growing the fit"), job, show, partial=show, lane="degrees")
+        self._context.start(tr("Fitting degree by degree"), job, show, partial=show, lane="degrees")
 
     def _show_particles(self) -> None:
         ids = [entry.id for entry in self._session.particles]

@@ -90,11 +90,11 @@ def decision_line(step: AnnealingStep) -> str:
     if move is None:
         return r"$\Delta L<0\;$ " + tr("or") + r" $\;u<T(k)\quad\Rightarrow\quad$ " + tr("accept")
     if move.proposed is None:
-        return tr("no polyhedron") + r" $\quad\Rightarrow\quad$ " + tr("refuse")
+        return tr("no polyhedron") + r" $\quad\Rightarrow\quad$ " + tr("reject")
     change = move.proposed.loss - move.before.loss
     if move.better:
         return rf"$\Delta L={_signed(change)}<0\quad\Rightarrow\quad$ " + tr("accept")
-    sign, end = ("<", tr("accept")) if move.accepted else (r"\geq ", tr("refuse"))
+    sign, end = ("<", tr("accept")) if move.accepted else (r"\geq ", tr("reject"))
     drawn = rf"u={_number(move.drawn)}{sign}T(k)"
     return rf"$\Delta L={_signed(change)}\geq 0,${BREAK}$\;{drawn}${BREAK}$\;\Rightarrow\;$ {end}"
 
@@ -114,7 +114,7 @@ def sentence_of(step: AnnealingStep, lesson: AnnealingLesson) -> str:
     if move is None:
         return tr(
             "The start: the convex hull, decimated to {count} planes. In each step one plane is moved at"
-            " random, and the move is taken or not.",
+            " random, and the move is accepted or rejected.",
             count=lesson.n_facets,
         )
     moved = tr(
@@ -127,7 +127,7 @@ def sentence_of(step: AnnealingStep, lesson: AnnealingLesson) -> str:
         moved += tr(", one that bounds no facet at the moment")
     if move.proposed is None:
         return tr(
-            "{moved}: the half-spaces bound no polyhedron any more. Refused without asking T(k).", moved=moved
+            "{moved}: the half-spaces bound no polyhedron any more. Rejected without drawing u.", moved=moved
         )
     losses = dict(zip(("before", "after"), _apart(move.before.loss, move.proposed.loss), strict=True))
     if move.better:
@@ -137,17 +137,17 @@ def sentence_of(step: AnnealingStep, lesson: AnnealingLesson) -> str:
             **losses,
         )
     same = move.proposed.loss == move.before.loss
-    how = tr("stays what it is") if same else tr("rises from {before} to {after}", **losses)
+    how = tr("does not change") if same else tr("rises from {before} to {after}", **losses)
     chance = number_text(move.probability, ".2%")
     if move.accepted:
         return tr(
-            "{moved}: the loss {how}. Accepted all the same: luck, of which there was {chance}.",
+            "{moved}: the loss {how}. Accepted with probability {chance}.",
             moved=moved,
             how=how,
             chance=chance,
         )
     return tr(
-        "{moved}: the loss {how}. Refused; there was a chance of {chance} that it would have been taken.",
+        "{moved}: the loss {how}. Rejected; the acceptance probability was {chance}.",
         moved=moved,
         how=how,
         chance=chance,
@@ -155,7 +155,7 @@ def sentence_of(step: AnnealingStep, lesson: AnnealingLesson) -> str:
 
 
 def degree_lines(step: DegreeStep) -> tuple[str, ...]:
-    """Eq. 4 with its numbers."""
+    """The series with its numbers."""
     count = (step.l_max + 1) ** 2
     return (
         GENERAL_SERIES,
@@ -173,7 +173,7 @@ def degree_sentence(step: DegreeStep) -> str:
             degree=step.l_max,
         )
     names = {0: tr("a sphere"), 1: tr("a sphere that is shifted a little"), 2: tr("nearly an ellipsoid")}
-    shape = names.get(step.l_max, tr("finer and finer bumps"))
+    shape = names.get(step.l_max, tr("finer details"))
     errors = ", ".join(
         f"{in_a_sentence(tr(CATALOGUE[key].label))} {number_text(value, '.1%')}"
         for key, value in step.errors.items()
@@ -234,7 +234,7 @@ def exact_terms(lesson: AnnealingLesson) -> dict[str, float]:
 
 
 def exact_lines(lesson: AnnealingLesson) -> tuple[str, ...]:
-    """Eq. 9 of the exact method with its numbers."""
+    """The loss of the exact method with its numbers."""
     exact = lesson.exact
     if exact is None:
         return ()

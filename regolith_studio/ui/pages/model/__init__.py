@@ -21,14 +21,12 @@ PAGE = Page(
     make=build,
     opens=(FileKind.SHAPES,),
     actions=(
-        ActionSpec(
-            PAGE_MENU, "open_source", N_("Open a &fit, model or card …"), tip=N_("Open what to draw from")
-        ),
+        ActionSpec(PAGE_MENU, "open_source", N_("Open a &fit, model or card …"), tip=N_("Open a source")),
         ActionSpec(PAGE_MENU, BREAK, ""),
         ActionSpec(PAGE_MENU, "fit_model", N_("Fit the &model")),
         ActionSpec(PAGE_MENU, "draw", N_("&Draw particles")),
         ActionSpec(PAGE_MENU, "another", N_("&Another particle in the view")),
-        ActionSpec(PAGE_MENU, "judge", N_("&Judge models")),
+        ActionSpec(PAGE_MENU, "judge", N_("&Evaluate models")),
         ActionSpec(PAGE_MENU, "adopt", N_("&Use as population")),
         ActionSpec(PAGE_MENU, BREAK, ""),
         ActionSpec(PAGE_MENU, "save_model", N_("&Save model …")),

@@ -36,7 +36,7 @@ L_MAX = NumberSpec(
     N_("Degree of the particles"),
     1,
     30,
-    tip=N_("The paper's virtual particles have 10."),
+    tip=N_("Usually 10; at most the degree of the sample."),
 )
 MAX_DRAWN = 1_000_000
 
@@ -139,9 +139,9 @@ class SourceControls(QWidget):
             self._forms.addWidget(self.forms[key])
         self.model.setCurrentIndex(self.model.findData(DEFAULT_MODEL))
         self.l_max.setValue(default_degree(DEFAULT_MODEL))
-        self.half.setToolTip(tr("The other half is then new to the model, as in its judgement."))
+        self.half.setToolTip(tr("The other half is then unknown to the model, as in its evaluation."))
         names = {
-            "source": tr("What to draw from"),
+            "source": tr("Source of the model"),
             "model": tr("Kind of model"),
             "half": tr("Fit to a half"),
         }
@@ -163,10 +163,10 @@ class SourceControls(QWidget):
         row.addWidget(self.open)
         layout.addWidget(heading(tr("Sample or material")))
         layout.addLayout(row)
-        layout.addWidget(FixedHeightText((self.findings,), 3))
+        layout.addWidget(FixedHeightText((self.findings,)))
         layout.addSpacing(8)
         layout.addWidget(heading(tr("Model")))
-        summary = FixedHeightText((self.summary,), 3)
+        summary = FixedHeightText((self.summary,))
         for widget in (self.model, summary, self.l_max, self._forms, self.half, self.fit):
             layout.addWidget(widget)
 
@@ -280,7 +280,7 @@ class DrawControls(QWidget):
         layout.addLayout(form)
         layout.addWidget(self.limited)
         layout.addLayout(sizes)
-        for widget in (self.draw, FixedHeightText((self.findings,), 2), self.adopt):
+        for widget in (self.draw, FixedHeightText((self.findings,)), self.adopt):
             layout.addWidget(widget)
         parts = QFormLayout()  # last, because only mixtures have them
         parts.addRow(self._names_label, self.names)

@@ -37,12 +37,12 @@ from regolith_studio.ui.widgets.labels import remark, with_subscripts
 from regolith_studio.ui.widgets.study_frame import StudyFrame
 
 WAITING = N_(
-    "Models are fitted to one half of the sample and judged on the other, beside the noise of sampling."
+    "Models are fitted to one half of the sample and evaluated on the other, beside the sampling noise."
 )
 FIGURES = {
-    "number": N_("By number (Fig. 4)"),
-    "volume": N_("By volume (Fig. 5)"),
-    "pairs": N_("Pairs (Fig. 6)"),
+    "number": N_("By number"),
+    "volume": N_("By volume"),
+    "pairs": N_("Pairs"),
     "quantiles": N_("Quantiles"),
     "components": N_("Parts"),
 }
@@ -67,7 +67,7 @@ TIPS = (
     ),
     N_("The same for the Kolmogorov-Smirnov distance"),
     N_("Mean energy distance of pairs of descriptors: 0 for equal distributions"),
-    N_("Share that a classifier tells right: 0.5 cannot be told apart"),
+    N_("Accuracy of a classifier of drawn and measured particles: at 0.5 they are indistinguishable"),
     N_("Median distance to the nearest measured particle, over that between measured ones: 0 is a copy"),
     N_("Rejected draws"),
 )
@@ -91,7 +91,7 @@ class EvaluationPanel(QWidget):
         self.splits, self.repeats = QSpinBox(), QSpinBox()
         self.ranking = QTableWidget(0, len(HEADERS))
         self.notes = remark()
-        self.verdict = Headline("model_verdict", (tr("W / noise"), tr("Told apart")))
+        self.verdict = Headline("model_verdict", (tr("W / noise"), tr("Classifier accuracy")))
         for place, tip in enumerate((TIPS[1], TIPS[4])):
             self.verdict.caption(place, self.verdict.captions[place].text(), tr(tip))
         self.figures = {name: PanelGrid(name) for name in FIGURES}
@@ -119,7 +119,7 @@ class EvaluationPanel(QWidget):
 
     def set_ready(self, why_not: str) -> None:
         """Enable the start, or show why there are no measured particles."""
-        self.frame.start.setText(tr("Judge"))
+        self.frame.start.setText(tr("Evaluate"))
         self.frame.start.setEnabled(not why_not)
         self.frame.set_remark(why_not)
 
@@ -209,7 +209,7 @@ class EvaluationPanel(QWidget):
         row.setContentsMargins(8, 0, 8, 0)
         for name, field, words in (
             ("splits", self.splits, tr("splits")),
-            ("repeats", self.repeats, tr("drawings from each fit")),
+            ("repeats", self.repeats, tr("draws from each fit")),
         ):
             field.setRange(1, 50)
             field.setValue(5 if name == "splits" else 1)
@@ -218,7 +218,7 @@ class EvaluationPanel(QWidget):
             row.addWidget(field)
             row.addWidget(QLabel(words))
         self.all_models.setObjectName("model_all_models")
-        self.all_models.setToolTip(tr("Judge every model, not only the chosen one."))
+        self.all_models.setToolTip(tr("Evaluate every model, not only the chosen one."))
         row.addWidget(self.all_models)
         row.addStretch(1)
         return row

@@ -210,7 +210,7 @@ class ModelPage(PageWidget):
     def _judge(self) -> None:
         sample = self._sample()
         if sample is None:
-            raise InputError(tr("Models are judged on measured particles: fit one to a sample first."))
+            raise InputError(tr("Models are evaluated on measured particles: fit one to a sample first."))
         request, chosen = self._request(), self.evaluation.value()
         key = str(self.source.value()["model"])
         default = min(default_degree(key), sample.l_max)
@@ -222,7 +222,7 @@ class ModelPage(PageWidget):
         }
         job = Job(evaluate_models, (sample, None if chosen["all_models"] else (key,)), options)
         show = self.evaluation.show_judged
-        self._context.start(tr("Judging models"), job, show, partial=show, lane=JUDGE)
+        self._context.start(tr("Evaluating models"), job, show, partial=show, lane=JUDGE)
 
     def _request(self) -> GenerationRequest:
         return request_from(self.source.value(), self.drawing.value(), self._brings())
@@ -344,7 +344,7 @@ class ModelPage(PageWidget):
 
     def _place(self) -> None:
         shown = [(self.gallery, tr("Gallery")), (self.distributions, tr("Distributions"))]
-        below = tabs("model_tabs", [*shown, (self.evaluation, tr("Judgement"))])
+        below = tabs("model_tabs", [*shown, (self.evaluation, tr("Evaluation"))])
         middle = stacked([self.live, below], [380, 420], stretch=1)
         middle.setObjectName("model_rows")
         parts = [padded(middle, 10, 10, 2, 8), scrolled_column([self.source, self.drawing])]

@@ -276,7 +276,7 @@ class ReposePage(PageWidget):
         self.player.set_scene(*scene)
         self.player.show_moment(
             pile,
-            tr("Before the fall"),
+            tr("Before the lift"),
             tr("{count:,} particles of {name}", count=len(pile), name=prepared.dataset_name),
         )
 

@@ -74,7 +74,7 @@ class RunsPanel(QWidget):
         for label, path in AGAINST.items():
             self.against.addItem(tr(label), path)
         self.plot = CurvePlot(
-            tr("Static friction"), tr("Angle [°]"), tr("Runs that became piles are compared here.")
+            tr("Static friction"), tr("Angle [°]"), tr("Runs that ended in a pile are compared here.")
         )
         right = QWidget()
         column = QVBoxLayout(right)
@@ -210,8 +210,8 @@ def angle_text(measured: ReposeMeasurement) -> str:
     """What the angle of repose is the mean of, and what to know about it."""
     return (
         tr(
-            "Mean of {count} sections. Two perpendicular sections give {asymmetric:.1f}° (flanks apart) and"
-            " {symmetric:.1f}° (both flanks alike).",
+            "Mean of {count} sections. Two perpendicular sections give {asymmetric:.1f}° (one angle a flank)"
+            " and {symmetric:.1f}° (one angle for both).",
             count=len(measured.sections),
             asymmetric=measured.paper_asymmetric.mean,
             symmetric=measured.paper_symmetric.mean,

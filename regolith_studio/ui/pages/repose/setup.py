@@ -43,9 +43,6 @@ COHESION = {
     N_("Scaled with the size (experimental)"): "scaled",
 }
 
-LINES, MAX_LINES = 6, 11
-"""Visible lines of the scaling report, in low and in high windows."""
-
 
 class SetupPanel(QWidget):
     """Edits the request of a simulation."""
@@ -88,8 +85,8 @@ class SetupPanel(QWidget):
             "repose_gravity_of",
             tr("Gravity of"),
         )
-        self.test = PresetForm(LiftingCylinderTest, "test", tr("Table 2 of the paper"))
-        self.contact = PresetForm(ContactParameters, "contact", tr("Table 1 of the paper"))
+        self.test = PresetForm(LiftingCylinderTest, "test", tr("Published cylinder"))
+        self.contact = PresetForm(ContactParameters, "contact", tr("Published contact parameters"))
         self.evaluation = SettingsForm(EvaluationSettings)
         self._numerics = {key: SettingsForm(engine.Settings) for key, engine in ENGINES.items()}
         self.scaling_report = remark()
@@ -227,18 +224,18 @@ class SetupPanel(QWidget):
         form.addRow(tr("Engine"), self.engine)
         form.addRow(tr("Gravity of"), self.gravity)
         column.addLayout(form)
-        column.addWidget(Collapsible(tr("Test (Table 2)"), self.test))
-        column.addWidget(Collapsible(tr("Contact (Table 1)"), self.contact))
-        column.addWidget(Collapsible(tr("Evaluation (section 3.3)"), self.evaluation))
+        column.addWidget(Collapsible(tr("Test"), self.test))
+        column.addWidget(Collapsible(tr("Contact"), self.contact))
+        column.addWidget(Collapsible(tr("Evaluation of the heap"), self.evaluation))
         forms = QWidget()
         inside = QVBoxLayout(forms)
         inside.setContentsMargins(0, 0, 0, 0)
         for numerics in self._numerics.values():
             inside.addWidget(numerics)
         column.addWidget(Collapsible(tr("Numerics of the engine"), forms))
-        column.addWidget(remark(tr("* not given in the paper: a choice, yours to change.")))
+        column.addWidget(remark(tr("* not given in the paper: an assumption that can be changed")))
         column.addWidget(self.run)
-        column.addWidget(FixedHeightText((self.problem, self.scaling_report), LINES, MAX_LINES))
+        column.addWidget(FixedHeightText((self.problem, self.scaling_report)))
 
     def _connect(self) -> None:
         self.open_button.clicked.connect(self.datasetWanted)

@@ -72,7 +72,7 @@ class StudyPanel(QWidget):
         self.repeats.setRange(1, 100)
         self.start, self.stop = QPushButton(tr("Start or resume")), QPushButton(tr("Stop"))
         self.start.setObjectName("repose_study_start")
-        self.start.setToolTip(tr("Runs that are there already are not run again"))
+        self.start.setToolTip(tr("Finished runs are not repeated"))
         self.stop.setObjectName("repose_study_stop")
         self.table = self._table()
         self.plot = CurvePlot(tr("Static friction"), tr("Angle [°]"), tr("Each run adds a point."))

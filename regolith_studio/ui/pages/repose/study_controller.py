@@ -43,7 +43,7 @@ class ReposeStudyController:
     def busy(self) -> str:
         """What closing the window would interrupt; empty for nothing."""
         return (
-            tr("A study of the angle of repose would be stopped; it can go on later.")
+            tr("A study of the angle of repose would be stopped; it can be resumed later.")
             if self._running
             else ""
         )
@@ -97,7 +97,7 @@ class ReposeStudyController:
         self._context.toast.problem(failure.sentence, failure.details)
 
     def _stopped(self) -> None:
-        self._over(tr("Stopped; what is finished is kept, and the start button goes on there."))
+        self._over(tr("Stopped; finished runs are kept, and the start button resumes."))
 
     def _over(self, text: str) -> None:
         self._running = False

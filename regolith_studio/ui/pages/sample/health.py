@@ -83,7 +83,7 @@ class HealthPanel(QWidget):
         self.words = WrappedLabel()
         self.words.setObjectName("health_words")
         self.words.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
-        self.where = QCheckBox(tr("Show where"))
+        self.where = QCheckBox(tr("Show in the view"))
         self.where.setObjectName("health_where")
         self.where.setToolTip(
             tr("Colours the faults in the picture, as they were before the mesh was repaired")

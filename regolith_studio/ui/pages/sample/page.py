@@ -202,7 +202,7 @@ class SamplePage(PageWidget):
             if entry.health is None:
                 return
             job = Job(find_faults, (entry.particle, entry.visibility))
-            self._context.start(tr("Looking for faults"), job, self._take_faults, lane="faults")
+            self._context.start(tr("Checking the mesh"), job, self._take_faults, lane="faults")
 
     def _take_faults(self, found: dict[str, FloatArray]) -> None:
         self._faults = found

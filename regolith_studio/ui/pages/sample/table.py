@@ -28,7 +28,7 @@ from regolith_studio.ui.widgets.table import ListTable
 _UNITS = {0: "", 1: " [µm]", 2: " [µm²]", 3: " [µm³]", 5: " [µm⁵]"}
 HEALTH, FORM = "health", "form"
 WEIGHT = "weight"
-HEALTH_WORDS = (*(N_("sound"), N_("coarse"), N_("mended"), N_("doubtful"), N_("unsound"), N_("unknown")),)
+HEALTH_WORDS = (*(N_("sound"), N_("coarse"), N_("repaired"), N_("doubtful"), N_("unsound"), N_("unknown")),)
 FORM_WORDS = (N_("equant"), N_("disc"), N_("rod"), N_("blade"))
 WORDS = 4
 """Text columns, which precede those of numbers."""

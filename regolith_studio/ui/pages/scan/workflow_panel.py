@@ -52,17 +52,17 @@ class WorkflowPanel(QWidget):
         kept = self.show_them.sizePolicy()
         kept.setRetainSizeWhenHidden(True)  # the button beside it stays as wide
         self.show_them.setSizePolicy(kept)
-        for title, buttons, words, lines, most in (
-            (tr("1  Volume"), (self.browse, self.sample), self.volume, 2, 3),
-            (tr("2  Grains"), (self.search, self.save), self.found, 4, 7),
-            (tr("3  Particles"), (self.convert, self.show_them), self.made, 2, 3),
+        for title, buttons, words in (
+            (tr("1  Volume"), (self.browse, self.sample), self.volume),
+            (tr("2  Grains"), (self.search, self.save), self.found),
+            (tr("3  Particles"), (self.convert, self.show_them), self.made),
         ):
             layout.addWidget(heading(title))
             row = QHBoxLayout()
             for button in buttons:
                 row.addWidget(button)
             layout.addLayout(row)
-            layout.addWidget(FixedHeightText((words,), lines, most))
+            layout.addWidget(FixedHeightText((words,)))
         self.browse.clicked.connect(self.openRequested)
         self.sample.clicked.connect(self.sampleRequested)
         self.search.clicked.connect(self.findRequested)

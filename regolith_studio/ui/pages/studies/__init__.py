@@ -16,7 +16,7 @@ PAGE = Page(
     title=N_("Studies"),
     icon="page_studies",
     order=45,
-    tip=N_("Errors against l_max, facets and weights, and what the polyhedra look like"),
+    tip=N_("Errors against l_max, facets and weights, and the polyhedra"),
     make=build,
     actions=(
         ActionSpec(

@@ -29,7 +29,7 @@ from regolith_studio.ui.widgets.thumbnails import thumbnail
 SIZE = 120
 LETTERS = 22
 """Pixels below a picture."""
-WAITING = N_("The polyhedra of six particles as each loss function makes them, as in Fig. 7 of the paper.")
+WAITING = N_("The polyhedra of six particles, one row a loss function.")
 Index = QModelIndex | QPersistentModelIndex
 MAX_PARTICLES = 6
 """Maximum number of columns."""

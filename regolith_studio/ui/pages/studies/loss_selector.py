@@ -17,12 +17,10 @@ from regolith_studio.ui.widgets.fixed_height_text import FixedHeightText
 from regolith_studio.ui.widgets.labels import heading, remark
 
 ARROW = "  ▾"
-LINES = 2
-"""Visible lines of the remark."""
-BOXES = {"exact": N_("exact minimum volume"), "trimesh": N_("trimesh's heuristic (paper)")}
+BOXES = {"exact": N_("exact minimum volume"), "trimesh": N_("trimesh's heuristic")}
 BOX_TIP = N_(
-    "Diameters and aspect ratio come from this box. The heuristic of the paper's program is no minimum; "
-    "it is here to compare numbers."
+    "Diameters and aspect ratio come from this box. The heuristic is no minimum; "
+    "it is offered for comparison."
 )
 
 EQUAL_TIP = N_("Losses can be compared at equal numbers of facets only; choose the number beside Facets n.")
@@ -39,8 +37,8 @@ class LossSelector(QWidget):
         self._actions: dict[str, QAction] = {}
         self.rows = QToolButton()
         self.rows.setObjectName("study_rows")
-        self.rows.setAccessibleName(tr("Losses of figures 7 and 8"))
-        self.rows.setToolTip(tr("Losses that are the rows of figures 7 and 8"))
+        self.rows.setAccessibleName(tr("Losses of the studies"))
+        self.rows.setToolTip(tr("Loss functions that are the rows of the studies"))
         self.rows.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
         self.menu = self._menu()
         self.rows.clicked.connect(self._open)
@@ -56,7 +54,7 @@ class LossSelector(QWidget):
             self.rows,
             heading(tr("Bounding box")),
             self.box,
-            FixedHeightText((self.remark,), LINES),
+            FixedHeightText((self.remark,)),
         ):
             column.addWidget(part)
         self.box.currentIndexChanged.connect(lambda _index: self.valueChanged.emit())
@@ -85,7 +83,7 @@ class LossSelector(QWidget):
         menu = _StickyMenu(self)
         menu.setObjectName("study_rows_menu")
         for words, names in (
-            (tr("Those of Fig. 8"), PAPER_LOSSES),
+            (tr("Standard set"), PAPER_LOSSES),
             (tr("Each term alone"), ("overlap", *(name for name in loss_names() if name.startswith(ALONE)))),
         ):
             menu.addAction(words).triggered.connect(partial(self._choose, names))
@@ -116,7 +114,7 @@ class LossSelector(QWidget):
         names = self.names()
         words = tr("{count} losses", count=len(names))
         if names == tuple(name for name in self._actions if name in PAPER_LOSSES):
-            words = tr("Rows of Fig. 8")
+            words = tr("Standard set")
         elif len(names) == 1:
             words = self._actions[names[0]].text()
         self.rows.setText(words + ARROW)

@@ -201,7 +201,7 @@ class StudiesPage(PageWidget):
 
     def _tabs(self) -> QTabWidget:
         pages = [(self.variations[key], tr(title)) for key, title in TABS.items()]
-        return tabs("studies_coarsening", [(self.coarsening_study, tr("Losses (Fig. 8)")), *pages])
+        return tabs("studies_coarsening", [(self.coarsening_study, tr("Losses")), *pages])
 
     def _place(self) -> None:
         above = side_by_side(
@@ -210,7 +210,7 @@ class StudiesPage(PageWidget):
             stretch=1,
         )
         above.setObjectName("studies_figures")
-        below = _titled(tr("What the polyhedra look like (Fig. 7)"), _framed(self.gallery))
+        below = _titled(tr("Polyhedra by loss function (Fig. 7)"), _framed(self.gallery))
         rows = stacked([above, below], [370, 500], stretch=1)
         rows.setObjectName("studies_rows")
         parts = [padded(rows, 10, 10, 2, 8), scrolled_column([self.bar])]

@@ -80,7 +80,7 @@ class SensitivityTable(QWidget):
                         low=low[r, k],
                         high=high[r, k],
                     )
-                    + ("" if sure[r, k] else "\n" + tr("This may be chance."))
+                    + ("" if sure[r, k] else "\n" + tr("Not significant."))
                 )
                 self.table.setItem(r, k, item)
         keep_legible(self.table, self.width())

@@ -76,7 +76,7 @@ class TradeoffPlot(BandPlot):
         super().__init__(
             tr("Mean Jaccard distance [%]"),
             tr("Mean RMSRE of six descriptors [%]"),
-            tr("What overlap costs in descriptors, and descriptors in overlap: lower left is better."),
+            tr("Mean error of the descriptors against mean Jaccard distance: lower left is better."),
         )
 
     def show_study(self, study: CoarseningStudy | None) -> None:
@@ -88,9 +88,7 @@ class TradeoffPlot(BandPlot):
         y = 100 * descriptor_error(study.rmsre)
         low, high = 100 * study.band_of(descriptor_error(study.resampled))
         front = list(pareto_front(study))
-        line = PlotCurve(
-            tr("none is better in both"), self.theme.muted, tuple(x[front]), tuple(y[front]), dash=True
-        )
+        line = PlotCurve(tr("Pareto front"), self.theme.muted, tuple(x[front]), tuple(y[front]), dash=True)
         series = [
             Series(
                 translate(row.label),
@@ -111,9 +109,7 @@ class TradeoffPlot(BandPlot):
 def sensitivity_part() -> SensitivityTable:
     """The table of a sensitivity study."""
     headers = (*(plain_symbol(CATALOGUE[key].symbol) for key in LOSS_KEYS), OVERLAP)
-    return SensitivityTable(
-        tr("What each error becomes when one weight of the loss is changed: which weights matter."), headers
-    )
+    return SensitivityTable(tr("Change of each error when one weight of the loss is changed."), headers)
 
 
 PARTS: Mapping[str, Callable[[], QWidget]] = {
@@ -199,12 +195,12 @@ class SweepPanel(QWidget):
         self._enough = sufficient_facets(study)
         if self._enough < max(row.n_facets for row in study.rows):
             text = N_(
-                "From <b>{count} facets</b> on nothing is gained: no error falls by more than {gain:.1%}."
+                "<b>{count} facets</b> are sufficient: with more, no error falls by more than {gain:.1%}."
             )
         else:
             text = N_("The errors still fall at <b>{count} facets</b>, the largest number here.")
         self.answer.setText(tr(text, count=self._enough, gain=GAIN))
-        self.take.setText(tr("Take {count} facets", count=self._enough))
+        self.take.setText(tr("Use {count} facets", count=self._enough))
 
 
 def summary_text(study: CoarseningStudy, outdated: bool) -> str:
