@@ -158,7 +158,7 @@ def test_that_json_tells_the_mesh_as_it_came_what_was_done_and_what_is_hidden(
     assert done["filled_area"] == pytest.approx(4.0)
     assert done["filled_share"] == pytest.approx(1 / 6)
     assert (done["filled_holes"], done["dropped_bodies"]) == (1, 1)
-    assert any("inside out" in action for action in done["actions"])
+    assert any("pointed inwards" in action for action in done["actions"])
     (left,) = command("describe", path, "--json", "--no-repair").json
     assert left["repair"] is None
     assert left["health"]["hidden_surface_share"] is None

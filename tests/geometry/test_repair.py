@@ -55,7 +55,7 @@ def boxes(*places, weld=True):
 BROKEN = {
     "inside out": (turned_round(CUBE), "Reoriented all faces: the normals pointed inwards."),
     "one face turned": (turned_round(CUBE, [4]), "Reoriented 1 face."),
-    "most faces turned": (turned_round(CUBE, slice(2, 11)), "Turned 3 faces that looked the wrong way."),
+    "most faces turned": (turned_round(CUBE, slice(2, 11)), "Reoriented 3 faces."),
     "a triangular hole": (without(CUBE, 0), "Filled 1 hole with 8.3 % of the surface."),
     "a square hole": (without(CUBE, 0, 6), "Filled 1 hole with 17 % of the surface."),
     "two holes": (without(CUBE, 0, 1), "Filled 2 holes with 17 % of the surface."),

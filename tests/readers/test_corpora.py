@@ -35,7 +35,7 @@ def test_that_every_real_scan_comes_in_facing_outwards(folder, count, unit, real
 
 def test_that_the_inside_out_stones_are_turned_and_told_so(real_data):
     for path in meshes_below(real_data("bad/winding")):
-        assert any(note.startswith("Turned") for note in read_mesh(path).notes), path.name
+        assert any(note.startswith("Reoriented") for note in read_mesh(path).notes), path.name
 
 
 def test_that_an_apollo_rock_with_double_faces_keeps_its_volume(real_data):

@@ -166,7 +166,7 @@ def test_that_repair_can_be_switched_off_and_the_problems_stay(cube, accepted):
     assert particle.notes == ("Its faces are not oriented consistently.",)
     mended = accepted("cube.obj", inside_out)
     assert mended.mesh.volume == pytest.approx(1.0)
-    assert mended.notes[1:] == ("Turned 2 faces that looked the wrong way.",)
+    assert mended.notes[1:] == ("Reoriented 2 faces.",)
 
 
 def test_that_without_repair_an_open_sheet_is_kept_as_it_is(accepted):

@@ -67,7 +67,7 @@ def test_that_the_report_tells_the_mesh_as_it_came_and_as_it_is(panel):
     assert found["Left out"][1] == "11 %"  # a ball of half the size: 1 of 9 parts
     assert found["Hidden surface"] == ("", "0 %")
     assert "Filled 1 hole" in panel.words.text()
-    assert "inside out" in panel.words.text()
+    assert "point inwards" in panel.words.text()
 
 
 def test_that_a_mesh_left_as_it_is_has_the_same_in_both_columns_and_no_inside(panel):

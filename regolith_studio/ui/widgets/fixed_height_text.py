@@ -46,7 +46,6 @@ class FixedHeightText(QScrollArea):
         self.more = QToolButton(self)
         self.more.setObjectName("whole_text")
         self.more.setText(SIGN)
-        self.more.setAutoRaise(True)
         self.more.setToolTip(tr("Show the whole text"))
         self.more.setAccessibleName(self.more.toolTip())
         self.more.clicked.connect(self._show_all)
