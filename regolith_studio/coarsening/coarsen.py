@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from regolith_studio.coarsening.compound.line_overlap import compound_distance
 from regolith_studio.coarsening.loss import loss
 from regolith_studio.coarsening.lower_bounds import attainable_errors
 from regolith_studio.coarsening.methods import METHODS, CoarseningMethod
@@ -13,11 +14,12 @@ from regolith_studio.coarsening.polyhedra import polyhedron_of
 from regolith_studio.coarsening.progress import CoarseningProgress, MethodStep
 from regolith_studio.coarsening.result import CoarseningResult, MethodResult, SphericityFree
 from regolith_studio.coarsening.target import Target
-from regolith_studio.coarsening.weights import LossWeights
+from regolith_studio.coarsening.weights import WEIGHT_KEYS, LossWeights
 from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.descriptors.comparison import relative_errors
 from regolith_studio.descriptors.describe import Descriptors, describe
 from regolith_studio.errors import InputError
+from regolith_studio.geometry.convex_compound import ConvexCompound, Polyhedron
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.half_spaces import HalfSpaces
 from regolith_studio.geometry.mesh import Mesh
@@ -36,7 +38,7 @@ def coarsen(
     seed: int = 0,
     settings: Any = None,
 ) -> CoarseningResult:
-    """The convex polyhedron with `n_facets` facets that stands for `mesh` (section 2.4).
+    """The polyhedron with `n_facets` facets that stands for `mesh` (section 2.4), convex but for `compound`.
 
     Parameters
     ----------
@@ -85,9 +87,11 @@ def coarsening_steps(
         except StopIteration as end:
             result: CoarseningResult = end.value
             return result
-        polyhedron = None
+        polyhedron: Polyhedron | None = None
         if step.half_spaces is not None:
             polyhedron = polyhedron_of(target.in_particle_frame(step.half_spaces))
+        elif step.compound is not None:
+            polyhedron = step.compound.moved(rotation=target.axes.T, scale=target.scale)
         yield CoarseningProgress(step.step, step.steps, step.loss, polyhedron, target.centre)
 
 
@@ -159,11 +163,18 @@ def _measured(
     target: Target, result: MethodResult, method: str, n_facets: int, weights: LossWeights
 ) -> CoarseningResult:
     """Measure the result by the public descriptors, independently of the method."""
-    unit = result.polyhedron or ConvexPolyhedron.from_half_spaces(result.half_spaces)
+    solid = result.solid
+    unit: Polyhedron
+    if isinstance(solid, ConvexCompound):
+        unit, overlap = solid, compound_distance(target.mesh, solid)
+        bounds = dict.fromkeys(WEIGHT_KEYS, 0.0)
+    else:
+        unit = result.polyhedron or ConvexPolyhedron.from_half_spaces(solid)
+        overlap = target.jaccard_distance(unit.half_spaces)
+        bounds = attainable_errors(target.descriptors, n_facets, weights)
     polyhedron = unit.moved(rotation=target.axes.T, scale=target.scale)
     achieved = result.achieved or describe(unit)
     errors = relative_errors(target.descriptors, achieved)
-    overlap = target.jaccard_distance(unit.half_spaces)
     return CoarseningResult(
         polyhedron=polyhedron,
         centre=target.centre,
@@ -175,7 +186,7 @@ def _measured(
         loss_history=result.loss_history,
         method=method,
         n_facets_asked=n_facets,
-        bounds=attainable_errors(target.descriptors, n_facets, weights),
+        bounds=bounds,
         reason=result.reason,
         steps=result.steps,
         variants=result.variants,

@@ -6,7 +6,7 @@ import numpy as np
 
 from regolith_studio.coarsening.loss import Evaluation
 from regolith_studio.geometry.arrays import FloatArray
-from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
+from regolith_studio.geometry.convex_compound import ConvexCompound, Polyhedron
 from regolith_studio.geometry.half_spaces import HalfSpaces
 from regolith_studio.geometry.mesh import Mesh
 
@@ -64,6 +64,8 @@ class MethodStep:
         The polyhedron, where it differs from that of the step before; else ``None``.
     move
         What was proposed and decided, where the method works by proposals.
+    compound
+        The union of convex parts, in place of `half_spaces`, where the method makes one.
     """
 
     step: int
@@ -71,6 +73,7 @@ class MethodStep:
     loss: float
     half_spaces: HalfSpaces | None = None
     move: Move | None = None
+    compound: ConvexCompound | None = None
 
 
 @dataclass(frozen=True)
@@ -94,7 +97,7 @@ class CoarseningProgress:
     step: int
     steps: int
     loss: float
-    polyhedron: ConvexPolyhedron | None
+    polyhedron: Polyhedron | None
     centre: FloatArray
     recent: "tuple[CoarseningProgress, ...]" = ()
 
@@ -104,6 +107,6 @@ class CoarseningProgress:
         return None if self.polyhedron is None else placed(self.polyhedron, self.centre)
 
 
-def placed(polyhedron: ConvexPolyhedron, centre: FloatArray) -> Mesh:
+def placed(polyhedron: Polyhedron, centre: FloatArray) -> Mesh:
     """Triangles of a polyhedron whose origin lies at `centre`."""
-    return Mesh(polyhedron.vertices + np.asarray(centre), polyhedron.mesh.faces)
+    return Mesh(polyhedron.mesh.vertices + np.asarray(centre), polyhedron.mesh.faces)

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from regolith_studio.coarsening.progress import placed
 from regolith_studio.descriptors.describe import Descriptors
 from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.geometry.convex_compound import ConvexCompound, Polyhedron
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.half_spaces import HalfSpaces
 from regolith_studio.geometry.mesh import Mesh
@@ -21,8 +22,8 @@ class MethodResult:
 
     Parameters
     ----------
-    half_spaces
-        The polyhedron.
+    solid
+        Half-spaces of the polyhedron, or a union of convex parts.
     loss_history
         Eq. 9 after each step.
     reason
@@ -34,12 +35,12 @@ class MethodResult:
     polyhedron
         By :meth:`ConvexPolyhedron.from_half_spaces`, where the method has made it already.
     achieved
-        Of `polyhedron` by :func:`regolith_studio.descriptors.describe.describe`, where it has measured it.
+        Of the solid by :func:`regolith_studio.descriptors.describe.describe`, where it has measured it.
     without_sphericity
         A polyhedron that keeps all that is asked for but the sphericity, where keeping that may cost overlap.
     """
 
-    half_spaces: HalfSpaces
+    solid: HalfSpaces | ConvexCompound
     loss_history: tuple[float, ...] = ()
     reason: str | None = None
     steps: Mapping[str, float] = field(default_factory=dict)
@@ -67,12 +68,12 @@ class SphericityFree:
 
 @dataclass(frozen=True)
 class CoarseningResult:
-    """A convex polyhedron that stands for a particle.
+    """A convex polyhedron, or a union of several, that stands for a particle.
 
     Parameters
     ----------
     polyhedron
-        About `centre` (the origin of its half-spaces is the particle's centroid), in the particle's unit.
+        About `centre` (its origin is the particle's centroid), in the particle's unit.
     centre
         The particle's centroid in its own frame, shape (3,).
     target, achieved
@@ -80,7 +81,7 @@ class CoarseningResult:
     errors
         Relative error of each descriptor of the loss (Eq. 8).
     jaccard_distance
-        Eq. 7 (there IoU), with 16,000 rays.
+        Eq. 7 (there IoU), with 16,000 rays; of a union of several parts with parallel lines.
     loss
         Eq. 9 of `errors` and `jaccard_distance`.
     loss_history
@@ -101,7 +102,7 @@ class CoarseningResult:
         What leaving the sphericity free would give, where keeping it may cost overlap; else ``None``.
     """
 
-    polyhedron: ConvexPolyhedron
+    polyhedron: Polyhedron
     centre: FloatArray
     target: Descriptors
     achieved: Descriptors
@@ -150,9 +151,14 @@ class CoarseningResult:
         return self.polyhedron.n_triangles
 
     @property
-    def half_spaces(self) -> HalfSpaces:
-        """The half-spaces about the particle's centroid."""
-        return self.polyhedron.half_spaces
+    def n_parts(self) -> int:
+        """Convex parts."""
+        return self.polyhedron.n_parts if isinstance(self.polyhedron, ConvexCompound) else 1
+
+    @property
+    def half_spaces(self) -> HalfSpaces | None:
+        """The half-spaces about the particle's centroid; ``None`` of a union of several parts."""
+        return self.polyhedron.half_spaces if isinstance(self.polyhedron, ConvexPolyhedron) else None
 
     @property
     def mesh(self) -> Mesh:

@@ -8,6 +8,7 @@ from functools import lru_cache
 from typing import Any
 
 from regolith_studio.coarsening.coarsen import DEFAULT_METHOD, FACETS_LIMITS, coarsening_steps
+from regolith_studio.coarsening.compound.line_overlap import compound_distance
 from regolith_studio.coarsening.progress import CoarseningProgress
 from regolith_studio.coarsening.result import CoarseningResult
 from regolith_studio.coarsening.stopping_criteria import Trial, fewest_facets
@@ -17,6 +18,7 @@ from regolith_studio.descriptors.catalogue import LOSS_KEYS
 from regolith_studio.descriptors.comparison import relative_errors
 from regolith_studio.descriptors.describe import Descriptors, describe
 from regolith_studio.errors import JobCancelled
+from regolith_studio.geometry.convex_compound import ConvexCompound
 from regolith_studio.geometry.jaccard import jaccard_distance
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
@@ -157,7 +159,11 @@ def compare_with_particle(
     yield from compile_first("describe")
     yield Started(N_("Comparing with the particle"))
     achieved = describe(coarsened.polyhedron, LOSS_KEYS, box_metric)
-    overlap = jaccard_distance(mesh.moved(shift=-coarsened.centre), coarsened.polyhedron)
+    solid, moved = coarsened.polyhedron, mesh.moved(shift=-coarsened.centre)
+    if isinstance(solid, ConvexCompound):
+        overlap = compound_distance(moved, solid)
+    else:
+        overlap = jaccard_distance(moved, solid)
     return ParticleComparison(relative_errors(descriptors, achieved), overlap)
 
 

@@ -11,13 +11,15 @@ import threading
 import time
 from pathlib import Path
 
+import numpy as np
+
 from regolith_studio.geometry.kernels import machine_code_folder
 from regolith_studio.io.output_lock import lock_file
 from regolith_studio.jobs.events import Progress, Started, Steps
 from regolith_studio.jobs.progress_rate import ProgressRate, format_duration
 from regolith_studio.messages import N_, Message
 
-TASKS = {"read": 9, "fit": 27, "describe": 31, "quadric": 14, "annealing": 12, "exact": 71}
+TASKS = {"read": 9, "fit": 27, "describe": 31, "quadric": 14, "annealing": 12, "exact": 71, "compound": 20}
 """What can be compiled, in the order in which the window needs it, and the files of machine code that each
 adds to those of the tasks before it. Annealing has no kernel that the exact method does not need too."""
 
@@ -87,6 +89,7 @@ def run_task(name: str) -> None:
 
     sphere = icosphere(2)
     mesh = Mesh(sphere.vertices * [3.0, 2.0, 1.5], sphere.faces)
+    along = 0.5 + sphere.vertices[:, 0] ** 2
     if name == "read":
         list(sample_particles())
     elif name == "fit":
@@ -95,6 +98,9 @@ def run_task(name: str) -> None:
         inspect(mesh)
         describe(mesh)
         star_point_visibility(mesh)
+    elif name == "compound":
+        waist = Mesh(mesh.vertices * np.column_stack([np.ones(len(along)), along, along]), mesh.faces)
+        coarsen(waist, 12, name, settings={"parts": 2})
     else:
         coarsen(mesh, 12, name)
 

@@ -234,7 +234,8 @@ def coarsen_column(
     for row in rows:
         outcome = _result_of(_outcome(particle, _with_loss(request, row), column, fit, Progress(0, 0)))
         coarsened = outcome.coarsened
-        cells.append(outcome.problem if coarsened is None else GalleryPolyhedron.of(coarsened).document())
+        cell = outcome.problem if coarsened is None else GalleryPolyhedron.of(coarsened)
+        cells.append(cell if isinstance(cell, str) else cell.document())
     return {"rows": cells}
 
 

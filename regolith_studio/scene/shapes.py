@@ -8,6 +8,7 @@ import numpy as np
 
 from regolith_studio.coarsening.progress import placed
 from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.geometry.convex_compound import ConvexCompound, Polyhedron
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.messages import N_
@@ -37,18 +38,23 @@ class SceneShape:
     """
 
     name: str
-    surface: Mesh | ConvexPolyhedron
+    surface: Mesh | Polyhedron
     centre: FloatArray | None = None
 
     @property
     def polyhedron(self) -> ConvexPolyhedron | None:
-        """The polyhedron, if it is one."""
+        """The polyhedron, if it is a convex one."""
         return self.surface if isinstance(self.surface, ConvexPolyhedron) else None
 
     @property
     def origin(self) -> FloatArray:
         """Where the polyhedron's own origin lies, shape (3,)."""
         return np.zeros(3) if self.centre is None else np.asarray(self.centre, dtype=np.float64)
+
+    @property
+    def body(self) -> Mesh | ConvexPolyhedron:
+        """The same surface about `origin`; of a union of convex parts its triangles."""
+        return self.surface.mesh if isinstance(self.surface, ConvexCompound) else self.surface
 
     @cached_property
     def mesh(self) -> Mesh:
@@ -73,8 +79,8 @@ def show_shape(
     if shape is None:
         surfaces.hide(plotter, layer)
         return
-    if shape.polyhedron is not None:
-        surfaces.show_polyhedron(plotter, shape.polyhedron, shape.origin, surroundings, layer)
+    if not isinstance(shape.surface, Mesh):
+        surfaces.show_polyhedron(plotter, shape.surface, shape.origin, surroundings, layer)
     else:
         surfaces.hide(plotter, layer)
         surfaces.show_smooth(plotter, shape.mesh, MATERIALS[shape.name], layer)

@@ -8,9 +8,10 @@ from typing import Any
 
 import numpy as np
 import pyvista as pv
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.geometry.convex_compound import ConvexCompound, Polyhedron
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.scene import annotations, palette
@@ -22,6 +23,9 @@ LINE_WIDTH = 1.6
 """Of the outlines of facets, in pixels."""
 
 
+SHADES = "shades"
+DARKEST = 0.55
+"""Brightness of the darkest part of a compound; the first has that of the material."""
 SHARP_EDGE = 50.0
 """Degrees between the normals of two triangles above which their edge is drawn sharp: a cube's, no scan's."""
 
@@ -77,12 +81,12 @@ def show_fit(
 
 def show_polyhedron(
     plotter: Any,
-    polyhedron: ConvexPolyhedron,
+    polyhedron: Polyhedron,
     centre: ArrayLike = (0.0, 0.0, 0.0),
     surroundings: ThemeColors = palette.LIGHT,
     layer: str = "",
 ) -> None:
-    """The coarsened polyhedron: flat facets, each outlined (facets, not triangles).
+    """The coarsened polyhedron: flat facets, each outlined (facets, not triangles); parts in shades.
 
     Parameters
     ----------
@@ -97,11 +101,17 @@ def show_polyhedron(
     layer
         Surfaces of different layers stand beside each other.
     """
-    corners = polyhedron.vertices + np.asarray(centre, dtype=np.float64)
-    polygons = _polygons(corners, polyhedron.facets)
-    _show_surface(plotter, polygons, palette.POLYHEDRON_MATERIAL, smooth=False, layer=layer)
-    edges = pv.PolyData(corners.copy(), lines=facet_edges(polyhedron))
-    _show_lines(plotter, edges, surroundings.outline, layer)
+    if isinstance(polyhedron, ConvexCompound):
+        corners = polyhedron.mesh.vertices + np.asarray(centre, dtype=np.float64)
+        polygons = _polygons(corners, tuple(map(tuple, polyhedron.mesh.faces.tolist())))
+        polygons.cell_data[SHADES] = part_shades(polyhedron)
+        lines = exposed_edges(polyhedron)
+    else:
+        corners = polyhedron.vertices + np.asarray(centre, dtype=np.float64)
+        polygons, lines = _polygons(corners, polyhedron.facets), facet_edges(polyhedron)
+    actor = _show_surface(plotter, polygons, palette.POLYHEDRON_MATERIAL, smooth=False, layer=layer)
+    _show_shades(actor.mapper, SHADES in polygons.cell_data)
+    _show_lines(plotter, pv.PolyData(corners.copy(), lines=lines), surroundings.outline, layer)
 
 
 def clear(plotter: Any) -> None:
@@ -228,3 +238,30 @@ def facet_edges(polyhedron: ConvexPolyhedron) -> FloatArray:
         for a, b in zip(facet, facet[1:] + facet[:1], strict=True)
     }
     return np.array([item for edge in sorted(edges) for item in (2, *edge)], dtype=np.int64)
+
+
+def part_shades(compound: ConvexCompound) -> NDArray[np.uint8]:
+    """Colour of each triangle of a compound, (m, 3) of 0 to 255: each part its own shade."""
+    brightness = np.linspace(1.0, DARKEST, compound.n_parts)
+    colour = np.array(pv.Color(palette.POLYHEDRON_MATERIAL.colour).int_rgb)
+    shades = np.round(brightness[:, None] * colour).astype(np.uint8)
+    return np.asarray(shades[compound.facet_parts[compound.triangle_facets]])
+
+
+def exposed_edges(compound: ConvexCompound) -> FloatArray:
+    """Each edge of the union between two facets once, in VTK's layout of lines."""
+    faces, facet = compound.mesh.faces, np.repeat(compound.triangle_facets, 3)
+    ends = np.sort(np.stack([faces, np.roll(faces, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
+    order = np.lexsort((facet, ends[:, 1], ends[:, 0]))
+    one, two = order[0::2], order[1::2]  # the surface is closed: each edge occurs twice
+    between = ends[one[facet[one] != facet[two]]]
+    return np.column_stack([np.full(len(between), 2), between]).ravel()
+
+
+def _show_shades(mapper: Any, shaded: bool) -> None:
+    """Colour triangles by the array :data:`SHADES`, or all alike."""
+    mapper.scalar_visibility = shaded
+    if shaded:
+        mapper.SetScalarModeToUseCellFieldData()
+        mapper.SelectColorArray(SHADES)
+        mapper.SetColorModeToDirectScalars()

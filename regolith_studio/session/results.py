@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from psygnal import Signal
 
-from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
+from regolith_studio.geometry.convex_compound import Polyhedron
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 
@@ -91,7 +91,7 @@ class Results:
     outdated: frozenset[str] = frozenset()
 
     @property
-    def polyhedron(self) -> ConvexPolyhedron | None:
+    def polyhedron(self) -> Polyhedron | None:
         """The best polyhedron so far, about its own centre (``best.centre`` in the particle's frame)."""
         return self.best.polyhedron if self.best else None
 

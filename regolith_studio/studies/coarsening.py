@@ -18,7 +18,7 @@ from regolith_studio.descriptors.comparison import relative_errors
 from regolith_studio.descriptors.describe import describe
 from regolith_studio.errors import InputError, RegolithError
 from regolith_studio.geometry.arrays import FloatArray
-from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
+from regolith_studio.geometry.convex_compound import Polyhedron
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.harmonics.fit_options import DEFAULT_FIT_OPTIONS, FitOptions
@@ -153,7 +153,7 @@ def _row_errors(
     return [*[errors[key] for key in LOSS_KEYS], found.jaccard_distance], found.reason is None
 
 
-def _in_unit_frame(found: CoarseningResult) -> ConvexPolyhedron:
+def _in_unit_frame(found: CoarseningResult) -> Polyhedron:
     return found.polyhedron.moved(scale=found.target["volume"] ** (-1 / 3))
 
 

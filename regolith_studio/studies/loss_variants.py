@@ -32,7 +32,7 @@ GROUPS: Mapping[str, tuple[str, ...]] = {
     N_("sphericity"): ("sphericity",),
 }
 """Descriptors that are kept or left together when conditions are traded for overlap."""
-CONDITION_METHODS = ("exact",)
+CONDITION_METHODS = ("exact", "compound")
 """Methods in which a weight above 0 makes a condition, so that its size alone changes little."""
 
 

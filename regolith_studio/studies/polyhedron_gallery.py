@@ -10,6 +10,7 @@ from regolith_studio.coarsening.lower_bounds import bounds_in_force
 from regolith_studio.coarsening.result import CoarseningResult
 from regolith_studio.coarsening.weights import JACCARD
 from regolith_studio.descriptors.catalogue import LOSS_KEYS
+from regolith_studio.geometry.convex_compound import ConvexCompound
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.half_spaces import HalfSpaces
 from regolith_studio.io.tables import Cell, Column, Table
@@ -34,11 +35,14 @@ class GalleryPolyhedron:
     reason: str | None
 
     @classmethod
-    def of(cls, found: CoarseningResult) -> Self:
-        """Of a particle just coarsened."""
+    def of(cls, found: CoarseningResult) -> Self | str:
+        """Of a particle just coarsened; a sentence for a union of several parts, which is not drawn."""
+        solid = found.polyhedron
+        if isinstance(solid, ConvexCompound):
+            return f"A compound of {solid.n_parts} parts is not drawn in this figure."
         return cls(
             found.method,
-            found.polyhedron,
+            solid,
             found.errors,
             found.jaccard_distance,
             found.loss,

@@ -1032,6 +1032,10 @@
         <translation>Wird übersetzt, einmal nach einer Installation</translation>
     </message>
     <message>
+        <source>Compound of convex parts</source>
+        <translation>Verbund konvexer Teile</translation>
+    </message>
+    <message>
         <source>Compute</source>
         <translation>Berechnen</translation>
     </message>
@@ -2838,6 +2842,10 @@
     <message>
         <source>Next seed: the same method with other random numbers</source>
         <translation>Nächster Startwert: dasselbe Verfahren mit anderen Zufallszahlen</translation>
+    </message>
+    <message>
+        <source>No compound of {parts} parts with {faces} facets was found that meets all descriptors; this one misses {missed}. More parts or facets, or a weight of 0 for a descriptor, may help.</source>
+        <translation>Es wurde kein Verbund von {parts} Teilen mit {faces} Facetten gefunden, der alle Deskriptoren trifft; dieser verfehlt {missed}. Mehr Teile oder Facetten oder ein Gewicht von 0 für einen Deskriptor können helfen.</translation>
     </message>
     <message>
         <source>No dataset has been written yet.</source>

@@ -23,7 +23,7 @@ from regolith_studio.jobs.particle_jobs import FitRequest, MeasuredParticle, fit
 from regolith_studio.jobs.runners.run_job import iterate_job
 from regolith_studio.messages import N_
 from regolith_studio.session.batch.inputs import BatchInput
-from regolith_studio.session.outputs.coarsening import STL_HEADER, coarsening_entry
+from regolith_studio.session.outputs.coarsening import STL_HEADER, coarsening_entry, meshes_of
 from regolith_studio.session.outputs.descriptors import described
 
 MESH, SHAPE, COEFFICIENTS, CUT = "mesh.stl", "shape.stl", "coefficients.f8", "cut.f8"
@@ -158,7 +158,9 @@ def _store_polyhedron(
     coarse = outcome.coarsened
     assert coarse is not None
     values: dict[str, Any] = {"coarse": _finite(coarsening_entry(outcome, coarse))}
-    blobs = {MESH: stl_bytes(coarse.mesh.triangles, STL_HEADER)}
+    meshes = meshes_of(particle.name, coarse)
+    blobs = {file: stl_bytes(mesh.triangles, STL_HEADER) for file, mesh in meshes.items()}
+    blobs[MESH] = blobs.pop(values["coarse"]["file"])
     if shapes:
         shape = stored_shape(particle, coarse)
         values["shape"] = _finite(shape.record)

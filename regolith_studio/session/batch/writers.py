@@ -101,6 +101,8 @@ class _MeshWriter:
         if entry := values.get("coarse"):
             self.entries.add(entry)
             (self.folder / entry["file"]).write_bytes(record.blobs[MESH])
+            for part in entry.get("parts", ()):
+                (self.folder / part["file"]).write_bytes(record.blobs[part["file"]])
         elif reason := reason_of(record):
             self.failed.append({"name": values["name"], "reason": reason})
 

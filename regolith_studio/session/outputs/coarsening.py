@@ -10,6 +10,8 @@ from regolith_studio.coarsening.lower_bounds import bounds_in_force
 from regolith_studio.coarsening.result import CoarseningResult
 from regolith_studio.coarsening.weights import JACCARD
 from regolith_studio.descriptors.catalogue import CATALOGUE, LOSS_KEYS
+from regolith_studio.geometry.convex_compound import ConvexCompound
+from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.io.atomic import write_bytes
 from regolith_studio.io.json_text import json_bytes
 from regolith_studio.io.stl import stl_bytes
@@ -22,11 +24,14 @@ STL_HEADER = "Regolith Studio, convex polyhedron, micrometres"
 def write_coarsening(folder: Path, request: CoarseningRequest, done: Sequence[CoarsenedParticle]) -> None:
     """Write ``<name>.stl`` for each particle that succeeded, in its own frame, and ``coarsening.json``.
 
+    A union of several parts has ``<name>.part1.stl`` ... besides.
+
     The durations are in ``times.json`` alone, so that equal runs have equal results.
     """
     for each in done:
         if each.coarsened:
-            write_bytes(folder / f"{each.name}.stl", stl_bytes(each.coarsened.mesh.triangles, STL_HEADER))
+            for file, mesh in meshes_of(each.name, each.coarsened).items():
+                write_bytes(folder / file, stl_bytes(mesh.triangles, STL_HEADER))
     times = {each.name: round(each.seconds, 3) for each in done}
     write_bytes(folder / "times.json", json_bytes({"seconds": times}))
     write_bytes(folder / "coarsening.json", json_bytes(coarsening_document(request, done)))
@@ -114,9 +119,45 @@ def coarsening_entry(each: CoarsenedParticle, coarse: CoarseningResult) -> dict[
         "target": dict(coarse.target),
         "achieved": dict(coarse.achieved),
         "centre": coarse.centre.tolist(),
-        "normals": coarse.half_spaces.normals.tolist(),
-        "offsets": coarse.half_spaces.offsets.tolist(),
+        **_planes(each.name, coarse),
         "steps": dict(coarse.steps),
         "variants": {name: dict(errors) for name, errors in coarse.variants.items()},
         "notes": list(each.notes),
+    }
+
+
+def meshes_of(name: str, coarse: CoarseningResult) -> dict[str, Mesh]:
+    """Triangles in the particle's own frame by file name: the whole first, then each part of several."""
+    solid = coarse.polyhedron
+    meshes = {f"{name}.stl": coarse.mesh}
+    if isinstance(solid, ConvexCompound):
+        for number, part in enumerate(solid.part_meshes, start=1):
+            meshes[_part_file(name, number)] = part.moved(shift=coarse.centre)
+    return meshes
+
+
+def _part_file(name: str, number: int) -> str:
+    return f"{name}.part{number}.stl"
+
+
+def _planes(name: str, coarse: CoarseningResult) -> dict[str, Any]:
+    """Half-spaces about the particle's centroid; of several parts each about its own origin."""
+    solid = coarse.polyhedron
+    if not isinstance(solid, ConvexCompound):
+        planes = solid.half_spaces
+        return {"normals": planes.normals.tolist(), "offsets": planes.offsets.tolist()}
+    parts = [
+        {
+            "file": _part_file(name, number),
+            "origin": (place + coarse.centre).tolist(),
+            "n_facets": part.n_facets,
+            "normals": part.half_spaces.normals.tolist(),
+            "offsets": part.half_spaces.offsets.tolist(),
+        }
+        for number, (part, place) in enumerate(zip(solid.parts, solid.places, strict=True), start=1)
+    ]
+    return {
+        "parts": parts,
+        "centroid": (solid.centroid + coarse.centre).tolist(),
+        "inertia": solid.inertia.tolist(),
     }

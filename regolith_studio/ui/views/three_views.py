@@ -247,9 +247,9 @@ class ThreeViews(QSplitter):
 
     def _draw_polyhedron(self) -> None:
         solid = self._shapes.get(POLYHEDRON)
-        if solid is None or solid.polyhedron is None:
+        if solid is None or isinstance(solid.surface, Mesh):
             return
-        facets, centre, ink = solid.polyhedron, solid.origin, self._theme.surroundings
+        facets, centre, ink = solid.surface, solid.origin, self._theme.surroundings
         self.views[POLYHEDRON].draw(lambda plotter: surfaces.show_polyhedron(plotter, facets, centre, ink))
         self._draw_extras(POLYHEDRON)
 
@@ -261,7 +261,7 @@ class ThreeViews(QSplitter):
         """Box and star point of one view, or none of them."""
         ink, shape = self._theme.surroundings, self._shapes.get(name)
         boxed = shape is not None and bool(self._extras.get("box"))
-        body = (shape.polyhedron or shape.mesh) if shape is not None else None
+        body = shape.body if shape is not None else None
         corners = minimum_volume_box(body).corners if boxed and body is not None else None
         if corners is not None and shape is not None:
             corners = corners + shape.origin

@@ -1,0 +1,159 @@
+"""Unions of few convex parts that keep all descriptors, the convex hull volume among them."""
+
+from collections.abc import Generator
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from regolith_studio.coarsening.compound.conditions import KEYS
+from regolith_studio.coarsening.compound.search import CompoundCandidate, Effort, compound_of, search_compound
+from regolith_studio.coarsening.compound.start import MIN_FACETS
+from regolith_studio.coarsening.exact.constraint_selection import EXACT, MISSED_BY, NAMES
+from regolith_studio.coarsening.exact.multi_start import LEVELS, Search
+from regolith_studio.coarsening.loss import loss
+from regolith_studio.coarsening.progress import MethodStep
+from regolith_studio.coarsening.result import MethodResult
+from regolith_studio.coarsening.target import Target
+from regolith_studio.coarsening.weights import LossWeights
+from regolith_studio.descriptors.comparison import relative_errors
+from regolith_studio.descriptors.describe import Descriptors, describe
+from regolith_studio.errors import InputError
+from regolith_studio.messages import N_, Message, join_messages
+
+PARTS_LIMITS = (2, 8)
+CONVEX = 1e-6
+"""Particles whose volume is less below that of their hull, as a share, are convex."""
+RETRIES = 8
+EFFORTS = {"fast": Effort(4, 2), "best": Effort(16, 5)}
+"""By level."""
+
+
+@dataclass(frozen=True)
+class CompoundSettings:
+    """Parts and effort of the compound method.
+
+    Parameters
+    ----------
+    parts
+        At most so many convex parts, 2 to 8.
+    level
+        ``fast`` (4 starts, the best 2 of which descend further) or ``best`` (16 and 5: better overlap).
+
+    Raises
+    ------
+    InputError
+        If a value is out of its range.
+    """
+
+    parts: int = field(
+        default=4, metadata={"label": N_("Parts"), "minimum": PARTS_LIMITS[0], "maximum": PARTS_LIMITS[1]}
+    )
+    level: str = field(default="fast", metadata={"label": N_("Level"), "choices": tuple(EFFORTS)})
+
+    def __post_init__(self) -> None:
+        low, high = PARTS_LIMITS
+        if isinstance(self.parts, bool) or self.parts != int(self.parts) or not low <= self.parts <= high:
+            raise InputError(
+                f"The number of parts must be a whole number from {low} to {high}, got {self.parts}."
+            )
+        if self.level not in EFFORTS:
+            raise InputError(f"The level must be one of {', '.join(EFFORTS)}, got {self.level!r}.")
+
+
+class CompoundMethod:
+    """Constrained optimisation of the planes of several convex parts.
+
+    Weights above 0 make conditions on the union: volume, sphericity, shortest and longest edge of its exact
+    minimum-volume box, aspect ratio, convex hull volume. On the surface where all hold, the Jaccard distance
+    goes down. There are at most `parts` parts with 5 facets or more each. A convex particle needs no parts,
+    and fewer than 10 facets do not suffice for two: then the result is the polyhedron of the exact method.
+    """
+
+    key = "compound"
+    label = N_("Compound of convex parts")
+    Settings = CompoundSettings
+
+    def run(
+        self,
+        target: Target,
+        n_facets: int,
+        weights: LossWeights,
+        seed: np.random.SeedSequence,
+        settings: CompoundSettings,
+    ) -> Generator[MethodStep, None, MethodResult]:
+        """A step for each start and each better compound of the last descents."""
+        parts = min(settings.parts, n_facets // MIN_FACETS)
+        if target.solidity > 1.0 - CONVEX or parts < PARTS_LIMITS[0]:
+            search = Search(target, weights, n_facets, [LEVELS[settings.level]], RETRIES, seed)
+            yield from search.steps()
+            return (yield from search.finish())
+        return (yield from _compound(target, n_facets, weights, seed, parts, EFFORTS[settings.level]))
+
+
+def _compound(
+    target: Target,
+    n_facets: int,
+    weights: LossWeights,
+    seed: np.random.SeedSequence,
+    parts: int,
+    effort: Effort,
+) -> Generator[MethodStep, None, MethodResult]:
+    run = search_compound(target, weights, parts, n_facets, effort, seed)
+    history: list[float] = []
+    while True:
+        try:
+            found = next(run)
+        except StopIteration as end:
+            best: CompoundCandidate = end.value
+            break
+        history.append(_loss(target, weights, found))
+        step = min(len(history), effort.starts)
+        yield MethodStep(step, effort.starts, history[-1], compound=compound_of(found.point.planes))
+    solid = compound_of(best.point.planes)
+    achieved = describe(solid)
+    steps = {"starts": float(min(len(history), effort.starts)), "better": float(len(history))}
+    return MethodResult(
+        solid,
+        loss_history=tuple(history),
+        reason=_reason(target, weights, achieved, parts, n_facets),
+        steps=steps,
+        achieved=achieved,
+    )
+
+
+def _loss(target: Target, weights: LossWeights, found: CompoundCandidate) -> float:
+    """Eq. 9 by what the search has measured; descriptors that no condition is about count as met."""
+    logs = np.where(
+        np.isnan(found.point.logs), np.log([target.descriptors[key] for key in KEYS]), found.point.logs
+    )
+    measured = dict(zip(KEYS, np.exp(logs).tolist(), strict=True))
+    return loss(weights, relative_errors(target.descriptors, measured), found.distance)
+
+
+def _reason(
+    target: Target, weights: LossWeights, achieved: Descriptors, parts: int, n_facets: int
+) -> str | None:
+    """One sentence that names every descriptor that is missed; ``None`` where all asked for are met."""
+    errors = relative_errors(target.descriptors, achieved)
+    missed = {key: errors[key] for key in KEYS if weights[key] > 0 and errors[key] > EXACT}
+    if not missed:
+        return None
+    listed = join_messages(
+        (
+            Message(MISSED_BY, name=Message(NAMES[key]), error=f"{100 * missed[key]:.2g}")
+            for key in sorted(missed, key=lambda key: -missed[key])
+        ),
+        ", ",
+    )
+    return Message(
+        N_(
+            "No compound of {parts} parts with {faces} facets was found that meets all descriptors; this one"
+            " misses {missed}. More parts or facets, or a weight of 0 for a descriptor, may help."
+        ),
+        parts=parts,
+        faces=n_facets,
+        missed=listed,
+    )
+
+
+METHOD = CompoundMethod()

@@ -1,0 +1,82 @@
+"""Exposed edges, areas, overlap and conditions of unions against manifold3d and differences."""
+
+import numpy as np
+import pytest
+
+from regolith_studio.coarsening.compound.conditions import (
+    KEYS,
+    CompoundProblem,
+    point_of,
+    stepped,
+)
+from regolith_studio.coarsening.compound.line_overlap import shared_with_lines
+from regolith_studio.coarsening.compound.measures import Planes, measure_compound
+from regolith_studio.coarsening.compound.scan_lines import scan_lines
+from regolith_studio.coarsening.core.box_search import FINE_ANGLE
+from regolith_studio.geometry.mesh import Mesh
+from tests.coarsening.compound.unions import manifold_of, random_planes, solid_of
+from tests.geometry.solids import rough_stone
+
+
+def stone() -> Mesh:
+    return rough_stone(3).normalised()
+
+
+@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("parts", [2, 4, 7])
+def test_that_volume_and_exposed_area_are_those_of_manifold3d(seed: int, parts: int) -> None:
+    planes = random_planes(seed, parts)
+    found, solid = measure_compound(planes), solid_of(planes)
+    assert found is not None
+    assert found.volume == pytest.approx(solid.volume(), rel=1e-12)
+    assert found.surface_area == pytest.approx(solid.surface_area(), rel=1e-12)
+    assert found.areas.sum() == pytest.approx(found.surface_area, rel=1e-12)
+
+
+def test_that_apart_cubes_are_added_up() -> None:
+    cube = np.vstack([np.eye(3), -np.eye(3)])
+    far = np.array([[0.0, 0.0, 0.0], [5.0, 0.0, 0.0]])
+    offsets = np.concatenate([0.5 + cube @ place for place in far])
+    found = measure_compound(Planes(np.vstack([cube, cube]), offsets, np.array([0, 6, 12]), far))
+    assert found is not None
+    assert (found.volume, found.surface_area) == pytest.approx((2.0, 12.0))
+    assert np.count_nonzero(found.edge_planes[:, 2] < 0) == 0
+
+
+def test_that_a_part_that_does_not_hold_its_inner_point_is_refused() -> None:
+    planes = random_planes(0)
+    assert measure_compound(planes._replace(inner=planes.inner + 9.0)) is None
+
+
+def test_that_lines_measure_the_shared_volume_of_a_boolean() -> None:
+    planes, mesh = random_planes(2), stone()
+    compound = measure_compound(planes)
+    assert compound is not None
+    shared, _, _ = shared_with_lines(compound, scan_lines(mesh, 60_000), np.zeros((40, 2, 3)), np.ones(40))
+    boolean = (solid_of(planes) ^ manifold_of(mesh)).volume()
+    assert shared == pytest.approx(boolean, abs=3e-4)
+
+
+def test_that_the_lines_of_a_mesh_alternate_between_entering_and_leaving() -> None:
+    lines = scan_lines(stone(), 3000)
+    assert set(np.diff(lines.first) % 2) == {0}
+    for one, two in zip(lines.first[:-1], lines.first[1:], strict=True):
+        assert lines.sign[one:two].tolist() == [-1.0, 1.0] * ((two - one) // 2)
+
+
+@pytest.mark.parametrize("seed", [0, 2, 3])
+def test_that_derivatives_of_conditions_and_overlap_agree_with_differences(seed: int) -> None:
+    lines = scan_lines(stone(), 2000)
+    problem = CompoundProblem(lines, np.zeros(6), np.arange(6), FINE_ANGLE)
+    point = point_of(problem, random_planes(seed))
+    assert point is not None
+    direction = np.random.default_rng(seed).normal(size=3 * len(point.scales))
+    step = 1e-6
+    ahead, behind = stepped(problem, point, step * direction), stepped(problem, point, -step * direction)
+    assert ahead is not None
+    assert behind is not None
+    difference = (ahead.logs - behind.logs) / (2.0 * step)
+    assert point.rows @ direction == pytest.approx(difference, rel=1e-5, abs=1e-6), KEYS
+    _, gradient, _ = shared_with_lines(point.compound, lines, point.tangents, point.scales)
+    shared = [shared_with_lines(p.compound, lines, p.tangents, p.scales)[0] for p in (ahead, behind)]
+    assert gradient @ direction == pytest.approx((shared[0] - shared[1]) / (2.0 * step), rel=1e-3)

@@ -1,0 +1,92 @@
+"""The compound method as a user meets it, judged by manifold3d and the exact box."""
+
+import numpy as np
+import pytest
+
+from regolith_studio.coarsening.coarsen import coarsen
+from regolith_studio.coarsening.compound.line_overlap import compound_distance
+from regolith_studio.coarsening.compound.start import shared_out
+from regolith_studio.coarsening.weights import LossWeights
+from regolith_studio.descriptors.catalogue import LOSS_KEYS
+from regolith_studio.descriptors.comparison import relative_errors
+from regolith_studio.descriptors.describe import describe
+from regolith_studio.errors import InputError
+from regolith_studio.geometry.convex_compound import ConvexCompound
+from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
+from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.sphere_points import icosphere
+from tests.coarsening.compound.unions import manifold_of
+from tests.geometry.solids import cuboid, rotation
+
+
+def dumbbell(level: int = 3) -> Mesh:
+    """A rough body with a waist, at any place and unit."""
+    sphere = icosphere(level).vertices
+    rough = np.random.default_rng(2).uniform(0.9, 1.1, (len(sphere), 1))
+    waist = rough * (0.55 + 0.7 * sphere[:, :1] ** 2)
+    shape = sphere * np.hstack([np.full_like(waist, 1.8), waist, 0.8 * waist])
+    return Mesh(shape @ rotation(8).T * 40.0 + [5.0, -70.0, 300.0], icosphere(level).faces)
+
+
+@pytest.fixture(scope="module")
+def mesh() -> Mesh:
+    return dumbbell()
+
+
+def test_that_a_compound_keeps_all_six_descriptors_where_a_convex_body_cannot(mesh: Mesh) -> None:
+    found = coarsen(mesh, 24, "compound", settings={"parts": 2})
+    errors = relative_errors(describe(mesh), describe(found.mesh), LOSS_KEYS)
+    assert max(errors.values()) < 1e-6
+    assert found.reason is None
+    assert (found.n_parts, found.n_facets <= 24) == (2, True)
+    convex = coarsen(mesh, 24)
+    assert convex.errors["convex_hull_volume"] > 0.05
+    assert found.jaccard_distance < 0.8 * convex.jaccard_distance
+
+
+def test_that_the_distance_is_that_of_a_boolean_and_parts_lie_where_the_particle_lies(mesh: Mesh) -> None:
+    found = coarsen(mesh, 20, "compound", settings={"parts": 2})
+    union, particle = manifold_of(found.mesh), manifold_of(mesh)
+    shared = (union ^ particle).volume()
+    boolean = 1.0 - shared / (union.volume() + particle.volume() - shared)
+    assert found.jaccard_distance == pytest.approx(boolean, abs=2e-4)
+    solid = found.polyhedron
+    assert isinstance(solid, ConvexCompound)
+    moved = mesh.moved(shift=-found.centre)
+    assert compound_distance(moved, solid) == pytest.approx(boolean, abs=2e-4)
+
+
+def test_that_the_same_seed_gives_the_same_compound(mesh: Mesh) -> None:
+    one, two = (coarsen(mesh, 16, "compound", settings={"parts": 2}, seed=3) for _ in range(2))
+    assert one.mesh.content_hash == two.mesh.content_hash
+
+
+def test_that_a_weight_of_zero_frees_a_descriptor(mesh: Mesh) -> None:
+    weights = LossWeights.of(jaccard_distance=1.0, volume=1.0, convex_hull_volume=1.0)
+    found = coarsen(mesh, 16, "compound", weights, settings={"parts": 2})
+    assert max(found.errors["volume"], found.errors["convex_hull_volume"]) < 1e-6
+    assert found.errors["sphericity"] > 1e-6
+
+
+def test_that_a_convex_particle_gets_the_polyhedron_of_the_exact_method() -> None:
+    brick = cuboid(3.0, 2.0, 1.0)
+    found, exact = coarsen(brick, 12, "compound"), coarsen(brick, 12, "exact")
+    assert isinstance(found.polyhedron, ConvexPolyhedron)
+    assert found.n_parts == 1
+    assert found.mesh.content_hash == exact.mesh.content_hash
+
+
+def test_that_too_few_facets_for_two_parts_make_one(mesh: Mesh) -> None:
+    assert coarsen(mesh, 8, "compound").n_parts == 1
+    assert coarsen(mesh, 10, "compound").n_parts == 2
+
+
+@pytest.mark.parametrize("parts", [1, 9, 2.5, True])
+def test_that_a_number_of_parts_out_of_range_is_one_sentence(mesh: Mesh, parts: float) -> None:
+    with pytest.raises(InputError, match="must be a whole number from 2 to 8"):
+        coarsen(mesh, 20, "compound", settings={"parts": parts})
+
+
+def test_that_facets_are_shared_out_by_area() -> None:
+    assert shared_out(np.array([1.0, 1.0, 6.0]), 40).tolist() == [5, 5, 30]
+    assert shared_out(np.array([1.0, 1.0]), 10).tolist() == [5, 5]

@@ -1,0 +1,41 @@
+"""Random unions of convex parts, as half-spaces and as manifold3d's solids."""
+
+import manifold3d
+import numpy as np
+from scipy.spatial import ConvexHull, HalfspaceIntersection
+
+from regolith_studio.coarsening.compound.measures import Planes
+from regolith_studio.geometry.mesh import Mesh
+
+
+def random_planes(seed: int, parts: int = 4, planes: int = 10) -> Planes:
+    """Parts that overlap in part, of about unit volume each."""
+    rng = np.random.default_rng(seed)
+    cube = np.vstack([np.eye(3), -np.eye(3)])
+    normals, offsets = [], []
+    inner = rng.normal(scale=0.35, size=(parts, 3))
+    for place in inner:
+        sides = np.vstack([cube + rng.normal(scale=0.1, size=(6, 3)), rng.normal(size=(planes - 6, 3))])
+        sides /= np.linalg.norm(sides, axis=1)[:, None]
+        normals.append(sides)
+        offsets.append(rng.uniform(0.4, 0.6, planes) + sides @ place)
+    first = np.arange(parts + 1) * planes
+    return Planes(np.concatenate(normals), np.concatenate(offsets), first, inner)
+
+
+def solid_of(planes: Planes) -> manifold3d.Manifold:
+    """The union by manifold3d, of hulls of the corners that Qhull finds."""
+    parts = []
+    for j in range(len(planes.inner)):
+        mine = slice(planes.first[j], planes.first[j + 1])
+        equations = np.column_stack([planes.normals[mine], -planes.offsets[mine]])
+        corners = HalfspaceIntersection(equations, planes.inner[j]).intersections
+        hull = Mesh(corners, np.empty((0, 3), dtype=np.int64)).hull
+        assert len(hull.vertices) == len(ConvexHull(corners).vertices)
+        parts.append(manifold_of(hull))
+    return manifold3d.Manifold.batch_boolean(parts, manifold3d.OpType.Add)
+
+
+def manifold_of(mesh: Mesh) -> manifold3d.Manifold:
+    """A closed mesh for manifold3d."""
+    return manifold3d.Manifold(manifold3d.Mesh64(np.array(mesh.vertices), mesh.faces.astype(np.uint64)))
