@@ -195,22 +195,21 @@ class Running:
         name, value = self._mark.split("=")
         environment = {**os.environ, name: value, "TMPDIR": str(temporary), "PYTHONPATH": str(ROOT)}
         command = [sys.executable, "-m", "regolith_studio", *words]
-        self.process = subprocess.Popen(
-            command,
-            env=environment,
-            cwd=temporary.parent,
-            stdout=subprocess.DEVNULL,
-            stderr=subprocess.PIPE,
-            text=True,
-            start_new_session=True,
-        )
+        self._stderr = temporary.parent / f"{value}.txt"  # a pipe would stay open until the last process ends
+        with self._stderr.open("wb") as stderr:
+            self.process = subprocess.Popen(
+                command,
+                env=environment,
+                cwd=temporary.parent,
+                stdout=subprocess.DEVNULL,
+                stderr=stderr,
+                start_new_session=True,
+            )
 
     def end(self) -> Ended:
         """Wait for its end, then up to `GRACE` seconds for that of its processes; kill those that stay."""
-        try:
-            stderr = self.process.communicate(timeout=PATIENCE)[1]
-        except subprocess.TimeoutExpired:
-            stderr = "no end"
+        with suppress(subprocess.TimeoutExpired):
+            self.process.wait(PATIENCE)
         limit = time.monotonic() + GRACE
         while (alive := self._alive()) and time.monotonic() < limit:
             time.sleep(0.05)
@@ -218,6 +217,8 @@ class Running:
             with suppress(ProcessLookupError):
                 os.kill(number, signal.SIGKILL)
         self.process.wait()
+        stderr = self._stderr.read_text("utf-8", "backslashreplace")
+        self._stderr.unlink()
         return Ended(self.process.returncode, stderr, len(alive))
 
     def _alive(self) -> list[int]:
@@ -370,10 +371,14 @@ def main() -> None:
     signal.signal(signal.SIGINT, signal.default_int_handler)  # the background of a shell ignores it, nohup
     signal.signal(signal.SIGHUP, signal.SIG_DFL)  # this, and so would what is started here
     rows: Rows = {}
+    printed: set[str] = set()
     print(HEAD, flush=True)
     with tempfile.TemporaryDirectory() as folder, suppress(KeyboardInterrupt):
         for name in attack(Path(folder), options.only, options.share, options.seed, rows):
             print("\n".join(lines(rows, name)), flush=True)
+            printed.add(name)
+    for name in dict.fromkeys(name for name, _ in rows if name not in printed):
+        print("\n".join(lines(rows, name)))
     print(total(rows))
     if any(each.lost or each.mixed or each.left or each.unclear for each in rows.values()):
         raise SystemExit(1)

@@ -14,7 +14,7 @@ from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.folder_io import IGNORED_FILES
 from regolith_studio.dataset.parameters import ContactParameters, LiftingCylinderTest, ScriptTimes
 from regolith_studio.dataset.size_distributions import size_classes
-from regolith_studio.errors import DatasetError, FileError, InputError
+from regolith_studio.errors import DatasetError, FileError, InputError, os_error_reason
 from regolith_studio.io.atomic import recover_folder, replace_folder
 from regolith_studio.io.json_text import canonical_json, parse_strict_json
 from regolith_studio.io.tables import csv_bytes
@@ -182,9 +182,7 @@ def write_export(
         content = _with_readme(dataset, exporter, chosen, dataset_hash)
         replace_folder(target, content)
     except OSError as error:
-        raise DatasetError(
-            f"The export could not be written to {target}: {error.strerror or error}."
-        ) from error
+        raise DatasetError(f"The export {target} cannot be written ({os_error_reason(error)}).") from error
     return ExportResult(exporter.key, target, tuple(sorted(content)), load_command(exporter, target))
 
 

@@ -116,8 +116,7 @@ def write_dataset(folder: Path | str, dataset: Dataset, *, overwrite: bool = Tru
         check_replaceable(target, overwrite)
         replace_folder(target, files)
     except OSError as error:
-        reason = error.strerror or str(error)
-        raise DatasetError(f"The dataset could not be written to {target}: {reason}.") from error
+        raise DatasetError(f"The dataset {target} cannot be written ({os_error_reason(error)}).") from error
     return target
 
 

@@ -30,7 +30,7 @@ from regolith_studio.dataset.folder_io import (
 from regolith_studio.dataset.schema import RepresentativeRecord
 from regolith_studio.dataset.serialization import frame_of, mesh_header, mesh_path, parsed_document, record_of
 from regolith_studio.dataset.size_distributions import normalised_shares
-from regolith_studio.errors import DatasetError, InputError
+from regolith_studio.errors import DatasetError, InputError, os_error_reason
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.io.atomic import recover_folder, replace_folder
 from regolith_studio.io.json_text import canonical_json
@@ -114,8 +114,7 @@ def write_stored(
         check_replaceable(target, overwrite)
         replace_folder(target, _files(shapes, count, name, origin))
     except OSError as error:
-        reason = error.strerror or str(error)
-        raise DatasetError(f"The dataset could not be written to {target}: {reason}.") from error
+        raise DatasetError(f"The dataset {target} cannot be written ({os_error_reason(error)}).") from error
     return target
 
 

@@ -116,7 +116,8 @@ def save_result(folder: Path, document: dict[str, Any], final: ParticleState | N
         _write(folder / TIMES, canonical_json({"seconds": round(seconds, 3)}).encode("utf-8"))
         _write(folder / DOCUMENT, canonical_json(document).encode("utf-8"))
     except OSError as error:
-        raise FileError(f"The result could not be written to {folder} ({error.strerror}).") from error
+        reason = os_error_reason(error)
+        raise FileError(f"The result cannot be written to {folder} ({reason}).") from error
 
 
 def read_final_state(path: Path) -> ParticleState:

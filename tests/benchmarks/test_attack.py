@@ -1,11 +1,13 @@
 """A sample of the attack on every command that writes."""
 
 import sys
+import time
 from pathlib import Path
 
 import pytest
 
-from benchmarks.attack import Arena, Ended, Prepared, Row, Rows, attack, judge, lines, tree
+from benchmarks import attack as attack_script
+from benchmarks.attack import Arena, Ended, Prepared, Row, Rows, Running, attack, judge, lines, tree
 
 
 @pytest.mark.slow
@@ -16,6 +18,22 @@ def test_that_an_attack_leaves_an_earlier_result_or_a_new_one(tmp_path: Path) ->
     assert sum(row.runs for row in rows.values()) >= 10
     bad = {key for key, row in rows.items() if row.lost or row.mixed or row.left or row.unclear}
     assert not bad, [line for name in commands for line in lines(rows, name)]
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="processes are found in /proc")
+def test_that_a_process_that_outlives_its_command_is_counted_and_ended(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It holds the command's stderr, so that nobody may wait for the end of that."""
+    program = tmp_path / "program"
+    program.write_text("#!/bin/sh\necho Stopped. >&2\nsleep 60 &\nexit 130\n")
+    program.chmod(0o755)
+    monkeypatch.setattr(sys, "executable", str(program))
+    monkeypatch.setattr(attack_script, "GRACE", 0.2)
+    (tmp_path / "tmp").mkdir()
+    begun = time.monotonic()
+    assert Running((), tmp_path / "tmp").end() == Ended(130, "Stopped.\n", 1)
+    assert time.monotonic() - begun < 30
 
 
 @pytest.mark.parametrize(

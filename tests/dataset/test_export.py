@@ -90,7 +90,7 @@ def test_that_a_folder_of_others_and_a_file_are_refused(tmp_path: Path, make_dat
     (tmp_path / "file").write_text("x")
     with pytest.raises(DatasetError, match="is a file"):
         written(make_dataset(1), "hoomd", tmp_path / "file")
-    with pytest.raises(DatasetError, match="could not be written"):
+    with pytest.raises(DatasetError, match="cannot be written"):
         written(make_dataset(1), "hoomd", tmp_path / "file" / "below")
 
 
