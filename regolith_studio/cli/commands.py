@@ -19,6 +19,7 @@ from regolith_studio.cli import (
     generate,
     install_desktop,
     recipe,
+    report,
     repose,
     study,
 )
@@ -80,6 +81,7 @@ app.command("coarsen")(coarsen.coarsen)
 app.command("extract")(extract.extract)
 app.command("run")(recipe.run)
 app.command("demo")(demo.demo)
+app.command("report")(report.report)
 app.command("check")(check.check)
 app.command("forget")(forget.forget)
 app.command("install-desktop")(install_desktop.install_desktop)

@@ -55,13 +55,21 @@ def _options(name: str, hint: Any, default: Any) -> Iterator[inspect.Parameter]:
 
 
 def _annotated(each: Field[Any], hint: Any) -> Any:
-    """The type of a setting with its option; its tip and its keys are the help."""
+    """The type of a setting with its option; its tip and its keys are the help, its range is checked."""
     metadata = each.metadata
     keys = [key for key in metadata.get("choices", ()) if key]
     help_ = f"{metadata['tip']} One of: {', '.join(keys)}." if keys else metadata["tip"]
     metavar = metadata.get("metavar") or ("KEY" if isinstance(each.default, str) else "N")
     name = f"--{each.name.replace('_', '-')}"
-    return Annotated[hint, typer.Option(name, help=help_, metavar=metavar, show_default=bool(each.default))]
+    option = typer.Option(
+        name,
+        help=help_,
+        metavar=metavar,
+        show_default=bool(each.default),
+        min=metadata.get("minimum"),
+        max=metadata.get("maximum"),
+    )
+    return Annotated[hint, option]
 
 
 def _make_group(group: Any, values: dict[str, Any]) -> Any:

@@ -5448,6 +5448,10 @@
         <translation>Datensatz wird geschrieben</translation>
     </message>
     <message>
+        <source>Writing the report</source>
+        <translation>Bericht wird geschrieben</translation>
+    </message>
+    <message>
         <source>Writing the results</source>
         <translation>Ergebnisse werden geschrieben</translation>
     </message>

@@ -19,6 +19,7 @@ COMMANDS = (
     "extract MESH",
     "run RECIPE",
     "demo",
+    "report MESH",
     "study lmax MESH",
     "study coarsening MESH",
     "study population MESH",

@@ -1,0 +1,85 @@
+"""What a report shows, and of how many particles."""
+
+from dataclasses import dataclass
+
+from regolith_studio.coarsening.coarsen import DEFAULT_METHOD, DEFAULT_PRESET, FACETS_LIMITS
+from regolith_studio.dem.angle_of_repose import check_number
+from regolith_studio.dem.evaluation.settings import EvaluationSettings
+from regolith_studio.jobs.particle_jobs import FIT_DEGREE
+from regolith_studio.session.choices import Choices
+from regolith_studio.settings import check_settings, setting
+
+
+@dataclass(frozen=True)
+class ReportSettings:
+    """Settings of a report.
+
+    Raises
+    ------
+    InputError
+        If a value is out of its range, there is no such method or preset, or a heap has too few particles.
+    """
+
+    l_max: int = setting(
+        10,
+        "Maximum degree",
+        "Degree at which fits are cut and models draw; the paper uses 10.",
+        minimum=1,
+        maximum=FIT_DEGREE,
+        metavar="L",
+    )
+    facets: int = setting(
+        20,
+        "Facets",
+        "Number of facets of each polyhedron.",
+        minimum=FACETS_LIMITS[0],
+        maximum=FACETS_LIMITS[1],
+    )
+    method: str = setting(DEFAULT_METHOD, "Coarsening method", "Key of the coarsening method.")
+    preset: str = setting(
+        DEFAULT_PRESET, "Preset", "Preset of the loss weights of the representative particles."
+    )
+    study_particles: int = setting(
+        150,
+        "Particles of the studies",
+        "Number of particles, taken at random, that Figs. 3 and 8 are made from.",
+        minimum=1,
+        maximum=1_000_000,
+    )
+    drawn: int = setting(3, "Particles drawn", "Number of particles shown in Fig. 7.", minimum=1, maximum=20)
+    splits: int = setting(
+        5,
+        "Splits",
+        "Number of random halves that the models of Figs. 4 to 6 are fitted to.",
+        minimum=1,
+        maximum=100,
+    )
+    representatives: int = setting(
+        10, "Representatives", "Number of shapes that the heap is made of.", minimum=1, maximum=10_000
+    )
+    heap: int = setting(
+        1000,
+        "Particles of the heap",
+        "Number of particles of the simulated heap of Fig. 9; 0 for none.",
+        minimum=0,
+        maximum=5_000_000,
+    )
+    seed: int = setting(0, "Seed", "Seed of the random numbers.", minimum=0, maximum=2**63 - 1)
+
+    def __post_init__(self) -> None:
+        check_settings(self)
+        _ = self.choices
+        if self.heap:
+            check_number(self.heap, EvaluationSettings())
+
+    @property
+    def choices(self) -> Choices:
+        """How particles are fitted and coarsened: the target is the fit, as in section 3.2."""
+        return Choices().replaced(
+            l_max=self.l_max,
+            n_facets=self.facets,
+            method=self.method,
+            preset=self.preset,
+            seed=self.seed,
+            target="fit",
+        )

@@ -1,0 +1,194 @@
+"""The report on a sample: what stands in it, what fails in its place, and that it can be repeated."""
+
+import hashlib
+import json
+import re
+from collections.abc import Callable, Mapping
+from html.parser import HTMLParser
+from pathlib import Path
+
+import pytest
+from matplotlib.figure import Figure
+
+from regolith_studio.errors import InputError
+from regolith_studio.geometry.particle import Particle
+from regolith_studio.io.tables import Column, Table
+from regolith_studio.jobs.events import Progress, Steps
+from regolith_studio.readers.particles import sample_particles
+from regolith_studio.session.report import heap_sections, write
+from regolith_studio.session.report.draft import ReportDraft, SectionSteps
+from regolith_studio.session.report.sections import ReportFigure, ReportSection, error_table, interval_text
+from regolith_studio.session.report.settings import ReportSettings
+from regolith_studio.session.report.write import DOCUMENT, PAGE, PDF, WrittenReport, write_report
+from regolith_studio.studies.figures.files import write_figure
+
+NUMBERS = Table("Numbers", (Column("name"), Column("length", "um")), (("one", 1.5), ("<two>", None)))
+
+
+def picture(draft: ReportDraft, title: str) -> SectionSteps:
+    figure = Figure(figsize=(4, 3))
+    figure.subplots().plot([0, 1], [1, 0])
+    yield Progress(1, 1)
+    file, _ = write_figure(figure, draft.folder / "small", "small")
+    text = f"{len(draft.particles)} particles & more"
+    return ReportSection(title, (text,), (ReportFigure(file, "A line."),), (NUMBERS,))
+
+
+def fails(draft: ReportDraft, _title: str) -> SectionSteps:
+    yield Progress(0, 1)
+    raise InputError(f"Nothing in {draft.folder} can be drawn.")
+
+
+SMALL: Mapping[str, Callable[[ReportDraft, str], SectionSteps]] = {"Fig. 1": fails, "Fig. 2": picture}
+
+
+class Tags(HTMLParser):
+    """The addresses that a page loads or links, and the text of its headings."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.addresses: list[str] = []
+        self.headings: list[str] = []
+        self._in_heading = False
+        self.feed(text)
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.addresses += [value or "" for name, value in attrs if name in ("src", "href", "srcset", "data")]
+        self._in_heading = tag == "h2"
+
+    def handle_data(self, data: str) -> None:
+        if self._in_heading:
+            self.headings.append(data)
+            self._in_heading = False
+
+
+def finish(steps: Steps) -> WrittenReport:
+    while True:
+        try:
+            next(steps)
+        except StopIteration as end:
+            done: WrittenReport = end.value
+            return done
+
+
+def hashes(folder: Path) -> dict[str, str]:
+    files = (path for path in folder.rglob("*") if path.is_file())
+    return {str(p.relative_to(folder)): hashlib.sha256(p.read_bytes()).hexdigest() for p in files}
+
+
+def n_pages(pdf: bytes) -> int:
+    assert pdf.startswith(b"%PDF-1.")
+    assert pdf.rstrip().endswith(b"%%EOF")
+    return len(re.findall(rb"/Type /Page\b(?!s)", pdf))
+
+
+@pytest.fixture(scope="module")
+def particles() -> tuple[Particle, ...]:
+    chosen = ("angular-1", "bead-1", "flat-1")
+    return tuple(each for each in sample_particles() if each.name in chosen)
+
+
+@pytest.fixture
+def small(particles: tuple[Particle, ...], tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> WrittenReport:
+    monkeypatch.setattr(write, "PARTS", SMALL)
+    return finish(write_report(particles, tmp_path / "report"))
+
+
+def test_that_a_section_that_fails_says_so_in_its_place_and_stops_nothing(small: WrittenReport) -> None:
+    text = (small.folder / PAGE).read_text(encoding="utf-8")
+    assert Tags(text).headings == ["Fig. 1", "Fig. 2", "How it was made"]
+    place = text.index("Nothing in report can be drawn.")
+    assert text.index('id="section-0"') < place < text.index('id="section-1"')
+    assert small.problems == ("Fig. 1: Nothing in report can be drawn.",)
+    assert json.loads((small.folder / DOCUMENT).read_text())["problems"] == [*small.problems]
+
+
+def test_that_the_page_needs_no_other_file(small: WrittenReport) -> None:
+    text = (small.folder / PAGE).read_text(encoding="utf-8")
+    addresses = Tags(text).addresses
+    assert sum(each.startswith("data:image/png;base64,") for each in addresses) == 1
+    assert all(each.startswith(("data:", "#section-")) for each in addresses)
+    assert "url(" not in text
+    assert "3 particles &amp; more" in text
+    assert "&lt;two&gt;" in text
+
+
+def test_that_page_and_document_name_settings_versions_and_hashes(
+    small: WrittenReport, particles: tuple[Particle, ...]
+) -> None:
+    text = (small.folder / PAGE).read_text(encoding="utf-8")
+    document = json.loads((small.folder / DOCUMENT).read_text())
+    assert document["settings"]["l_max"] == 10
+    assert document["software"]["numpy"] in text
+    for particle, entry in zip(particles, document["particles"], strict=True):
+        assert particle.source is not None
+        assert entry["sha256"] == particle.source.sha256
+        assert particle.source.sha256 in text
+
+
+def test_that_the_pdf_has_pages(small: WrittenReport) -> None:
+    assert n_pages((small.folder / PDF).read_bytes()) >= 1
+
+
+def test_that_the_same_sample_and_settings_give_the_same_bytes(
+    small: WrittenReport, particles: tuple[Particle, ...], tmp_path: Path
+) -> None:
+    (tmp_path / "again").mkdir()
+    again = finish(write_report(particles, tmp_path / "again" / "report"))
+    assert hashes(again.folder) == hashes(small.folder)
+
+
+def test_that_a_table_of_errors_has_a_row_a_group_and_a_column_a_descriptor() -> None:
+    names = ("group", "l_max", "descriptor", "rmsre", "rmsre_low", "rmsre_high")
+    rows = (
+        ("a", 9, "volume", 8.0, 7.0, 9.0),
+        ("a", 10, "volume", 2.0, 1.0, 3.0),
+        ("a", 10, "sphericity", None, None, None),
+        ("", 10, "volume", 1e-7, 0.0, 0.25),
+    )
+    table = error_table(Table("all", tuple(map(Column, names)), rows), "group", "at 10", l_max=10)
+    assert [column.header for column in table.columns] == ["group", "V [%]", "S [%]"]
+    assert table.rows == (("a", "2 (1 to 3)", ""), ("all", "0 (0 to 0.25)", ""))
+    assert interval_text(None, 1.0, 2.0) == ""
+
+
+@pytest.mark.parametrize(
+    ("changes", "wrong"),
+    [({"heap": 10}, "too few for a pile"), ({"l_max": 31}, "l_max"), ({"method": "magic"}, "magic")],
+)
+def test_that_settings_that_cannot_work_are_refused_before_anything_is_computed(
+    changes: dict[str, object], wrong: str
+) -> None:
+    with pytest.raises(InputError, match=wrong):
+        ReportSettings(**changes)  # type: ignore[arg-type]
+
+
+def test_that_a_sample_without_particles_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="at least one particle"):
+        finish(write_report((), tmp_path / "report"))
+    assert not (tmp_path / "report").exists()
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(900)
+def test_that_a_real_report_has_every_figure_or_says_why_not(
+    particles: tuple[Particle, ...], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def breaks(*_: object, **__: object) -> Steps:
+        yield Progress(0, 1)
+        raise InputError("The losses cannot be compared today.")
+
+    monkeypatch.setattr(heap_sections, "study_coarsening", breaks)
+    settings = ReportSettings(drawn=1, study_particles=2, representatives=2, heap=0)
+    first = finish(write_report(particles, tmp_path / "one", settings))
+    text = (first.folder / PAGE).read_text(encoding="utf-8")
+    assert Tags(text).headings == [*write.PARTS, "How it was made"]
+    assert text.count("data:image/png") == 3  # Figs. 2, 3 and 7
+    assert [each.partition(":")[0] for each in first.problems] == ["Figs. 4 to 6", "Fig. 8"]
+    assert "at least 20 particles" in first.problems[0]
+    assert "The losses cannot be compared today." in text
+    assert "3.075" in text  # the density of Table 1
+    assert n_pages((first.folder / PDF).read_bytes()) >= 3
+    (tmp_path / "other").mkdir()
+    second = finish(write_report(particles, tmp_path / "other" / "one", settings))
+    assert hashes(second.folder) == hashes(first.folder)
