@@ -1,6 +1,6 @@
 """``extract``: particle meshes from a volume of grey values or labels, and the options of volumes."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -304,15 +304,43 @@ def _print_counts(
         print_table(table)
 
 
+def _extract_groups(
+    scans: "list[VolumeInput]", settings: "GrainSettings", output: Path, jobs: int, as_json: bool
+) -> None:
+    """Extract several volumes, each into a folder of its own, and print what became of them.
+
+    Raises
+    ------
+    Exit
+        If a volume could not be used.
+    """
+    from regolith_studio.io.tables import json_text
+    from regolith_studio.session.batch.scan_groups import extract_groups, group_names
+
+    with usage_errors():
+        names = group_names([scan.path for scan in scans])
+    named = [replace(scan, group=name) for scan, name in zip(scans, names, strict=True)]
+    output.mkdir(parents=True, exist_ok=True)
+    done = run_with_progress(extract_groups(named, settings, output, jobs), logged=True)
+    print_errors(sentence for _, sentence in done.problems)
+    if done.comparison is not None and as_json:
+        typer.echo(json_text(done.comparison), nl=False)
+    elif done.comparison is not None:
+        counts = f"extracted: {len(done.extracted)}, kept from an earlier run: {len(done.kept)}"
+        typer.echo(f"Volumes {counts}. Written to {output}.")
+    if done.problems:
+        raise typer.Exit(1)
+
+
 @with_dataclass_options
 def extract(
     *,
-    volume: Annotated[
-        Path,
+    volumes: Annotated[
+        list[Path],
         typer.Argument(
-            metavar="VOLUME",
+            metavar="VOLUME...",
             help="TIFF stack, folder of slices, TXM, DICOM, OME-Zarr, Amira, HDF5, NRRD, MetaImage, NIfTI, "
-            "NPY, raw, or the header of a scanner beside its voxels.",
+            "NPY, raw, or the header of a scanner beside its voxels; or folders that hold several of these.",
         ),
     ],
     output: OptionalFolder = None,
@@ -348,23 +376,34 @@ def extract(
     """Turn the grains of a CT volume into particle meshes (section 2.1).
 
     Writes one STL a particle, particles.csv and extraction.json with all settings. With --preview-h it prints
-    how many grains several values of --h-maxima give, and writes nothing.
+    how many grains several values of --h-maxima give, and writes nothing. Of several volumes each has a
+    folder in the output folder; particles.csv holds all particles, and groups.csv compares the volumes.
+    Volumes that an earlier run has finished are not extracted again.
     """
     from regolith_studio.io.atomic import staged_folder
     from regolith_studio.jobs.extraction_settings import read_grain_settings
     from regolith_studio.jobs.volume_jobs import extract_measured
+    from regolith_studio.session.batch.scan_groups import find_scans
     from regolith_studio.session.outputs.particles import ExtractionFolder
 
     del seed  # taken by every command; nothing here is random
+    scans = find_scans(volumes)
+    volume = scans[0]
     with usage_errors():
         given = contents.of(volume)
         settings = read_grain_settings(recipe) if recipe else grains.recipe
         heights = _heights(preview_h)
+    several = list(scans) != volumes or len(scans) > 1
+    if several and (heights or labels is not None):
+        raise typer.BadParameter("--preview-h and --labels take one volume at a time.")
     if heights:
         _print_counts(given, settings, heights, json)
         return
     if output is None:
         raise typer.BadParameter("Name a folder to write with -o, or values for --preview-h.")
+    if several:
+        _extract_groups([contents.of(scan) for scan in scans], settings, output, jobs, json)
+        return
     with staged_folder(output, "extract") as stage:
         folder = ExtractionFolder(stage)
         done = run_with_progress(extract_measured(given, settings, output.parent, folder.add, jobs, labels))

@@ -160,6 +160,8 @@ class VolumeInput:
         What a raw file does not say about itself.
     axes
         Of an NPY or HDF5 array, the slowest first: ``zyx`` by default.
+    group
+        Name of the group of its particles; by default that of the file.
     """
 
     path: Path
@@ -169,6 +171,7 @@ class VolumeInput:
     dataset: str | None = None
     raw: RawLayout | None = None
     axes: str | None = None
+    group: str = ""
 
     def opened(self) -> VolumeFile:
         """The volume, read slab by slab.

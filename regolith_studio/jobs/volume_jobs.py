@@ -410,7 +410,9 @@ def _extract(
         if labels_file is not None:
             yield from write_labels(labels, recipe.extraction, labels_file, grey is not None)
         yield Started(N_("Extracting particles"))
-        steps = extraction_steps(labels, recipe.extraction, given.path.stem, source, collect, grey)
+        steps = extraction_steps(
+            labels, recipe.extraction, given.group or given.path.stem, source, collect, grey
+        )
         extraction = yield from consume(steps)
     if not extraction.n_found:
         raise InputError(_no_particle_message(given.path, extraction))

@@ -13,10 +13,9 @@ from regolith_studio.imaging.extraction import is_remark
 from regolith_studio.io.tables import Column, Table
 from regolith_studio.jobs.particle_jobs import MeasuredParticle
 from regolith_studio.messages import N_
-from regolith_studio.session.outputs.descriptors import descriptor_table
+from regolith_studio.session.outputs.descriptors import UNITS, descriptor_table
 from regolith_studio.session.results import ParticleEntry
 
-UNITS = {0: "", 1: "um", 2: "um^2", 3: "um^3", 5: "um^5"}
 QUANTILES = (0.1, 0.5, 0.9)
 EVERYTHING = "all"
 """Name of the group that every particle belongs to."""

@@ -2044,6 +2044,10 @@
         <translation>Gruppe</translation>
     </message>
     <message>
+        <source>Groups, and each against all others</source>
+        <translation>Gruppen, und jede gegen alle anderen</translation>
+    </message>
+    <message>
         <source>Guide</source>
         <translation>Handbuch</translation>
     </message>
@@ -6850,6 +6854,10 @@
     <message>
         <source>{name} (mean)</source>
         <translation>{name} (Mittel)</translation>
+    </message>
+    <message>
+        <source>{name} ({number} of {count}): {step}</source>
+        <translation>{name} ({number} von {count}): {step}</translation>
     </message>
     <message>
         <source>{name} and {count} more</source>

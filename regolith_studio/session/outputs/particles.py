@@ -13,6 +13,7 @@ from regolith_studio import __version__
 from regolith_studio.dataset.build import software_versions
 from regolith_studio.harmonics.coefficients import CONVENTION
 from regolith_studio.imaging.extraction import ExtractedParticle
+from regolith_studio.imaging.volume_slabs import SliceSource
 from regolith_studio.io.atomic import write_bytes
 from regolith_studio.io.json_text import json_bytes
 from regolith_studio.io.stl import stl_bytes
@@ -30,7 +31,7 @@ from regolith_studio.shape_models.realizations import Realizations
 from regolith_studio.shape_models.sample import Sample
 
 STL_HEADER = "Regolith Studio, particle, micrometres"
-RECIPE = "extraction.json"
+RECIPE, LISTED = "extraction.json", "extract.sha256"
 _LIBRARIES = ("scikit-image", "connected-components-3d", "vtk", "tifffile", "h5py")
 
 
@@ -83,28 +84,36 @@ class ExtractionFolder:
 
 def recipe_document(volume: VolumeInput, recipe: GrainSettings, result: ExtractedFile) -> dict[str, Any]:
     """Everything that is needed to make the same particles again, and what was left out."""
-    document: dict[str, Any] = {
+    document = input_document(volume, recipe, result.sha256, result) | {
+        "n_particles": result.extraction.n_found,
+        "border": list(result.extraction.border),
+        "small": list(result.extraction.small),
+    }
+    if result.facts is not None:
+        document["segmented"] = asdict(result.facts)
+    return document
+
+
+def input_document(
+    volume: VolumeInput, recipe: GrainSettings, sha256: str, voxels: ExtractedFile | SliceSource
+) -> dict[str, Any]:
+    """What the particles of a volume depend on: its voxels, the settings, and the versions of libraries."""
+    settings = recipe.as_document()
+    if voxels.kind == "labels":
+        del settings["segmentation"]
+    return settings | {
         "volume": {
             "path": str(volume.path),
             "dataset": volume.dataset,
             "axes": volume.axes,
-            "sha256": result.sha256,
-            "shape_xyz": list(result.shape),
-            "dtype": result.dtype,
-            "kind": result.kind,
-            "voxel_size_um": list(result.voxel_size),
+            "sha256": sha256,
+            "shape_xyz": list(voxels.shape),
+            "dtype": str(voxels.dtype),
+            "kind": voxels.kind,
+            "voxel_size_um": [float(edge) for edge in np.ravel(np.asarray(voxels.voxel_size))],
         },
-        "region": recipe.as_document()["region"],
-        "extraction": recipe.as_document()["extraction"],
-        "n_particles": result.extraction.n_found,
-        "border": list(result.extraction.border),
-        "small": list(result.extraction.small),
         "software": software_versions() | {name: version(name) for name in _LIBRARIES},
     }
-    if result.facts is not None:
-        document["segmentation"] = recipe.as_document()["segmentation"]
-        document["segmented"] = asdict(result.facts)
-    return document
 
 
 FORMAT = "regolith-studio virtual particles"

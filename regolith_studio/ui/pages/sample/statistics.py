@@ -20,8 +20,9 @@ from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.descriptors.distributions import WEIGHTINGS
 from regolith_studio.io.tables import Column, Table
 from regolith_studio.messages import N_
+from regolith_studio.session.outputs.descriptors import UNITS
 from regolith_studio.session.results import ParticleEntry
-from regolith_studio.session.sample_table import UNITS, has_weights, statistics_table
+from regolith_studio.session.sample_table import has_weights, statistics_table
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.definitions import definition
 from regolith_studio.ui.widgets.labels import short_number

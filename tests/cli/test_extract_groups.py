@@ -1,0 +1,130 @@
+"""``extract`` from several scans: a folder for each, tables of all, and a second run that goes on."""
+
+import csv
+import json
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from regolith_studio.session.batch.scan_groups import compare_groups
+
+RADII = {"fine": (5, 6), "coarse": (8, 9)}
+
+
+def balls(radii: tuple[int, ...], value: int = 1) -> np.ndarray:
+    """Slices first: labels of balls side by side."""
+    z, y, x = np.mgrid[:26, :26, : 26 * len(radii)]
+    volume = np.zeros(z.shape, dtype=np.uint8)
+    for number, radius in enumerate(radii):
+        volume[(x - 13 - 26 * number) ** 2 + (y - 13) ** 2 + (z - 13) ** 2 <= radius**2] = value + number
+    return volume
+
+
+@pytest.fixture
+def scans(tmp_path: Path) -> Path:
+    folder = tmp_path / "scans"
+    folder.mkdir()
+    for name, radii in RADII.items():
+        np.save(folder / f"{name}.npy", balls(radii))
+    return folder
+
+
+def rows_of(path: Path) -> list[dict[str, str]]:
+    return list(csv.DictReader(path.read_text(encoding="utf-8").splitlines()))
+
+
+def files_of(folder: Path) -> dict[str, bytes]:
+    return {str(p.relative_to(folder)): p.read_bytes() for p in sorted(folder.rglob("*")) if p.is_file()}
+
+
+ASKED = ("--kind", "labels", "--voxel-size", 2)
+
+
+def test_that_each_scan_of_a_folder_is_a_group_and_tables_hold_all(
+    command, scans: Path, tmp_path: Path
+) -> None:
+    result = command("extract", scans, "-o", tmp_path / "all", *ASKED)
+    assert result.code == 0, result.err
+    assert "extracted: 2, kept from an earlier run: 0" in result.out
+    alone = command("extract", scans / "fine.npy", "-o", tmp_path / "fine", *ASKED)
+    assert alone.code == 0
+    assert files_of(tmp_path / "fine") == files_of(tmp_path / "all" / "fine")
+    table = rows_of(tmp_path / "all" / "particles.csv")
+    assert [row["group"] for row in table] == ["coarse", "coarse", "fine", "fine"]
+    radii = [float(row["equivalent_radius [um]"]) for row in table]
+    assert radii == pytest.approx([16, 18, 10, 12], rel=0.02)
+    groups = {(row["descriptor"], row["group"]): row for row in rows_of(tmp_path / "all" / "groups.csv")}
+    coarse = groups["equivalent_radius", "coarse"]
+    assert float(coarse["count"]) == 2
+    assert float(coarse["ks_distance"]) == 1.0
+    assert float(coarse["quantile_10"]) == pytest.approx(16, rel=0.02)
+    assert 4.0 < float(coarse["wasserstein_1"]) < 8.0
+
+
+def test_that_a_second_run_extracts_only_what_is_missing_or_has_changed(
+    command, scans: Path, tmp_path: Path
+) -> None:
+    output = tmp_path / "all"
+    call = ("extract", scans / "fine.npy", scans / "coarse.npy", "-o", output, *ASKED)
+    assert "extracted: 2" in command(*call).out
+    before = files_of(output)
+    shutil.rmtree(output / "fine")
+    assert "extracted: 1, kept from an earlier run: 1" in command(*call).out
+    assert files_of(output) == before
+    (output / "coarse" / "particle_0001.stl").unlink()
+    assert "extracted: 1, kept from an earlier run: 1" in command(*call).out
+    assert files_of(output) == before
+    np.save(scans / "fine.npy", balls(RADII["fine"], value=5))
+    assert "extracted: 1, kept from an earlier run: 1" in command(*call).out
+    assert "extracted: 2" in command(*call, "--min-voxels", 100).out
+    assert "extracted: 0, kept from an earlier run: 2" in command(*call, "--min-voxels", 100).out
+
+
+def test_that_a_broken_scan_is_named_and_the_others_are_extracted(
+    command, scans: Path, tmp_path: Path
+) -> None:
+    (scans / "bad.npy").write_bytes(b"\x93NUMPY nothing")
+    result = command("extract", scans, "-o", tmp_path / "all", *ASKED, "--json")
+    assert result.code == 1
+    assert result.err.startswith("bad.npy ")
+    assert len(result.err.strip().splitlines()) == 1
+    assert {row["group"] for row in json.loads(result.out)["rows"]} == {"fine", "coarse"}
+    assert not (tmp_path / "all" / "bad").exists()
+
+
+def test_that_scans_of_one_name_are_told_apart_by_their_folders(command, scans: Path, tmp_path: Path) -> None:
+    for name in RADII:
+        (tmp_path / name).mkdir()
+        shutil.copy(scans / f"{name}.npy", tmp_path / name / "recon.npy")
+    paths = [tmp_path / name / "recon.npy" for name in RADII]
+    assert command("extract", *paths, "-o", tmp_path / "all", *ASKED).code == 0
+    table = rows_of(tmp_path / "all" / "particles.csv")
+    assert [row["group"] for row in table] == ["fine_recon", "fine_recon", "coarse_recon", "coarse_recon"]
+    assert (tmp_path / "all" / "fine_recon" / "particle_0001.stl").is_file()
+
+
+def test_that_options_of_one_volume_and_folders_of_one_are_refused(
+    command, scans: Path, tmp_path: Path
+) -> None:
+    for option in (("--labels", tmp_path / "l.tif"), ("--preview-h", "0.8")):
+        result = command("extract", scans, "-o", tmp_path / "x", *option)
+        assert result.code == 2
+        assert "one volume at a time" in " ".join(result.err.split())
+    assert command("extract", scans / "fine.npy", "-o", tmp_path / "one", *ASKED).code == 0
+    result = command("extract", scans, "-o", tmp_path / "one", *ASKED)
+    assert result.code == 1
+    assert "holds the particles of one scan" in result.err
+
+
+def test_that_weights_count_in_the_comparison_of_groups() -> None:
+    def rows(*values: tuple[float, float]) -> list[dict[str, str]]:
+        return [{"sphericity": str(value), "weight": str(weight)} for value, weight in values]
+
+    table = compare_groups({"a": rows((0.5, 1.0), (0.9, 3.0)), "b": rows((0.7, 1.0)), "c": rows((0.7, 1.0))})
+    row = dict(zip((column.name for column in table.columns), table.rows[0], strict=True))
+    assert row["mean"] == pytest.approx(0.8)
+    assert row["quantile_10"] == 0.5
+    assert row["ks_distance"] == pytest.approx(0.75)
+    assert row["wasserstein_1"] == pytest.approx(0.25 * 0.2 + 0.75 * 0.2)
