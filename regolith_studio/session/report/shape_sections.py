@@ -13,6 +13,7 @@ from regolith_studio.jobs.model_jobs import sample_of_meshes
 from regolith_studio.jobs.particle_jobs import FIT_DEGREE, FitRequest, fit_sample
 from regolith_studio.jobs.representatives_jobs import MeasuredPopulation, measure_population
 from regolith_studio.jobs.study_jobs import study_lmax, study_population
+from regolith_studio.session.outputs.descriptors import UNITS
 from regolith_studio.session.outputs.studies import STUDIES
 from regolith_studio.session.report.draft import ReportDraft, SectionSteps
 from regolith_studio.session.report.sections import (
@@ -23,7 +24,6 @@ from regolith_studio.session.report.sections import (
     png_of,
     selected_columns,
 )
-from regolith_studio.session.sample_table import UNITS
 from regolith_studio.shape_models.models import DEFAULT_MODEL
 from regolith_studio.studies.lmax import DEFAULT_DEGREES, enough_degrees, rmsre_table
 from regolith_studio.studies.population_distances import CONFIDENCE
