@@ -10,6 +10,8 @@ from regolith_studio.geometry.vectors import Vector, along, length, mixed, row
 
 MIN_CUT = 3e-3
 """Least depth of a cut that is worth it, at unit volume."""
+ROOMY = 0.6
+"""Corners with less than this share of the largest room are left alone: cuts there would be slivers."""
 MIN_FACET = 1e-6
 """Facets of less area, at unit volume, count as lost."""
 
@@ -48,10 +50,11 @@ def insert_lost_facets(
         if len(lost) == 0:
             break
         vertices, triples = polyhedron.vertices, polyhedron.triples
-        at, room = _best_corner(normals, vertices, triples, directions, first, distance, depth)
+        rooms = np.empty(len(vertices))
+        at = _best_corner(normals, vertices, triples, directions, first, distance, depth, rooms)
         cut = normals[triples[at]].sum(axis=0)
         cut /= np.linalg.norm(cut)
-        normals[lost[0]], offsets[lost[0]] = cut, cut @ vertices[at] - depth * room
+        normals[lost[0]], offsets[lost[0]] = cut, cut @ vertices[at] - depth * rooms[at]
         n_cuts += 1
     return n_cuts, normals, offsets
 
@@ -65,25 +68,26 @@ def _best_corner(
     first: IntArray,
     distance: FloatArray,
     depth: float,
-) -> tuple[int, float]:
-    """The corner that hangs out farthest of those with room for a cut, else the one with the most room.
+    rooms: FloatArray,
+) -> int:
+    """Index of the corner that hangs out farthest of those with room for a cut.
 
-    Its index, and the way along the cut's normal to the nearest neighbouring corner.
+    Fills `rooms`: for each corner the way along its cut's normal to the nearest neighbouring corner, (v,).
     """
-    at, max_overhang, room, roomiest, max_room = -1, -np.inf, 0.0, 0, -np.inf
     for v in range(len(vertices)):
         normal = _corner_normal(normals, triples, v)
-        here = np.inf
+        rooms[v] = np.inf
         for u in range(len(vertices)):
             if _share_edge(triples, u, v):
-                here = min(here, along(vertices, v, normal) - along(vertices, u, normal))
-        if here > max_room:
-            roomiest, max_room = v, here
-        if depth * here > MIN_CUT:
+                rooms[v] = min(rooms[v], along(vertices, v, normal) - along(vertices, u, normal))
+    at, max_overhang = int(rooms.argmax()), -np.inf
+    enough = max(MIN_CUT / depth, ROOMY * rooms[at])
+    for v in range(len(vertices)):
+        if rooms[v] > enough:
             overhang = _overhang(row(vertices, v), directions, first, distance)
             if overhang > max_overhang:
-                at, max_overhang, room = v, overhang, here
-    return (at, room) if at >= 0 else (roomiest, max_room)
+                at, max_overhang = v, overhang
+    return at
 
 
 @kernel_noalloc

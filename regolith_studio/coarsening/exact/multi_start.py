@@ -59,7 +59,7 @@ class Level:
     sliver_steps: int
 
 
-LEVELS = {"fast": Level(1, 2, 12, 16, 14), "best": Level(2, 3, 20, 40, 60)}
+LEVELS = {"fast": Level(1, 2, 12, 16, 28), "best": Level(2, 3, 20, 40, 60)}
 CHECK_ANGLES = (FINE_ANGLE, DENSE_ANGLE)
 """Of the searches for boxes that confirm a result."""
 RELAXATION_FACETS = (12, 20)

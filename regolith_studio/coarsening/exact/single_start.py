@@ -1,6 +1,6 @@
 """One start of the exact method: free descent, projection onto the constraints, descent along them."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -175,15 +175,33 @@ def descend_further(problem: Problem, begun: Candidate, steps: int) -> Iterator[
 
 
 def restore_lost_facets(
-    target: Target, problem: Problem, begun: ConstrainedPoint, steps: int
+    target: Target,
+    problem: Problem,
+    begun: ConstrainedPoint,
+    steps: int,
+    depths: Sequence[float] = CUT_DEPTHS,
 ) -> Iterator[Candidate]:
     """Half-spaces without a facet are put back as cuts, projected and taken along by a short descent.
 
     What a cut loses again in the projection comes back as a smaller one: its volume goes with the cube of its
-    depth, so the smallest survive.
+    depth, so the smallest survive. What the descent loses comes back once more at its end.
     """
     point = begun
-    for depth in CUT_DEPTHS:
+    for whole in _cut_again(target, problem, begun, depths):
+        yield candidate_of(problem, point := whole)
+    if point is begun:
+        return
+    for later in descend_in_chunks(problem, point, steps, max_step(point) / 10):
+        yield candidate_of(problem, point := later)
+    for whole in _cut_again(target, problem, point, depths):
+        yield candidate_of(problem, whole)
+
+
+def _cut_again(
+    target: Target, problem: Problem, point: ConstrainedPoint, depths: Sequence[float]
+) -> Iterator[ConstrainedPoint]:
+    """Ever more half-spaces without a facet as cuts that meet all constraints."""
+    for depth in depths:
         cuts, normals, offsets = _with_cuts(target, point, depth)
         if cuts <= 0:
             break
@@ -191,11 +209,7 @@ def restore_lost_facets(
         tried = project_and_verify(problem, tried, steady_metric(problem, tried), LONG_PROJECTION)
         if tried.worst <= TOLERANCE and count_facets(tried) >= count_facets(point):
             point = tried
-            yield candidate_of(problem, point)
-    if point is begun:
-        return
-    for later in descend_in_chunks(problem, point, steps, max_step(point) / 10):
-        yield candidate_of(problem, later)
+            yield point
 
 
 def search_and_project(problem: Problem, found: Candidate) -> Candidate:
