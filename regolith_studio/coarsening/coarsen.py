@@ -9,7 +9,7 @@ import numpy as np
 from regolith_studio.coarsening.compound.line_overlap import compound_distance
 from regolith_studio.coarsening.loss import loss
 from regolith_studio.coarsening.lower_bounds import attainable_errors
-from regolith_studio.coarsening.methods import METHODS, CoarseningMethod
+from regolith_studio.coarsening.methods import METHODS, CoarseningMethod, GrowingMethod
 from regolith_studio.coarsening.polyhedra import polyhedron_of
 from regolith_studio.coarsening.progress import CoarseningProgress, MethodStep
 from regolith_studio.coarsening.result import CoarseningResult, MethodResult, SphericityFree
@@ -37,6 +37,7 @@ def coarsen(
     weights: LossWeights | None = None,
     seed: int = 0,
     settings: Any = None,
+    fewer: HalfSpaces | None = None,
 ) -> CoarseningResult:
     """The polyhedron with `n_facets` facets that stands for `mesh` (section 2.4), convex but for `compound`.
 
@@ -54,6 +55,9 @@ def coarsen(
         Of the random numbers. Neither they nor anything else tells where a particle stands in a sample.
     settings
         The method's ``Settings``, or a mapping of those that differ from the defaults.
+    fewer
+        ``half_spaces`` of a result for the same particle with fewer facets. A method that can grow facets
+        makes one more start from it, so that in a sweep more facets are never worse; others ignore it.
 
     Raises
     ------
@@ -62,7 +66,7 @@ def coarsen(
     GeometryError
         If the mesh is open, flat or encloses no volume.
     """
-    _, run = _prepare(mesh, n_facets, method, weights, seed, settings)
+    _, run = _prepare(mesh, n_facets, method, weights, seed, settings, fewer)
     while True:
         try:
             next(run)
@@ -78,9 +82,10 @@ def coarsening_steps(
     weights: LossWeights | None = None,
     seed: int = 0,
     settings: Any = None,
+    fewer: HalfSpaces | None = None,
 ) -> Generator[CoarseningProgress, None, CoarseningResult]:
     """As :func:`coarsen`, yielding each step; the first one has a polyhedron and comes at once."""
-    target, run = _prepare(mesh, n_facets, method, weights, seed, settings)
+    target, run = _prepare(mesh, n_facets, method, weights, seed, settings, fewer)
     while True:
         try:
             step = next(run)
@@ -102,13 +107,19 @@ def _prepare(
     weights: LossWeights | None,
     seed: int,
     settings: Any,
+    fewer: HalfSpaces | None,
 ) -> tuple[Target, Generator[MethodStep, None, CoarseningResult]]:
     """The target, and the method's steps with the measured result at their end."""
     chosen = _method(method)
     weights = LossWeights.from_preset(DEFAULT_PRESET) if weights is None else weights
     _check(n_facets, chosen, weights, seed)
     target = mesh if isinstance(mesh, Target) else Target.of(mesh)
-    run = chosen.run(target, n_facets, weights, np.random.SeedSequence(seed), settings_of(method, settings))
+    random, chosen_settings = np.random.SeedSequence(seed), settings_of(method, settings)
+    if fewer is not None and isinstance(chosen, GrowingMethod):
+        few = target.in_unit_frame(fewer)
+        run = chosen.run_from_fewer(target, few, n_facets, weights, random, chosen_settings)
+    else:
+        run = chosen.run(target, n_facets, weights, random, chosen_settings)
     return target, _run_and_measure(run, target, method, n_facets, weights)
 
 

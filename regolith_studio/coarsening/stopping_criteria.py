@@ -77,8 +77,9 @@ def fewest_facets(
 ) -> Generator[CoarseningProgress | Trial, None, CoarseningResult]:
     """The polyhedron with the fewest facets whose weighted descriptors are all off by at most `limit`.
 
-    Doubles the number of facets from 5 until the limit is met, then halves the interval; yields the steps of
-    each coarsening, counted through, and each :class:`Trial`. Where not even 200 facets meet the limit, the
+    Doubles the number of facets from 5 until the limit is met, then halves the interval; each trial has one
+    more start, from the result with the next smaller number tried. Yields the steps of each coarsening,
+    counted through, and each :class:`Trial`. Where not even 200 facets meet the limit, the
     trial with the least error is the result, and its `reason` says so.
 
     Parameters
@@ -99,15 +100,19 @@ def fewest_facets(
         raise InputError("No descriptor has a weight, so there is no error to stop at.")
     target = mesh if isinstance(mesh, Target) else Target.of(mesh)
     done = 0
+    results: dict[int, CoarseningResult] = {}
 
     def tried(n_facets: int) -> Generator[CoarseningProgress | Trial, None, Trial]:
         nonlocal done
         before = done
-        steps = coarsening_steps(target, n_facets, method, weights, seed, settings)
+        fewer = max((number for number in results if number < n_facets), default=None)
+        start = None if fewer is None else results[fewer].half_spaces
+        steps = coarsening_steps(target, n_facets, method, weights, seed, settings, start)
         while True:
             try:
                 step = next(steps)
             except StopIteration as end:
+                results[n_facets] = end.value
                 trial = Trial(n_facets, largest_error(end.value, weights, jaccard_limit), end.value)
                 yield trial
                 return trial

@@ -133,24 +133,47 @@ def coarsening_errors(
     try:
         goal = Target.of((target or TargetChoice()).mesh_of(mesh))
         wanted = describe(goal.mesh, LOSS_KEYS, box_metric)
-        table = [_row_errors(goal, row, seed, wanted, box_metric) for row in rows]
+        results = coarsened_rows(goal, rows, seed)
+        table = [
+            _row_errors(goal, row, found, wanted, box_metric)
+            for row, found in zip(rows, results, strict=True)
+        ]
     except RegolithError as error:
         return str(error)
-    return np.array([values for values, _ in table]), tuple(met for _, met in table)
+    return np.array(table), tuple(found.reason is None for found in results)
+
+
+def coarsened_rows(target: Target, rows: Sequence[LossVariant], seed: int) -> list[CoarseningResult]:
+    """The particle coarsened by each row.
+
+    A row that differs from earlier ones by more facets alone has one more start, from the result with the
+    next smaller number, so that the loss falls with the number of facets.
+    """
+    results: list[CoarseningResult] = []
+    for row in rows:
+        method = "quadric" if row.is_baseline else row.method
+        settings = None if row.is_baseline else dict(row.settings)
+        alike = [
+            found
+            for earlier, found in zip(rows, results, strict=False)
+            if earlier.n_facets < row.n_facets
+            and row.relabelled(earlier.label, n_facets=earlier.n_facets) == earlier
+        ]
+        fewer = max(alike, key=lambda found: found.n_facets_asked, default=None)
+        start = None if fewer is None else fewer.half_spaces
+        results.append(coarsen(target, row.n_facets, method, row.weights, seed, settings, start))
+    return results
 
 
 def _row_errors(
-    target: Target, row: LossVariant, seed: int, wanted: Any, box_metric: str
-) -> tuple[list[float], bool]:
-    method = "quadric" if row.is_baseline else row.method
-    settings = None if row.is_baseline else dict(row.settings)
-    found = coarsen(target, row.n_facets, method, row.weights, seed, settings)
+    target: Target, row: LossVariant, found: CoarseningResult, wanted: Any, box_metric: str
+) -> list[float]:
     if box_metric == "exact" and not row.is_baseline:
         errors = dict(found.errors)
     else:
         solid = decimated_hull(target, row.n_facets) if row.is_baseline else _in_unit_frame(found)
         errors = relative_errors(wanted, describe(solid, LOSS_KEYS, box_metric))
-    return [*[errors[key] for key in LOSS_KEYS], found.jaccard_distance], found.reason is None
+    return [*[errors[key] for key in LOSS_KEYS], found.jaccard_distance]
 
 
 def _in_unit_frame(found: CoarseningResult) -> Polyhedron:

@@ -6,13 +6,14 @@ them the freedom to meet the constraints. So few facets are solved first. A cut 
 volume with the cube of its depth, so that what cuts take away is corrected back by little.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
 from regolith_studio.coarsening.exact.constraints import Problem, measure
 from regolith_studio.coarsening.exact.initial_planes import start_planes
 from regolith_studio.coarsening.exact.single_start import (
+    CUT_DEPTHS,
     Candidate,
     candidate_of,
     restore_lost_facets,
@@ -92,7 +93,12 @@ def grow_facets(
 
 
 def with_more_facets(
-    target: Target, problem: Problem, few: Candidate, n_facets: int, steps: int
+    target: Target,
+    problem: Problem,
+    few: Candidate,
+    n_facets: int,
+    steps: int,
+    depths: Sequence[float] = CUT_DEPTHS,
 ) -> Iterator[Candidate]:
     """Polyhedra with ever more cuts, each number of them projected and followed by a descent of `steps`.
 
@@ -105,7 +111,7 @@ def with_more_facets(
         normals, offsets = with_waiting(few.normals, few.offsets, size + cuts)
         point = measure(problem, normals, offsets)
         more: Candidate | None = None
-        for found in restore_lost_facets(target, problem, point, steps):
+        for found in restore_lost_facets(target, problem, point, steps, depths):
             if size + cuts == n_facets:
                 yield found
             if found.better_than(more):

@@ -33,6 +33,7 @@ from regolith_studio.coarsening.exact.single_start import (
 )
 from regolith_studio.coarsening.exact.sliver_removal import COST, has_small_facets, remove_slivers
 from regolith_studio.coarsening.exact.start_from_box import FEW_FACETS, solve_from_box
+from regolith_studio.coarsening.exact.start_from_fewer import solve_from_fewer
 from regolith_studio.coarsening.loss import LossFunction
 from regolith_studio.coarsening.lower_bounds import sphericity_reason
 from regolith_studio.coarsening.progress import MethodStep
@@ -89,6 +90,8 @@ class Search:
         Further starts where those of a level do not meet all constraints.
     seed
         Of all starts.
+    fewer
+        Half-spaces of a result with fewer facets at unit volume, from which one more start is made.
     """
 
     def __init__(
@@ -99,11 +102,13 @@ class Search:
         levels: Sequence[Level],
         retries: int,
         seed: np.random.SeedSequence,
+        fewer: HalfSpaces | None = None,
     ) -> None:
         request = ConstraintRequest.of(target, weights)
         self._target, self._request, self._n_facets = target, request, n_facets
         self._levels, self._level = levels, levels[0]
         self._rng = np.random.default_rng(seed)
+        self._fewer = fewer
         self._free = request.problem(target.rays, SAMPLE_ANGLE, only_volume=True)
         self._full = request.problem(target.rays, SAMPLE_ANGLE)
         rest = request.problem(target.rays, SAMPLE_ANGLE, sphericity=False)
@@ -146,6 +151,8 @@ class Search:
                 yield from self._record.record_candidates(self._tried, further)
             yield from self._from_starts(most)
             yield from self._relaxations()
+        if self._fewer is not None:
+            yield from self._from_fewer(self._fewer)
 
     def _from_starts(self, most: int) -> Iterator[MethodStep]:
         """A step for each better polyhedron until one is good enough."""
@@ -167,6 +174,14 @@ class Search:
                 yield from self._record.record_candidates(self._tried, self._all_at_once())
             if self._good_enough() or self._out_of_reach():
                 break
+
+    def _from_fewer(self, fewer: HalfSpaces) -> Iterator[MethodStep]:
+        """A step for each better polyhedron that is cut out of one with fewer facets."""
+        steps = self._level.bound_steps
+        found = solve_from_fewer(self._target, self._full, self._rest, fewer, self._n_facets, steps)
+        yield from self._record.record_candidates(self._total, found)
+        if self._record.met:
+            self._confirm(self._found())
 
     def _relaxations(self) -> Iterator[MethodStep]:
         """A step for each polyhedron with less loss, where no start could meet all constraints together."""
@@ -234,8 +249,15 @@ class Search:
             return None
         even = remove_slivers(self._full, best, self._level.sliver_steps)
         even = confirmed(self._request, self._checks, even)
-        dear = even.jaccard_distance > best.jaccard_distance + COST
+        dear = even.jaccard_distance > best.jaccard_distance + COST or self._worse_than_fewer(even)
         return even if even.exact and even.n_facets >= best.n_facets and not dear else None
+
+    def _worse_than_fewer(self, found: Candidate) -> bool:
+        """Whether it overlaps less than the result with fewer facets from which a start was made."""
+        if self._fewer is None:
+            return False
+        overlap = self._target.jaccard_distance
+        return overlap(found.solid.half_spaces) > overlap(self._fewer) + COST
 
     def _kept(self, outcome: Candidate) -> Candidate:
         """One that misses a constraint, the others confirmed by public descriptors, where that can be."""
@@ -304,12 +326,17 @@ class Search:
         best, tried = self._record.best, self._tried - self._tried_before
         if tried < self._level.starts or best is None or not best.exact:
             return False
+        best = self._confirm(best)
+        has_all_facets = best.n_facets == self._n_facets
+        return best.exact and (has_all_facets or tried >= self._level.starts + STARTS_FOR_FACETS)
+
+    def _confirm(self, best: Candidate) -> Candidate:
+        """The best so far that the public descriptors confirm, if any, else the nearest."""
         best = confirmed(self._request, self._checks, best)
         if self._confirmed is not None and not best.better_than(self._confirmed):
             best = self._confirmed  # what a finer search took back may have been better before
         self._confirmed = self._record.best = best
-        has_all_facets = best.n_facets == self._n_facets
-        return best.exact and (has_all_facets or tried >= self._level.starts + STARTS_FOR_FACETS)
+        return best
 
     def _out_of_reach(self) -> bool:
         """Whether the sphericity is missed by so much that other starts would miss it too."""

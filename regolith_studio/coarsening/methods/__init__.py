@@ -1,7 +1,7 @@
 """The coarsening methods; each module of this folder that defines ``METHOD`` is one."""
 
 from collections.abc import Generator
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 from regolith_studio.registry import Registry
 
@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from regolith_studio.coarsening.result import MethodResult
     from regolith_studio.coarsening.target import Target
     from regolith_studio.coarsening.weights import LossWeights
+    from regolith_studio.geometry.half_spaces import HalfSpaces
 
 
 class CoarseningMethod(Protocol):
@@ -30,6 +31,23 @@ class CoarseningMethod(Protocol):
         settings: Any,
     ) -> "Generator[MethodStep, None, MethodResult]":
         """Yield steps, the first one at once and with a polyhedron; return the result."""
+        ...
+
+
+@runtime_checkable
+class GrowingMethod(Protocol):
+    """A method that can begin with a result with fewer facets, besides its own starts."""
+
+    def run_from_fewer(
+        self,
+        target: "Target",
+        fewer: "HalfSpaces | None",
+        n_facets: int,
+        weights: "LossWeights",
+        seed: "np.random.SeedSequence",
+        settings: Any,
+    ) -> "Generator[MethodStep, None, MethodResult]":
+        """As :meth:`CoarseningMethod.run`; `fewer` is at unit volume."""
         ...
 
 

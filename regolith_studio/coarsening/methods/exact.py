@@ -11,6 +11,7 @@ from regolith_studio.coarsening.result import MethodResult
 from regolith_studio.coarsening.target import Target
 from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.errors import InputError
+from regolith_studio.geometry.half_spaces import HalfSpaces
 from regolith_studio.messages import N_
 
 
@@ -63,8 +64,20 @@ class ExactMethod:
         settings: ExactSettings,
     ) -> Generator[MethodStep, None, MethodResult]:
         """A step for each better polyhedron; the first is the start, the last what is reported."""
+        return (yield from self.run_from_fewer(target, None, n_facets, weights, seed, settings))
+
+    def run_from_fewer(
+        self,
+        target: Target,
+        fewer: HalfSpaces | None,
+        n_facets: int,
+        weights: LossWeights,
+        seed: np.random.SeedSequence,
+        settings: ExactSettings,
+    ) -> Generator[MethodStep, None, MethodResult]:
+        """As :meth:`run`, with one more start: facets are cut out of `fewer`, at unit volume."""
         levels = [LEVELS["fast"]] + [LEVELS["best"]] * (settings.level == "best")
-        search = Search(target, weights, n_facets, levels, settings.retries, seed)
+        search = Search(target, weights, n_facets, levels, settings.retries, seed, fewer)
         yield from search.steps()
         return (yield from search.finish())
 

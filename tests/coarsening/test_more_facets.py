@@ -1,0 +1,99 @@
+"""In a sweep more facets are never worse: each number has a start from the result with fewer."""
+
+import itertools
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from regolith_studio.coarsening.coarsen import coarsen
+from regolith_studio.coarsening.core.facet_insertion import insert_lost_facets
+from regolith_studio.coarsening.exact.facet_growth import with_waiting
+from regolith_studio.coarsening.polyhedra import facet_areas, polyhedron_of
+from regolith_studio.coarsening.result import CoarseningResult
+from regolith_studio.coarsening.stopping_criteria import Trial, fewest_facets
+from regolith_studio.coarsening.target import Target
+from regolith_studio.coarsening.weights import LossWeights
+from regolith_studio.geometry.half_spaces import HalfSpaces
+from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.readers.particles import read_mesh, sample_particles
+from regolith_studio.studies.coarsening import coarsened_rows
+from regolith_studio.studies.loss_variants import LossVariant, facet_count_variants
+
+RISE = 1e-3
+"""Of the loss that counts as none."""
+LADDER = (12, 20, 31, 60)
+ALL = LossVariant("all", LossWeights.from_preset("all"))
+
+
+def ladder_of(mesh: Mesh, facets: tuple[int, ...] = LADDER) -> list[CoarseningResult]:
+    return coarsened_rows(Target.of(mesh), facet_count_variants(ALL, facets), seed=0)
+
+
+def check_that_it_falls(results: list[CoarseningResult]) -> None:
+    assert max(np.diff([found.loss for found in results])) <= RISE
+    for fewer, more in itertools.pairwise(results):
+        assert more.reason is None or fewer.reason is not None
+
+
+def test_that_the_loss_of_a_sweep_falls_where_single_calls_rise(particle: Mesh) -> None:
+    target = Target.of(particle)
+    swept = coarsened_rows(target, facet_count_variants(ALL, (12, 20, 31)), seed=0)
+    check_that_it_falls(swept)
+    alone = coarsen(target, 31)
+    assert swept[-1].loss <= alone.loss + RISE
+    again = coarsen(target, 31)  # whatever was computed before
+    assert np.array_equal(again.half_spaces.equations, alone.half_spaces.equations)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("place", range(12))
+def test_that_the_loss_of_a_sweep_falls_on_the_shipped_particles(place: int) -> None:
+    check_that_it_falls(ladder_of(list(sample_particles())[place].mesh))
+
+
+@pytest.mark.slow
+@pytest.mark.real_data
+@pytest.mark.parametrize("kind", ["cement140/smooth", "cement140/voxel", "apollo"])
+def test_that_the_loss_of_a_sweep_falls_on_real_particles(
+    kind: str, real_data: Callable[[str], Path]
+) -> None:
+    for path in sorted(each for each in real_data(kind).iterdir() if each.suffix in (".stl", ".ply"))[:11]:
+        check_that_it_falls(ladder_of(read_mesh(path, "um").mesh))
+
+
+def test_that_only_fewer_facets_with_the_same_weights_are_begun_with(particle: Mesh) -> None:
+    size = ALL.relabelled("size", weights=LossWeights.of(volume=1.0))
+    rows = (size.relabelled("eight", n_facets=8), ALL.relabelled("twelve", n_facets=12))
+    swept = coarsened_rows(Target.of(particle), rows, seed=0)
+    alone = coarsen(particle, 12)
+    assert np.array_equal(swept[1].half_spaces.equations, alone.half_spaces.equations)
+
+
+@pytest.mark.slow
+def test_that_a_trial_for_the_fewest_facets_is_never_worse_than_earlier_ones_with_fewer(
+    particle: Mesh,
+) -> None:
+    losses: dict[int, float] = {}
+    for step in fewest_facets(particle, 1e-6):
+        if isinstance(step, Trial):
+            earlier = max((number for number in losses if number < step.n_facets), default=None)
+            losses[step.n_facets] = step.result.loss
+            if earlier is not None:
+                assert losses[step.n_facets] <= losses[earlier] + RISE
+    assert len(losses) > 2
+
+
+def test_that_corners_are_cut_where_there_is_room() -> None:
+    cube = np.vstack([np.eye(3), -np.eye(3)])
+    target = Target.of(polyhedron_of(HalfSpaces(cube, np.full(6, 0.5))).mesh)
+    rays = target.rays
+    for n_facets in (14, 30):  # each corner of the cube once, and then some
+        normals, offsets = with_waiting(cube, np.full(6, 0.5), n_facets)
+        cuts, normals, offsets = insert_lost_facets(
+            normals, offsets, rays.directions, rays.first, rays.distance, 0.3
+        )
+        areas = facet_areas(HalfSpaces(normals, offsets))
+        assert cuts == n_facets - 6
+        assert areas.min() > 1e-3
