@@ -41,14 +41,14 @@ def fill_exposed_edges(
         Filled: from and to, (m, 6), and rows (plane a, plane b, sign), (m, 3), counter-clockwise around the
         exposed part of facet a and clockwise around that of b; sign -1 where two parts meet, else 1.
     """
-    count, k = 0, len(first) - 1
+    count, k = int(np.int64(0)), len(first) - 1  # a literal 0 would be compiled by itself
     for e in range(len(edges)):
         a, b = edges[e, 2], edges[e, 3]
         p, q = row(vertices, edges[e, 0]), row(vertices, edges[e, 1])
         own = part_of(first, a)
         line = mixed(q, 1.0, p, -1.0)
         count = _add_outside(
-            normals, offsets, first, own, own, p, line, 0.0, 1.0, covers, a, b, 1, ends, planes, count
+            normals, offsets, first, own, own, p, line, 0.0, 1.0, covers, a, b, ends, planes, count
         )
     for i in range(k):
         for j in range(i + 1, k):
@@ -63,9 +63,22 @@ def fill_exposed_edges(
                     low, high = clipped(normals, offsets, first[j], first[j + 1], b, p, line, low, high)
                     if low < high:
                         count = _add_outside(
-                            normals, offsets, first, i, j, p, line, low, high, covers, a, b, -1,
-                            ends, planes, count,
-                        )  # fmt: skip
+                            normals,
+                            offsets,
+                            first,
+                            i,
+                            j,
+                            p,
+                            line,
+                            low,
+                            high,
+                            covers,
+                            a,
+                            b,
+                            ends,
+                            planes,
+                            count,
+                        )
     return count
 
 
@@ -100,7 +113,7 @@ def clipped(
     low: float,
     high: float,
 ) -> tuple[float, float]:
-    """The piece of low <= t <= high where p + t line lies in half-spaces `start` to `stop`, all but one.
+    """The piece of low <= t <= high where p + t line lies in half-spaces start to stop, all but `left_out`.
 
     It is empty where the second number is not above the first.
     """
@@ -133,7 +146,6 @@ def _add_outside(
     covers: FloatArray,
     a: int,
     b: int,
-    sign: int,
     ends: FloatArray,
     planes: IntArray,
     count: int,
@@ -143,7 +155,9 @@ def _add_outside(
     for part in range(len(first) - 1):
         if part in (i, j):
             continue
-        enter, leave = clipped(normals, offsets, first[part], first[part + 1], -1, p, line, low, high)
+        enter, leave = clipped(
+            normals, offsets, first[part], first[part + 1], first[part + 1], p, line, low, high
+        )
         if enter < leave:
             at = n
             while at > 0 and covers[at - 1, 0] > enter:
@@ -158,7 +172,8 @@ def _add_outside(
             if count < len(ends):
                 for x in range(3):
                     ends[count, x], ends[count, 3 + x] = p[x] + begin * line[x], p[x] + end * line[x]
-                planes[count, 0], planes[count, 1], planes[count, 2] = a, b, sign
+                planes[count, 0], planes[count, 1] = a, b
+                planes[count, 2] = 1 if i == j else -1
             count += 1
         if c < n:
             begin = max(begin, covers[c, 1])

@@ -36,8 +36,9 @@ FEW_LINES, MANY_LINES = 3_600, 15_000
 FREE_STEPS, START_STEPS, LAST_STEPS = 15, 40, 80
 """Of a start without other conditions than the volume and with all, and of the last descent."""
 FINALISTS = 2
-MORE_STARTS = 8
-"""Further starts where none meets all conditions."""
+RETRIES = 2
+"""Further starts with each smaller number of parts where none meets all conditions: few facets make round
+particles only if they are not shared out among many parts."""
 
 
 class Effort(NamedTuple):
@@ -94,10 +95,11 @@ def search_compound(
     lines = scan_lines(target.mesh, FEW_LINES)
     full = CompoundProblem(lines, wanted, conditions_of(weights), FINE_ANGLE)
     found: list[CompoundCandidate] = []
-    for number, child in enumerate(seed.spawn(effort.starts + MORE_STARTS)):
-        if number >= effort.starts and any(each.exact for each in found):
+    numbers = [*[parts] * effort.starts, *[k for k in range(parts - 1, 1, -1) for _ in range(RETRIES)]]
+    for tried, (k, child) in enumerate(zip(numbers, seed.spawn(len(numbers)), strict=True)):
+        if tried >= effort.starts and any(each.exact for each in found):
             break
-        planes = initial_planes(lines, parts, n_facets, np.random.default_rng(child))
+        planes = initial_planes(lines, k, n_facets, np.random.default_rng(child))
         begun = _from_start(full, planes)
         if begun is not None:
             found.append(begun)
