@@ -154,6 +154,10 @@ def test_that_labels_of_an_unknown_format_are_bad_use(command, tmp_path: Path) -
     result = command("extract", GREY, "-o", tmp_path / "x", "--labels", tmp_path / "labels.png")
     assert result.code == 2
     assert "Labels are written as .tif" in " ".join(result.err.split())
+    nowhere = command("extract", GREY, "-o", tmp_path / "x", "--labels", tmp_path / "x" / "labels.tif")
+    assert nowhere.code == 1
+    assert nowhere.err.startswith("There is no folder")
+    assert not list(tmp_path.iterdir())
 
 
 def test_that_keeping_the_border_of_labels_gives_all_grains(command, tmp_path: Path) -> None:

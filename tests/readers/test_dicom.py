@@ -150,6 +150,7 @@ def test_that_of_several_series_the_longest_is_read_or_that_of_the_file(tmp_path
         (SERIES, (7, 6, 5)),
         (f"{SERIES}.9", (5, 4, 3)),
     }
+    assert all(each.voxel_size == pytest.approx((X, Y, Z)) for each in header.datasets)
     assert "2 series; the longest" in " ".join(header.notes)
     assert describe_volume(folder, dataset=f"{SERIES}.9").shape == (5, 4, 3)
     assert describe_volume(folder / "b1.dcm").shape == (5, 4, 3)

@@ -10,6 +10,7 @@ import tifffile
 
 from regolith_studio.errors import FileError, InputError
 from regolith_studio.readers.particles import read_mesh
+from regolith_studio.readers.volume_formats import volume_suffixes
 from regolith_studio.readers.volumes.files import volume_files
 from regolith_studio.readers.volumes.header import RawLayout, guess_kind, layout_from_name
 from regolith_studio.readers.volumes.read import describe_volume, open_slabs, read_volume
@@ -330,3 +331,9 @@ def test_that_a_mesh_among_volumes_and_a_volume_among_meshes_are_told_where_they
     (tmp_path / "scan.nii.gz").write_bytes(b"\x1f\x8b")
     with pytest.raises(FileError, match=r"scan\.nii\.gz is a volume of voxels, not a mesh"):
         read_mesh(tmp_path / "scan.nii.gz")
+
+
+def test_that_the_guide_lists_every_ending_of_a_volume() -> None:
+    page = (Path(__file__).parents[2] / "docs" / "reading.md").read_text(encoding="utf-8")
+    table = page.partition("## Volumes")[2].partition("A volume is indexed")[0]
+    assert [suffix for suffix in sorted(volume_suffixes()) if f"`{suffix}`" not in table] == []

@@ -1,5 +1,9 @@
 """The page "Scan" as a new user goes through it: open, look, move the threshold, find, make particles."""
 
+import subprocess
+import sys
+from pathlib import Path
+
 import numpy as np
 import pytest
 import tifffile
@@ -184,6 +188,25 @@ def test_that_a_region_is_read_again_and_a_wrong_one_is_explained(page, part, wa
     assert "X0:X1,Y0:Y1,Z0:Z1" in page.controls.region_error.text()
     assert page.state()["region"]["crop"] == "10:70,:,92:161um"
     wait(lambda: page.preview is not None, SECONDS)
+
+
+def test_that_a_level_of_an_ome_zarr_is_chosen_before_it_is_read(page, tmp_path, wait):
+    write = (
+        "import sys, pathlib, tests.readers.test_ome_zarr as t; t.ome_zarr(pathlib.Path(sys.argv[1]), '0.5')"
+    )
+    root = Path(__file__).parents[2]  # a process of its own, since zarr leaves threads behind
+    subprocess.run([sys.executable, "-c", write, str(tmp_path / "scan.zarr")], cwd=root, check=True)
+    page.open(tmp_path / "scan.zarr")
+    wait(lambda: page.findChild(VolumeDialog) is not None, SECONDS)
+    dialog = page.findChild(VolumeDialog)
+    assert [field.value() for field in dialog.edges] == [1.5, 2.0, 5.0]
+    assert [dialog.dataset.itemData(row) for row in range(dialog.dataset.count())] == ["s0", "s1"]
+    dialog.dataset.setCurrentIndex(1)
+    assert [field.value() for field in dialog.edges] == [3.0, 4.0, 10.0]
+    dialog.accept()
+    wait(lambda: page.scan is not None, SECONDS)
+    assert page.scan.volume.shape == (6, 5, 5)
+    assert page.scan.volume.voxel_size.tolist() == [3.0, 4.0, 10.0]
 
 
 def test_that_labels_go_straight_to_particles(page, tmp_path, wait):

@@ -149,7 +149,7 @@ def _as_json(volume: OpenVolume, row: VolumeFormat, notes: tuple[str, ...]) -> d
         "unit": header.unit,
         "kind": header.kind,
         "notes": [to_json(note) for note in notes + header.notes + doubts],
-        "datasets": [(entry.name, entry.shape, entry.dtype) for entry in header.datasets],
+        "datasets": [(each.name, each.shape, each.dtype, each.voxel_size) for each in header.datasets],
         "dataset": header.dataset,
         "plain": volume.plain() if isinstance(volume, PlainVoxels) else None,
         "in_order": bool(getattr(volume, "in_order", False)),

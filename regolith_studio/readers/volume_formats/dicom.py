@@ -19,6 +19,7 @@ from regolith_studio.readers.volume_formats import VolumeFormat
 from regolith_studio.readers.voxels.folders import DICOM_SUFFIXES, dicom_names, is_dicom
 from regolith_studio.readers.voxels.header import (
     DatasetEntry,
+    Sizes,
     VoxelHeader,
     sizes_or_none,
     three_dimensions,
@@ -112,9 +113,10 @@ def _header(
     size = sizes_or_none([*slices[0].spacing, step])
     entries = tuple(
         DatasetEntry(
-            uid, (found[0].layout[1], found[0].layout[0], len(found)), np.dtype(found[0].layout[2]).name
+            uid, (each.layout[1], each.layout[0], len(found)), np.dtype(each.layout[2]).name, _size(found)
         )
         for uid, found in series.items()
+        for each in found[:1]
     )
     return VoxelHeader(
         three_dimensions((len(slices), rows, columns)),
@@ -126,6 +128,14 @@ def _header(
         entries,
         chosen,
     )
+
+
+def _size(slices: list[_Slice]) -> Sizes | None:
+    """Edges of a voxel of a series in millimetres; None if it is no volume or does not state them."""
+    try:
+        return sizes_or_none([*slices[0].spacing, _ordered(slices)[1]])
+    except FileError:
+        return None
 
 
 def _described(path: Path) -> _Slice:

@@ -118,7 +118,7 @@ def open_ome_zarr(path: Path, options: Mapping[str, Any]) -> ZarrVoxels:
         unit or None,
         "labels" if "image-label" in attributes else None,
         (),
-        tuple(DatasetEntry(each.name, each.spatial[::-1], each.dtype.name) for each in levels),
+        tuple(DatasetEntry(each.name, each.spatial[::-1], each.dtype.name, each.size) for each in levels),
         level.name,
     )
     return ZarrVoxels(_opened(path, level), level, header)

@@ -183,6 +183,12 @@ def open_slab_reader(
     )  # fmt: skip
 
 
+def _dataset_from(values: list[Any]) -> DatasetEntry:
+    name, shape, dtype, size = values
+    edges = None if size is None else (float(size[0]), float(size[1]), float(size[2]))
+    return DatasetEntry(name, tuple(shape), dtype, edges)
+
+
 def _header_from(answer: dict[str, Any]) -> VoxelHeader:
     """The header that the child has sent as plain values."""
     nz, ny, nx = answer["shape"]
@@ -194,6 +200,6 @@ def _header_from(answer: dict[str, Any]) -> VoxelHeader:
         unit=answer["unit"],
         kind=answer["kind"],
         notes=tuple(map(from_json, answer["notes"])),
-        datasets=tuple(DatasetEntry(name, tuple(shape), dtype) for name, shape, dtype in answer["datasets"]),
+        datasets=tuple(map(_dataset_from, answer["datasets"])),
         dataset=answer["dataset"],
     )

@@ -28,11 +28,15 @@ MAX_CACHED_BYTES = 1 << 29
 
 @dataclass(frozen=True)
 class DatasetEntry:
-    """One volume of a file that can hold several: its name, its voxels along x, y and z, their type."""
+    """One volume of a file that can hold several: its name, its voxels along x, y and z, their type.
+
+    `voxel_size` has their edges along x, y and z in the unit of the file, where volumes differ in them.
+    """
 
     name: str
     shape: tuple[int, ...]
     dtype: str
+    voxel_size: Sizes | None = None
 
 
 @dataclass(frozen=True)

@@ -140,6 +140,13 @@ class VolumeDialog(QDialog):
                 f"{entry.name}, {' × '.join(map(str, entry.shape))}, {entry.dtype}", entry.name
             )
         self.dataset.setCurrentIndex(max(0, self.dataset.findData(header.dataset)))
+        self.dataset.currentIndexChanged.connect(self._show_edges)
+
+    def _show_edges(self, index: int) -> None:
+        """Show the edges of the chosen volume, where the volumes of the file differ in them."""
+        edges = self._header.datasets[index].voxel_size if self._header is not None else None
+        for field, edge in zip(self.edges, edges or (), strict=False):
+            field.setValue(edge)
 
     def _suggest_layout(self, layout: RawLayout | None) -> None:
         """Layout from the file's name if its size agrees; else a cube of bytes."""
