@@ -49,7 +49,10 @@ PATIENCE = 900.0
 BLOCK = 4096
 """Bytes in which a file system in memory counts."""
 GRACE = 2.0
-"""Seconds after its end in which a command's processes must be gone."""
+"""Seconds after the end of a command, or after a signal, in which its processes must be gone.
+
+They are multiplied by the number of processes that wait for a core, where it is above 1.
+"""
 
 QUICK = (
     "-n 40 --measure min_particles=40 --test mass=0.003 --test lift_speed=0.15 --set time_step=0.04 "
@@ -206,11 +209,11 @@ class Running:
                 start_new_session=True,
             )
 
-    def end(self) -> Ended:
-        """Wait for its end, then up to `GRACE` seconds for that of its processes; kill those that stay."""
+    def end(self, signalled: bool = False) -> Ended:
+        """Wait for its end, unless it was signalled, then for that of its processes; kill those that stay."""
         with suppress(subprocess.TimeoutExpired):
-            self.process.wait(PATIENCE)
-        limit = time.monotonic() + GRACE
+            self.process.wait(0.0 if signalled else PATIENCE)
+        limit = time.monotonic() + GRACE * max(1.0, os.getloadavg()[0])
         while (alive := self._alive()) and time.monotonic() < limit:
             time.sleep(0.05)
         for number in alive:
@@ -295,7 +298,7 @@ def kill(arena: Arena, case: Prepared, row: Row, number: signal.Signals, moment:
     time.sleep(case.seconds * (moment + 0.5) / KILL_MOMENTS)
     with suppress(ProcessLookupError):
         running.process.send_signal(number)
-    ended = running.end()
+    ended = running.end(signalled=True)
     if number is signal.SIGKILL:
         killed = Row()
         found = tree(arena.place)

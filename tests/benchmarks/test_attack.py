@@ -1,5 +1,6 @@
 """A sample of the attack on every command that writes."""
 
+import signal
 import sys
 import time
 from pathlib import Path
@@ -34,6 +35,26 @@ def test_that_a_process_that_outlives_its_command_is_counted_and_ended(
     begun = time.monotonic()
     assert Running((), tmp_path / "tmp").end() == Ended(130, "Stopped.\n", 1)
     assert time.monotonic() - begun < 30
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="processes are found in /proc")
+def test_that_a_command_that_does_not_end_after_a_signal_is_counted(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    program = tmp_path / "program"
+    ready = tmp_path / "ready"
+    program.write_text(f"#!/bin/sh\ntrap '' INT\ntouch {ready}\nwhile true; do sleep 0.1; done\n")
+    program.chmod(0o755)
+    monkeypatch.setattr(sys, "executable", str(program))
+    monkeypatch.setattr(attack_script, "GRACE", 0.2)
+    (tmp_path / "tmp").mkdir()
+    running = Running((), tmp_path / "tmp")
+    while not ready.exists():
+        time.sleep(0.01)
+    running.process.send_signal(signal.SIGINT)
+    ended = running.end(signalled=True)
+    assert ended.code == -signal.SIGKILL
+    assert ended.processes >= 1
 
 
 @pytest.mark.parametrize(

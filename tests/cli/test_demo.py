@@ -62,7 +62,8 @@ def check(folder: Path) -> str:
     assert files >= EXPECTED
     assert not any("journal" in name or "times" in name for name in files)
     text = (folder / "index.html").read_text()
-    page, summary = Pictures(text), Pictures((folder / "particles" / "summary.html").read_text())
+    summary_text = (folder / "particles" / "summary.html").read_text()
+    page, summary = Pictures(text), Pictures(summary_text)
     assert {"particles/three-views.png", "particles/studies/lmax_rmsre.png", "heap/heap.png"} <= {*page.files}
     assert {"studies/lmax_rmsre.png", "studies/coarsening_rmsre.png"} <= {*summary.files}
     for picture in (*page.files, *(f"particles/{name}" for name in summary.files)):
@@ -70,6 +71,8 @@ def check(folder: Path) -> str:
     assert len(page.links) > 8
     assert all((folder / link).exists() for link in page.links)
     assert "This is an illustration" in text
+    assert "Nothing here was measured on a material" in text
+    assert "synthetic particle, its spherical-harmonics fit" in summary_text
     assert "Goldberg" in text
     assert len(read_dataset(folder / "scan" / "dataset")) == 12
     assert json.loads((folder / "heap" / "repose.json").read_text())["checks"]["particles_out"] > 290

@@ -58,6 +58,27 @@ def test_that_positions_of_other_programs_are_measured(
     assert found == pytest.approx([found[0]] * 3, abs=0.05)
 
 
+def test_that_both_sections_of_the_paper_stand_beside_the_angle(
+    pile_file: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Left, right and symmetric angle of each section, and the means of the two."""
+    assert run(["repose", "measure", str(pile_file), "--json"]) == 0
+    document = json.loads(capsys.readouterr().out)
+    assert run(["repose", "measure", str(pile_file)]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert f"{len(document['sections'])} sections" in lines[0]
+    flanks = []
+    for section, line in zip(document["sections"], lines[1:3], strict=False):
+        two, one = section["asymmetric"], section["symmetric"]
+        assert line.split() == [
+            *("section", section["plane"], "left", f"{two['left_deg']:.1f}"),
+            *("right", f"{two['right_deg']:.1f}", "symmetric", f"{one['angle_deg']:.1f}"),
+        ]
+        flanks += [two["left_deg"], two["right_deg"]]
+    assert [section["plane"] for section in document["sections"][:2]] == ["x-z", "y-z"]
+    assert f"asymmetric {np.mean(flanks):.1f}" in lines[3]
+
+
 def _measure(path: Path) -> list[str]:
     return ["repose", "measure", str(path), "--unit", "mm", "--json"]
 

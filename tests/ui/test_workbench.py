@@ -204,6 +204,7 @@ def test_that_every_stop_of_the_tour_shows_something_that_is_there(window):
     assert not tour.isVisible()
     assert {step.page for step in steps()} == {"explore", "sample", "lecture"}
     assert len(steps()) == 11
+    assert "the shipped ones are synthetic" in steps()[0].text
 
 
 def test_that_escape_ends_the_tour(window):
