@@ -89,7 +89,7 @@ def thick_slabs(source: SliceSource, ranges: list[tuple[int, int]], margin: int)
     back: what two slabs share is kept from one to the next.
     """
     kept: NDArray[Any] | None = None
-    begin, end = 0, 0
+    begin = end = max(ranges[0][0] - margin, 0) if ranges else 0
     for first, stop in ranges:
         low, high = max(first - margin, 0), min(stop + margin, source.shape[2])
         parts = [] if kept is None else [kept[:, :, low - begin :]]

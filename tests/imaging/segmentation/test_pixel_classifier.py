@@ -103,6 +103,13 @@ def test_that_parts_and_single_voxels_have_the_features_of_the_whole() -> None:
     np.testing.assert_allclose(features_at(volume, voxels, settings), whole[tuple(voxels.T)], atol=1e-3)
 
 
+def test_that_voxels_far_from_the_first_slice_have_the_features_of_their_place() -> None:
+    volume, settings = noise((12, 12, 90)), FeatureSettings()
+    voxels = np.array([[3, 4, 60], [9, 2, 61], [5, 5, 88]])
+    whole = features_in(volume, box_between((0, 0, 0), volume.shape), settings)
+    np.testing.assert_allclose(features_at(volume, voxels, settings), whole[tuple(voxels.T)], atol=1e-3)
+
+
 def test_that_a_classifier_finds_two_minerals_that_no_threshold_finds() -> None:
     volume, balls = two_minerals()
     grains = predicted(paint_from_labels(volume, painted_middle(balls), THREE), volume) >= 128
