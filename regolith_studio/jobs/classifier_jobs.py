@@ -1,22 +1,32 @@
-"""Jobs of classifiers of voxels: train one on a volume of painted labels, write the map of probabilities."""
+"""Jobs of classifiers of voxels: train on painted labels or strokes, predict slices, write maps."""
 
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 
+import numpy as np
+from numpy.typing import NDArray
+
 from regolith_studio.errors import InputError
+from regolith_studio.imaging.bounding_boxes import box_between
 from regolith_studio.imaging.label_files import write_probability_file
 from regolith_studio.imaging.segmentation.classifier_document import training_document
 from regolith_studio.imaging.segmentation.pixel_classifier import (
     ClassifierSettings,
     PixelClass,
+    PixelClassifier,
     TrainingSet,
     paint_from_labels,
     probability_map,
     train,
 )
+from regolith_studio.imaging.segmentation.pixel_features import FeatureSettings, features_at, features_in
+from regolith_studio.imaging.segmentation.strokes import ERASER, Stroke, painted_rows
+from regolith_studio.imaging.volume import Volume
 from regolith_studio.imaging.volume_slabs import ScratchArrays
 from regolith_studio.io.atomic import write_bytes
 from regolith_studio.io.json_text import canonical_json
-from regolith_studio.jobs.events import Progress, Started, Steps
+from regolith_studio.jobs.events import Partial, Progress, Started, Steps
 from regolith_studio.jobs.extraction_settings import VolumeInput
 from regolith_studio.jobs.volume_jobs import IN_MEMORY, volume_sha256
 from regolith_studio.messages import N_, Message
@@ -83,6 +93,128 @@ def map_probabilities(scan: VolumeInput, training: TrainingSet, path: Path, scra
         yield Started(Message(N_("Writing {name}"), name=path.name))
         for done, total in write_probability_file(path, found):
             yield Progress(done, total)
+    return path
+
+
+COARSE = 4
+"""Of every how many pixels the first picture of a slice is made."""
+Vectors = Mapping[Stroke, NDArray[np.float32]]
+
+
+@dataclass(frozen=True, eq=False)
+class TrainedStrokes:
+    """What was learned from strokes.
+
+    Parameters
+    ----------
+    training
+        ``None`` while there are only grains, or none.
+    vectors
+        Features of the voxels of each stroke.
+    missing
+        What is to be painted first, if anything: one sentence.
+    """
+
+    training: TrainingSet | None
+    vectors: Vectors
+    missing: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class SlicePrediction:
+    """The probabilities of one slice.
+
+    Parameters
+    ----------
+    axis, number
+        The slice.
+    probabilities
+        Of each class, shape (n_across, n_down, n_classes), zeros for classes that are not painted; of every
+        n-th voxel in a first picture.
+    grain
+        Their sum over the classes that are grains, shape (n_across, n_down).
+    """
+
+    axis: int
+    number: int
+    probabilities: NDArray[np.float32]
+    grain: NDArray[np.float32]
+
+
+def train_on_strokes(
+    volume: Volume,
+    strokes: Sequence[Stroke],
+    known: Vectors,
+    classes: tuple[PixelClass, ...],
+    settings: ClassifierSettings,
+) -> Steps:
+    """Train a classifier on brush strokes; returns :class:`TrainedStrokes`.
+
+    Parameters
+    ----------
+    known
+        Features of strokes of an earlier call, which are not computed again.
+    """
+    yield Started(N_("Training the classifier"))
+    vectors = {each: _vectors_of(volume, each, known, settings.features) for each in strokes}
+    positions, labels, rows = painted_rows(strokes)
+    none = np.zeros((0, len(settings.features.names)), dtype=np.float32)
+    found = np.concatenate([none, *(vectors[each] for each in strokes)])[rows]
+    try:
+        training = TrainingSet(positions, labels, found, classes, volume.voxel_size, "", settings)
+    except InputError as error:
+        return TrainedStrokes(None, vectors, str(error))
+    train(training)
+    return TrainedStrokes(training, vectors)
+
+
+def _vectors_of(
+    volume: Volume, stroke: Stroke, known: Vectors, features: FeatureSettings
+) -> NDArray[np.float32]:
+    """Known features, or new ones; the eraser's are never used."""
+    if stroke.label == ERASER:
+        return np.zeros((len(stroke.positions), len(features.names)), dtype=np.float32)
+    return known[stroke] if stroke in known else features_at(volume, stroke.positions, features)
+
+
+def predict_slices(volume: Volume, position: tuple[int, int, int], training: TrainingSet) -> Steps:
+    """Predict the three slices through a voxel: each first coarsely, then each in full.
+
+    Every :class:`SlicePrediction` is a ``Partial``.
+    """
+    yield Started(N_("Predicting grains"))
+    classifier = train(training)
+    columns = [training.classes.index(each) for each in classifier.painted]
+    for step in (COARSE, 1):
+        for axis in (2, 1, 0):
+            grain, own = _slice_probabilities(volume, classifier, axis, position[axis], step)
+            every = np.zeros((*grain.shape, len(training.classes)), dtype=np.float32)
+            every[..., columns] = own
+            yield Partial(SlicePrediction(axis, position[axis], every, grain))
+
+
+def _slice_probabilities(
+    volume: Volume, classifier: PixelClassifier, axis: int, number: int, step: int
+) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+    """Of grain and of each painted class in one slice."""
+    low, high, pace = [0, 0, 0], list(volume.shape), [step, step, step]
+    low[axis], high[axis], pace[axis] = number, number + 1, 1
+    px, py, pz = pace
+    vectors = features_in(volume, box_between(low, high), classifier.features, (px, py, pz))
+    own = np.take(classifier.probabilities(vectors), 0, axis)
+    return classifier.grain_probability(own), own
+
+
+def save_classifier(path: Path, training: TrainingSet, scan: Path) -> Steps:
+    """Write a classifier's file with the SHA-256 of the scan that was painted; returns the path.
+
+    Raises
+    ------
+    FileError
+        If it cannot be written.
+    """
+    yield Started(Message(N_("Writing {name}"), name=path.name))
+    write_classifier(path, replace(training, scan=volume_sha256(scan)))
     return path
 
 

@@ -612,6 +612,10 @@
         <translation>Fläche der Dreiecke, die Löcher schließen</translation>
     </message>
     <message>
+        <source>Artefact</source>
+        <translation>Artefakt</translation>
+    </message>
+    <message>
         <source>As a CSV file</source>
         <translation>Als CSV-Datei</translation>
     </message>
@@ -674,6 +678,10 @@
     <message>
         <source>Back to the values of the preset</source>
         <translation>Zurück zu den Werten der Vorlage</translation>
+    </message>
+    <message>
+        <source>Background</source>
+        <translation>Hintergrund</translation>
     </message>
     <message>
         <source>Bayes&apos; criterion above its lowest</source>
@@ -892,12 +900,32 @@
         <translation>Gewählte Gewichte</translation>
     </message>
     <message>
+        <source>Class</source>
+        <translation>Klasse</translation>
+    </message>
+    <message>
+        <source>Class of the brush</source>
+        <translation>Klasse des Pinsels</translation>
+    </message>
+    <message>
         <source>Classifier</source>
         <translation>Klassifikator</translation>
     </message>
     <message>
         <source>Classifier accuracy</source>
         <translation>Trefferquote des Klassifikators</translation>
+    </message>
+    <message>
+        <source>Classifier from examples</source>
+        <translation>Klassifikator aus Beispielen</translation>
+    </message>
+    <message>
+        <source>Classifiers (*.json);;All files (*)</source>
+        <translation>Klassifikatoren (*.json);;Alle Dateien (*)</translation>
+    </message>
+    <message>
+        <source>Clear</source>
+        <translation>Leeren</translation>
     </message>
     <message>
         <source>Clear &amp;filter</source>
@@ -1300,6 +1328,10 @@
         <translation>Durchmesser in µm = Anteil; mit @volume dahinter zählt das Volumen.</translation>
     </message>
     <message>
+        <source>Diameter of the brush in voxels</source>
+        <translation>Durchmesser des Pinsels in Voxeln</translation>
+    </message>
+    <message>
         <source>Diameters and aspect ratio come from this box. The heuristic is no minimum; it is offered for comparison.</source>
         <translation>Durchmesser und Seitenverhältnis stammen von diesem Quader. Die Heuristik ist kein Minimum; sie dient dem Vergleich.</translation>
     </message>
@@ -1498,6 +1530,10 @@
     <message>
         <source>Equivalent radius</source>
         <translation>Äquivalentradius</translation>
+    </message>
+    <message>
+        <source>Eraser</source>
+        <translation>Radierer</translation>
     </message>
     <message>
         <source>Error [%]</source>
@@ -1986,6 +2022,14 @@
     <message>
         <source>Go to the table of particles</source>
         <translation>Zur Tabelle der Partikel</translation>
+    </message>
+    <message>
+        <source>Grain</source>
+        <translation>Korn</translation>
+    </message>
+    <message>
+        <source>Grain of a second mineral</source>
+        <translation>Korn eines zweiten Minerals</translation>
     </message>
     <message>
         <source>Grains are dark</source>
@@ -2876,6 +2920,10 @@
         <translation>Noch kein Korn im Rahmen. Verschieben Sie den Schwellwert, oder klicken Sie in ein Schichtbild, um den Rahmen zu verschieben.</translation>
     </message>
     <message>
+        <source>No grain is painted; paint some voxels of grains, too.</source>
+        <translation>Kein Korn ist gemalt; malen Sie auch einige Voxel von Körnern.</translation>
+    </message>
+    <message>
         <source>No material.</source>
         <translation>Kein Material.</translation>
     </message>
@@ -2944,8 +2992,16 @@
         <translation>Nicht signifikant.</translation>
     </message>
     <message>
+        <source>Nothing</source>
+        <translation>Nichts</translation>
+    </message>
+    <message>
         <source>Nothing is gained beyond {count} facets</source>
         <translation>Ab {count} Facetten kein Gewinn mehr</translation>
+    </message>
+    <message>
+        <source>Nothing is painted yet: paint some voxels of grains and some of what is between them.</source>
+        <translation>Noch ist nichts gemalt: Malen Sie einige Voxel von Körnern und einige von dem, was dazwischen liegt.</translation>
     </message>
     <message>
         <source>Nothing is running.</source>
@@ -3056,6 +3112,10 @@
         <translation>Nur Äquivalentradien von … bis …</translation>
     </message>
     <message>
+        <source>Only grains are painted; paint some of what is between them, too.</source>
+        <translation>Nur Körner sind gemalt; malen Sie auch etwas von dem, was dazwischen liegt.</translation>
+    </message>
+    <message>
         <source>Only the overlap has a weight.</source>
         <translation>Nur die Überlappung hat ein Gewicht.</translation>
     </message>
@@ -3098,6 +3158,14 @@
     <message>
         <source>Open a CT volume: TIFF stack, folder of slices, TXM, DICOM, OME-Zarr, Amira, HDF5, NRRD, MetaImage, NIfTI, NPY, raw, or the header of a scanner. Drop it here, or begin with the sample scan.</source>
         <translation>Öffnen Sie ein CT-Volumen: TIFF-Stapel, Ordner mit Schichtbildern, TXM, DICOM, OME-Zarr, Amira, HDF5, NRRD, MetaImage, NIfTI, NPY, Rohdaten oder die Beschreibung eines Scanners. Legen Sie es hier ab, oder beginnen Sie mit dem Beispielscan.</translation>
+    </message>
+    <message>
+        <source>Open a classifier</source>
+        <translation>Klassifikator öffnen</translation>
+    </message>
+    <message>
+        <source>Open a classifier and use it for the grains</source>
+        <translation>Einen Klassifikator öffnen und für die Körner verwenden</translation>
     </message>
     <message>
         <source>Open a dataset</source>
@@ -3276,6 +3344,10 @@
         <translation>Seite {title}</translation>
     </message>
     <message>
+        <source>Paint examples</source>
+        <translation>Beispiele malen</translation>
+    </message>
+    <message>
         <source>Pairs</source>
         <translation>Paare</translation>
     </message>
@@ -3436,6 +3508,10 @@
         <translation>Stets positiv; Größe und Spektrum werden getrennt modelliert, sodass es extrapoliert.</translation>
     </message>
     <message>
+        <source>Predicting</source>
+        <translation>Vorhersage</translation>
+    </message>
+    <message>
         <source>Predicting grains</source>
         <translation>Körner werden vorhergesagt</translation>
     </message>
@@ -3474,6 +3550,10 @@
     <message>
         <source>Probability map</source>
         <translation>Wahrscheinlichkeitskarte</translation>
+    </message>
+    <message>
+        <source>Probability of grain</source>
+        <translation>Wahrscheinlichkeit eines Korns</translation>
     </message>
     <message>
         <source>Processes</source>
@@ -4040,12 +4120,24 @@
         <translation>Einstellungen speichern</translation>
     </message>
     <message>
+        <source>Save the classifier</source>
+        <translation>Klassifikator speichern</translation>
+    </message>
+    <message>
+        <source>Save the classifier for other scans</source>
+        <translation>Den Klassifikator für andere Scans speichern</translation>
+    </message>
+    <message>
         <source>Save the model</source>
         <translation>Modell speichern</translation>
     </message>
     <message>
         <source>Save turntable</source>
         <translation>Drehung speichern</translation>
+    </message>
+    <message>
+        <source>Save …</source>
+        <translation>Speichern …</translation>
     </message>
     <message>
         <source>Saved {name}.</source>
@@ -4066,6 +4158,10 @@
     <message>
         <source>Saving labels</source>
         <translation>Labels werden gespeichert</translation>
+    </message>
+    <message>
+        <source>Saving the classifier</source>
+        <translation>Klassifikator wird gespeichert</translation>
     </message>
     <message>
         <source>Scale</source>
@@ -4278,6 +4374,10 @@
     <message>
         <source>Single diameters, the same for all</source>
         <translation>Einzelne Durchmesser, für alle gleich</translation>
+    </message>
+    <message>
+        <source>Size</source>
+        <translation>Größe</translation>
     </message>
     <message>
         <source>Size jitter</source>
@@ -4540,6 +4640,10 @@
         <translation>Wird abgebrochen …</translation>
     </message>
     <message>
+        <source>Strokes in the slices train a classifier of voxels.</source>
+        <translation>Striche in den Schnitten trainieren einen Klassifikator der Voxel.</translation>
+    </message>
+    <message>
         <source>Studies</source>
         <translation>Studien</translation>
     </message>
@@ -4616,8 +4720,20 @@
         <translation>Tabellen von Koeffizienten (*.anm *.sh *.shc *.txt *.dat *.csv)</translation>
     </message>
     <message>
+        <source>Take all strokes back</source>
+        <translation>Alle Striche zurücknehmen</translation>
+    </message>
+    <message>
         <source>Take settings from a file</source>
         <translation>Einstellungen aus einer Datei nehmen</translation>
+    </message>
+    <message>
+        <source>Take the classifier as the threshold of the segmentation</source>
+        <translation>Den Klassifikator als Schwelle der Segmentierung nehmen</translation>
+    </message>
+    <message>
+        <source>Take the last stroke back (Ctrl+Z)</source>
+        <translation>Den letzten Strich zurücknehmen (Strg+Z)</translation>
     </message>
     <message>
         <source>Tangential force</source>
@@ -5108,6 +5224,10 @@
         <translation>Rundgang durch das Fenster</translation>
     </message>
     <message>
+        <source>Training</source>
+        <translation>Training</translation>
+    </message>
+    <message>
         <source>Training the classifier</source>
         <translation>Klassifikator wird trainiert</translation>
     </message>
@@ -5156,6 +5276,14 @@
         <translation>Typ eines Voxels</translation>
     </message>
     <message>
+        <source>Uncertainty</source>
+        <translation>Unsicherheit</translation>
+    </message>
+    <message>
+        <source>Undo stroke</source>
+        <translation>Strich zurück</translation>
+    </message>
+    <message>
         <source>Unit</source>
         <translation>Einheit</translation>
     </message>
@@ -5178,6 +5306,10 @@
     <message>
         <source>Use as population</source>
         <translation>Als Population übernehmen</translation>
+    </message>
+    <message>
+        <source>Use for the grains</source>
+        <translation>Für die Körner verwenden</translation>
     </message>
     <message>
         <source>Use the drawn particles as population</source>
@@ -5390,6 +5522,10 @@
     <message>
         <source>What the guide says of the page</source>
         <translation>Was das Handbuch zu der Seite sagt</translation>
+    </message>
+    <message>
+        <source>What the prediction shows</source>
+        <translation>Was die Vorhersage zeigt</translation>
     </message>
     <message>
         <source>What the volume holds</source>

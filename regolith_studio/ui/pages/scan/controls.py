@@ -2,14 +2,16 @@
 
 import dataclasses
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, cast
 
 from PySide6.QtCore import QEvent, QSignalBlocker, Signal
+from PySide6.QtGui import QStandardItemModel
 from PySide6.QtWidgets import QCheckBox, QComboBox, QFormLayout, QVBoxLayout, QWidget
 
 from regolith_studio.errors import InputError
 from regolith_studio.imaging.extraction import voxel_diameter
 from regolith_studio.imaging.segmentation.morphology import CleaningSettings
+from regolith_studio.imaging.segmentation.pixel_classifier import TrainingSet
 from regolith_studio.imaging.segmentation.segment import SegmentationSettings
 from regolith_studio.jobs.extraction_settings import GrainSettings
 from regolith_studio.messages import N_
@@ -31,6 +33,7 @@ THRESHOLD = (
     ("multi-otsu", N_("Multi-Otsu, three classes")),
     ("manual", N_("By hand: drag the line")),
     ("probability", N_("Probability map")),
+    ("classifier", N_("Classifier from examples")),
 )
 SURFACE = (("grey", N_("Grey values")), ("mask", N_("Mask")))
 H_MAXIMA = NumberSpec(
@@ -49,6 +52,8 @@ MIN_VOXELS = NumberSpec(
     tip=N_("Grains of fewer voxels are left out; below 12 voxels in diameter shapes are coarse."),
 )  # fmt: skip
 
+_PROBABLE = ("probability", "classifier")
+"""Thresholds that are probabilities."""
 _LABEL_WIDTH = 62
 """Minimum pixels before the sliders."""
 
@@ -62,6 +67,7 @@ class SegmentationControls(QWidget):
         super().__init__()
         self.setObjectName("segmentation")
         self._recipe = GrainSettings()
+        self._classifier: TrainingSet | None = None
         self.denoise = choice("denoise", tr("Denoise"), DENOISE)
         self.threshold = choice("threshold", tr("Threshold"), THRESHOLD)
         self.level = DecimalField()
@@ -99,13 +105,14 @@ class SegmentationControls(QWidget):
 
     def value(self) -> GrainSettings:
         """The settings."""
-        method = str(self.threshold.currentData())
+        chosen = str(self.threshold.currentData())
+        method = "probability" if chosen == "classifier" else chosen
         before = self._recipe.segmentation
         segmentation = SegmentationSettings(
             dataclasses.replace(before.denoise, method=self.denoise.currentData()),
             dataclasses.replace(
                 before.threshold,
-                method=self.threshold.currentData(),
+                method=method,  # type: ignore[arg-type]  # one of the rows
                 value=self.level.value() if method in ("manual", "probability") else 0.5,
                 boundary=int(self.boundary.currentData()),
                 dark=self.dark.isChecked(),
@@ -117,6 +124,7 @@ class SegmentationControls(QWidget):
             dataclasses.replace(
                 before.splitting, enabled=self.split.isChecked(), h_maxima=float(self.h_maxima.value())
             ),
+            classifier=self._classifier if chosen == "classifier" else None,
         )  # fmt: skip
         extraction = dataclasses.replace(
             self._recipe.extraction,
@@ -131,9 +139,11 @@ class SegmentationControls(QWidget):
         """Show other settings without emitting a signal."""
         self._recipe = recipe
         how, what = recipe.segmentation, recipe.extraction
+        self._set_classifier(how.classifier or self._classifier)
+        method = "classifier" if how.classifier is not None else how.threshold.method
         for box, value in (
             (self.denoise, how.denoise.method),
-            (self.threshold, how.threshold.method),
+            (self.threshold, method),
             (self.boundary, how.threshold.boundary),
             (self.surface, what.surface),
         ):
@@ -158,11 +168,32 @@ class SegmentationControls(QWidget):
 
     def set_level(self, level: float) -> None:
         """Set a manual threshold: a grey value, or for a probability map its share."""
-        method = "probability" if self.threshold.currentData() == "probability" else "manual"
+        method = self.threshold.currentData()
+        method = method if method in ("probability", "classifier") else "manual"
         with QSignalBlocker(self.threshold):
             self.threshold.setCurrentIndex(self.threshold.findData(method))
         self._show_level(level)
         self._changed()
+
+    def set_classifier(self, training: TrainingSet | None) -> None:
+        """Offer a classifier as a threshold; if it is chosen already, the settings change."""
+        used = self.threshold.currentData() == "classifier"
+        self._set_classifier(training)
+        if used:
+            self._changed()
+
+    def use_classifier(self) -> None:
+        """Choose the classifier as the threshold."""
+        self.threshold.setCurrentIndex(self.threshold.findData("classifier"))
+
+    def _set_classifier(self, training: TrainingSet | None) -> None:
+        self._classifier = training
+        row = self.threshold.findData("classifier")
+        item = cast(QStandardItemModel, self.threshold.model()).item(row)
+        item.setEnabled(training is not None)
+        if training is None and self.threshold.currentIndex() == row:
+            with QSignalBlocker(self.threshold):
+                self.threshold.setCurrentIndex(0)
 
     def show_automatic_level(self, level: float | None) -> None:
         """Show the value of an automatic threshold."""
@@ -189,9 +220,10 @@ class SegmentationControls(QWidget):
     def _show_which(self) -> None:
         method = self.threshold.currentData()
         with QSignalBlocker(self.level):
-            self.level.setRange(*((0.01, 0.99) if method == "probability" else (-1e9, 1e9)))
+            self.level.setRange(*((0.01, 0.99) if method in _PROBABLE else (-1e9, 1e9)))
         self.boundary.setEnabled(method == "multi-otsu")
-        self.level.setEnabled(method in ("manual", "probability"))
+        self.level.setEnabled(method in ("manual", *_PROBABLE))
+        self.denoise.setEnabled(self.threshold.isEnabled() and method not in _PROBABLE)
         self.h_maxima.setEnabled(self.split.isChecked())
         least = int(self.least.value())
         self.diameter.setText(
@@ -218,7 +250,7 @@ class SegmentationControls(QWidget):
         self._changed()
 
     def _threshold_chosen(self) -> None:
-        if self.threshold.currentData() == "probability":
+        if self.threshold.currentData() in _PROBABLE:
             self._show_level(0.5)
         self._changed()
 

@@ -4,11 +4,11 @@ import contextlib
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
-from PySide6.QtCore import QTimer
-from PySide6.QtGui import QDragEnterEvent, QDropEvent
+from PySide6.QtCore import QEvent, QTimer
+from PySide6.QtGui import QDragEnterEvent, QDropEvent, QKeyEvent, QKeySequence
 from PySide6.QtWidgets import QFileDialog, QHBoxLayout
 
 from regolith_studio.errors import RegolithError
@@ -19,7 +19,12 @@ from regolith_studio.imaging.segmentation.segment import Segmentation, Segmentat
 from regolith_studio.io.atomic import write_bytes
 from regolith_studio.io.json_text import json_bytes
 from regolith_studio.jobs.events import Job
-from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput, read_grain_settings
+from regolith_studio.jobs.extraction_settings import (
+    GrainSettings,
+    VolumeInput,
+    read_classifier,
+    read_grain_settings,
+)
 from regolith_studio.jobs.label_jobs import write_labels
 from regolith_studio.jobs.volume_jobs import (
     GrainSegmentation,
@@ -41,7 +46,9 @@ from regolith_studio.session.provenance import VolumeSource
 from regolith_studio.session.recipe import VolumeEntry
 from regolith_studio.ui.layout import CONTROLS_WIDTH, padded, scrolled_column, side_by_side
 from regolith_studio.ui.page import PageContext, PageWidget
+from regolith_studio.ui.pages.scan.brush_panel import BrushPanel
 from regolith_studio.ui.pages.scan.controls import SegmentationControls
+from regolith_studio.ui.pages.scan.painting import Painting
 from regolith_studio.ui.pages.scan.slices_view import SlicesView
 from regolith_studio.ui.pages.scan.volume_dialog import RAW_SUFFIXES, VolumeDialog, needs_asking
 from regolith_studio.ui.pages.scan.workflow_panel import WorkflowPanel
@@ -49,6 +56,7 @@ from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import tr, translate
 
 VOLUMES = N_("Volumes ({suffixes});;All files (*)")
+CLASSIFIERS = N_("Classifiers (*.json);;All files (*)")
 RECIPES = N_("Settings (*.json);;All files (*)")
 PREVIEW_DELAY = 120
 """Milliseconds from the last change to the preview."""
@@ -73,6 +81,8 @@ class ScanPage(PageWidget):
         self.slices = SlicesView()
         self.controls = SegmentationControls()
         self.workflow = WorkflowPanel()
+        self.brush = BrushPanel()
+        self.painting = Painting(self._context, self.brush, self.slices, self)
         self._timer = QTimer(self, interval=PREVIEW_DELAY, singleShot=True)
         self._arrange()
         self._connect()
@@ -194,6 +204,8 @@ class ScanPage(PageWidget):
             self.scan.scratch.close()
         self.scan, self.preview, self._given = scan, None, volume
         self.slices.set_scan(scan)
+        self.painting.stop()
+        self.painting.set_volume(scan.volume)
         self.controls.set_kind(scan.volume.kind)
         self._show_level()
         self._schedule_preview()
@@ -223,6 +235,29 @@ class ScanPage(PageWidget):
             self._context.toast.problem(str(error))
             return
         command = f"regolith-studio extract --recipe {Path(name).name}"
+        self._context.toast.note(tr("Saved; use it with: {command}", command=command))
+
+    def ask_for_classifier(self) -> None:
+        """Ask for the file of a classifier and take it as the threshold."""
+        name, _ = QFileDialog.getOpenFileName(self, tr("Open a classifier"), self._folder(), tr(CLASSIFIERS))
+        if not name:
+            return
+        try:
+            self.controls.set_classifier(read_classifier(Path(name)))
+        except RegolithError as error:
+            self._context.toast.problem(str(error))
+            return
+        self.controls.use_classifier()
+
+    def save_classifier(self) -> None:
+        """Ask for a file and write the classifier that was trained by strokes."""
+        start = str(Path(self._folder()) / "classifier.json")
+        name, _ = QFileDialog.getSaveFileName(self, tr("Save the classifier"), start, tr(CLASSIFIERS))
+        if name:
+            self.painting.save(Path(name), self._given.path, self._on_classifier_saved)
+
+    def _on_classifier_saved(self, path: Path) -> None:
+        command = f"regolith-studio extract --classifier {path.name}"
         self._context.toast.note(tr("Saved; use it with: {command}", command=command))
 
     def _use(self, recipe: GrainSettings) -> None:
@@ -284,8 +319,15 @@ class ScanPage(PageWidget):
         self._discard_grains()
         self._segmented, self.preview, self._found_with = found, None, settings
         self.slices.show_segmentation(found.segmentation, found.sections)
+        self._hide_probabilities(settings)
         self.controls.show_automatic_level(found.segmentation.level)
         self._show_state()
+
+    def _hide_probabilities(self, settings: SegmentationSettings) -> None:
+        """Keep a classifier's probabilities out of the histogram of grey values."""
+        if settings.classifier is not None:
+            self.slices.histogram.set_denoised(None)
+            self.slices.histogram.set_level(None)
 
     def _discard_grains(self) -> None:
         if self._segmented is not None:
@@ -330,8 +372,9 @@ class ScanPage(PageWidget):
     def _show_level(self) -> None:
         if self.scan is None:
             return
-        level = self.scan.level(self.controls.value().segmentation)
-        self.slices.histogram.set_level(level)
+        settings = self.controls.value().segmentation
+        level = self.scan.level(settings)
+        self.slices.histogram.set_level(level if settings.classifier is None else None)
         self.controls.show_automatic_level(level)
 
     def _probability_range(self) -> float:
@@ -363,6 +406,7 @@ class ScanPage(PageWidget):
     def _show_preview(self, found: Segmentation | None, box: Any) -> None:
         self.preview = found
         self.slices.show_preview(found, box)
+        self._hide_probabilities(self.controls.value().segmentation)
         self._show_state()
 
     # --- the rest ------------------------------------------------------------------------------
@@ -382,6 +426,10 @@ class ScanPage(PageWidget):
     def _connect(self) -> None:
         self._timer.timeout.connect(self._start_preview)
         self.controls.valueChanged.connect(self._on_settings)
+        self.painting.trained.connect(self.controls.set_classifier)
+        self.brush.useRequested.connect(self.controls.use_classifier)
+        self.brush.openRequested.connect(self.ask_for_classifier)
+        self.brush.saveRequested.connect(self.save_classifier)
         self.slices.boxMoved.connect(self._schedule_preview)
         self.slices.histogram.levelDragged.connect(self._on_level_dragged)
         self.workflow.openRequested.connect(self.ask_for_file)
@@ -392,13 +440,36 @@ class ScanPage(PageWidget):
         self.workflow.showRequested.connect(lambda: self._context.go("sample"))
 
     def _arrange(self) -> None:
-        controls = scrolled_column([self.workflow, self.controls])
+        controls = scrolled_column([self.workflow, self.brush, self.controls])
         parts = [padded(self.slices, 10, 10, 2, 8), controls]
         columns = side_by_side(parts, [1100, CONTROLS_WIDTH + 20], stretch=0)
         columns.setObjectName("scan_columns")
         layout = QHBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(columns)
+
+    def event(self, event: QEvent) -> bool:
+        """Take Ctrl+Z for strokes while the page has the focus and there are some."""
+        if event.type() == QEvent.Type.ShortcutOverride and self._stroke_step(cast(QKeyEvent, event)):
+            event.accept()
+            return True
+        return super().event(event)
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:
+        if step := self._stroke_step(event):
+            step()
+        else:
+            super().keyPressEvent(event)
+
+    def _stroke_step(self, event: QKeyEvent) -> Callable[[], None] | None:
+        """What the keys of undo and redo do to strokes."""
+        if not self.brush.paint.isChecked():
+            return None
+        if event.matches(QKeySequence.StandardKey.Undo) and self.painting.can_undo:
+            return self.painting.undo
+        if event.matches(QKeySequence.StandardKey.Redo) and self.painting.can_redo:
+            return self.painting.redo
+        return None
 
     def dragEnterEvent(self, event: QDragEnterEvent) -> None:
         if event.mimeData().hasUrls():

@@ -1,17 +1,19 @@
 """View of one slice of a volume with an overlay of the grains."""
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 import pyqtgraph as pg
 from numpy.typing import NDArray
 from PySide6.QtCore import QPointF, QRectF, QSignalBlocker, Qt, Signal
-from PySide6.QtGui import QColor, QWheelEvent
+from PySide6.QtGui import QColor, QMouseEvent, QPainterPath, QWheelEvent
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QSlider, QVBoxLayout, QWidget
 
 from regolith_studio.imaging.bounding_boxes import Box
 from regolith_studio.imaging.slice_images import SliceImages
 from regolith_studio.imaging.volume import Volume
+from regolith_studio.ui.pages.scan.brush_panel import CLASS_COLOURS, Brush
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import tr
 
@@ -41,6 +43,8 @@ class SliceView(QWidget):
     """A voxel that was clicked."""
     sliceChosen = Signal(int, int)  # noqa: N815
     """Axis and number of another slice."""
+    strokeDrawn = Signal(int, int, object)  # noqa: N815
+    """Axis and number of the slice, and the corners of the line across it in voxels, shape (n, 2)."""
 
     def __init__(self, axis: int) -> None:
         super().__init__()
@@ -56,6 +60,10 @@ class SliceView(QWidget):
         self.slider.setAccessibleName(tr("Slice along {axis}", axis=AXES[axis]))
         self.canvas = _Canvas(self)
         self._grey, self._grains = pg.ImageItem(), pg.ImageItem()
+        self._prediction, self._paint = pg.ImageItem(), pg.ImageItem()
+        self._line = pg.QtWidgets.QGraphicsPathItem()
+        self.brush: Callable[[], Brush] | None = None
+        self._corners: list[QPointF] = []
         self._frame = pg.QtWidgets.QGraphicsRectItem()
         self._cross = [pg.InfiniteLine(angle=angle) for angle in (90, 0)]
         self._arrange()
@@ -124,6 +132,62 @@ class SliceView(QWidget):
         size = (_length(box[self.across]), _length(box[self.down]))
         self._set(self._grains, self._painted(picture), start, size)
 
+    def show_overlay(self, picture: NDArray[np.uint8] | None) -> None:
+        """Overlay the prediction of this slice, RGBA of shape (n_across, n_down, 4); it may be coarser."""
+        if picture is None or self._volume is None:
+            self._prediction.clear()
+            return
+        self._set(self._prediction, picture, (0, 0), self._size())
+
+    def show_paint(self, picture: NDArray[np.uint8] | None) -> None:
+        """Overlay what is painted in this slice, RGBA of shape (n_across, n_down, 4)."""
+        if picture is None or self._volume is None:
+            self._paint.clear()
+            return
+        self._set(self._paint, picture, (0, 0), self._size())
+
+    def _size(self) -> tuple[int, int]:
+        assert self._volume is not None
+        return self._volume.shape[self.across], self._volume.shape[self.down]
+
+    def begin_stroke(self, point: QPointF) -> bool:
+        """Begin a line at a point of the view in micrometres; returns whether strokes are drawn."""
+        if self.brush is None or self._volume is None:
+            return False
+        self._corners = []
+        brush = self.brush()
+        width = brush.diameter * float(self._volume.voxel_size[self.across])
+        colour = QColor("white" if brush.label < 0 else CLASS_COLOURS[brush.label])
+        colour.setAlpha(150)
+        pen = pg.mkPen(colour, width=width, cosmetic=False)
+        pen.setCapStyle(Qt.PenCapStyle.RoundCap)
+        pen.setJoinStyle(Qt.PenJoinStyle.RoundJoin)
+        self._line.setPen(pen)
+        self.extend_stroke(point)
+        return True
+
+    def extend_stroke(self, point: QPointF) -> None:
+        """Draw the line on to a point of the view."""
+        self._corners.append(point)
+        path = QPainterPath(self._corners[0])
+        for corner in self._corners if len(self._corners) > 1 else self._corners * 2:
+            path.lineTo(corner)
+        self._line.setPath(path)
+
+    def end_stroke(self) -> None:
+        """Hand the line over."""
+        corners, self._corners = self._corners, []
+        self._line.setPath(QPainterPath())
+        if self._volume is not None and corners:
+            edges = self._volume.voxel_size[[self.across, self.down]]
+            points = np.array([(each.x(), each.y()) for each in corners]) / edges
+            self.strokeDrawn.emit(self.axis, self.slider.value(), points)
+
+    @property
+    def is_drawing(self) -> bool:
+        """Whether a line has begun."""
+        return bool(self._corners)
+
     def set_box_shown(self, shown: bool) -> None:
         """Set whether the box of the preview is drawn."""
         self._frame.setOpacity(1.0 if shown else 0.0)
@@ -144,7 +208,8 @@ class SliceView(QWidget):
 
     def _arrange(self) -> None:
         view = self.canvas.view
-        for item in (self._grey, self._grains, self._frame, *self._cross):
+        layers = (self._grey, self._grains, self._prediction, self._paint, self._line)
+        for item in (*layers, self._frame, *self._cross):
             view.addItem(item)
         self._frame.setBrush(pg.mkBrush(None))
         row = QHBoxLayout()
@@ -188,6 +253,31 @@ class _Canvas(pg.GraphicsView):  # type: ignore[misc]
     def wheelEvent(self, event: QWheelEvent) -> None:
         self._owner.turn(1 if event.angleDelta().y() > 0 else -1)
         event.accept()
+
+    def mousePressEvent(self, event: QMouseEvent) -> None:
+        if event.button() == Qt.MouseButton.LeftButton and self._owner.begin_stroke(self._point(event)):
+            event.accept()
+            return
+        super().mousePressEvent(event)
+
+    def mouseMoveEvent(self, event: QMouseEvent) -> None:
+        if self._owner.is_drawing:
+            self._owner.extend_stroke(self._point(event))
+            event.accept()
+            return
+        super().mouseMoveEvent(event)
+
+    def mouseReleaseEvent(self, event: QMouseEvent) -> None:
+        if self._owner.is_drawing:
+            self._owner.end_stroke()
+            event.accept()
+            return
+        super().mouseReleaseEvent(event)
+
+    def _point(self, event: QMouseEvent) -> QPointF:
+        """Where the mouse is, in micrometres."""
+        point: QPointF = self.view.mapSceneToView(self.mapToScene(event.position().toPoint()))
+        return point
 
     def _clicked(self, event: Any) -> None:
         if event.button() == Qt.MouseButton.LeftButton:

@@ -1,14 +1,19 @@
 """Three slices through one voxel and the histogram."""
 
+import numpy as np
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QStackedLayout, QVBoxLayout, QWidget
 
+from regolith_studio.geometry.arrays import IntArray
 from regolith_studio.imaging.bounding_boxes import Box, box_about, box_between
 from regolith_studio.imaging.segmentation.segment import Segmentation
 from regolith_studio.imaging.slice_images import SliceImages
+from regolith_studio.jobs.classifier_jobs import SlicePrediction
 from regolith_studio.jobs.volume_jobs import Scan
 from regolith_studio.ui.layout import equal_parts
+from regolith_studio.ui.pages.scan.brush_panel import BrushPanel
 from regolith_studio.ui.pages.scan.histogram_plot import HistogramPlot
+from regolith_studio.ui.pages.scan.painted_pictures import overlay_picture, paint_picture
 from regolith_studio.ui.pages.scan.slice_view import SliceView
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import tr
@@ -23,6 +28,10 @@ class SlicesView(QWidget):
 
     boxMoved = Signal()  # noqa: N815
     """The preview box has moved."""
+    moved = Signal()
+    """Other slices are shown."""
+    strokeDrawn = Signal(int, int, object)  # noqa: N815
+    """As of a :class:`SliceView`."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -33,10 +42,15 @@ class SlicesView(QWidget):
         self._scan: Scan | None = None
         self._labels: SliceImages | None = None
         self._part: Box = self.box
+        self._predicted: dict[int, SlicePrediction] = {}
+        self._overlay = "probability"
+        self._painted = np.zeros((0, 3), np.int64), np.zeros(0, np.int64)
+        self._panel: BrushPanel | None = None
         self._arrange()
         for view in self.views:
             view.placePicked.connect(lambda x, y, z: self.go_to((x, y, z)))
             view.sliceChosen.connect(self._turn)
+            view.strokeDrawn.connect(self.strokeDrawn)
 
     def set_theme(self, theme: Theme) -> None:
         """Take the colours of a theme."""
@@ -66,6 +80,8 @@ class SlicesView(QWidget):
         for view in self.views:
             view.show_position(position, box)
         self._lay_over()
+        self._show_painting()
+        self.moved.emit()
         if moved:
             self.boxMoved.emit()
 
@@ -87,14 +103,59 @@ class SlicesView(QWidget):
             view.set_box_shown(False)
         self._lay_over()
 
+    def set_painting(self, panel: BrushPanel | None) -> None:
+        """Let the mouse paint with the brush of a panel, or go back to choosing voxels."""
+        self._panel = panel
+        for view in self.views:
+            view.brush = None if panel is None else lambda: panel.brush
+            view.canvas.setCursor(Qt.CursorShape.ArrowCursor if panel is None else Qt.CursorShape.CrossCursor)
+        self._lay_over()
+        self._show_painting()
+
+    def set_overlay(self, overlay: str) -> None:
+        """Show another side of the prediction: probability, class, uncertainty or none."""
+        self._overlay = overlay
+        self._show_painting()
+
+    def show_strokes(self, positions: IntArray, labels: IntArray) -> None:
+        """Show painted voxels, shape (n, 3), and their classes, shape (n,)."""
+        self._painted = positions, labels
+        self._show_painting()
+
+    def show_prediction(self, found: SlicePrediction) -> None:
+        """Show the probabilities of a slice, if it is still seen."""
+        self._predicted[found.axis] = found
+        self._show_painting()
+
+    def clear_predictions(self) -> None:
+        """Forget all probabilities."""
+        self._predicted.clear()
+        self._show_painting()
+
+    def _show_painting(self) -> None:
+        positions, labels = self._painted
+        for view in self.views:
+            number = self.position[view.axis]
+            here = positions[:, view.axis] == number
+            shown = self._panel is not None and self._scan is not None
+            found = self._predicted.get(view.axis)
+            seen = shown and found is not None and found.number == number
+            view.show_overlay(overlay_picture(found, self._overlay) if seen and found else None)
+            if not shown or self._scan is None or not here.any():
+                view.show_paint(None)
+                continue
+            size = self._scan.volume.shape[view.across], self._scan.volume.shape[view.down]
+            view.show_paint(paint_picture(positions[here][:, [view.across, view.down]], labels[here], size))
+
     def _turn(self, axis: int, number: int) -> None:
         position = list(self.position)
         position[axis] = number
         self.go_to((position[0], position[1], position[2]))
 
     def _lay_over(self) -> None:
+        labels = self._labels if self._panel is None else None
         for view in self.views:
-            view.show_grains(self._labels, self._part, self.position[view.axis])
+            view.show_grains(labels, self._part, self.position[view.axis])
 
     def _arrange(self) -> None:
         above = equal_parts(Qt.Orientation.Horizontal, self.views[:2])
