@@ -97,3 +97,17 @@ def test_that_an_axis_is_drawn_anew_when_its_range_changes(curve, app):
     for axis, old in zip(curve.axes.values(), before, strict=True):
         assert axis.range == list(axis.linkedView().viewRange()[axis.orientation == "left"])
         assert axis.picture is not old
+
+
+def test_that_numbers_below_an_axis_do_not_touch_in_large_letters(curve, app):
+    large = QFont(curve.font())
+    large.setPointSizeF(24.0)
+    curve.setFont(large)
+    curve.set_curves([PlotCurve("one", "#0072b2", (0.0, 100.0), (0.2, 0.6))])
+    curve.resize(320, 240)
+    app.processEvents()
+    axis = curve.axes["bottom"]
+    (low, high), length = axis.range, axis.size().width()
+    spacing = axis.tickSpacing(low, high, length)[0][0]
+    widest = QFontMetricsF(axis._tick_font).horizontalAdvance("100")
+    assert spacing / (high - low) * length > widest

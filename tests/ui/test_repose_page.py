@@ -26,6 +26,7 @@ from regolith_studio.ui.commands import Commands
 from regolith_studio.ui.dialogs.folder import FolderDialog
 from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.pages.repose import PAGE
+from regolith_studio.ui.pages.repose.player import RunPlayer
 from regolith_studio.ui.pages.repose.section_plot import particle_text
 from regolith_studio.ui.widgets.forms import ParameterForm
 from regolith_studio.ui.widgets.toast import Toast
@@ -393,3 +394,18 @@ def test_that_a_study_says_what_it_lacks(page, dataset):
     page.study.restore({"key": "gravity", "values": "moon", "repeats": 2})
     page.start_study()
     assert "numbers with commas" in page._context.toast.sentence.text()
+
+
+def test_that_the_whole_column_of_particles_is_in_the_picture_before_the_lift(shown, app):
+    player = shown(RunPlayer("image"))
+    player.resize(800, 400)
+    app.processEvents()
+    test = LiftingCylinderTest()
+    player.set_scene((icosphere(1).vertices * 1e-3,), True, test)
+    n = 40
+    points = np.zeros((n, 3))
+    points[:, 2] = np.linspace(0.001, 2.0 * test.height, n)
+    orientations = np.tile([1.0, 0.0, 0.0, 0.0], (n, 1))
+    pile = ParticleState(points, np.full(n, 2e-3), orientations, np.zeros(n, dtype=np.int64))
+    player.show_moment(pile, "Before")
+    assert player.frame.view.pose.parallel_scale >= 0.5 * 2.0 * test.height

@@ -54,7 +54,6 @@ class RepresentativesGallery(QWidget):
         self.empty.setWordWrap(True)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(8, 6, 8, 6)
-        self.setMinimumHeight(CELL.height() + 2 * self.title.sizeHint().height())
         layout.addWidget(self.title)
         layout.addWidget(self.list, 1)
         layout.addWidget(self.empty, 1)

@@ -42,7 +42,7 @@ from regolith_studio.ui.pages.dataset.controls import (
     SizesPanel,
 )
 from regolith_studio.ui.pages.dataset.export_panel import ExportPanel, ExportsList, LossesLabel
-from regolith_studio.ui.pages.dataset.gallery import RepresentativesGallery
+from regolith_studio.ui.pages.dataset.gallery import CELL, RepresentativesGallery
 from regolith_studio.ui.pages.dataset.library import LibraryPanel
 from regolith_studio.ui.pages.dataset.plots import QualityPlot, SizesPlot
 from regolith_studio.ui.pages.dataset.view_data import (
@@ -438,6 +438,7 @@ class DatasetPage(PageWidget):
         lower = [(self.losses, tr("Limits of the formats")), (self.exports, tr("Exported"))]
         shapes = [(self.gallery, tr("Representatives")), (self.library, tr("Library"))]
         self._lower, self._shapes = tabs("dataset_lower", lower), tabs("dataset_shapes", shapes)
+        self._shapes.setMinimumHeight(CELL.height() + 4 * self.fontMetrics().height())
         middle = stacked((upper, self._shapes, self._lower), (260, 330, 120), stretch=1)
         middle.setObjectName("dataset_middle")
         results = QWidget()

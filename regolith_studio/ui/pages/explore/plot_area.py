@@ -16,6 +16,8 @@ from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.views.three_views import ThreeViews
 
+LINES = 9
+"""Minimum height in lines of text."""
 LETTERS = 84
 """Width in digits below which both groups become one."""
 
@@ -41,6 +43,7 @@ class PlotArea(QSplitter):
             self.addWidget(group)
             self.setStretchFactor(number, 1)
         self.setSizes([1000, 1000])
+        self._keep_readable()
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)
@@ -50,6 +53,11 @@ class PlotArea(QSplitter):
         super().changeEvent(event)
         if event.type() in (QEvent.Type.FontChange, QEvent.Type.StyleChange):
             self._group()
+            self._keep_readable()
+
+    def _keep_readable(self) -> None:
+        for group in (self.left, self.right):
+            group.setMinimumHeight(max(120, LINES * self.fontMetrics().height()))
 
     def _group(self) -> None:
         """Show two groups if there is room for two plots with legends, else one."""

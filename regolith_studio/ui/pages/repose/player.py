@@ -25,6 +25,8 @@ LOW_SIDE = Direction("", (0.35, -1.0, 0.22), (0.0, 0.0, 1.0))
 """Flanks and their slope are seen from a low side."""
 HEAP_SHARE = 0.97
 """Share of the coordinates of particles that lie within the frame of a heap."""
+ABOVE_FRAME = 1.02
+"""Height of particles over that of the frame beyond which the cylinder is framed anew."""
 FRAME = 50
 """Milliseconds between two frames of a replay."""
 
@@ -39,6 +41,7 @@ class RunPlayer(QWidget):
         self._theme = current_theme()
         self._shapes: tuple[FloatArray, ...] = ()
         self._spheres = False
+        self._framed_height = 0.0
         self._test = LiftingCylinderTest()
         self._files: list[Path] = []
         self.pile: ParticleState | None = None
@@ -79,12 +82,18 @@ class RunPlayer(QWidget):
         fresh = (test.diameter, test.height) != (self._test.diameter, self._test.height) or not self._shapes
         self._shapes, self._spheres, self._test = tuple(shapes), spheres, test
         if fresh:
-            self._look_at(instancing.framing_corners(test.diameter, test.height))
+            self._look_at_cylinder(test.height)
 
     def frame_heap(self, pile: ParticleState) -> None:
         """Look at a heap from a low side, as large as it can be; particles far from it do not count."""
         reach = float(np.quantile(np.abs(pile.points[:, :2]), HEAP_SHARE))
+        self._framed_height = float(pile.points[:, 2].max())
         self._look_at(instancing.box_corners(reach, float(pile.points[:, 2].max())))
+
+    def _look_at_cylinder(self, height: float) -> None:
+        """Frame the cylinder up to a height in metres."""
+        self._framed_height = height
+        self._look_at(instancing.framing_corners(self._test.diameter, height))
 
     def _look_at(self, corners: FloatArray) -> None:
         widget = self.frame.view.widget
@@ -96,6 +105,9 @@ class RunPlayer(QWidget):
         self.stop()
         self._set_files([])
         self.frame.set_texts(title, detail)
+        top = float(pile.points[:, 2].max(initial=0.0))
+        if top > ABOVE_FRAME * self._framed_height:
+            self._look_at_cylinder(max(top, self._test.height))
         self._show(pile)
 
     def show_run(self, files: Sequence[Path], title: str, detail: str = "") -> None:

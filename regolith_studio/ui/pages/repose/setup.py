@@ -217,6 +217,7 @@ class SetupPanel(QWidget):
             button.clicked.connect(lambda _=False, count=count: self.particles.setValue(count))
         column.addLayout(_row(*presets))
         form = QFormLayout()
+        form.setRowWrapPolicy(QFormLayout.RowWrapPolicy.WrapLongRows)
         form.addRow(tr("Number"), self.particles)
         form.addRow(tr("Seed"), self.seed)
         form.addRow(tr("Shapes"), self.shapes)
@@ -287,7 +288,7 @@ def _choice(entries: Mapping[str, str], name: str, spoken: str) -> QComboBox:
     box = ElidedComboBox()
     box.setObjectName(name)
     box.setAccessibleName(spoken)
-    box.setMinimumContentsLength(10)
+    box.setMinimumContentsLength(max(10, len(tr(next(iter(entries))))))
     for text, data in entries.items():
         box.addItem(tr(text), data)
     return box

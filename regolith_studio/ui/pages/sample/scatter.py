@@ -17,6 +17,7 @@ from regolith_studio.session.results import ParticleEntry
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import tr, tr_count
 from regolith_studio.ui.translation.numbers import number_text
+from regolith_studio.ui.widgets.combo_box import ElidedComboBox
 from regolith_studio.ui.widgets.definitions import definition
 from regolith_studio.ui.widgets.labels import rich_symbol
 from regolith_studio.ui.widgets.plots.base import Plot
@@ -161,11 +162,10 @@ class ScatterPanel(QWidget):
 
 
 def _descriptor_box(name: str, accessible: str) -> QComboBox:
-    box = QComboBox()
+    box = ElidedComboBox()
     box.setObjectName(name)
     box.setAccessibleName(accessible)
-    box.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
-    box.setMinimumContentsLength(8)
+    box.setMinimumContentsLength(max(len(tr(CATALOGUE[key].label)) for key in ZINGG))
     for key, row in CATALOGUE.items():
         if not row.costly and row.dimension in _UNITS:
             box.addItem(tr(row.label), key)

@@ -43,6 +43,7 @@ class LossSelector(QWidget):
         self.menu = self._menu()
         self.rows.clicked.connect(self._open)
         self.box = ChoiceBox("study_box", tr("Bounding box of the diameters"), BOXES)
+        self.box.setMinimumContentsLength(max(len(tr(each)) for each in BOXES.values()))
         self.box.setToolTip(tr(BOX_TIP))
         self.remark = remark()
         self.remark.setObjectName("study_facets_remark")

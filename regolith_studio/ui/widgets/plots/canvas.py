@@ -144,11 +144,16 @@ class PlotCanvas(pg.GraphicsView):  # type: ignore[misc]
         self._box.setAspectLocked(locked)
 
 
+WIDER = (1, 2, 4, 10)
+"""Multiples of the distance of ticks, until their labels have room."""
+
+
 class FittedAxis(pg.AxisItem):  # type: ignore[misc]
     """An axis whose label fits its length: with a smaller font or elided where the axis is short."""
 
     _label = ("", "", QFont())
     _shown: tuple[str, float] | None = None
+    _tick_font = QFont()
 
     def __init__(self, orientation: str) -> None:
         super().__init__(orientation)
@@ -161,6 +166,7 @@ class FittedAxis(pg.AxisItem):  # type: ignore[misc]
 
     def set_tick_font(self, font: QFont) -> None:
         """Font of the tick labels; there are fewer of them if it is large."""
+        self._tick_font = font
         self.setTickFont(font)
         self.setTickDensity(min(1.0, DENSE_TICKS_HEIGHT / QFontMetricsF(font).height()))
 
@@ -170,6 +176,16 @@ class FittedAxis(pg.AxisItem):  # type: ignore[misc]
 
     def updateAutoSIPrefix(self) -> None:
         """Disabled: pyqtgraph multiplies numbers below one by a thousand even if `autoSIPrefix` is off."""
+
+    def tickSpacing(self, low: float, high: float, length: float) -> list[tuple[float, float]]:
+        """Spacings and offsets of major and minor ticks, so far apart that labels do not touch."""
+        levels: list[tuple[float, float]] = super().tickSpacing(low, high, length)
+        if self.orientation in ("left", "right") or self.logMode or not levels or high <= low:
+            return levels
+        widest = QFontMetricsF(self._tick_font).horizontalAdvance(f"{high:.4g} 0")
+        wanted = widest * (high - low) / max(length, 1.0)
+        step = next((f for f in WIDER if f * levels[0][0] >= wanted), WIDER[-1])
+        return [(step * levels[0][0], levels[0][1]), *levels[1:]]
 
     def _fit(self) -> None:
         text, colour, font = self._label
