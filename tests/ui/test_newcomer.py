@@ -169,6 +169,7 @@ def newcomer(shown, preferences, wait, settled, request):
     window.resize(1480, 900)
     shown(window)
     show_recovery_and_tour(window)
+    assert window.findChild(QPushButton, "tour_end") is None, "the tour begins when the views are filled"
     wait(lambda: window.session.results.coarsened is not None, SECONDS)
     settled(window)
     made = Newcomer(window, wait, settled, request.node.name.removeprefix("test_that_")[:24])
