@@ -65,7 +65,7 @@ def test_that_every_step_of_the_annealing_is_shown_said_and_set(page):
         outcome = texts.outcome_of(step)
         outcomes.add(outcome)
         said = page.annealing.sentence.text()
-        assert {"refused": "Refused", "accepted": "accepted", "lucky": "luck", "start": "start"}[
+        assert {"refused": "Rejected", "accepted": "accepted", "lucky": "probability", "start": "start"}[
             outcome
         ] in said
         if step.move is not None:
