@@ -4069,7 +4069,7 @@
     </message>
     <message>
         <source>Save la&amp;bels …</source>
-        <translation>La&amp;bels speichern …</translation>
+        <translation>&amp;Labels speichern …</translation>
     </message>
     <message>
         <source>Save labels</source>

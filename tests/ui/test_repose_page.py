@@ -409,3 +409,4 @@ def test_that_the_whole_column_of_particles_is_in_the_picture_before_the_lift(sh
     pile = ParticleState(points, np.full(n, 2e-3), orientations, np.zeros(n, dtype=np.int64))
     player.show_moment(pile, "Before")
     assert player.frame.view.pose.parallel_scale >= 0.5 * 2.0 * test.height
+    player.release()
