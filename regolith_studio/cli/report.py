@@ -12,11 +12,15 @@ from regolith_studio.cli.terminal import print_errors, print_json, run_with_prog
 from regolith_studio.session.report.settings import ReportSettings
 
 if TYPE_CHECKING:
+    from regolith_studio.readers.particles import LoadedParticles
     from regolith_studio.session.report.write import WrittenReport
 
 Samples = Annotated[
     list[Path],
-    typer.Argument(metavar="SAMPLE...", help="Mesh files, tables of coefficients, or folders of them."),
+    typer.Argument(
+        metavar="SAMPLE...",
+        help="Mesh files, tables of coefficients, folders of them; or one scan, or one recipe.",
+    ),
 ]
 
 
@@ -36,7 +40,7 @@ def report(
     """
     from regolith_studio.session.report.write import PAGE, write_report
 
-    loaded = reading.read(sample)
+    loaded = _load(sample, reading, jobs)
     done: WrittenReport = run_with_progress(
         write_report(loaded.particles, output, settings, jobs), logged=True
     )
@@ -46,3 +50,24 @@ def report(
     else:
         typer.echo(f"{len(done.files)} files in {output}; begin with {output / PAGE}")
     raise typer.Exit(exit_code(sample, loaded, len(done.problems)))
+
+
+def _load(sample: list[Path], reading: ReadingOptions, jobs: int) -> "LoadedParticles":
+    """The particles of meshes, of a scan as ``extract`` finds them by default, or of a recipe."""
+    from regolith_studio.errors import InputError
+    from regolith_studio.session.file_kinds import FileKind, kind_of_all
+    from regolith_studio.session.recipe import VolumeEntry, read_recipe, recipe_of
+    from regolith_studio.session.report.inputs import load_recipe_particles
+
+    match kind := kind_of_all(sample):
+        case FileKind.PARTICLES:
+            return reading.read(sample)
+        case FileKind.VOLUME:
+            recipe, base = recipe_of(volumes=[VolumeEntry(file=str(sample[0]))]), Path()
+        case FileKind.RECIPE:
+            recipe, base = read_recipe(sample[0]), sample[0].parent
+        case _:
+            raise InputError(f"{sample[0].name} ({kind}) holds no particles to report on.")
+    loaded: LoadedParticles = run_with_progress(load_recipe_particles(recipe, base, jobs))
+    print_errors(problem.with_path for problem in loaded.problems)
+    return loaded

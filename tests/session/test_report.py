@@ -1,22 +1,34 @@
 """The report on a sample: what stands in it, what fails in its place, and that it can be repeated."""
 
+import base64
 import hashlib
 import json
 import re
+import shutil
+import subprocess
 from collections.abc import Callable, Mapping
 from html.parser import HTMLParser
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
 from regolith_studio.errors import InputError
+from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
+from regolith_studio.geometry.sphere_points import icosphere
+from regolith_studio.io.stl import stl_bytes
 from regolith_studio.io.tables import Column, Table
 from regolith_studio.jobs.events import Progress, Steps
 from regolith_studio.readers.particles import sample_particles
+from regolith_studio.resources import resource
+from regolith_studio.session.recipe import VolumeEntry, recipe_of
 from regolith_studio.session.report import heap_sections, write
 from regolith_studio.session.report.draft import ReportDraft, SectionSteps
+from regolith_studio.session.report.inputs import load_recipe_particles
+from regolith_studio.session.report.page import MAX_TRIANGLES, report_page
 from regolith_studio.session.report.sections import ReportFigure, ReportSection, error_table, interval_text
 from regolith_studio.session.report.settings import ReportSettings
 from regolith_studio.session.report.write import DOCUMENT, PAGE, PDF, WrittenReport, write_report
@@ -62,13 +74,12 @@ class Tags(HTMLParser):
             self._in_heading = False
 
 
-def finish(steps: Steps) -> WrittenReport:
+def finish(steps: Steps) -> Any:
     while True:
         try:
             next(steps)
         except StopIteration as end:
-            done: WrittenReport = end.value
-            return done
+            return end.value
 
 
 def hashes(folder: Path) -> dict[str, str]:
@@ -152,6 +163,71 @@ def test_that_a_table_of_errors_has_a_row_a_group_and_a_column_a_descriptor() ->
     assert interval_text(None, 1.0, 2.0) == ""
 
 
+CUBE = Mesh(
+    np.array([[x, y, z] for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1.0, 1.0)]),
+    np.array([*map(int, "013032467475045051237276026064157173")]).reshape(12, 3),
+)
+
+
+def canvases(text: str) -> list[tuple[str, str]]:
+    """Points and triangles of each canvas, as the page encodes them."""
+    return re.findall(r'data-points="([^"]*)" data-triangles="([^"]*)"', text)
+
+
+def test_that_the_page_holds_the_meshes_that_can_be_turned() -> None:
+    assert CUBE.volume == pytest.approx(8.0)
+    text = report_page([ReportSection("Fig. 2", meshes={"a <cube>": CUBE})])
+    ((points, triangles),) = canvases(text)
+    np.testing.assert_array_equal(
+        np.frombuffer(base64.b64decode(points), "<f4").reshape(-1, 3), CUBE.vertices
+    )
+    np.testing.assert_array_equal(
+        np.frombuffer(base64.b64decode(triangles), "<u4").reshape(-1, 3), CUBE.faces
+    )
+    assert "a &lt;cube&gt;" in text
+    assert "http" not in text
+    assert text.count("<script>") == 1
+    assert "<script>" not in report_page([ReportSection("Fig. 2")])
+
+
+def test_that_fine_meshes_are_coarser_in_the_page() -> None:
+    fine = icosphere(5)
+    assert len(fine.faces) > MAX_TRIANGLES
+    ((_, triangles),) = canvases(report_page([ReportSection("Fig. 2", meshes={"fine": fine})]))
+    assert MAX_TRIANGLES / 2 < len(base64.b64decode(triangles)) / 12 <= MAX_TRIANGLES
+
+
+DRAWN = """
+const polygons = [], handlers = {}; let corners = [];
+const pen = { clearRect() { polygons.length = 0 }, beginPath() { corners = [] }, closePath() {}, stroke() {},
+  lineTo(x, y) { corners.push([x, y]) }, fill() { polygons.push(corners) } };
+const canvas = { width: 200, height: 200, dataset: DATA, getContext: () => pen,
+  addEventListener(name, handler) { handlers[name] = handler } };
+globalThis.document = { querySelectorAll: () => [{ querySelectorAll: () => [canvas] }] };
+VIEWER
+const first = polygons.map((each) => each);
+handlers.pointermove({ buttons: 1, movementX: 40, movementY: 25 });
+const turned = polygons.map((each) => each);
+handlers.dblclick();
+console.log(JSON.stringify([first, turned, polygons]));
+"""
+
+
+@pytest.mark.skipif(shutil.which("node") is None, reason="needs node")
+def test_that_a_cube_shows_three_faces_from_any_corner_and_comes_back() -> None:
+    ((points, triangles),) = canvases(report_page([ReportSection("Fig. 2", meshes={"cube": CUBE})]))
+    viewer = resource("report", "viewer.js").read_text(encoding="utf-8")
+    data = json.dumps({"points": points, "triangles": triangles})
+    program = DRAWN.replace("VIEWER", viewer).replace("DATA", data)
+    done = subprocess.run(["node", "-e", program], capture_output=True, text=True, check=True, timeout=60)
+    first, turned, again = (np.array(each) for each in json.loads(done.stdout))
+    assert len(first) == len(turned) == 6
+    assert np.abs(first - turned).max() > 10
+    np.testing.assert_array_equal(first, again)
+    assert first.min() >= 0
+    assert first.max() <= 200
+
+
 @pytest.mark.parametrize(
     ("changes", "wrong"),
     [({"heap": 10}, "too few for a pile"), ({"l_max": 31}, "l_max"), ({"method": "magic"}, "magic")],
@@ -167,6 +243,25 @@ def test_that_a_sample_without_particles_is_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="at least one particle"):
         finish(write_report((), tmp_path / "report"))
     assert not (tmp_path / "report").exists()
+
+
+def test_that_the_sample_of_a_recipe_is_read_where_it_lies(
+    particles: tuple[Particle, ...], tmp_path: Path
+) -> None:
+    for particle in particles[:2]:
+        (tmp_path / f"{particle.name}.stl").write_bytes(stl_bytes(particle.mesh.triangles, "test"))
+    recipe = recipe_of(inputs=["angular-1.stl", "bead-1.stl", "missing.stl"])
+    loaded = finish(load_recipe_particles(recipe, tmp_path))
+    assert [each.name for each in loaded.particles] == ["angular-1", "bead-1"]
+    assert ["missing.stl" in problem.sentence for problem in loaded.problems] == [True]
+
+
+@pytest.mark.slow
+def test_that_the_grains_of_a_scan_are_a_sample() -> None:
+    loaded = finish(load_recipe_particles(recipe_of(volumes=[VolumeEntry(file="sample:labels")]), Path()))
+    assert len(loaded.particles) > 20
+    files = {Path(each.source.path).name for each in loaded.particles if each.source}
+    assert files == {"synthetic-labels.tif"}
 
 
 @pytest.mark.slow

@@ -179,12 +179,12 @@ def compare_population(draft: ReportDraft, title: str) -> SectionSteps:
     return ReportSection(
         title,
         (
-            f"Two models are fitted to a random half of {len(study.measured):,} particles, {settings.splits} "
-            f"times, and {study.n_draws:,} particles with l_max = {settings.l_max} are drawn from each fit "
-            f"and compared with the other half: {PAPERS_MODEL}, the Gaussian random field of section 2.3, "
-            f"and {DEFAULT_MODEL}, which draws by example. Distances are shares of the measured mean; the "
-            "floor is the distance between random halves of the sample, below which nothing can be told "
-            "apart.",
+            f"Two models are fitted to random halves of {len(study.measured):,} particles (number of halves: "
+            f"{settings.splits}), and {study.n_draws:,} particles with l_max = {settings.l_max} are drawn "
+            f"from each fit and compared with the other half: {PAPERS_MODEL} is the Gaussian random field of "
+            f"section 2.3, {DEFAULT_MODEL} is matched to the sample. Distances are shares of the measured "
+            "mean; the floor is the distance between random halves of the sample, below which nothing can be "
+            "told apart.",
             _nearest(table),
             *source.notes,
         ),
