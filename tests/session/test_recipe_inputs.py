@@ -98,6 +98,16 @@ def test_that_the_grains_of_a_volume_are_those_that_extract_finds(
     assert "labels.npy" in (tmp_path / "out" / "summary.html").read_text()
 
 
+def test_that_a_region_in_a_recipe_gives_its_whole_grains(tmp_path: Path, scan: dict[str, Any]) -> None:
+    done = run(tmp_path / "out", volumes=[{**scan, "region": {"crop": "60:120um,0:30,:"}}])
+    assert not done.problems
+    (row,) = described(tmp_path / "out")
+    wanted = next(each for each in extracted(scan) if each.name == row["name"] == "particle_0002")
+    assert row["volume"] == pytest.approx(wanted.mesh.volume, rel=1e-12)
+    document = json.loads((tmp_path / "out" / "volumes" / "labels.json").read_text())
+    assert document["region"] == {"crop": "60:120um,0:30,:", "bin": 1}
+
+
 @pytest.mark.slow
 def test_that_settings_of_the_extraction_change_what_is_found(tmp_path: Path, scan: dict[str, Any]) -> None:
     small = run(tmp_path / "a", volumes=[{**scan, "extraction": {"min_voxels": 100}}])
