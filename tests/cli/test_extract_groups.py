@@ -3,6 +3,10 @@
 import csv
 import json
 import shutil
+import signal
+import subprocess
+import sys
+import time
 from pathlib import Path
 
 import numpy as np
@@ -80,6 +84,28 @@ def test_that_a_second_run_extracts_only_what_is_missing_or_has_changed(
     assert "extracted: 1, kept from an earlier run: 1" in command(*call).out
     assert "extracted: 2" in command(*call, "--min-voxels", 100).out
     assert "extracted: 0, kept from an earlier run: 2" in command(*call, "--min-voxels", 100).out
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(sys.platform == "win32", reason="kills a process by a signal")
+def test_that_a_run_that_was_killed_goes_on_and_leaves_nothing_behind(command, tmp_path: Path) -> None:
+    folder, output = tmp_path / "scans", tmp_path / "all"
+    folder.mkdir()
+    np.save(folder / "a.npy", balls((5, 6)))
+    np.save(folder / "b.npy", np.concatenate([balls((7,) * 12)] * 4))
+    options = [str(each) for each in (folder, "-o", output, *ASKED)]
+    run = subprocess.Popen([sys.executable, "-m", "regolith_studio", "extract", *options])
+    hidden = lambda: [path for path in output.glob(".*") if list(path.rglob("*.stl"))]  # noqa: E731
+    deadline = time.monotonic() + 120.0
+    while not ((output / "a").is_dir() and hidden()) and time.monotonic() < deadline:
+        time.sleep(0.02)
+    run.kill()
+    assert run.wait() == -signal.SIGKILL
+    assert not (output / "b").exists()
+    result = command("extract", *options)
+    assert "extracted: 1, kept from an earlier run: 1" in result.out, result.err
+    assert sorted(path.name for path in output.iterdir()) == ["a", "b", "groups.csv", "particles.csv"]
+    assert len(rows_of(output / "particles.csv")) == 2 + 12
 
 
 def test_that_a_broken_scan_is_named_and_the_others_are_extracted(
