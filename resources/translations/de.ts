@@ -5312,6 +5312,10 @@
         <translation>Für die Körner verwenden</translation>
     </message>
     <message>
+        <source>Use the &amp;open particles</source>
+        <translation>&amp;Geöffnete Partikel verwenden</translation>
+    </message>
+    <message>
         <source>Use the drawn particles as population</source>
         <translation>Die gezogenen Partikel als Population übernehmen</translation>
     </message>

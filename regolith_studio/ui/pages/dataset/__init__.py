@@ -21,12 +21,12 @@ PAGE = Page(
     make=build,
     opens=(FileKind.DATASET,),
     actions=(
-        ActionSpec(PAGE_MENU, "find", N_("&Find representatives")),
-        ActionSpec(PAGE_MENU, "build", N_("&Build the dataset …")),
+        ActionSpec(PAGE_MENU, "find", N_("&Find representatives"), "", "F5"),
+        ActionSpec(PAGE_MENU, "build", N_("&Build the dataset …"), "", "Ctrl+Return"),
         ActionSpec(PAGE_MENU, "open_dataset", N_("&Open a dataset …")),
         ActionSpec(PAGE_MENU, "validate", N_("&Check the dataset")),
         ActionSpec(PAGE_MENU, BREAK, ""),
-        ActionSpec(PAGE_MENU, "export", N_("&Export to DEM programs …")),
+        ActionSpec(PAGE_MENU, "export", N_("&Export to DEM programs …"), "", "Ctrl+Shift+E"),
         ActionSpec(PAGE_MENU, "library", N_("Show the &library")),
     ),
 )

@@ -23,8 +23,8 @@ PAGE = Page(
     actions=(
         ActionSpec(PAGE_MENU, "open_source", N_("Open a &fit, model or card …"), tip=N_("Open a source")),
         ActionSpec(PAGE_MENU, BREAK, ""),
-        ActionSpec(PAGE_MENU, "fit_model", N_("Fit the &model")),
-        ActionSpec(PAGE_MENU, "draw", N_("&Draw particles")),
+        ActionSpec(PAGE_MENU, "fit_model", N_("Fit the &model"), "", "F5"),
+        ActionSpec(PAGE_MENU, "draw", N_("&Draw particles"), "", "Ctrl+Return"),
         ActionSpec(PAGE_MENU, "another", N_("&Another particle in the view")),
         ActionSpec(PAGE_MENU, "judge", N_("&Evaluate models")),
         ActionSpec(PAGE_MENU, "adopt", N_("&Use as population")),

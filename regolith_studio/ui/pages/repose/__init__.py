@@ -22,6 +22,14 @@ PAGE = Page(
         ActionSpec(
             PAGE_MENU, "open_dataset", N_("Open a &dataset …"), tip=N_("Choose the dataset to simulate")
         ),
+        ActionSpec(
+            PAGE_MENU,
+            "make_dataset",
+            N_("Use the &open particles"),
+            "",
+            "F5",
+            N_("Coarsen the open particles first"),
+        ),
         ActionSpec(PAGE_MENU, BREAK, ""),
         ActionSpec(PAGE_MENU, "run_test", N_("&Run the test"), "play", "Ctrl+Return", bar="words"),
         ActionSpec(PAGE_MENU, "start_study", N_("Start the &study"), tip=N_("Start the study, or resume it")),

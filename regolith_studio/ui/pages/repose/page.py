@@ -98,6 +98,7 @@ class ReposePage(PageWidget):
     def commands(self) -> Mapping[str, Callable[..., object]]:
         return {
             "open_dataset": self.open_dataset,
+            "make_dataset": self.make_dataset,
             "run_test": self.run_test,
             "start_study": self.start_study,
             "play": lambda: self.player.play_or_report(self._context.toast.problem),
