@@ -5,8 +5,10 @@ from pathlib import Path
 from typing import Any
 
 from regolith_studio.coarsening.result import CoarseningResult
+from regolith_studio.errors import FileError, os_error_reason
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.harmonics.fit import HarmonicFit
+from regolith_studio.io.atomic import hidden_folder
 from regolith_studio.jobs.events import Job, Started, Steps
 from regolith_studio.jobs.executor import open_executor, value_of
 from regolith_studio.messages import N_
@@ -23,15 +25,13 @@ _PROCESSES = 2
 
 def animate(particle: Mesh, fit: HarmonicFit, degrees: Sequence[int], path: Path) -> Steps:
     """Write a GIF or WebP of the fit growing through `degrees`; returns its path."""
-    yield from _apart(
-        N_("Drawing the animation"), path, degree_animation, particle, fit, tuple(degrees), path, LEVEL
-    )
+    yield from _apart(N_("Drawing the animation"), path, _animation, particle, fit, tuple(degrees))
     return path
 
 
 def turn(shapes: Sequence[SceneShape], pose: CameraPose | None, path: Path, scale: int = 1) -> Steps:
     """Write a GIF or WebP of the bodies turning once; returns its path."""
-    yield from _apart(N_("Drawing the turntable"), path, _turn, tuple(shapes), pose, path, scale)
+    yield from _apart(N_("Drawing the turntable"), path, _turn, tuple(shapes), pose, scale)
     return path
 
 
@@ -46,7 +46,7 @@ def draw_figure(
     transparent: bool,
 ) -> Steps:
     """Write the figure of the three views as PNG; returns its path."""
-    arguments = (particle, fit, coarsened, titles, path, scale, pose, transparent)
+    arguments = (particle, fit, coarsened, titles, scale, pose, transparent)
     yield from _apart(N_("Drawing the figure"), path, _figure, *arguments)
     return path
 
@@ -54,25 +54,42 @@ def draw_figure(
 def _apart(title: str, path: Path, draw: Callable[..., None], *arguments: Any) -> Steps:
     yield Started(title)
     with open_executor(_PROCESSES) as executor:
-        results = yield from executor.run_all([Job(_call, (title, draw, arguments))], [path.name])
+        results = yield from executor.run_all([Job(write_drawn, (title, path, draw, arguments))], [path.name])
     return value_of(results[0])
 
 
-def _call(title: str, draw: Callable[..., None], arguments: tuple[Any, ...]) -> Steps:
+def write_drawn(title: str, path: Path, draw: Callable[..., None], arguments: tuple[Any, ...]) -> Steps:
+    """Call ``draw(path, *arguments)``; its files take their places once all are complete. A job.
+
+    Raises
+    ------
+    FileError
+        If they cannot be written; earlier files are then as they were.
+    """
     yield Started(title)
-    draw(*arguments)
+    try:
+        with hidden_folder(path) as stage:
+            draw(stage / path.name, *arguments)
+            for drawn in sorted(stage.iterdir()):
+                drawn.replace(path.with_name(drawn.name))
+    except OSError as error:
+        raise FileError(f"The file {path} cannot be written ({os_error_reason(error)}).") from error
 
 
-def _turn(shapes: tuple[SceneShape, ...], pose: CameraPose | None, path: Path, scale: int) -> None:
+def _animation(path: Path, particle: Mesh, fit: HarmonicFit, degrees: tuple[int, ...]) -> None:
+    degree_animation(particle, fit, degrees, path, LEVEL)
+
+
+def _turn(path: Path, shapes: tuple[SceneShape, ...], pose: CameraPose | None, scale: int) -> None:
     turntable(shapes, pose, path, scale=scale)
 
 
 def _figure(
+    path: Path,
     particle: Mesh,
     fit: Mesh,
     coarsened: CoarseningResult,
     titles: tuple[str, str, str],
-    path: Path,
     scale: int,
     pose: CameraPose,
     transparent: bool,

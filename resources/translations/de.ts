@@ -4988,10 +4988,6 @@
         <translation>Das Bild ist in {path}.</translation>
     </message>
     <message>
-        <source>The picture {path} cannot be written.</source>
-        <translation>Das Bild {path} lässt sich nicht schreiben.</translation>
-    </message>
-    <message>
         <source>The plot appears when the particles are measured.</source>
         <translation>Die Darstellung erscheint, sobald die Partikel vermessen sind.</translation>
     </message>

@@ -1,17 +1,21 @@
 """The page of the studies: figures 3, 7 and 8, live, and as files."""
 
 import csv
+import errno
 import json
 import re
+from types import SimpleNamespace
 
 import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 
+from regolith_studio.errors import FileError
 from regolith_studio.studies.loss_variants import PAPER_LOSSES, losses, paper_variants
 from regolith_studio.studies.sweeps import sufficient_facets
 from regolith_studio.ui.app import open_window
 from regolith_studio.ui.pages.studies.loss_selector import LossSelector
+from regolith_studio.ui.pages.studies.page import write_studies
 from regolith_studio.ui.theme import DARK
 
 SECONDS = 170.0
@@ -230,3 +234,19 @@ def test_that_both_studies_are_computed_and_saved(window, wait, settled, tmp_pat
 def test_that_saving_before_computing_is_told(window):
     window.go("studies").save()
     assert window.toast.sentence.text() == "Compute a study first."
+
+
+def test_that_a_study_that_cannot_be_written_leaves_the_earlier_files(tmp_path, monkeypatch):
+    def write(study, folder):
+        (folder / "table.csv").write_text(study)
+        if study == "new":
+            raise OSError(errno.ENOSPC, "No space left on device")
+        return (folder / "table.csv",)
+
+    kind = SimpleNamespace(title="A study", write=write)
+    monkeypatch.setattr("regolith_studio.ui.pages.studies.page.STUDIES", {"study": kind})
+    list(write_studies((("study", "old"),), tmp_path / "out"))
+    with pytest.raises(FileError, match="the disk is full"):
+        list(write_studies((("study", "new"),), tmp_path / "out"))
+    assert (tmp_path / "out" / "table.csv").read_text() == "old"
+    assert [path.name for path in tmp_path.iterdir()] == ["out"]

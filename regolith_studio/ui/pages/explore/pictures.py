@@ -15,6 +15,8 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from regolith_studio.errors import FileError
+from regolith_studio.io.atomic import write_bytes
 from regolith_studio.jobs.events import Job
 from regolith_studio.messages import N_
 from regolith_studio.scene.figure import view_titles
@@ -23,6 +25,7 @@ from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.views.three_views import ThreeViews
 from regolith_studio.ui.widgets.combo_box import ChoiceBox
+from regolith_studio.ui.widgets.plots.export import png_of_image
 
 MAX_SCALE = 6
 SCREENSHOT, FIGURE = "screenshot", "figure"
@@ -110,10 +113,12 @@ class PictureExport(QObject):
         return lambda _: self._context.toast.note(tr(SAVED[what], path=first))
 
     def _write(self, picture: QImage, path: Path) -> None:
-        if picture.save(str(path)):
-            self._context.toast.note(tr(SAVED["figure"], path=path))
+        try:
+            write_bytes(path, png_of_image(picture))
+        except FileError as error:
+            self._context.toast.problem(str(error))
         else:
-            self._context.toast.problem(tr("The picture {path} cannot be written.", path=path))
+            self._context.toast.note(tr(SAVED["figure"], path=path))
 
     def _ask_animation(self, title: str, name: str) -> tuple[str, str]:
         kinds = [tr(kind) for kind in ANIMATION_FILTERS]

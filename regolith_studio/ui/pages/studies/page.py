@@ -9,6 +9,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QTabWidget, QVBoxLayout, QWidget
 
 from regolith_studio.errors import RegolithError
+from regolith_studio.io.atomic import staged_folder
 from regolith_studio.jobs.events import Job, Progress, Started, Steps
 from regolith_studio.jobs.study_jobs import coarsen_gallery, study_of_cells
 from regolith_studio.messages import N_
@@ -226,7 +227,8 @@ def write_studies(studies: tuple[tuple[str, object], ...], folder: Path) -> Step
     yield Started(N_("Writing figures"), len(studies))
     written: tuple[Path, ...] = ()
     for number, (kind, study) in enumerate(studies, start=1):
-        written += tuple(STUDIES[kind].write(study, folder))
+        with staged_folder(folder, kind) as stage:
+            written += tuple(folder / path.name for path in STUDIES[kind].write(study, stage))
         yield Progress(number, len(studies), STUDIES[kind].title)
     return written
 

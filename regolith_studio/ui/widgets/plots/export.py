@@ -60,13 +60,18 @@ def plain_text(rich: str) -> str:
     return QTextDocumentFragment.fromHtml(rich).toPlainText()
 
 
+def png_of_image(image: QImage) -> bytes:
+    """An image as the content of a PNG file."""
+    with _Bytes() as device:
+        image.save(device, "PNG")  # type: ignore[call-overload]  # the stubs know file names only
+        return bytes(device.data().data())
+
+
 def _png(widget: QWidget) -> bytes:
     image = QImage(widget.size() * PIXELS, QImage.Format.Format_RGB32)
     image.setDevicePixelRatio(PIXELS)
-    with _Bytes() as device:
-        _paint(widget, image)
-        image.save(device, "PNG")  # type: ignore[call-overload]  # the stubs know file names only
-        return bytes(device.data().data())
+    _paint(widget, image)
+    return png_of_image(image)
 
 
 def _svg(widget: QWidget) -> bytes:
