@@ -177,7 +177,7 @@ def test_that_a_click_and_the_wheel_go_through_the_slices(page, part, wait):
     assert "z = 39 of 70" in top.title.text()
 
 
-def test_that_a_region_is_read_again_and_a_wrong_one_is_explained(page, part, wait):
+def test_that_a_region_is_read_again_and_a_wrong_one_is_explained(page, part, wait, monkeypatch):
     page.read(VolumeInput(part, 2.3, kind="grey"))
     wait(lambda: page.preview is not None, SECONDS)
     crop, edge = (page.controls.region.findChild(QWidget, f"setting_{name}") for name in ("crop", "bin"))
@@ -189,6 +189,17 @@ def test_that_a_region_is_read_again_and_a_wrong_one_is_explained(page, part, wa
     assert page.scan.volume.origin == (5.25, 0.25, 20.25)
     assert page.scan.volume.voxel_size.tolist() == [4.6, 4.6, 4.6]
     assert page.state()["region"] == {"crop": "10:70,:,92:161um", "bin": 2}
+    entries = []
+    monkeypatch.setattr(page, "_adopt", lambda _made, entry: entries.append(entry))
+    page.find_grains()
+    wait(lambda: page.grains is not None, SECONDS)
+    with monkeypatch.context() as patch:
+        patch.setattr(page, "read", lambda _volume: None)  # the other region has not been read yet
+        edge.setValue(1)
+        page.make_particles()
+        wait(lambda: bool(entries), SECONDS)
+    assert entries[0].region == {"crop": "10:70,:,92:161um", "bin": 2}
+    edge.setValue(2)
     crop.setText("10-70")
     crop.editingFinished.emit()
     assert page.controls.region_error.isVisible()

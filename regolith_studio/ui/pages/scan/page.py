@@ -72,7 +72,7 @@ class ScanPage(PageWidget):
         self._context = context
         self.scan: Scan | None = None
         self._given = self._wanted = VolumeInput(Path())
-        self._wanted_region = RegionSettings()
+        self._region = self._wanted_region = RegionSettings()
         self._segmented: GrainSegmentation | None = None
         self.preview: Segmentation | None = None
         self._found_with: SegmentationSettings | None = None
@@ -158,12 +158,13 @@ class ScanPage(PageWidget):
 
     def read(self, volume: VolumeInput) -> None:
         """Read the region of interest of a volume."""
-        self._wanted, self._wanted_region = volume, self.controls.value().region
-        job = Job(read_scan, (volume, self._wanted_region))
+        region = self.controls.value().region
+        self._wanted, self._wanted_region = volume, region
+        job = Job(read_scan, (volume, region))
         title = tr("Reading the volume")
         if volume.path == sample_file("grey"):
-            job, title = Job(read_sample_scan, ("grey", self._wanted_region)), tr("Reading the sample scan")
-        self._context.start(title, job, lambda scan: self._take(scan, volume), lane="read")
+            job, title = Job(read_sample_scan, ("grey", region)), tr("Reading the sample scan")
+        self._context.start(title, job, lambda scan: self._take(scan, volume, region), lane="read")
 
     def _on_header(self, path: Path, header: VolumeHeader) -> None:
         if needs_asking(header):
@@ -197,12 +198,12 @@ class ScanPage(PageWidget):
         size, unit = self._context.recall("voxel_size", [1.0, "um"])
         return float(size), str(unit)
 
-    def _take(self, scan: Scan, volume: VolumeInput) -> None:
+    def _take(self, scan: Scan, volume: VolumeInput, region: RegionSettings) -> None:
         self._stop_work()
         self._discard_grains()
         if self.scan is not None:
             self.scan.scratch.close()
-        self.scan, self.preview, self._given = scan, None, volume
+        self.scan, self.preview, self._given, self._region = scan, None, volume, region
         self.slices.set_scan(scan)
         self.painting.stop()
         self.painting.set_volume(scan.volume)
@@ -309,7 +310,8 @@ class ScanPage(PageWidget):
             self._context.toast.note(tr("Find the grains first."))
             return
         chosen = self.controls.value()
-        settings = replace(chosen, segmentation=self._found_with or SegmentationSettings())
+        segmentation = self._found_with or SegmentationSettings()
+        settings = replace(chosen, segmentation=segmentation, region=self._region)
         entry = entry_of(self._given, settings)
         grey = self.scan.volume if self.scan.volume.kind == "grey" else None
         job = Job(extract_labels, (labels, settings.extraction, self._given.path, grey))
