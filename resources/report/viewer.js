@@ -39,13 +39,13 @@
   function visibleTriangles(mesh, seen) {
     const found = [];
     for (let t = 0; t < mesh.triangles.length; t += 3) {
-      const [a, b, c] = [0, 1, 2].map((k) => 3 * mesh.triangles[t + k]);
-      const u = [0, 1, 2].map((k) => seen[b + k] - seen[a + k]);
-      const v = [0, 1, 2].map((k) => seen[c + k] - seen[a + k]);
-      const normal = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
-      const length = Math.hypot(...normal);
-      if (!(normal[2] > 1e-6 * length)) continue;
-      const lit = (normal[0] * LIGHT[0] + normal[1] * LIGHT[1] + normal[2] * LIGHT[2]) / length;
+      const a = 3 * mesh.triangles[t], b = 3 * mesh.triangles[t + 1], c = 3 * mesh.triangles[t + 2];
+      const ux = seen[b] - seen[a], uy = seen[b + 1] - seen[a + 1], uz = seen[b + 2] - seen[a + 2];
+      const vx = seen[c] - seen[a], vy = seen[c + 1] - seen[a + 1], vz = seen[c + 2] - seen[a + 2];
+      const x = uy * vz - uz * vy, y = uz * vx - ux * vz, z = ux * vy - uy * vx; // normal
+      const length = Math.sqrt(x * x + y * y + z * z);
+      if (!(z > 1e-6 * length)) continue;
+      const lit = (x * LIGHT[0] + y * LIGHT[1] + z * LIGHT[2]) / length;
       found.push({ a, b, c, depth: seen[a + 2] + seen[b + 2] + seen[c + 2], light: 0.35 + 0.65 * Math.max(0, lit) });
     }
     return found.sort((one, other) => one.depth - other.depth);
@@ -78,8 +78,12 @@
 
   for (const section of document.querySelectorAll(".turned")) {
     const meshes = Array.from(section.querySelectorAll("canvas"), readMesh);
-    const view = { rows: VIEW, zoom: 1 };
-    const drawAll = () => meshes.forEach((mesh) => draw(mesh, view));
+    const view = { rows: VIEW, zoom: 1, due: false };
+    const drawAll = () => { // once a frame, however many events come
+      if (view.due) return;
+      view.due = true;
+      requestAnimationFrame(() => { view.due = false; meshes.forEach((mesh) => draw(mesh, view)); });
+    };
     const move = (x, y) => { view.rows = turn(view.rows, STEP * x, STEP * y); drawAll(); };
     for (const { canvas } of meshes) {
       canvas.addEventListener("pointerdown", (event) => canvas.setPointerCapture(event.pointerId));

@@ -203,6 +203,7 @@ const pen = { clearRect() { polygons.length = 0 }, beginPath() { corners = [] },
   lineTo(x, y) { corners.push([x, y]) }, fill() { polygons.push(corners) } };
 const canvas = { width: 200, height: 200, dataset: DATA, getContext: () => pen,
   addEventListener(name, handler) { handlers[name] = handler } };
+globalThis.requestAnimationFrame = (job) => job();
 globalThis.document = { querySelectorAll: () => [{ querySelectorAll: () => [canvas] }] };
 VIEWER
 const first = polygons.map((each) => each);
