@@ -175,7 +175,7 @@ Method = Annotated[
     str,
     typer.Option(
         "--method",
-        help="Coarsening method: exact (default), annealing or quadric.",
+        help="Coarsening method: exact (default), annealing, quadric, or compound (a union of convex parts).",
         metavar="NAME",
     ),
 ]

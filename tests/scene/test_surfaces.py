@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 import pyvista as pv
 
+from regolith_studio.geometry import ConvexCompound, ConvexPolyhedron, HalfSpaces
 from regolith_studio.scene import surfaces
 from regolith_studio.scene.cameras import CameraPose, apply_pose, pose_of
 from regolith_studio.scene.distance import signed_distances
@@ -87,3 +88,14 @@ def test_that_distances_agree_with_vtk(ball):
     surface = pv.PolyData.from_regular_faces(np.array(ball.vertices), np.array(ball.faces))
     reference = pv.PolyData(points).compute_implicit_distance(surface)["implicit_distance"]
     assert signed_distances(points, ball) == pytest.approx(np.asarray(reference), abs=1e-6)
+
+
+def test_that_parts_of_a_compound_have_shades_and_a_polyhedron_after_it_has_one_colour(plotter):
+    side = ConvexPolyhedron.from_half_spaces(HalfSpaces(np.vstack([np.eye(3), -np.eye(3)]), np.ones(6)))
+    compound = ConvexCompound((side, side), np.array([[0.0, 0.0, 0.0], [1.0, 1.0, 1.0]]))
+    assert len(np.unique(surfaces.part_shades(compound), axis=0)) == 2
+    assert len(surfaces.exposed_edges(compound)) == 3 * (12 + 12 + 6)
+    surfaces.show_polyhedron(plotter, compound)
+    assert plotter.actors[surfaces.SURFACE].mapper.scalar_visibility
+    surfaces.show_polyhedron(plotter, side)
+    assert not plotter.actors[surfaces.SURFACE].mapper.scalar_visibility

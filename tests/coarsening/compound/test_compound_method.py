@@ -14,18 +14,8 @@ from regolith_studio.errors import InputError
 from regolith_studio.geometry.convex_compound import ConvexCompound
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.mesh import Mesh
-from regolith_studio.geometry.sphere_points import icosphere
-from tests.coarsening.compound.unions import manifold_of
-from tests.geometry.solids import cuboid, rotation
-
-
-def dumbbell(level: int = 3) -> Mesh:
-    """A rough body with a waist, at any place and unit."""
-    sphere = icosphere(level).vertices
-    rough = np.random.default_rng(2).uniform(0.9, 1.1, (len(sphere), 1))
-    waist = rough * (0.55 + 0.7 * sphere[:, :1] ** 2)
-    shape = sphere * np.hstack([np.full_like(waist, 1.8), waist, 0.8 * waist])
-    return Mesh(shape @ rotation(8).T * 40.0 + [5.0, -70.0, 300.0], icosphere(level).faces)
+from tests.coarsening.compound.unions import dumbbell, manifold_of
+from tests.geometry.solids import cuboid
 
 
 @pytest.fixture(scope="module")

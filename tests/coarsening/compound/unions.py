@@ -1,4 +1,4 @@
-"""Random unions of convex parts, as half-spaces and as manifold3d's solids."""
+"""Random unions of convex parts, as half-spaces and as manifold3d's solids; a body that is not convex."""
 
 import manifold3d
 import numpy as np
@@ -6,6 +6,8 @@ from scipy.spatial import ConvexHull, HalfspaceIntersection
 
 from regolith_studio.coarsening.compound.measures import Planes
 from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.sphere_points import icosphere
+from tests.geometry.solids import rotation
 
 
 def random_planes(seed: int, parts: int = 4, planes: int = 10) -> Planes:
@@ -39,3 +41,12 @@ def solid_of(planes: Planes) -> manifold3d.Manifold:
 def manifold_of(mesh: Mesh) -> manifold3d.Manifold:
     """A closed mesh for manifold3d."""
     return manifold3d.Manifold(manifold3d.Mesh64(np.array(mesh.vertices), mesh.faces.astype(np.uint64)))
+
+
+def dumbbell(level: int = 3) -> Mesh:
+    """A rough body with a waist, at any place and unit."""
+    sphere = icosphere(level).vertices
+    rough = np.random.default_rng(2).uniform(0.9, 1.1, (len(sphere), 1))
+    waist = rough * (0.55 + 0.7 * sphere[:, :1] ** 2)
+    shape = sphere * np.hstack([np.full_like(waist, 1.8), waist, 0.8 * waist])
+    return Mesh(shape @ rotation(8).T * 40.0 + [5.0, -70.0, 300.0], icosphere(level).faces)
