@@ -138,7 +138,6 @@ def test_that_ten_strokes_segment_what_no_threshold_does(
     grains = np.asarray(found.labels.array, dtype=np.int64)
     reached, threshold = overlap(grains > 0, labels > 0), best_threshold(volume, labels > 0)
     matched = share_matched(grains, labels)
-    print(f"{kind}: IoU {reached:.3f}, best threshold {threshold:.3f}, grains matched {matched:.3f}")
     assert threshold < threshold_at_most
     assert reached > at_least
     assert matched >= 0.95
