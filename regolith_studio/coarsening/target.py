@@ -21,8 +21,9 @@ from regolith_studio.geometry.vectors import along, cross, length, mixed, row
 
 MIN_SPAN = 1e-150
 """Below this size the volume of a mesh cannot be told from 0."""
-COORDINATE_STEP = 2.0**-30
-"""Coordinates of the normalised particle are multiples of this."""
+COORDINATE_STEP = 2.0**-26
+"""Coordinates of the normalised particle are multiples of this: far above the rounding of a moved and turned
+mesh, so that it hardly ever decides which multiple is taken, and far below errors that count."""
 MAX_WRONG_CROSSINGS = 0.05
 """Share of wrong crossings above which a mesh counts as intersecting itself."""
 
@@ -60,7 +61,7 @@ class Target:
     ----------
     mesh
         Closed, outward-oriented, unit volume, centroid at the origin, principal axes along x, y, z.
-        Coordinates are rounded to 2^-30, so that unit, place and orientation do not matter.
+        Coordinates are rounded to 2^-26, so that unit, place and orientation do not matter.
     centre
         Centroid in the particle's own frame, shape (3,).
     axes
@@ -108,24 +109,37 @@ class Target:
 
     def ray_table(self, n_rays: int) -> RayTable:
         """The crossings of `n_rays` Fibonacci directions."""
+        return self._crossings(self.mesh.vertices, n_rays)
+
+    def _crossings(self, vertices: FloatArray, n_rays: int) -> RayTable:
         rays = fibonacci_bundle(n_rays)
-        first, distance, sign = cast(self.mesh.vertices, self.mesh.faces, rays)
+        first, distance, sign = cast(vertices, self.mesh.faces, rays)
         weight = 3.0 / float(np.sum(sign * distance**3))
         return RayTable(rays.directions, first, distance, sign, weight)
 
     def jaccard_distance(self, half_spaces: HalfSpaces) -> float:
-        """Eq. 7 with 16,000 rays, all volumes by the same quadrature."""
-        rays = self._dense_rays
+        """Eq. 7 with 16,000 rays, all volumes by the same quadrature.
+
+        It is taken where the particle's box is a cube, which changes no ratio of volumes: rays in even
+        directions would miss most of a needle.
+        """
+        rays, stretch = self._dense_rays, self._stretch
         radius = np.empty(len(rays.directions))
         plane = np.empty(len(rays.directions), dtype=np.int64)
-        normals, offsets = np.array(half_spaces.normals), np.array(half_spaces.offsets)
+        normals, offsets = half_spaces.normals @ stretch, np.array(half_spaces.offsets)
         exits(normals, offsets, rays.directions, radius, plane)
         shared = shared_volume(rays.first, rays.distance, rays.sign, rays.weight, radius)
         return float(jaccard(shared, 1.0, rays.weight * float(np.sum(radius**3)) / 3.0))
 
     @cached_property
     def _dense_rays(self) -> RayTable:
-        return self.ray_table(16_000)
+        """Crossings in coordinates y where x = stretch y."""
+        return self._crossings(self.mesh.vertices @ np.linalg.inv(self._stretch).T, 16_000)
+
+    @cached_property
+    def _stretch(self) -> FloatArray:
+        """From a cube to the particle's box, shape (3, 3)."""
+        return np.ascontiguousarray(self.box.axes.T * self.box.extents)
 
     def in_particle_frame(self, half_spaces: HalfSpaces) -> HalfSpaces:
         """Half-spaces about the particle's centroid, in the particle's unit and orientation."""

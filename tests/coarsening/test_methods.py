@@ -139,7 +139,7 @@ def test_that_quadric_reports_its_three_readings(particle: Mesh) -> None:
     assert found.variants["volume_restored"]["volume"] < 1e-8
     assert found.errors["volume"] == pytest.approx(found.variants["half_spaces"]["volume"], rel=1e-9)
     restored = coarsen(particle, 20, "quadric", settings={"restore_volume": True})
-    assert restored.errors["volume"] < 1e-9
+    assert restored.errors["volume"] < 1e-8  # of the mesh whose coordinates are rounded to 2^-26
 
 
 def test_that_annealing_takes_every_improvement_and_others_with_probability_t(particle: Mesh) -> None:

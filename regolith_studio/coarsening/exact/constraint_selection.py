@@ -116,11 +116,7 @@ def reason_for(
     They say what was found; that more cannot be is said only where Goldberg's bound proves it. ``None`` where
     the descriptors `found` meet all constraints to 1e-6 with `n_real` = `n_facets` facets.
     """
-    errors = relative_errors(target.descriptors, found)
-    missed = {key: errors[_reported(key, request)] for key in request.keys}
-    if request.ratio_counts:
-        missed["aspect_ratio"] = errors["aspect_ratio"]
-    missed = {key: error for key, error in missed.items() if error > EXACT}
+    missed = missed_constraints(target, request, found)
     if not missed:
         return None if n_real == n_facets else facets_reason(n_real, n_facets)
     listed, proof = _listed(missed, request), None
@@ -135,6 +131,17 @@ def reason_for(
         return reason
     template = N_("The result has {real} facets instead of {faces}.")
     return join_messages([reason, Message(template, real=n_real, faces=n_facets)])
+
+
+def missed_constraints(
+    target: Target, request: ConstraintRequest, found: Mapping[str, float]
+) -> dict[str, float]:
+    """Relative errors above :data:`EXACT` of the descriptors that are constraints."""
+    errors = relative_errors(target.descriptors, found)
+    missed = {key: errors[_reported(key, request)] for key in request.keys}
+    if request.ratio_counts:
+        missed["aspect_ratio"] = errors["aspect_ratio"]
+    return {key: error for key, error in missed.items() if error > EXACT}
 
 
 def _listed(missed: Mapping[str, float], request: ConstraintRequest) -> Message:

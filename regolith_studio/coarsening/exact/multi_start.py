@@ -11,6 +11,7 @@ from regolith_studio.coarsening.exact.constraint_selection import (
     CONSTRAINT_KEYS,
     EXACT,
     ConstraintRequest,
+    missed_constraints,
     own_planes,
     own_reason,
     reason_for,
@@ -207,7 +208,6 @@ class Search:
         GeometryError
             If no start bounds a polyhedron.
         """
-        counts = {"starts": float(self._tried), "exact": float(self._record.met)}
         if not self._record.met and self._itself is not None:
             solid, found = self._itself, describe(self._itself)
             reason: str | None = own_reason(solid.n_facets, self._n_facets)
@@ -218,6 +218,8 @@ class Search:
             )
             solid, found = outcome.solid, outcome.descriptors
             reason = reason_for(self._target, self._request, self._n_facets, solid.n_facets, found)
+        met = not missed_constraints(self._target, self._request, found)
+        counts = {"starts": float(self._tried), "exact": float(met)}
         yield from self._record.record_final(solid.half_spaces)
         history = tuple(self._record.history)
         free = self._without_sphericity()
