@@ -171,7 +171,7 @@ def test_that_models_are_judged_on_the_sample_that_was_fitted(page):
         assert areas == pytest.approx([1.0] * len(areas), rel=1e-9)
     assert len(page.evaluation.figures["pairs"].plots) == 3
     tabs = page.evaluation.tabs
-    assert not tabs.isTabVisible(tabs.indexOf(page.evaluation.figures["components"]))
+    assert not tabs.isTabVisible(tabs.indexOf(page.evaluation.places["components"]))
     tables = page.evaluation.tables
     assert tables["distances"].rowCount() == 2 * len(KEYS)
     headers = [tables["distances"].horizontalHeaderItem(at).text() for at in range(6)]

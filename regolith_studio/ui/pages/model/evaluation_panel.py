@@ -25,7 +25,7 @@ from regolith_studio.session.tasks import Task
 from regolith_studio.shape_models.models import MODELS
 from regolith_studio.studies.population import PopulationStudy
 from regolith_studio.studies.population_tables import distance_table, pair_table, ranking_table, target_table
-from regolith_studio.ui.layout import tabs
+from regolith_studio.ui.layout import scrolled, tabs
 from regolith_studio.ui.pages.model.population_plots import PanelGrid
 from regolith_studio.ui.pages.model.table_view import StudyTableView
 from regolith_studio.ui.theme import Theme
@@ -95,6 +95,7 @@ class EvaluationPanel(QWidget):
         for place, tip in enumerate((TIPS[1], TIPS[4])):
             self.verdict.caption(place, self.verdict.captions[place].text(), tr(tip))
         self.figures = {name: PanelGrid(name) for name in FIGURES}
+        self.places = {name: scrolled(grid) for name, grid in self.figures.items()}
         self.tabs = tabs("model_figures", [(self._ranked(), tr("Ranking"))])
         self.tables = {
             name: StudyTableView(f"model_{name}", tr(title)) for name, (title, _) in TABLES.items()
@@ -102,11 +103,10 @@ class EvaluationPanel(QWidget):
         for name, (title, _) in TABLES.items():
             self.tabs.addTab(self.tables[name], tr(title))
         for name, title in FIGURES.items():
-            self.tabs.addTab(self.figures[name], tr(title))
+            self.tabs.addTab(self.places[name], tr(title))
         inside = QWidget()
         column = QVBoxLayout(inside)
         column.setContentsMargins(0, 4, 0, 0)
-        column.addLayout(self._options())
         column.addWidget(self.tabs, 1)
         self.frame = StudyFrame("model_judge", inside)
         self._stopped, self._stop_words = 0, self.frame.stop.text()
@@ -114,6 +114,7 @@ class EvaluationPanel(QWidget):
         self.frame.cancelRequested.connect(self._stop)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
+        layout.addLayout(self._options())
         layout.addWidget(self.frame)
         self.set_ready("")
 
@@ -162,7 +163,8 @@ class EvaluationPanel(QWidget):
         for name, grid in self.figures.items():
             if judged is not None:
                 grid.set_panels(judged.panels[name], judged.study)
-            self.tabs.setTabVisible(self.tabs.indexOf(grid), judged is not None and bool(judged.panels[name]))
+            at = self.tabs.indexOf(self.places[name])
+            self.tabs.setTabVisible(at, judged is not None and bool(judged.panels[name]))
         for name, view in self.tables.items():
             self.tabs.setTabVisible(self.tabs.indexOf(view), judged is not None)
             if judged is not None:
@@ -206,7 +208,7 @@ class EvaluationPanel(QWidget):
 
     def _options(self) -> QHBoxLayout:
         row = QHBoxLayout()
-        row.setContentsMargins(8, 0, 8, 0)
+        row.setContentsMargins(8, 6, 8, 0)
         for name, field, words in (
             ("splits", self.splits, tr("splits")),
             ("repeats", self.repeats, tr("draws from each fit")),

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QResizeEvent
-from PySide6.QtWidgets import QGridLayout, QLabel, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QGridLayout, QLabel, QSizePolicy, QVBoxLayout, QWidget
 
 from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.messages import N_
@@ -17,7 +17,7 @@ from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.labels import plain_symbol, unbroken
 from regolith_studio.ui.widgets.plots.curves import CurvePlot, PlotCurve
 
-MIN_WIDTH, MIN_HEIGHT = 220, 180
+MIN_WIDTH, MIN_HEIGHT = 190, 180
 """Pixels of one plot; where a row has no room for all, there are more rows."""
 UNITS = {1: "", 2: "²", 3: "³", 5: "⁵"}
 AXES = {
@@ -61,6 +61,7 @@ class PanelGrid(QWidget):
         while len(self.plots) < len(panels):
             plot = CurvePlot("", "", "")
             plot.legend.hide()
+            plot.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Ignored)
             self.plots.append(plot)
         for plot in self.plots[len(panels) :]:
             plot.hide()
