@@ -97,14 +97,14 @@ def block_features(
     for sigma in settings.sigmas:
         part = grown(box, _reach(sigma), outer)
         cut = tuple(slice(a.start - b.start, a.stop - b.start) for a, b in zip(part, outer, strict=True))
-        single = np.array(values[cut], dtype=np.float32)
+        single = np.array(values[cut].T, dtype=np.float32, order="C")
         if values.dtype.kind == "f":
             np.nan_to_num(single, copy=False, nan=0.0, posinf=0.0, neginf=0.0)
         gaussian, gradient = _smoothed(single, part, box, shape, sigma, settings.planar, step)
         smooth.append(gaussian)
         gradients.append(gradient)
     differences = [a - b for a, b in pairwise(smooth)]
-    return np.stack([smooth[-1], *differences, *gradients], axis=-1)
+    return np.stack([smooth[-1], *differences, *gradients], axis=-1).transpose(2, 1, 0, 3)
 
 
 def features_in(
@@ -170,7 +170,7 @@ def _smoothed(
     planar: bool,
     step: tuple[int, int, int],
 ) -> tuple[FloatBlock, FloatBlock]:
-    """Gaussian of one width in a box, and the magnitude of its gradient per voxel."""
+    """Gaussian of one width in a box and the magnitude of its gradient; values and results [z, y, x]."""
     weights = [
         [_matrix(n, inner, outer, pace, 0.0 if planar and axis == 2 else sigma, order) for order in (0, 1)]
         for axis, (n, inner, outer, pace) in enumerate(zip(shape, box, part, step, strict=True))
@@ -188,8 +188,15 @@ def _smoothed(
 
 
 def _along(values: FloatBlock, weights: FloatBlock, axis: int) -> FloatBlock:
-    """Weighted sums along an axis; weights of shape (outputs, voxels along the axis)."""
-    return np.moveaxis(np.tensordot(weights, values, (1, axis)), 0, axis)
+    """Weighted sums along axis 0 (x), 1 or 2 of contiguous values [z, y, x], without copies of them.
+
+    Weights have shape (outputs, voxels along the axis).
+    """
+    if axis == 0:
+        return np.asarray(values @ weights.T)
+    if axis == 1:
+        return np.asarray(weights @ values)
+    return np.asarray((weights @ values.reshape(len(values), -1)).reshape(-1, *values.shape[1:]))
 
 
 def _matrix(n: int, inner: slice, outer: slice, step: int, sigma: float, order: int) -> FloatBlock:
