@@ -36,9 +36,11 @@ FEW_LINES, MANY_LINES = 3_600, 15_000
 FREE_STEPS, START_STEPS, LAST_STEPS = 15, 40, 80
 """Of a start without other conditions than the volume and with all, and of the last descent."""
 FINALISTS = 2
-RETRIES = 2
-"""Further starts with each smaller number of parts where none meets all conditions: few facets make round
-particles only if they are not shared out among many parts."""
+NUMBERS = 4
+"""At most so many numbers of parts are tried: a given number of facets makes round particles, and those with
+shallow hollows, only if it is not shared out among many parts."""
+RETRIES = 6
+"""Further starts where none meets all conditions."""
 
 
 class Effort(NamedTuple):
@@ -58,14 +60,6 @@ class CompoundCandidate(NamedTuple):
     def exact(self) -> bool:
         """Whether all conditions hold."""
         return self.point.worst <= LOOSE
-
-    def better_than(self, other: "CompoundCandidate | None") -> bool:
-        """Exact before inexact, then overlap (or residual)."""
-        if other is None or self.exact != other.exact:
-            return other is None or self.exact
-        if not self.exact:
-            return self.point.worst < other.point.worst
-        return self.distance < other.distance
 
 
 def conditions_of(weights: LossWeights) -> IntArray:
@@ -95,11 +89,14 @@ def search_compound(
     lines = scan_lines(target.mesh, FEW_LINES)
     full = CompoundProblem(lines, wanted, conditions_of(weights), FINE_ANGLE)
     found: list[CompoundCandidate] = []
-    numbers = [*[parts] * effort.starts, *[k for k in range(parts - 1, 1, -1) for _ in range(RETRIES)]]
-    for tried, (k, child) in enumerate(zip(numbers, seed.spawn(len(numbers)), strict=True)):
+    numbers = numbers_of_parts(parts)
+    for tried, child in enumerate(seed.spawn(effort.starts + RETRIES)):
         if tried >= effort.starts and any(each.exact for each in found):
             break
-        planes = initial_planes(lines, k, n_facets, np.random.default_rng(child))
+        best = min(found, key=_rank, default=None)
+        chosen = parts if best is None else len(best.point.planes.inner)
+        number = numbers[tried] if tried < len(numbers) else chosen
+        planes = initial_planes(lines, number, n_facets, np.random.default_rng(child))
         begun = _from_start(full, planes)
         if begun is not None:
             found.append(begun)
@@ -108,6 +105,17 @@ def search_compound(
         raise GeometryError("No start of the compound method bounds a union of convex parts.")
     fine = full._replace(lines=scan_lines(target.mesh, MANY_LINES))
     return (yield from _finals(fine, found, effort.finalists))
+
+
+def numbers_of_parts(most: int) -> tuple[int, ...]:
+    """Numbers of parts to begin with, the largest first; later starts take that of the best."""
+    spread = np.linspace(most, 2, min(most - 1, NUMBERS))
+    return tuple(round(each) for each in spread.tolist())
+
+
+def _rank(found: CompoundCandidate) -> tuple[bool, float]:
+    """Sorting key, the best first: exact before inexact, then overlap or residual."""
+    return not found.exact, found.distance if found.exact else found.point.worst
 
 
 def _from_start(full: CompoundProblem, planes: Planes) -> CompoundCandidate | None:
@@ -136,13 +144,11 @@ def _finals(
     fine: CompoundProblem, found: list[CompoundCandidate], finalists: int
 ) -> Generator[CompoundCandidate, None, CompoundCandidate]:
     """Descents of the best on many lines."""
-    ranked = sorted(
-        found, key=lambda each: (not each.exact, each.distance if each.exact else each.point.worst)
-    )
+    ranked = sorted(found, key=_rank)
     best: CompoundCandidate | None = None
     for begun in ranked[:finalists]:
         for now in _last_descent(fine, begun):
-            if now.better_than(best):
+            if best is None or _rank(now) < _rank(best):
                 best = now
                 yield now
     if best is None:

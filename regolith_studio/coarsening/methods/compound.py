@@ -24,7 +24,7 @@ PARTS_LIMITS = (2, 8)
 CONVEX = 1e-6
 """Particles whose volume is less below that of their hull, as a share, are convex."""
 RETRIES = 8
-EFFORTS = {"fast": Effort(4, 2), "best": Effort(16, 5)}
+EFFORTS = {"fast": Effort(5, 2), "best": Effort(16, 5)}
 """By level."""
 
 
@@ -37,7 +37,7 @@ class CompoundSettings:
     parts
         At most so many convex parts, 2 to 8.
     level
-        ``fast`` (4 starts, the best 2 of which descend further) or ``best`` (16 and 5: better overlap).
+        ``fast`` (5 starts, the best 2 of which descend further) or ``best`` (16 and 5: better overlap).
 
     Raises
     ------

@@ -5,6 +5,7 @@ import pytest
 
 from regolith_studio.coarsening.coarsen import coarsen
 from regolith_studio.coarsening.compound.line_overlap import compound_distance
+from regolith_studio.coarsening.compound.search import numbers_of_parts
 from regolith_studio.coarsening.compound.start import shared_out
 from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.descriptors.catalogue import LOSS_KEYS
@@ -80,3 +81,7 @@ def test_that_a_number_of_parts_out_of_range_is_one_sentence(mesh: Mesh, parts: 
 def test_that_facets_are_shared_out_by_area() -> None:
     assert shared_out(np.array([1.0, 1.0, 6.0]), 40).tolist() == [5, 5, 30]
     assert shared_out(np.array([1.0, 1.0]), 10).tolist() == [5, 5]
+
+
+def test_that_the_first_starts_have_different_numbers_of_parts() -> None:
+    assert [numbers_of_parts(most) for most in (2, 3, 4, 8)] == [(2,), (3, 2), (4, 3, 2), (8, 6, 4, 2)]
