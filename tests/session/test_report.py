@@ -22,6 +22,7 @@ from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.io.stl import stl_bytes
 from regolith_studio.io.tables import Column, Table
 from regolith_studio.jobs.events import Progress, Steps
+from regolith_studio.jobs.executor import Executor
 from regolith_studio.readers.particles import sample_particles
 from regolith_studio.resources import resource
 from regolith_studio.session.recipe import VolumeEntry, recipe_of
@@ -244,6 +245,24 @@ def test_that_a_sample_without_particles_is_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="at least one particle"):
         finish(write_report((), tmp_path / "report"))
     assert not (tmp_path / "report").exists()
+
+
+def test_that_tables_1_and_2_are_there_where_the_cylinder_is_too_narrow_for_the_particles(
+    particles: tuple[Particle, ...], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def narrow(*_: object) -> None:
+        raise InputError("The cylinder is too narrow.")
+
+    monkeypatch.setattr(heap_sections, "prepare", narrow)
+    draft = ReportDraft(particles, ReportSettings(), tmp_path, Executor())
+    draft.dataset = ("three", "shapes", "here")  # of which only the number is asked
+    section = finish(heap_sections.show_parameters(draft, "Tables"))
+    assert section.paragraphs[-1] == "The cylinder is too narrow."
+    first, second = (dict(zip(t.column("parameter"), t.column("used"), strict=True)) for t in section.tables)
+    assert first["Particle density"] == "3.075"
+    assert first["Number of particle geometries"] == "3"
+    assert second["Cylinder diameter"] == "2"
+    assert second["Number of particles"] == ""
 
 
 def test_that_the_sample_of_a_recipe_is_read_where_it_lies(

@@ -11,6 +11,7 @@ from regolith_studio.dem.angle_of_repose import ReposeMeasurement
 from regolith_studio.dem.case import PreparedCase, ReposeCase, prepare
 from regolith_studio.dem.run_io import TIMES
 from regolith_studio.descriptors.catalogue import LOSS_KEYS
+from regolith_studio.errors import InputError
 from regolith_studio.io.tables import Column, Table, write_table
 from regolith_studio.jobs.dataset_jobs import DatasetBuildResult, DatasetOptions, build_dataset_folder
 from regolith_studio.jobs.repose_jobs import ReposeRequest, ReposeRun, simulate_repose
@@ -142,17 +143,22 @@ def representatives_table(built: DatasetBuildResult) -> Table:
 def show_parameters(draft: ReportDraft, title: str) -> SectionSteps:
     """Tables 1 and 2, as used for the heap."""
     case = _case(draft)
-    prepared = prepare(draft.dataset, case) if draft.settings.heap and draft.dataset else None
+    prepared, none = None, "There is no heap, so that its numbers are missing."
+    if draft.settings.heap and draft.dataset:
+        try:
+            prepared = prepare(draft.dataset, case)
+        except InputError as error:  # Fig. 9 fails of it; the tables are settings
+            none = str(error)
     tables = (contact_table(draft, case, prepared), cylinder_table(case, prepared))
     for number, table in enumerate(tables, start=1):
         write_table(table, draft.folder / "tables", f"table_{number}")
     yield from ()
-    none = "" if prepared else " There is no heap, so that its numbers are missing."
     return ReportSection(
         title,
         (
             "The contact parameters (Table 1) and the lifting cylinder (Table 2) are the paper's; values "
-            f"that it does not give are marked.{none}",
+            "that it does not give are marked.",
+            *([] if prepared else [none]),
         ),
         tables=tables,
     )
