@@ -17,7 +17,7 @@ from regolith_studio.shape_models.models import MODELS
 from regolith_studio.shape_models.novelty import distances_among, nearest_over_rotations
 from regolith_studio.studies.population import FRAME_DEGREE, default_settings, frames_of
 
-KEYS = ("sample_matched", "hull_field", "log_field", "gaussian_field")
+KEYS = ("recombined", "sample_matched", "hull_field", "log_field", "gaussian_field")
 
 
 def main(path: str, seed: int, n: int, n_draws: int) -> None:

@@ -40,7 +40,8 @@ Model = Annotated[
     str,
     typer.Option(
         "--model",
-        help="gaussian_field gaussian_mixture hull_field log_field mixture_field sample_matched (default).",
+        help="gaussian_field gaussian_mixture hull_field log_field mixture_field recombined (default) "
+        "sample_matched.",
         metavar="NAME",
         show_default=False,
     ),
@@ -53,7 +54,7 @@ Degree = Annotated[
         max=30,
         help="Maximum degree of the particles' surfaces.",
         metavar="L",
-        show_default="all that the sample has; 10 for other models than sample_matched",
+        show_default="all that the sample has; 10 for others than recombined and sample_matched",
     ),
 ]
 SizeRange = Annotated[

@@ -57,7 +57,7 @@ class GenerationRequest:
         Of the model that differ from its own, as pairs.
     l_max
         Degree of the particles; ``None`` for that of the model's settings, where the source has it: all
-        degrees for ``sample_matched``, 10 for the others, as in section 3.1.
+        degrees for ``recombined`` and ``sample_matched``, 10 for the others, as in section 3.1.
     n
         How many.
     seed
@@ -91,7 +91,7 @@ class GenerationRequest:
 
 
 def fit_request_for(request: GenerationRequest | None = None) -> FitRequest:
-    """How meshes are expanded for a request: to twice its degree, which ``sample_matched`` needs."""
+    """How meshes are expanded for a request: to twice its degree, which maps of measured surfaces need."""
     wanted = None if request is None else request.l_max
     return FitRequest(FIT_DEGREE if wanted is None else min(FIT_DEGREE, 2 * wanted))
 

@@ -115,13 +115,14 @@ class LogNormalSizes:
     def draw(self, n: int, rng: np.random.Generator, bounds: Bounds = None) -> tuple[FloatArray, IntArray]:
         """Exactly `n` radii from the law cut to `bounds`, whatever its share there.
 
-        Where the law holds less than 1e-300 inside the bounds, radii are even in ln r and components
-        those nearest to the range.
+        Components are stratified: in the order of size one from each n-th part of the law, so that few
+        radii stand for it better than independent ones would. Where the law holds less than 1e-300 inside
+        the bounds, radii are even in ln r and components those nearest to the range.
         """
-        picks, shares = rng.random(n), rng.random(n)
+        picks, shares = rng.permutation((np.arange(n) + rng.random(n)) / max(n, 1)), rng.random(n)
         limits = checked_bounds(bounds)
         if limits is None:
-            component = _picked(self.weights, picks)
+            component = self._picked(self.weights, picks)
             return np.exp(self.means[component] + self.deviations[component] * ndtri(shares)), component
         low, high = np.log(limits[0]), np.log(limits[1])
         below, above = (low - self.means) / self.deviations, (high - self.means) / self.deviations
@@ -130,10 +131,17 @@ class LogNormalSizes:
             nearest = np.abs(np.clip(self.means, low, high) - self.means)
             component = np.argsort(nearest, kind="stable")[(picks * min(20, len(nearest))).astype(np.int64)]
             return np.exp(low + shares * (high - low)), component
-        component = _picked(mass, picks)
+        component = self._picked(mass, picks)
         standard = _truncated(below[component], above[component], shares)
         logs = self.means[component] + self.deviations[component] * standard
         return np.clip(np.exp(np.clip(logs, low, high)), *limits), component
+
+    def _picked(self, weights: FloatArray, shares: FloatArray) -> IntArray:
+        """Components at shares of the sum of the weights, in the order of size."""
+        order = np.argsort(self.means, kind="stable")
+        rising = np.cumsum(weights[order])
+        place = np.searchsorted(rising / rising[-1], shares, side="right")
+        return order[np.minimum(place, len(weights) - 1)].astype(np.int64)
 
     def stored(self) -> dict[str, Any]:
         """Plain values for JSON."""
@@ -268,12 +276,6 @@ def _modes(logs: FloatArray, k: int) -> tuple[LogNormalSizes, float]:
 def _deviation(logs: FloatArray) -> FloatArray:
     """Standard deviation of ln r (unbiased variance), at least 1e-9: sizes may be equal."""
     return np.asarray(np.maximum(logs.std(ddof=1), 1e-9))
-
-
-def _picked(weights: FloatArray, shares: FloatArray) -> IntArray:
-    rising = np.cumsum(weights)
-    place = np.searchsorted(rising / rising[-1], shares, side="right")
-    return np.minimum(place, len(weights) - 1).astype(np.int64)
 
 
 def _mass(below: FloatArray, above: FloatArray) -> FloatArray:

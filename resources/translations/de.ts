@@ -3420,6 +3420,10 @@
         <translation>Partikel der Labels</translation>
     </message>
     <message>
+        <source>Particles that may lend their surface.</source>
+        <translation>Partikel, die ihre Oberfläche leihen können.</translation>
+    </message>
+    <message>
         <source>Parts</source>
         <translation>Komponenten</translation>
     </message>
@@ -3700,6 +3704,10 @@
         <translation>Rezepte (*.json)</translation>
     </message>
     <message>
+        <source>Recombined surfaces</source>
+        <translation>Neu kombinierte Oberflächen</translation>
+    </message>
+    <message>
         <source>Recover</source>
         <translation>Wiederherstellen</translation>
     </message>
@@ -3902,10 +3910,6 @@
     <message>
         <source>Rosin-Rammler, the same for all</source>
         <translation>Rosin-Rammler, für alle gleich</translation>
-    </message>
-    <message>
-        <source>Rotates measured surfaces within their ellipsoids: new particles, sizes and shapes as in the sample.</source>
-        <translation>Dreht gemessene Oberflächen in ihren Ellipsoiden: neue Partikel, Größen und Formen wie in der Probe.</translation>
     </message>
     <message>
         <source>Rotation [rad]</source>
@@ -4676,6 +4680,14 @@
         <translation>Oberflächenenergie</translation>
     </message>
     <message>
+        <source>Surfaces of measured particles on the forms of others: new particles, descriptors as in the sample.</source>
+        <translation>Oberflächen gemessener Partikel auf den Formen anderer: neue Partikel, Kenngrößen wie in der Probe.</translation>
+    </message>
+    <message>
+        <source>Surfaces tried</source>
+        <translation>Versuchte Oberflächen</translation>
+    </message>
+    <message>
         <source>Synthesised by Regolith Studio from the angular power spectrum and size spread of 1,230 particles of the published micro-CT set cement133, rounded to two digits; the length unit is taken as micrometres and no measured particle is contained.</source>
         <translation>Von Regolith Studio synthetisiert aus dem Leistungsspektrum und der Größenstreuung von 1,230 Partikeln des veröffentlichten Mikro-CT-Satzes cement133, auf zwei Stellen gerundet; als Längeneinheit gelten Mikrometer, und kein gemessenes Partikel ist enthalten.</translation>
     </message>
@@ -4960,6 +4972,10 @@
         <translation>Die Anzahl der Facetten folgt daraus: n Facetten haben höchstens 4n−12 Dreiecke.</translation>
     </message>
     <message>
+        <source>The one with the nearest sphericity is kept.</source>
+        <translation>Die mit der nächsten Sphärizität bleibt.</translation>
+    </message>
+    <message>
         <source>The other half is then unknown to the model, as in its evaluation.</source>
         <translation>Die andere Hälfte ist dem Modell dann unbekannt, wie bei seiner Auswertung.</translation>
     </message>
@@ -5030,6 +5046,10 @@
     <message>
         <source>The sample</source>
         <translation>Die Probe</translation>
+    </message>
+    <message>
+        <source>The sample again: measured surfaces, rotated a little within their ellipsoids and mirrored.</source>
+        <translation>Noch einmal die Probe: gemessene Oberflächen, in ihren Ellipsoiden etwas gedreht und gespiegelt.</translation>
     </message>
     <message>
         <source>The script is on the clipboard.</source>

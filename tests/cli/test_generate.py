@@ -49,7 +49,7 @@ def test_that_each_virtual_particle_is_a_closed_mesh_inside_the_range(
     assert result.json == json.loads((tmp_path / "v" / "generation.json").read_text()) | {
         "folder": str(tmp_path / "v")
     }
-    assert result.json["model"] == "sample_matched"
+    assert result.json["model"] == "recombined"
     rows = rows_of(tmp_path / "v" / "particles.csv")
     assert [row["name"] for row in rows] == [f"virtual-00000{i}" for i in range(1, 6)]
     for row in rows:

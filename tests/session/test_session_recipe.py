@@ -236,7 +236,8 @@ def test_that_particles_of_an_edited_card_are_the_same_in_a_run(session: Session
 @pytest.mark.parametrize(
     "model",
     [
-        "sample_matched",
+        "recombined",
+        pytest.param("sample_matched", marks=pytest.mark.slow),
         pytest.param("gaussian_field", marks=pytest.mark.slow),
         pytest.param("mixture_field", marks=pytest.mark.slow),
     ],

@@ -35,6 +35,7 @@ def test_that_the_models_are_found_by_themselves() -> None:
         "hull_field",
         "log_field",
         "mixture_field",
+        "recombined",
         "sample_matched",
     }
     assert DEFAULT_MODEL in MODELS

@@ -238,7 +238,7 @@ def test_that_a_model_and_a_card_are_saved_and_opened_again(page, tmp_path, monk
     assert page.source.fit.text() == "Use the model"
     page.source.fit.click()
     assert page._fitted.examples == ()
-    assert page._model.key == "sample_matched"
+    assert page._model.key == "recombined"
 
 
 def test_that_the_state_of_the_page_is_plain_and_comes_back(page):

@@ -12,8 +12,9 @@ from regolith_studio.registry import Registry
 if TYPE_CHECKING:
     from regolith_studio.shape_models.protocol import ShapeModel
 
-DEFAULT_MODEL = "sample_matched"
-"""The model that reaches the sampling noise; ``log_field`` is the one to extrapolate with."""
+DEFAULT_MODEL = "recombined"
+"""The model whose particles are new and have the descriptors of the sample; ``sample_matched`` gives the
+sample again, ``log_field`` is the one to extrapolate with."""
 
 MODELS: "Registry[ShapeModel]" = Registry(__name__, "MODEL", "shape_models", order=lambda model: model.key)
 """Every module of this folder that defines ``MODEL``, and entry points of other packages, by key."""

@@ -1,4 +1,4 @@
-"""A model that real samples can hardly be told from: measured surfaces, turned within their ellipsoids.
+"""The sample again: measured surfaces, turned a little within their ellipsoids, and mirrored.
 
 A measured particle is brought by a linear map to the sphere of inertia, turned there by a random rotation,
 and brought back by the map of an ellipsoid of its neighbourhood. Each step is linear, so the share of its
@@ -11,14 +11,14 @@ are given the mean power that the measured ones have at each degree from the thi
 In the end particles are mirrored: no descriptor changes, and draws are as far from every measured particle
 over all rotations as other particles of the material are.
 
-It is a smoothed bootstrap: it makes no size and no form that was not measured in the neighbourhood. To go
-beyond the sample, take ``log_field``.
+It is a smoothed bootstrap: it makes no size and no form that was not measured in the neighbourhood, and
+where mirror images count as the same its draws are near copies. Those of ``recombined`` are not; to go beyond
+the sample, take ``log_field``.
 """
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from math import isqrt
 from typing import Any, ClassVar
 
 import numpy as np
@@ -29,25 +29,18 @@ from scipy.spatial.transform import Rotation
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats
 from regolith_studio.harmonics.coefficients import degrees, orders
-from regolith_studio.harmonics.sphere_grid import sphere_grid
 from regolith_studio.messages import N_
 from regolith_studio.shape_models.chunked_sampling import CHUNK, SizedSampler
-from regolith_studio.shape_models.inertia_ellipsoid import PrincipalAxes, principal_axes
-from regolith_studio.shape_models.linear_maps import Tables, mapped_radii, radius_tables
+from regolith_studio.shape_models.mapped_surfaces import MappedSurfaces, roughness_gain
 from regolith_studio.shape_models.realizations import Scale, positive_rows
 from regolith_studio.shape_models.sample import Sample
 from regolith_studio.shape_models.size_law import LogNormalSizes
 
 KEY = "sample_matched"
-OVERSAMPLING = 2
-"""Measured particles are mapped with degrees up to so many times that of the draws."""
 N_COMPARED = 2 * CHUNK
 """Particles by which the power of mapped ones is compared with that of measured ones."""
 HALVINGS = 4
 """A mapped particle whose cut has a negative radius is turned by half as much, so often, then not at all."""
-MIN_MATCHED_DEGREE = 3
-"""Degrees below belong to the ellipsoid and are left alone."""
-LIMITS = (0.8, 1.3)
 
 
 @dataclass(frozen=True)
@@ -125,10 +118,7 @@ class SampleMatched(SizedSampler):
     scale: ClassVar[Scale] = "radius"
 
     def __post_init__(self) -> None:
-        rows = locked_floats(self.coefficients, (None, None), "coefficients")
-        if rows.shape[1] < (self.settings.l_max + 1) ** 2:
-            raise ValueError(f"{rows.shape[1]} coefficients do not reach l_max = {self.settings.l_max}")
-        object.__setattr__(self, "coefficients", rows)
+        object.__setattr__(self, "coefficients", self._surfaces.coefficients)
         gain = np.ones(self.l_max + 1) if self.gain is None else self.gain
         object.__setattr__(self, "gain", locked_floats(gain, (self.l_max + 1,), "gain"))
 
@@ -140,24 +130,14 @@ class SampleMatched(SizedSampler):
         """Degree of the particles it draws."""
         return self.settings.l_max
 
-    @property
-    def _base(self) -> int:
-        """Degree of the measured particles that are mapped."""
-        return isqrt(self.coefficients.shape[1]) - 1
+    @cached_property
+    def _surfaces(self) -> MappedSurfaces:
+        return MappedSurfaces(self.coefficients, self.l_max)
 
     @cached_property
     def sizes(self) -> LogNormalSizes:
         """Law of equivalent radii: the measured ones, each blurred a little; component i is particle i."""
-        radii = np.cbrt(3 * self._axes.volumes / (4 * np.pi))
-        return LogNormalSizes.kernel(radii, self.settings.size_jitter)
-
-    @cached_property
-    def _axes(self) -> PrincipalAxes:
-        return principal_axes(self.coefficients)
-
-    @cached_property
-    def _tables(self) -> Tables:
-        return radius_tables(self.coefficients)
+        return LogNormalSizes.kernel(self._surfaces.equivalent_radii, self.settings.size_jitter)
 
     @cached_property
     def _neighbours(self) -> IntArray:
@@ -166,7 +146,7 @@ class SampleMatched(SizedSampler):
         Where a particle is not among the nearest of its neighbour, it stands there itself: so each ellipsoid
         is lent as often as it was measured, and long and flat ones are not lost to the middle.
         """
-        ratios = self._axes.log_ratios[:, [0, 2]]
+        ratios = self._surfaces.axes.log_ratios[:, [0, 2]]
         spread = np.maximum(ratios.std(axis=0), 1e-9)
         count = min(self.settings.n_neighbours, len(ratios))
         found = np.asarray(cKDTree(ratios / spread).query(ratios / spread, k=np.arange(1, count + 1))[1])
@@ -191,7 +171,7 @@ class SampleMatched(SizedSampler):
 
     def _roundness(self, parents: IntArray, forms: IntArray) -> FloatArray:
         """Short over long axis of whichever ellipsoid is the longer one, shape (n,)."""
-        shares = np.exp(self._axes.log_ratios[:, 0] - self._axes.log_ratios[:, 2])
+        shares = np.exp(self._surfaces.axes.log_ratios[:, 0] - self._surfaces.axes.log_ratios[:, 2])
         return np.asarray(np.minimum(shares[parents], shares[forms]))
 
     def _turned(self, parents: IntArray, forms: IntArray, spins: FloatArray) -> FloatArray:
@@ -205,25 +185,23 @@ class SampleMatched(SizedSampler):
             own = parents[bad] if halving == HALVINGS else forms[bad]
             rows[bad] = self._mapped(parents[bad], own, spins[bad] * share)
         bad = np.flatnonzero(~positive_rows(rows))
-        rows[bad] = self.coefficients[parents[bad], : rows.shape[1]]
+        rows[bad] = self._surfaces.cut[parents[bad]]
         return rows
 
     def _mapped(self, parents: IntArray, forms: IntArray, spins: FloatArray) -> FloatArray:
-        axes, lengths = self._axes.axes[parents], np.exp(self._axes.log_ratios)
+        axes, lengths = self._surfaces.axes.axes[parents], np.exp(self._surfaces.axes.log_ratios)
         back = np.swapaxes(axes, 1, 2) / lengths[forms][:, :, None]
         turn_back = Rotation.from_rotvec(-spins).as_matrix()
         inverses = (axes * lengths[parents][:, None, :]) @ turn_back @ back
-        grid = sphere_grid(_mapping_degree(self.l_max, self._base), self.l_max)
-        radii = np.empty((len(parents), len(grid.directions)))
-        mapped_radii(self._tables, parents, np.ascontiguousarray(inverses), grid.directions, radii)
-        return np.asarray(grid.expanded(radii) * np.asarray(self.gain)[degrees((self.l_max + 1) ** 2)])
+        rows = self._surfaces.mapped(parents, inverses)
+        return np.asarray(rows * np.asarray(self.gain)[degrees(rows.shape[1])])
 
     def roughened(self) -> "SampleMatched":
         """The same with the gain by which its particles have the power of the measured ones."""
         draws = replace(self, gain=None).draw(N_COMPARED, 0)
-        measured = self.coefficients[draws.parents, : draws.coefficients.shape[1]]
+        measured = self._surfaces.cut[draws.parents]
         better = replace(self, gain=roughness_gain(draws.coefficients, measured))
-        for name in ("_axes", "_tables", "_neighbours", "sizes"):  # which do not depend on the gain
+        for name in ("_surfaces", "_neighbours", "sizes"):  # which do not depend on the gain
             better.__dict__[name] = getattr(self, name)
         return better
 
@@ -232,11 +210,6 @@ class SampleMatched(SizedSampler):
         settings = {name: getattr(self.settings, name) for name in self.settings.__dataclass_fields__}
         values = {"settings": settings, "unit": self.unit, "gain": np.asarray(self.gain).tolist()}
         return values, {"coefficients": self.coefficients}
-
-
-def _mapping_degree(l_max: int, base: int) -> int:
-    """Degree of the grid on which mapped radii are expanded: it separates those up to 1.2 times the base."""
-    return (5 * l_max + 6 * base) // 10 + 1
 
 
 def _spins(rng: np.random.Generator, turn: float) -> FloatArray:
@@ -252,7 +225,7 @@ class SampleMatchedModel:
     key = KEY
     label = N_("Matched to the sample")
     summary = N_(
-        "Rotates measured surfaces within their ellipsoids: new particles, sizes and shapes as in the sample."
+        "The sample again: measured surfaces, rotated a little within their ellipsoids and mirrored."
     )
     Settings = SampleMatchedSettings
 
@@ -273,14 +246,9 @@ class SampleMatchedModel:
             )
         if chosen.l_max < 1:
             raise InputError(f"Particles that can be turned need l_max of at least 1, got {chosen.l_max}.")
-        sample.truncated(chosen.l_max)  # refuses what the sample lacks
-        usable = sample.truncated(min(sample.l_max, OVERSAMPLING * chosen.l_max)).star_shaped()
-        if usable.l_max > chosen.l_max:
-            keep = np.flatnonzero(positive_rows(usable.truncated(chosen.l_max).coefficients))
-            if len(keep) < len(usable):
-                usable = usable.chosen(keep)
-        fitted = SampleMatched(usable.coefficients, chosen, sample.unit)
-        return fitted if usable.l_max >= OVERSAMPLING * chosen.l_max else fitted.roughened()
+        surfaces = MappedSurfaces.of(sample, chosen.l_max)
+        fitted = SampleMatched(surfaces.coefficients, chosen, sample.unit)
+        return fitted.roughened() if surfaces.loses_by_mapping else fitted
 
     def restored(self, values: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> SampleMatched:
         """The model from its stored values."""
@@ -290,29 +258,6 @@ class SampleMatchedModel:
             str(values["unit"]),
             values["gain"],
         )
-
-
-def roughness_gain(mapped: FloatArray, measured: FloatArray) -> FloatArray:
-    """A factor for each degree with which mapped particles have the mean power of the measured ones.
-
-    Parameters
-    ----------
-    mapped, measured
-        Coefficients of the radii of the same particles, shapes (n, (l_max + 1)^2).
-
-    Returns
-    -------
-    Shape (l_max + 1,); ones for the lowest degrees.
-    """
-    ratio = np.sqrt(_power(measured) / np.maximum(_power(mapped), 1e-300))
-    ratio[:MIN_MATCHED_DEGREE] = 1.0
-    return np.asarray(np.clip(ratio, *LIMITS))
-
-
-def _power(rows: FloatArray) -> FloatArray:
-    """Mean over the particles of the sum of squares at each degree, sizes divided out."""
-    starts = np.arange(round(rows.shape[1] ** 0.5)) ** 2
-    return np.asarray(np.add.reduceat(((rows / rows[:, :1]) ** 2).mean(axis=0), starts))
 
 
 MODEL = SampleMatchedModel()

@@ -1,0 +1,259 @@
+"""Measured surfaces on the forms of other particles: new bodies that keep what was measured.
+
+Two ideas. The surface of one particle, turned at random on its sphere of inertia, is stretched to the form of
+another that fills about the same share of its hull, which linear maps do not change. Of several such bodies
+the one is kept whose sphericity is nearest to that of the other particle.
+
+What a map and the cut at l_max change on average is measured on draws and taken off what is asked for: first
+the power of each degree, then the sphericity and the share of the hull. Sizes, forms and sphericities are
+those of measured particles; it makes none beyond them.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
+
+from regolith_studio.errors import InputError
+from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats
+from regolith_studio.harmonics.coefficients import degrees
+from regolith_studio.messages import N_
+from regolith_studio.shape_models.chunked_sampling import CHUNK, SizedSampler
+from regolith_studio.shape_models.mapped_surfaces import MappedSurfaces, roughness_gain
+from regolith_studio.shape_models.realizations import Scale, positive_rows
+from regolith_studio.shape_models.sample import Sample
+from regolith_studio.shape_models.size_law import LogNormalSizes
+from regolith_studio.shape_models.surface_forms import (
+    SurfaceForms,
+    sphericity_and_convexity,
+)
+
+KEY = "recombined"
+ROUNDS = 3
+"""Rounds of calibration, of a chunk of particles each."""
+ATTEMPTS = 5
+"""Times that a particle is made anew where the cut has a negative radius; then it stays as measured."""
+
+
+@dataclass(frozen=True)
+class RecombinedSettings:
+    """Parameters
+    ----------
+    l_max
+        Degree of the particles drawn; by default all that the sample has.
+    n_neighbours
+        The surface comes from one of so many particles with the nearest share of the hull.
+    n_candidates
+        Surfaces that are tried for each particle.
+    size_jitter
+        Standard deviation of ln r_eq about the measured one.
+    """
+
+    l_max: int = 30
+    n_neighbours: int = field(
+        default=20,
+        metadata={
+            "label": N_("Neighbours"),
+            "minimum": 1,
+            "tip": N_("Particles that may lend their surface."),
+        },
+    )
+    n_candidates: int = field(
+        default=8,
+        metadata={
+            "label": N_("Surfaces tried"),
+            "minimum": 1,
+            "tip": N_("The one with the nearest sphericity is kept."),
+        },
+    )
+    size_jitter: float = field(
+        default=0.02,
+        metadata={
+            "label": N_("Size jitter"),
+            "maximum": 1.0,
+            "decimals": 3,
+            "tip": N_("Deviation in ln r_eq."),
+        },
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class Recombined(SizedSampler):
+    """The measured particles and what is asked for to draw others like them.
+
+    Parameters
+    ----------
+    coefficients
+        Of the measured radii, shape (n, (base l_max + 1)^2), positive everywhere.
+    settings
+        Of the fit.
+    unit
+        Length unit of the sample.
+    gain
+        Factor of each degree of mapped particles, shape (l_max + 1,); ones if ``None``.
+    offsets
+        Added to ln(s / (1 - s)) of the sphericity and of the share of the hull that are asked for, shape
+        (2,).
+    """
+
+    coefficients: FloatArray
+    settings: RecombinedSettings
+    unit: str = "um"
+    gain: FloatArray | None = None
+    offsets: FloatArray | None = None
+    key: ClassVar[str] = KEY
+    scale: ClassVar[Scale] = "radius"
+
+    def __post_init__(self) -> None:
+        for name, filler, length in (("gain", np.ones, self.l_max + 1), ("offsets", np.zeros, 2)):
+            given = getattr(self, name)
+            values = filler(length) if given is None else given
+            object.__setattr__(self, name, locked_floats(values, (length,), name))
+        object.__setattr__(self, "coefficients", self.surfaces.coefficients)
+
+    def __reduce__(self) -> tuple[Callable[..., "Recombined"], tuple[Any, ...]]:
+        return Recombined, tuple(getattr(self, name) for name in self.__dataclass_fields__ if name != "key")
+
+    @property
+    def l_max(self) -> int:
+        """Degree of the particles it draws."""
+        return self.settings.l_max
+
+    @cached_property
+    def surfaces(self) -> MappedSurfaces:
+        """The measured particles."""
+        return MappedSurfaces(self.coefficients, self.l_max)
+
+    @cached_property
+    def forms(self) -> SurfaceForms:
+        """Their surfaces apart from their forms, both cut at l_max."""
+        return SurfaceForms.of(self.surfaces.cut, self.surfaces.axes)
+
+    @cached_property
+    def sizes(self) -> LogNormalSizes:
+        """Law of equivalent radii: the measured ones, each blurred a little; component i is particle i."""
+        return LogNormalSizes.kernel(self.surfaces.equivalent_radii, self.settings.size_jitter)
+
+    @cached_property
+    def _by_convexity(self) -> IntArray:
+        return np.argsort(self.forms.shares[:, 1], kind="stable")
+
+    def shapes(
+        self, _radii: FloatArray, components: IntArray, rng: np.random.Generator
+    ) -> tuple[FloatArray, dict[str, IntArray]]:
+        """Surfaces on the forms of the particles `components`, and where the surfaces are from."""
+        rows, parents = self._made(components, rng)
+        for _ in range(ATTEMPTS):
+            bad = np.flatnonzero(~positive_rows(rows))
+            if not len(bad):
+                break
+            rows[bad], parents[bad] = self._made(components[bad], rng)
+        bad = np.flatnonzero(~positive_rows(rows))
+        rows[bad], parents[bad] = self.surfaces.cut[components[bad]], components[bad]
+        return rows, {"parents": parents}
+
+    def _made(self, targets: IntArray, rng: np.random.Generator) -> tuple[FloatArray, IntArray]:
+        """Rows on the forms of `targets`, and the particles that their surfaces are from."""
+        wanted = self.forms.shares[targets] + np.asarray(self.offsets)
+        parents, maps = np.zeros_like(targets), np.empty((len(targets), 3, 3))
+        nearest = np.full(len(targets), np.inf)
+        for _ in range(self.settings.n_candidates):
+            picks = self._lenders(targets, wanted[:, 1], rng)
+            turns = Rotation.from_quat(rng.standard_normal((len(targets), 4))).as_matrix()
+            tried, sphericities = self.forms.stretched(picks, turns, targets)
+            distance = np.abs(sphericities - wanted[:, 0])
+            better = distance < nearest
+            nearest[better], parents[better], maps[better] = distance[better], picks[better], tried[better]
+        whole = self.forms.from_frame[targets] @ maps @ self.forms.to_sphere[parents]
+        rows = self.surfaces.mapped(parents, np.asarray(np.linalg.inv(whole), dtype=np.float64))
+        return np.asarray(rows * np.asarray(self.gain)[degrees(rows.shape[1])]), parents
+
+    def _lenders(self, targets: IntArray, convexities: FloatArray, rng: np.random.Generator) -> IntArray:
+        """A particle for each target, not itself, out of those nearest to a share of the hull."""
+        order, n = self._by_convexity, len(self.surfaces)
+        count = min(self.settings.n_neighbours, n)
+        place = np.searchsorted(self.forms.shares[order, 1], convexities)
+        first = np.clip(place - count // 2, 0, n - count)
+        found = first + rng.integers(count, size=len(targets))
+        itself = order[found] == targets
+        return np.asarray(order[np.where(itself, np.where(found + 1 < n, found + 1, found - 1), found)])
+
+    def corrected(self, first: bool) -> "Recombined":
+        """The model after a round of calibration: the first finds the gain, the others what to ask for."""
+        rng = np.random.default_rng(np.random.SeedSequence(0))
+        targets = rng.permutation(np.resize(rng.permutation(len(self.surfaces)), CHUNK))
+        rows, _ = self._made(targets, rng)
+        if first:
+            return self._with(gain=roughness_gain(rows, self.surfaces.cut[targets]))
+        missing = self.forms.shares[targets].mean(axis=0) - sphericity_and_convexity(rows).mean(axis=0)
+        return self._with(offsets=np.asarray(self.offsets) + missing)
+
+    def _with(self, **changes: Any) -> "Recombined":
+        """A copy that shares what does not depend on the calibration."""
+        better = replace(self, **changes)
+        for name in ("surfaces", "forms", "sizes", "_by_convexity"):
+            better.__dict__[name] = getattr(self, name)
+        return better
+
+    def stored(self) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
+        """The settings and the calibration for JSON; the measured coefficients."""
+        settings = {name: getattr(self.settings, name) for name in self.settings.__dataclass_fields__}
+        values = {
+            "settings": settings,
+            "unit": self.unit,
+            "gain": np.asarray(self.gain).tolist(),
+            "offsets": np.asarray(self.offsets).tolist(),
+        }
+        return values, {"coefficients": self.coefficients}
+
+
+class RecombinedModel:
+    """Keeps the measured particles, and calibrates what is asked for until draws have their averages."""
+
+    key = KEY
+    label = N_("Recombined surfaces")
+    summary = N_(
+        "Surfaces of measured particles on the forms of others: new particles, descriptors as in the sample."
+    )
+    Settings = RecombinedSettings
+
+    def fit(self, sample: Sample, settings: RecombinedSettings | None = None) -> Recombined:
+        """The model of a sample.
+
+        Raises
+        ------
+        InputError
+            If a setting is out of range, the sample is not expanded so far, or fewer than two particles have
+            a positive radius.
+        """
+        chosen = settings or replace(RecombinedSettings(), l_max=min(30, sample.l_max))
+        if chosen.n_neighbours < 1 or chosen.n_candidates < 1 or not 0 <= chosen.size_jitter <= 1:
+            raise InputError(
+                "Neighbours and candidates must be at least 1 and the size jitter 0 to 1, got "
+                f"{chosen.n_neighbours}, {chosen.n_candidates} and {chosen.size_jitter:g}."
+            )
+        if chosen.l_max < 1:
+            raise InputError(f"Particles that can be turned need l_max of at least 1, got {chosen.l_max}.")
+        surfaces = MappedSurfaces.of(sample, chosen.l_max)
+        fitted = Recombined(surfaces.coefficients, chosen, sample.unit)
+        for number in range(ROUNDS):
+            if number or surfaces.loses_by_mapping:
+                fitted = fitted.corrected(first=number == 0)
+        return fitted
+
+    def restored(self, values: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> Recombined:
+        """The model from its stored values."""
+        return Recombined(
+            arrays["coefficients"],
+            RecombinedSettings(**values["settings"]),
+            str(values["unit"]),
+            values["gain"],
+            values["offsets"],
+        )
+
+
+MODEL = RecombinedModel()
