@@ -26,6 +26,7 @@ COARSE, FINE = 3, 4
 MIN_HULL_DEGREE = 13
 _MIN_RADIUS = 1e-3
 _BATCH = 250
+_AREA_BATCH = 50
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,8 +98,13 @@ class SurfaceForms:
 def areas(vertices: FloatArray | Floats) -> FloatArray:
     """Areas (n,) of meshes with these vertices (n, v, 3) and the triangles of the icosphere with so many."""
     level = {len(icosphere(each).vertices): each for each in (COARSE, FINE)}[vertices.shape[1]]
-    a, b, c = (vertices[:, icosphere(level).faces[:, i]] for i in range(3))
-    return np.asarray(0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=2).sum(axis=1, dtype=np.float64))
+    faces = icosphere(level).faces
+    found = np.empty(len(vertices))
+    for first in range(0, len(vertices), _AREA_BATCH):
+        a, b, c = (vertices[first : first + _AREA_BATCH, faces[:, i]] for i in range(3))
+        doubled = np.linalg.norm(np.cross(b - a, c - a), axis=2).sum(axis=1, dtype=np.float64)
+        found[first : first + _AREA_BATCH] = 0.5 * doubled
+    return found
 
 
 def sphericity_and_convexity(rows: FloatArray) -> FloatArray:

@@ -116,7 +116,7 @@ class Recombined(SizedSampler):
         object.__setattr__(self, "coefficients", self.surfaces.coefficients)
 
     def __reduce__(self) -> tuple[Callable[..., "Recombined"], tuple[Any, ...]]:
-        return Recombined, tuple(getattr(self, name) for name in self.__dataclass_fields__ if name != "key")
+        return Recombined, (self.coefficients, self.settings, self.unit, self.gain, self.offsets)
 
     @property
     def l_max(self) -> int:
