@@ -15,6 +15,7 @@ from regolith_studio.shape_models.models.gaussian_mixture import GaussianMixture
 from regolith_studio.shape_models.models.hull_field import HullField
 from regolith_studio.shape_models.models.log_field import LogField
 from regolith_studio.shape_models.models.mixture_field import MixtureField
+from regolith_studio.shape_models.models.recombined import Recombined
 from regolith_studio.shape_models.models.sample_matched import SampleMatched
 from regolith_studio.shape_models.protocol import FittedModel
 
@@ -41,7 +42,7 @@ def relative_amplitudes(model: FittedModel) -> FloatArray:
             squares = model.weights @ (model.spectra / model.means[:, None] ** 2) / model.weights.sum()
         case MixtureField():
             squares = model.sizes.weights @ model.spectra / model.sizes.weights.sum() / (4 * np.pi)
-        case SampleMatched():
+        case SampleMatched() | Recombined():
             shares = model.coefficients / model.coefficients[:, :1]
             powers = np.add.reduceat(
                 (shares**2).mean(axis=0), np.arange(shares.shape[1] ** 0.5, dtype=int) ** 2
