@@ -3,7 +3,6 @@
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-import numpy as np
 import typer
 
 from regolith_studio.cli.dataclass_options import with_dataclass_options
@@ -71,6 +70,8 @@ def train(
     seed: Seed = 0,
 ) -> None:
     """Train a classifier on painted voxels, for `extract --classifier`."""
+    import numpy as np
+
     from regolith_studio.imaging.segmentation.pixel_classifier import ClassifierSettings
     from regolith_studio.imaging.segmentation.pixel_features import FeatureSettings
     from regolith_studio.jobs.classifier_jobs import train_on_labels, write_classifier

@@ -387,12 +387,12 @@ def extract(
     from regolith_studio.session.outputs.particles import ExtractionFolder
 
     del seed  # taken by every command; nothing here is random
-    scans = find_scans(volumes)
-    volume = scans[0]
     with usage_errors():
-        given = contents.of(volume)
+        given = contents.of(volumes[0])
         settings = read_grain_settings(recipe) if recipe else grains.recipe
         heights = _heights(preview_h)
+    scans = find_scans(volumes)
+    given = replace(given, path=scans[0])
     several = list(scans) != volumes or len(scans) > 1
     if several and (heights or labels is not None):
         raise typer.BadParameter("--preview-h and --labels take one volume at a time.")
@@ -402,7 +402,7 @@ def extract(
     if output is None:
         raise typer.BadParameter("Name a folder to write with -o, or values for --preview-h.")
     if several:
-        _extract_groups([contents.of(scan) for scan in scans], settings, output, jobs, json)
+        _extract_groups([replace(given, path=scan) for scan in scans], settings, output, jobs, json)
         return
     with staged_folder(output, "extract") as stage:
         folder = ExtractionFolder(stage)
@@ -411,8 +411,8 @@ def extract(
     if done.facts is not None and done.facts.n_not_finite:
         print_errors(
             [
-                f"{volume.name}: {done.facts.n_not_finite:,} voxels hold no finite number (NaN or infinity) "
-                "and are in no grain."
+                f"{given.path.name}: {done.facts.n_not_finite:,} voxels hold no finite number "
+                "(NaN or infinity) and are in no grain."
             ]
         )
     if json:

@@ -218,7 +218,6 @@ def test_that_a_probability_map_of_an_hdf5_file_is_taken(command, tmp_path: Path
         (("--min-voxels", "-1"), "--min-voxels"),
         (("--recipe", "nowhere.json"), "cannot be opened"),
         (("--crop", "1:2"), "A crop is X0:X1,Y0:Y1,Z0:Z1"),
-        (("--bin", "65"), "a whole number from 1 to 64"),
     ],
 )
 def test_that_bad_options_are_bad_use(command, tmp_path: Path, options, sentence: str) -> None:

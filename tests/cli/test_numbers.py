@@ -61,7 +61,7 @@ def test_that_a_number_out_of_range_is_bad_use(
     option, low, high = range_
     beyond = high + 1 if isinstance(high, int) else 1.001 * high
     for value in (*(each for each in (0, -1) if each < low), low - 1, beyond, 1e30, "nan", "inf"):
-        done = command(*words, *required(sub, tmp_path), f"{option}={value}")
+        done = command(*words, f"{option}={value}", *required(sub, tmp_path))
         assert done.code == 2
         assert f"'{option}'" in done.err
     assert not list(tmp_path.iterdir())

@@ -25,6 +25,7 @@ from regolith_studio.jobs.events import Progress, Steps
 from regolith_studio.jobs.executor import Executor
 from regolith_studio.readers.particles import sample_particles
 from regolith_studio.resources import resource
+from regolith_studio.session.choices import Choices
 from regolith_studio.session.recipe import VolumeEntry, recipe_of
 from regolith_studio.session.report import heap_sections, write
 from regolith_studio.session.report.draft import ReportDraft, SectionSteps
@@ -33,6 +34,7 @@ from regolith_studio.session.report.page import MAX_TRIANGLES, report_page
 from regolith_studio.session.report.sections import ReportFigure, ReportSection, error_table, interval_text
 from regolith_studio.session.report.settings import ReportSettings
 from regolith_studio.session.report.write import DOCUMENT, PAGE, PDF, WrittenReport, write_report
+from regolith_studio.settings import settings_of_kind
 from regolith_studio.studies.figures.files import write_figure
 
 NUMBERS = Table("Numbers", (Column("name"), Column("length", "um")), (("one", 1.5), ("<two>", None)))
@@ -239,6 +241,20 @@ def test_that_settings_that_cannot_work_are_refused_before_anything_is_computed(
 ) -> None:
     with pytest.raises(InputError, match=wrong):
         ReportSettings(**changes)  # type: ignore[arg-type]
+
+
+def test_that_defaults_and_ranges_are_those_of_the_window() -> None:
+    ours = {each.name: each for each in settings_of_kind(ReportSettings)}
+    theirs = {each.name: each for each in settings_of_kind(Choices)}
+    for name, like in {
+        "l_max": "l_max",
+        "facets": "n_facets",
+        "method": "method",
+        "preset": "preset",
+    }.items():
+        assert ours[name].default == theirs[like].default
+        for bound in ("minimum", "maximum"):
+            assert ours[name].metadata.get(bound) == theirs[like].metadata.get(bound)
 
 
 def test_that_a_sample_without_particles_is_refused(tmp_path: Path) -> None:

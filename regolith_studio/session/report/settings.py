@@ -1,13 +1,12 @@
 """What a report shows, and of how many particles."""
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-from regolith_studio.coarsening.coarsen import DEFAULT_METHOD, DEFAULT_PRESET, FACETS_LIMITS
-from regolith_studio.dem.angle_of_repose import check_number
-from regolith_studio.dem.evaluation.settings import EvaluationSettings
-from regolith_studio.jobs.particle_jobs import FIT_DEGREE
-from regolith_studio.session.choices import Choices
 from regolith_studio.settings import check_settings, setting
+
+if TYPE_CHECKING:  # the command line makes its options of these fields, and must not wait for numerics
+    from regolith_studio.session.choices import Choices
 
 
 @dataclass(frozen=True)
@@ -25,20 +24,18 @@ class ReportSettings:
         "Maximum degree",
         "Degree at which fits are cut and models draw; the paper uses 10.",
         minimum=1,
-        maximum=FIT_DEGREE,
+        maximum=30,
         metavar="L",
     )
     facets: int = setting(
         20,
         "Facets",
         "Number of facets of each polyhedron.",
-        minimum=FACETS_LIMITS[0],
-        maximum=FACETS_LIMITS[1],
+        minimum=5,
+        maximum=200,
     )
-    method: str = setting(DEFAULT_METHOD, "Coarsening method", "Key of the coarsening method.")
-    preset: str = setting(
-        DEFAULT_PRESET, "Preset", "Preset of the loss weights of the representative particles."
-    )
+    method: str = setting("exact", "Coarsening method", "Key of the coarsening method.")
+    preset: str = setting("all", "Preset", "Preset of the loss weights of the representative particles.")
     study_particles: int = setting(
         150,
         "Particles of the studies",
@@ -67,14 +64,19 @@ class ReportSettings:
     seed: int = setting(0, "Seed", "Seed of the random numbers.", minimum=0, maximum=2**63 - 1)
 
     def __post_init__(self) -> None:
+        from regolith_studio.dem.angle_of_repose import check_number
+        from regolith_studio.dem.evaluation.settings import EvaluationSettings
+
         check_settings(self)
         _ = self.choices
         if self.heap:
             check_number(self.heap, EvaluationSettings())
 
     @property
-    def choices(self) -> Choices:
+    def choices(self) -> "Choices":
         """How particles are fitted and coarsened: the target is the fit, as in section 3.2."""
+        from regolith_studio.session.choices import Choices
+
         return Choices().replaced(
             l_max=self.l_max,
             n_facets=self.facets,
