@@ -162,7 +162,7 @@ def compound_distance(mesh: Mesh, compound: ConvexCompound, n_lines: int = N_LIN
     """Jaccard distance (Eq. 7) of a particle and a union of convex parts in its frame.
 
     The shared volume is that along `n_lines` parallel lines; the volume of the union is exact.
-    The error is about 0.0001 for 60,000 lines.
+    The error is below 0.001 for 60,000 lines, 0.0003 as a rule.
     """
     size = mesh.volume ** (1.0 / 3.0)
     particle, compound = mesh.moved(scale=1.0 / size), compound.moved(scale=1.0 / size)
