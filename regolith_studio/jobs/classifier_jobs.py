@@ -178,19 +178,22 @@ def _vectors_of(
 
 
 def predict_slices(volume: Volume, position: tuple[int, int, int], training: TrainingSet) -> Steps:
-    """Predict the three slices through a voxel: each first coarsely, then each in full.
+    """Predict the three slices through a voxel, each first coarsely, then in full.
 
-    Every :class:`SlicePrediction` is a ``Partial``.
+    Returns their :class:`SlicePrediction`, and gives those that are known as a ``Partial`` after each.
     """
     yield Started(N_("Predicting grains"))
     classifier = train(training)
     columns = [training.classes.index(each) for each in classifier.painted]
+    found: dict[int, SlicePrediction] = {}
     for step in (COARSE, 1):
         for axis in (2, 1, 0):
             grain, own = _slice_probabilities(volume, classifier, axis, position[axis], step)
             every = np.zeros((*grain.shape, len(training.classes)), dtype=np.float32)
             every[..., columns] = own
-            yield Partial(SlicePrediction(axis, position[axis], every, grain))
+            found[axis] = SlicePrediction(axis, position[axis], every, grain)
+            yield Partial(tuple(found.values()))
+    return tuple(found.values())
 
 
 def _slice_probabilities(

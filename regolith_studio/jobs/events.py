@@ -29,7 +29,7 @@ class Progress:
 
 @dataclass(frozen=True)
 class Partial:
-    """An intermediate result: the best polyhedron so far, one row of a table."""
+    """An intermediate result, such as the best polyhedron so far; a runner may leave out all but the last."""
 
     value: Any
 

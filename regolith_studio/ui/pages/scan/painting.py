@@ -131,8 +131,8 @@ class Painting(QObject):
         if self._volume is None or self.training is None or not self._panel.paint.isChecked():
             return
         job = Job(predict_slices, (self._volume, self._slices.position, self.training))
-        show = self._slices.show_prediction
-        self._context.start(tr("Predicting"), job, lambda _: None, partial=show, lane="predict")
+        show = self._slices.show_predictions
+        self._context.start(tr("Predicting"), job, show, partial=show, lane="predict")
 
     def _show(self) -> None:
         self._slices.show_strokes(*painted_rows(self.strokes)[:2])

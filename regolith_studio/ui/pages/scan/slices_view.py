@@ -1,5 +1,7 @@
 """Three slices through one voxel and the histogram."""
 
+from collections.abc import Sequence
+
 import numpy as np
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QStackedLayout, QVBoxLayout, QWidget
@@ -122,9 +124,9 @@ class SlicesView(QWidget):
         self._painted = positions, labels
         self._show_painting()
 
-    def show_prediction(self, found: SlicePrediction) -> None:
-        """Show the probabilities of a slice, if it is still seen."""
-        self._predicted[found.axis] = found
+    def show_predictions(self, found: Sequence[SlicePrediction]) -> None:
+        """Show the probabilities of slices, as far as they are still seen."""
+        self._predicted |= {each.axis: each for each in found}
         self._show_painting()
 
     def clear_predictions(self) -> None:
