@@ -58,6 +58,8 @@ def test_that_box_star_point_and_overlay_come_and_go(window):
 
 def test_that_the_price_of_an_exact_sphericity_is_told_beside_the_choices(window, settled):
     coarse = window.session.results.coarsened
+    window.session.update("coarsening", coarsened=replace(coarse, sphericity_free=None))
+    settled(window)
     assert not window.page.coarsening.outcome.isVisible()
     free = SphericityFree(coarse.jaccard_distance / 2, 0.18)
     window.session.update("coarsening", coarsened=replace(coarse, sphericity_free=free))
