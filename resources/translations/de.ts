@@ -3368,8 +3368,8 @@
         <translation>Pareto-Front</translation>
     </message>
     <message>
-        <source>Part of the volume to work on: X0:X1,Y0:Y1,Z0:Z1 in voxels, or in lengths with a unit, such as 0.2:1.5mm,:,100:300. Particles keep their places in the whole volume.</source>
-        <translation>Teil des Volumens, mit dem gearbeitet wird: X0:X1,Y0:Y1,Z0:Z1 in Voxeln oder in Längen mit Einheit, etwa 0.2:1.5mm,:,100:300. Partikel behalten ihren Platz im ganzen Volumen.</translation>
+        <source>Part of the volume to work on: X0:X1,Y0:Y1,Z0:Z1 in voxels, or in lengths with a unit, such as 1:3mm,:,100:300. Particles keep their places in the whole volume.</source>
+        <translation>Teil des Volumens, mit dem gearbeitet wird: X0:X1,Y0:Y1,Z0:Z1 in Voxeln oder in Längen mit Einheit, etwa 1:3mm,:,100:300. Partikel behalten ihren Platz im ganzen Volumen.</translation>
     </message>
     <message>
         <source>Particle</source>

@@ -79,8 +79,12 @@ class Newcomer:
         """Click where the mouse really meets the widget."""
         place = place or widget.rect().center()
         top = widget.window()
-        under = top.childAt(widget.mapTo(top, place))
-        assert under is widget or widget.isAncestorOf(under), f"{widget.objectName()} is covered by {under}"
+
+        def seen():
+            under = top.childAt(widget.mapTo(top, place))
+            return under is widget or widget.isAncestorOf(under)
+
+        self.wait(seen, 20.0)  # a message may cover it for some seconds
         QTest.mouseClick(widget, Qt.MouseButton.LeftButton, pos=place)
         self.done()
 

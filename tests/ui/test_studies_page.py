@@ -227,7 +227,7 @@ def test_that_both_studies_are_computed_and_saved(window, wait, settled, tmp_pat
     monkeypatch.setattr(ASKED, lambda *_: str(folder))
     window.menus.by_name["studies.save"].trigger()
     wait(lambda: not window.session.tasks and "files were written" in window.toast.sentence.text(), SECONDS)
-    assert {path.suffix for path in folder.iterdir()} == {".csv", ".json", ".png", ".svg"}
+    assert {path.suffix for path in folder.iterdir()} == {".csv", ".json", ".png", ".svg", ".sha256"}
 
 
 @pytest.mark.slow

@@ -41,7 +41,7 @@ class RegionSettings:
         N_("Crop"),
         N_(
             "Part of the volume to work on: X0:X1,Y0:Y1,Z0:Z1 in voxels, or in lengths with a unit, such as "
-            "0.2:1.5mm,:,100:300. Particles keep their places in the whole volume."
+            "1:3mm,:,100:300. Particles keep their places in the whole volume."
         ),
         metavar="RANGES",
     )

@@ -3,7 +3,7 @@
 import html
 import re
 
-from PySide6.QtCore import QLocale, QSize, Qt
+from PySide6.QtCore import QEvent, QLocale, QSize, Qt
 from PySide6.QtGui import QPainter, QPaintEvent, QResizeEvent
 from PySide6.QtWidgets import QLabel, QSizePolicy, QWidget
 
@@ -61,6 +61,14 @@ class CitingLabel(QLabel):
     def setText(self, text: str) -> None:
         """Show another text."""
         super().setText(with_citations(text))
+
+    def changeEvent(self, event: QEvent) -> None:
+        """Lay the text out again in another palette, since links keep the colour that they were laid out in."""
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.PaletteChange:
+            words = self.text()
+            super().setText("")
+            super().setText(words)
 
 
 def heading(text: str) -> QLabel:
