@@ -63,7 +63,7 @@ class CitingLabel(QLabel):
         super().setText(with_citations(text))
 
     def changeEvent(self, event: QEvent) -> None:
-        """Lay the text out again in another palette, since links keep the colour that they were laid out in."""
+        """Lay the text out again in another palette: links keep the colour that they were laid out in."""
         super().changeEvent(event)
         if event.type() == QEvent.Type.PaletteChange:
             words = self.text()
