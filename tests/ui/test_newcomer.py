@@ -68,7 +68,7 @@ class Newcomer:
         for top in (*self._dialogs(), self.window):
             widget = top.findChild(kind, name)
             if widget is not None and widget.isVisible():
-                assert widget.isEnabled(), f"{name} is there but grey"
+                self.wait(widget.isEnabled, 5.0)  # values are checked a moment later
                 return widget
         raise AssertionError(f"{name} is not seen")
 
@@ -281,7 +281,8 @@ def test_that_a_scan_becomes_grains_in_a_table(newcomer):
 
 
 @pytest.mark.slow
-def test_that_a_heap_has_an_angle_with_an_interval(newcomer):
+def test_that_a_heap_has_an_angle_with_an_interval(newcomer, tmp_path, monkeypatch):
+    monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path))
     newcomer.click(QWidget, "page_repose")
     newcomer.click(QPushButton, "repose_sample")
     newcomer.rest()

@@ -331,7 +331,8 @@ def prediction_slabs(classifier: PixelClassifier, source: SliceSource) -> Iterat
 
 def probability_volume(values: NDArray[np.uint8], source: SliceSource) -> Volume:
     """Probabilities from 0 to 255 as a volume of the source's voxel size."""
-    return Volume(values, np.asarray(source.voxel_size, dtype=np.float64), "grey", source.name)
+    edges = np.asarray(source.voxel_size, dtype=np.float64)
+    return Volume(values, edges, "grey", source.name, source.origin)
 
 
 def _prediction_ranges(shape: tuple[int, int, int]) -> list[tuple[int, int]]:
