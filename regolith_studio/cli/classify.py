@@ -1,4 +1,4 @@
-"""``classify``: train a classifier of voxels on a painted volume, and write maps of probabilities."""
+"""``classify``: classifiers of voxels, their maps of probabilities, and classifiers of segmented objects."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from regolith_studio.cli.dataclass_options import with_dataclass_options
-from regolith_studio.cli.extract import VolumeOptions
+from regolith_studio.cli.extract import GrainOptions, VolumeOptions
 from regolith_studio.cli.options import Json, Seed, claim_json, claim_labels, output_path, usage_errors
 from regolith_studio.cli.terminal import CommandGroup, print_json, run_with_progress
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 app = typer.Typer(
     cls=CommandGroup,
-    help="Classifiers of voxels, trained on painted ones (section 2.1).",
+    help="Classifiers of voxels, trained on painted ones, and of segmented objects (section 2.1).",
     no_args_is_help=True,
     rich_markup_mode=None,
 )
@@ -131,6 +131,55 @@ def map_scan(
         print_json({"probabilities": str(output)})
     else:
         typer.echo(f"Written to {output}.")
+
+
+@app.command("objects")
+@with_dataclass_options
+def train_objects(
+    *,
+    scan: Scan,
+    examples: Annotated[
+        Path,
+        typer.Argument(
+            metavar="EXAMPLES",
+            help="CSV file with the columns x, y, z and class: voxels in objects, counted from 0 in the "
+            "region of interest, and grain, several grains or artefact.",
+        ),
+    ],
+    output: Annotated[
+        Path,
+        typer.Option(
+            "--output",
+            "-o",
+            help="File of the object classifier.",
+            metavar="FILE.json",
+            parser=output_path,
+            callback=claim_json,
+        ),
+    ],
+    contents: VolumeOptions,
+    grains: GrainOptions,
+    json: Json = False,
+    seed: Seed = 0,
+) -> None:
+    """Train a classifier of segmented objects on a few examples, for `extract --objects`."""
+    from regolith_studio.imaging.segmentation.object_classifier import OBJECT_CLASSES
+    from regolith_studio.jobs.object_jobs import ClassifiedObjects, train_on_objects, write_objects
+    from regolith_studio.jobs.volume_jobs import scratch_folder
+    from regolith_studio.readers.object_examples import read_object_examples
+
+    del seed  # taken by every command; nothing here is random
+    with usage_errors():
+        given, settings = contents.of(scan), grains.recipe
+    chosen = read_object_examples(examples, OBJECT_CLASSES)
+    found: ClassifiedObjects = run_with_progress(train_on_objects(given, settings, chosen, scratch_folder()))
+    assert found.training is not None
+    write_objects(output, found.training)
+    if json:
+        print_json({"objects": str(output), "classified": found.counts()})
+    else:
+        words = ", ".join(f"{count:,} {name}" for name, count in found.counts().items())
+        typer.echo(f"Classified as {words}. Written to {output}.")
 
 
 def _numbers(text: str, option: str) -> tuple[float, ...]:

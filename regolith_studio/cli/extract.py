@@ -126,6 +126,15 @@ class GrainOptions:
             metavar="FILE",
         ),
     ] = None
+    objects: Annotated[
+        Path | None,
+        typer.Option(
+            "--objects",
+            help="Object classifier that keeps, splits again or drops the grains that were found, as "
+            "`classify objects` or the window writes it.",
+            metavar="FILE",
+        ),
+    ] = None
     dark: Annotated[bool, typer.Option("--dark", help="Grains are darker than the matrix.")] = False
     opening: Annotated[
         int,
@@ -190,7 +199,7 @@ class GrainOptions:
         from regolith_studio.imaging.segmentation.morphology import CleaningSettings
         from regolith_studio.imaging.segmentation.segment import SegmentationSettings
         from regolith_studio.imaging.segmentation.splitting import SplittingSettings
-        from regolith_studio.jobs.extraction_settings import GrainSettings, read_classifier
+        from regolith_studio.jobs.extraction_settings import GrainSettings, read_classifier, read_objects
 
         if self.border not in ("exclude", "keep"):
             raise typer.BadParameter(f"Grains at the border are to exclude or to keep, not {self.border!r}.")
@@ -204,6 +213,7 @@ class GrainOptions:
                 CleaningSettings(self.opening, self.closing, min_voxels=least),
                 SplittingSettings(self.split, self.h_maxima),
                 classifier=trained,
+                objects=read_objects(self.objects) if self.objects else None,
             ),
             ExtractionSettings(
                 exclude_border=self.border == "exclude",

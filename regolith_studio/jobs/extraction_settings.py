@@ -1,7 +1,7 @@
 """Settings from voxels to particles, as one value and as the JSON that ``extract`` writes."""
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any, TypeVar
@@ -10,9 +10,16 @@ from regolith_studio.errors import FileError, InputError
 from regolith_studio.imaging.extraction import (
     ExtractionSettings,
 )
-from regolith_studio.imaging.segmentation.classifier_document import training_document, training_from
+from regolith_studio.imaging.segmentation.classifier_document import (
+    objects_document,
+    objects_from,
+    training_document,
+    training_from,
+)
 from regolith_studio.imaging.segmentation.denoising import DenoiseSettings
+from regolith_studio.imaging.segmentation.label_edits import edits_document, edits_from
 from regolith_studio.imaging.segmentation.morphology import CleaningSettings
+from regolith_studio.imaging.segmentation.object_classifier import ObjectTraining
 from regolith_studio.imaging.segmentation.pixel_classifier import TrainingSet
 from regolith_studio.imaging.segmentation.segment import SegmentationSettings
 from regolith_studio.imaging.segmentation.splitting import SplittingSettings, TileSettings
@@ -45,9 +52,12 @@ class GrainSettings:
     def as_document(self) -> dict[str, Any]:
         """Plain JSON."""
         how = self.segmentation
-        segmentation = asdict(replace(how, classifier=None))
+        segmentation = asdict(replace(how, classifier=None, objects=None, edits=()))
+        segmentation["edits"] = edits_document(how.edits)
         if how.classifier is not None:
             segmentation["classifier"] = training_document(how.classifier)
+        if how.objects is not None:
+            segmentation["objects"] = objects_document(how.objects)
         return {
             "region": asdict(self.region),
             "segmentation": segmentation,
@@ -66,18 +76,27 @@ class GrainSettings:
         segmentation = _section(document, "segmentation")
         parts = {name: _parse_settings(kind, _section(segmentation, name)) for name, kind in _PARTS.items()}
         return cls(
-            SegmentationSettings(**parts, classifier=_classifier(segmentation.get("classifier"))),
+            SegmentationSettings(
+                **parts,
+                classifier=_document_of(segmentation, "classifier", training_from),
+                objects=_document_of(segmentation, "objects", objects_from),
+                edits=edits_from(segmentation.get("edits", ())),
+            ),
             _parse_settings(ExtractionSettings, _section(document, "extraction")),
             _parse_settings(RegionSettings, _section(document, "region")),
         )
 
 
-def _classifier(document: Any) -> TrainingSet | None:
+def _document_of(
+    segmentation: Mapping[str, Any], name: str, read: Callable[[Mapping[str, Any], str], S]
+) -> S | None:
+    """What `read` makes of a group in the settings of a segmentation, if it is there."""
+    document = segmentation.get(name)
     if document is None:
         return None
     if not isinstance(document, Mapping):
-        raise InputError(f"“classifier” in a recipe is a trained classifier, got {document!r}.")
-    return training_from(document, "“classifier” in a recipe")
+        raise InputError(f"“{name}” in a recipe is a trained classifier, got {document!r}.")
+    return read(document, f"“{name}” in a recipe")
 
 
 def read_classifier(path: Path) -> TrainingSet:
@@ -90,13 +109,30 @@ def read_classifier(path: Path) -> TrainingSet:
     InputError
         As :class:`~regolith_studio.imaging.segmentation.pixel_classifier.TrainingSet`.
     """
+    return training_from(_read_group(path, "classifier"), path.name)
+
+
+def read_objects(path: Path) -> ObjectTraining:
+    """The examples of an object classifier's file.
+
+    Raises
+    ------
+    FileError
+        If it cannot be read or holds no object classifier.
+    InputError
+        As :class:`~regolith_studio.imaging.segmentation.object_classifier.ObjectTraining`.
+    """
+    return objects_from(_read_group(path, "object classifier"), path.name)
+
+
+def _read_group(path: Path, what: str) -> dict[str, Any]:
     try:
         document = json.loads(read_bytes(path, _LARGEST))
     except (ValueError, RecursionError):
-        raise FileError(f"{path.name} is no classifier: it holds no JSON.") from None
+        raise FileError(f"{path.name} is no {what}: it holds no JSON.") from None
     if not isinstance(document, dict):
-        raise FileError(f"{path.name} is no classifier: it holds no group of settings.")
-    return training_from(document, path.name)
+        raise FileError(f"{path.name} is no {what}: it holds no group of settings.")
+    return document
 
 
 def read_grain_settings(path: Path) -> GrainSettings:

@@ -141,7 +141,7 @@ def find_grains(scan: Scan, settings: SegmentationSettings) -> Steps:
         if not large:
             return GrainSegmentation(found, SliceImages(found.labels.array), scratch)
         yield Started(N_("Preparing the view"))
-        return GrainSegmentation(found, (yield from _slice_images(found.labels)), scratch)
+        return GrainSegmentation(found, (yield from slice_images(found.labels)), scratch)
     except BaseException:
         scratch.close()
         raise
@@ -178,7 +178,7 @@ def preview_heights(
     `level` takes the place of an automatic threshold, as in :func:`preview_part`.
     """
     part, chosen = part_of(volume, box, settings, level)
-    return (yield from _reported(grains_over_heights(part, heights, chosen)))
+    return (yield from reported(grains_over_heights(part, heights, chosen)))
 
 
 def count_over_heights(
@@ -197,8 +197,8 @@ def count_over_heights(
         raise InputError(
             f"{given.path.name} holds labels, which are grains already; there is no h to choose."
         )
-    with ScratchArrays(scratch if _working_bytes(volume) > IN_MEMORY else None) as arrays:
-        return (yield from _reported(grains_over_heights(volume, heights, settings.segmentation, arrays)))
+    with ScratchArrays(scratch if working_bytes(volume) > IN_MEMORY else None) as arrays:
+        return (yield from reported(grains_over_heights(volume, heights, settings.segmentation, arrays)))
 
 
 def _volume_of(source: SliceSource, array: NDArray[Any]) -> Volume:
@@ -216,13 +216,13 @@ def _map_volume(source: SliceSource) -> Generator[Step, None, Scan]:
                 array[:, :, first:stop] = source.read(first, stop)
                 yield Progress(done, len(ranges), N_("Unpacking into a temporary file"))
         volume = _volume_of(source, array)
-        return scan_of(volume, (yield from _slice_images(volume)), scratch)
+        return scan_of(volume, (yield from slice_images(volume)), scratch)
     except BaseException:
         scratch.close()
         raise
 
 
-def _slice_images(volume: Volume) -> Generator[Step, None, SliceImages]:
+def slice_images(volume: Volume) -> Generator[Step, None, SliceImages]:
     steps = coarse_copy(volume)
     while True:
         try:
@@ -336,10 +336,10 @@ def segment_volume(
     source: SliceSource, settings: SegmentationSettings, scratch: ScratchArrays | None = None
 ) -> Steps:
     """Find the grains in grey values; returns a ``Segmentation``."""
-    return (yield from _reported(segmentation_steps(source, settings, scratch)))
+    return (yield from reported(segmentation_steps(source, settings, scratch)))
 
 
-def _reported(steps: Generator[SegmentationProgress, None, _Result]) -> Generator[Step, None, _Result]:
+def reported(steps: Generator[SegmentationProgress, None, _Result]) -> Generator[Step, None, _Result]:
     """The steps as events."""
     stage = ""
     while True:
@@ -399,7 +399,7 @@ def _extract(
     volume = recipe.region.of(given.opened())
     sizes = tuple(float(edge) for edge in np.ravel(np.asarray(volume.voxel_size)))
     source = _source_of(given.path, volume)
-    with ScratchArrays(folder if _working_bytes(volume) > IN_MEMORY else None) as scratch:
+    with ScratchArrays(folder if working_bytes(volume) > IN_MEMORY else None) as scratch:
         facts: SegmentationSummary | None = None
         labels: SliceSource = volume
         if volume.kind == "grey":
@@ -465,7 +465,7 @@ def _measure_and_pass_on(
     return ended[0]
 
 
-def _working_bytes(volume: SliceSource) -> int:
+def working_bytes(volume: SliceSource) -> int:
     voxels = int(np.prod([int(edge) for edge in volume.shape]))
     return voxels * (_WORKING_BYTES + volume.dtype.itemsize) if volume.kind == "grey" else 0
 

@@ -872,6 +872,10 @@
         <translation>Wählen Sie eine Rezeptdatei.</translation>
     </message>
     <message>
+        <source>Choose examples of two classes at least: click into some objects of each.</source>
+        <translation>Wählen Sie Beispiele von mindestens zwei Klassen: Klicken Sie in einige Objekte jeder Klasse.</translation>
+    </message>
+    <message>
         <source>Choose it to see the run.</source>
         <translation>Wählen Sie die Zeile, um den Lauf zu sehen.</translation>
     </message>
@@ -922,6 +926,10 @@
     <message>
         <source>Classifiers (*.json);;All files (*)</source>
         <translation>Klassifikatoren (*.json);;Alle Dateien (*)</translation>
+    </message>
+    <message>
+        <source>Classifying objects</source>
+        <translation>Objekte werden klassifiziert</translation>
     </message>
     <message>
         <source>Clear</source>
@@ -1176,6 +1184,10 @@
         <translation>Um die Korngröße berichtigen</translation>
     </message>
     <message>
+        <source>Correcting labels</source>
+        <translation>Labels werden korrigiert</translation>
+    </message>
+    <message>
         <source>Coulomb friction against rolling and spinning</source>
         <translation>Coulomb-Reibung gegen Rollen und Bohren</translation>
     </message>
@@ -1294,6 +1306,10 @@
     <message>
         <source>Density by volume</source>
         <translation>Dichte nach Volumen</translation>
+    </message>
+    <message>
+        <source>Describing objects</source>
+        <translation>Objekte werden vermessen</translation>
     </message>
     <message>
         <source>Descriptor</source>

@@ -1,4 +1,4 @@
-"""A training set as JSON: the file of a trained classifier, which is trained again when it is loaded."""
+"""Training sets as JSON: the files of classifiers of voxels and of objects, trained again when loaded."""
 
 from collections.abc import Mapping
 from dataclasses import asdict
@@ -7,7 +7,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from regolith_studio.errors import FileError
+from regolith_studio.errors import FileError, InputError
+from regolith_studio.imaging.segmentation.object_classifier import (
+    OBJECT_CLASSES,
+    OBJECT_FEATURES,
+    ObjectTraining,
+)
 from regolith_studio.imaging.segmentation.pixel_classifier import (
     ClassifierSettings,
     PixelClass,
@@ -75,3 +80,66 @@ def training_from(document: Mapping[str, Any], name: str) -> TrainingSet:
 def _shortest(value: np.float32) -> float:
     """The number with the fewest digits that is the same in 32 bits."""
     return float(str(value))
+
+
+OBJECT_FORMAT = "regolith-studio object classifier"
+
+
+def objects_document(training: ObjectTraining) -> dict[str, Any]:
+    """Plain JSON of the examples of an object classifier; descriptors come back to the last bit."""
+    return {
+        "format": OBJECT_FORMAT,
+        "actions": dict(zip(OBJECT_CLASSES, training.actions, strict=True)),
+        "voxel_size_um": training.voxel_size.tolist(),
+        "scan_sha256": training.scan,
+        "descriptors": list(OBJECT_FEATURES),
+        "median": training.centre.tolist(),
+        "spread": training.spread.tolist(),
+        "examples": [
+            {"voxel": position, "class": OBJECT_CLASSES[kind], "descriptors": vector}
+            for position, kind, vector in zip(
+                training.positions.tolist(), training.classes.tolist(), training.vectors.tolist(), strict=True
+            )
+        ],
+    }
+
+
+def objects_from(document: Mapping[str, Any], name: str) -> ObjectTraining:
+    """The examples that :func:`objects_document` has written.
+
+    Parameters
+    ----------
+    name
+        Of the file, for messages.
+
+    Raises
+    ------
+    FileError
+        If it holds no examples, or such with other descriptors.
+    InputError
+        If fewer than two classes have an example.
+    """
+    if document.get("format") != OBJECT_FORMAT:
+        raise FileError(f"{name} is no object classifier: it does not say {OBJECT_FORMAT!r}.")
+    if document.get("descriptors") != list(OBJECT_FEATURES):
+        raise FileError(f"{name} is an object classifier for other descriptors than this program measures.")
+    try:
+        examples = list(document["examples"])
+        positions = np.array([each["voxel"] for each in examples], dtype=np.int64)
+        kinds = np.array([OBJECT_CLASSES.index(each["class"]) for each in examples], dtype=np.int64)
+        vectors = np.array([each["descriptors"] for each in examples], dtype=np.float64)
+        actions = tuple(document["actions"][kind] for kind in OBJECT_CLASSES)
+        centre, spread, edges = (
+            np.array(document[key], dtype=np.float64) for key in ("median", "spread", "voxel_size_um")
+        )
+        n = len(examples)
+        return ObjectTraining(
+            positions.reshape(n, 3), kinds, vectors.reshape(n, len(OBJECT_FEATURES)), centre, spread, edges,
+            actions,            str(document["scan_sha256"]),
+        )  # fmt: skip
+    except InputError:
+        raise
+    except (KeyError, TypeError, ValueError, AttributeError, OverflowError):
+        raise FileError(
+            f"{name} is a damaged object classifier: a part is missing or of the wrong kind."
+        ) from None

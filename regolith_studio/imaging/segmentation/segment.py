@@ -4,7 +4,7 @@ Everything happens slab by slab or body by body, so that the volume never has to
 whole: give a :class:`~regolith_studio.imaging.volume_slabs.ScratchArrays` in a folder for that.
 """
 
-from collections.abc import Generator, Sequence
+from collections.abc import Generator, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -16,7 +16,14 @@ from regolith_studio.geometry.arrays import FloatArray, IntArray
 from regolith_studio.imaging.bounding_boxes import Box
 from regolith_studio.imaging.connected_components import ComponentCounter, ConnectedComponents
 from regolith_studio.imaging.segmentation.denoising import DenoiseSettings, denoised, noise_of
+from regolith_studio.imaging.segmentation.label_edits import LabelEdit, apply_edits
 from regolith_studio.imaging.segmentation.morphology import CleaningSettings, cleaned
+from regolith_studio.imaging.segmentation.object_classifier import (
+    ObjectTable,
+    ObjectTraining,
+    describe_objects,
+    sort_objects,
+)
 from regolith_studio.imaging.segmentation.pixel_classifier import (
     TrainingSet,
     box_probability,
@@ -51,6 +58,10 @@ class SegmentationSettings:
     classifier
         Turns the grey values into the probability of a voxel to be grain, which `threshold` then takes;
         without one the threshold takes the volume as it is.
+    objects
+        Says which of the grains that were found are kept, split again or dropped.
+    edits
+        Corrections by hand, which come last.
     """
 
     denoise: DenoiseSettings = field(default_factory=DenoiseSettings)
@@ -59,6 +70,13 @@ class SegmentationSettings:
     splitting: SplittingSettings = field(default_factory=SplittingSettings)
     tiles: TileSettings = field(default_factory=TileSettings)
     classifier: TrainingSet | None = None
+    objects: ObjectTraining | None = None
+    edits: tuple[LabelEdit, ...] = ()
+
+    @property
+    def uncorrected(self) -> "SegmentationSettings":
+        """The same without what is done with the grains once they are found."""
+        return replace(self, objects=None, edits=())
 
     def __post_init__(self) -> None:
         if self.classifier is not None and self.threshold.method != "probability":
@@ -84,9 +102,9 @@ class Segmentation:
     Parameters
     ----------
     labels
-        0 between grains, 1 to n in them.
+        0 between grains, 1 to n in them; with gaps where grains were dropped, merged or deleted.
     sizes
-        Voxels of each grain, shape (n,).
+        Voxels of each grain in the order of their labels, shape (n,).
     level
         Grey value at which grains begin.
     seen
@@ -187,7 +205,79 @@ def segmentation_steps(
     small = int((found.bodies.sizes < least).sum()) + n_parts - len(sizes)
     labels = Volume(found.numbers, found.edges, "labels", f"{source.name}, labels", source.origin)
     n_bodies = int((found.bodies.sizes >= least).sum())
-    return Segmentation(labels, sizes, found.level, found.seen, n_bodies, small, found.n_not_finite)
+    result = Segmentation(labels, sizes, found.level, found.seen, n_bodies, small, found.n_not_finite)
+    if settings.objects is None and not settings.edits:
+        return result
+    sizes = yield from _correct(found.numbers, source, settings)
+    return replace(result, sizes=sizes)
+
+
+def correction_steps(
+    found: Segmentation,
+    grey: SliceSource,
+    settings: SegmentationSettings,
+    scratch: ScratchArrays | None = None,
+    objects: ObjectTable | None = None,
+) -> Steps:
+    """A copy of a segmentation with the objects and edits of `settings`, as :func:`segmentation_steps` ends.
+
+    Parameters
+    ----------
+    found
+        The segmentation without them.
+    grey
+        What it was found in.
+    objects
+        The objects of `found`, if they have been described.
+
+    Raises
+    ------
+    InputError
+        If an edit does not find its grains, or no grain is left.
+    """
+    numbers: NDArray[np.int32] = (scratch or ScratchArrays()).zeros(found.labels.shape, np.int32)
+    np.copyto(numbers, found.labels.array)
+    sizes = yield from _correct(numbers, grey, settings, objects)
+    return replace(found, labels=replace(found.labels, array=numbers), sizes=sizes)
+
+
+def _correct(
+    numbers: NDArray[np.int32],
+    grey: SliceSource,
+    settings: SegmentationSettings,
+    objects: ObjectTable | None = None,
+) -> Generator[SegmentationProgress, None, IntArray]:
+    """Object step and edits, in place; voxels of each grain that is left."""
+    edges = np.ravel(np.asarray(grey.voxel_size, dtype=np.float64))
+    least = settings.cleaning.min_voxels
+    if settings.objects is not None:
+        if objects is None:
+            described = describe_objects(Volume(numbers, edges, "labels", grey.name), grey)
+            objects = yield from _staged(N_("Describing objects"), described)
+        sorting = sort_objects(numbers, objects, edges, settings.objects, settings.splitting, least)
+        yield from _staged(N_("Classifying objects"), sorting)
+    yield from _staged(N_("Correcting labels"), apply_edits(numbers, settings.edits, edges))
+    counts = np.zeros(int(numbers.max()) + 1, dtype=np.int64)
+    for first, stop in slab_ranges(_shape(numbers)):
+        counts += np.bincount(numbers[:, :, first:stop].ravel(order="K"), minlength=len(counts))
+    sizes = counts[1:][counts[1:] > 0]
+    if not len(sizes):
+        raise InputError(
+            "No grain is left: all were dropped by the object classifier or deleted; choose other examples "
+            "or fewer deletions."
+        )
+    return sizes
+
+
+def _staged(stage: str, steps: Iterable[tuple[int, int]]) -> Generator[SegmentationProgress, None, Any]:
+    """The steps under the name of their stage; returns what they do."""
+    iterator = iter(steps)
+    while True:
+        try:
+            done, total = next(iterator)
+        except StopIteration as end:
+            return end.value
+        yield SegmentationProgress(stage, done, total)
 
 
 @dataclass(frozen=True, eq=False)
@@ -283,13 +373,8 @@ def _predicted(
     """The map of probabilities that a classifier makes of grey values."""
     yield SegmentationProgress(N_("Training the classifier"), 0, 1)
     steps = probability_map(train(training), source, scratch)
-    while True:
-        try:
-            done, total = next(steps)
-        except StopIteration as end:
-            found: Volume = end.value
-            return found
-        yield SegmentationProgress(N_("Predicting grains"), done, total)
+    found: Volume = yield from _staged(N_("Predicting grains"), steps)
+    return found
 
 
 def _parted(
@@ -324,9 +409,10 @@ def part_of(
 ) -> tuple[Volume, SegmentationSettings]:
     """A small part of a volume and its settings, for :func:`preview` and :func:`grains_over_heights`.
 
-    With a classifier, the part holds the probabilities, which depend on voxels about it.
+    With a classifier, the part holds the probabilities, which depend on voxels about it. Objects and edits
+    are left out: both are chosen in the whole volume.
     """
-    settings = settings or SegmentationSettings()
+    settings = (settings or SegmentationSettings()).uncorrected
     if settings.classifier is not None:
         classifier = train(settings.classifier)
         check_voxel_size(classifier, volume)

@@ -1,0 +1,226 @@
+"""Corrections of labels by hand: merge, delete and split grains, in the order in which they were made.
+
+Edits name grains by voxels in them, not by numbers, so that a list of edits means the same on the labels that
+the same settings give again.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any, Literal, get_args
+
+import numpy as np
+from numpy.typing import NDArray
+from skimage.segmentation import watershed
+
+from regolith_studio.errors import InputError
+from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray
+from regolith_studio.imaging.bounding_boxes import Box, box_between
+from regolith_studio.imaging.label_table import label_table
+from regolith_studio.imaging.segmentation.splitting import distance_map
+from regolith_studio.imaging.volume import Volume
+
+EditKind = Literal["merge", "delete", "seeds", "cut"]
+EDIT_KINDS: tuple[EditKind, ...] = get_args(EditKind)
+_LEAST_POINTS: dict[EditKind, int] = {"merge": 2, "delete": 1, "seeds": 2, "cut": 2}
+Voxel = tuple[int, int, int]
+_watershed: Any = watershed
+
+
+@dataclass(frozen=True)
+class LabelEdit:
+    """One correction.
+
+    Parameters
+    ----------
+    kind
+        ``merge`` gives all grains at the points the label of the first; ``delete`` removes those at the
+        points; ``seeds`` splits the grain that holds all points into one a point, by a watershed of the
+        distance to its surface; ``cut`` splits the grain that the line between two points crosses longest, by
+        the plane through the line and along `axis`.
+    points
+        Voxels along x, y, z.
+    axis
+        Direction across the slice in which a line was drawn.
+
+    Raises
+    ------
+    InputError
+        If the kind is another, or there are too few points.
+    """
+
+    kind: EditKind
+    points: tuple[Voxel, ...]
+    axis: int = 2
+
+    def __post_init__(self) -> None:
+        if self.kind not in EDIT_KINDS:
+            raise InputError(f"An edit of labels is one of {', '.join(EDIT_KINDS)}, not {self.kind!r}.")
+        least = _LEAST_POINTS[self.kind]
+        if len(set(self.points)) < least or (self.kind == "cut" and len(self.points) != 2):
+            raise InputError(f"The edit {self.kind!r} of labels needs {least} different voxels.")
+        if self.axis not in (0, 1, 2):
+            raise InputError(f"The axis of an edit is 0, 1 or 2, got {self.axis!r}.")
+
+
+def apply_edits(
+    numbers: NDArray[np.int32], edits: Sequence[LabelEdit], edges: FloatArray
+) -> Iterator[tuple[int, int]]:
+    """Change labels in place, one edit after the other; tells how many are done, of how many.
+
+    The first part of a split grain keeps its label, further ones get new labels above the highest; labels of
+    grains that are merged or deleted are left out.
+
+    Parameters
+    ----------
+    numbers
+        Labels, 0 between grains, shape (nx, ny, nz).
+    edges
+        Of a voxel along x, y and z, in any unit, shape (3,).
+
+    Raises
+    ------
+    InputError
+        If an edit does not find its grains: it was made on another scan or with other settings.
+    """
+    if not edits:
+        return
+    boxes = label_table(Volume(numbers, edges, "labels", "the segmentation")).boxes()
+    editor = _LabelEditor(numbers, edges, boxes)
+    for number, edit in enumerate(edits, start=1):
+        try:
+            editor.apply(edit)
+        except InputError as error:
+            raise InputError(f"Edit {number} of the labels ({edit.kind}) cannot be made: {error}") from None
+        yield number, len(edits)
+
+
+class _LabelEditor:
+    """Labels with a box about each, which may be wider than the grain."""
+
+    def __init__(self, numbers: NDArray[np.int32], edges: FloatArray, boxes: dict[int, Box]) -> None:
+        self._numbers, self._edges, self._boxes = numbers, edges, boxes
+        self._highest = max(boxes)
+
+    def apply(self, edit: LabelEdit) -> None:
+        match edit.kind:
+            case "merge":
+                self._merge([self._label_at(point) for point in edit.points])
+            case "delete":
+                for label in {self._label_at(point) for point in edit.points}:
+                    self._relabel(label, 0)
+            case "seeds":
+                self._split_by_seeds(edit.points)
+            case "cut":
+                self._cut(edit)
+
+    def _label_at(self, point: Voxel) -> int:
+        if not all(0 <= at < n for at, n in zip(point, self._numbers.shape, strict=True)):
+            raise InputError(f"voxel {point} lies outside of the volume.")
+        label = int(self._numbers[point])
+        if label <= 0:
+            raise InputError(
+                f"there is no grain at voxel {point}; use the scan and the settings that it was made with."
+            )
+        return label
+
+    def _merge(self, labels: list[int]) -> None:
+        first, *others = dict.fromkeys(labels)
+        if not others:
+            raise InputError("all its voxels lie in one grain.")
+        for label in others:
+            own, other = self._boxes[first], self._boxes[label]
+            self._relabel(label, first)
+            self._boxes[first] = _about_both(own, other)
+
+    def _relabel(self, label: int, new: int) -> None:
+        region = self._numbers[self._boxes.pop(label)]
+        region[region == label] = new
+
+    def _split_by_seeds(self, points: Sequence[Voxel]) -> None:
+        labels = {self._label_at(point) for point in points}
+        if len(labels) > 1:
+            raise InputError("its voxels lie in different grains.")
+        (label,) = labels
+        box = self._boxes[label]
+        own = np.ascontiguousarray(self._numbers[box] == label)
+        seeds = np.zeros(own.shape, dtype=np.int32)
+        for number, point in enumerate(dict.fromkeys(points), start=1):
+            seeds[tuple(at - side.start for at, side in zip(point, box, strict=True))] = number
+        parts = _watershed(-distance_map(own, self._edges), seeds, mask=own)
+        self._write_parts(label, [parts == number for number in range(2, int(seeds.max()) + 1)])
+
+    def _cut(self, edit: LabelEdit) -> None:
+        start, end = (np.array(point, dtype=np.float64) for point in edit.points)
+        label = self._crossed(start, end)
+        across, down = (axis for axis in range(3) if axis != edit.axis)
+        box = self._boxes[label]
+        x, y = np.ogrid[box[across], box[down]]
+        side = (end[across] - start[across]) * (y - start[down]) - (end[down] - start[down]) * (
+            x - start[across]
+        )
+        beyond = np.expand_dims(side > 0, edit.axis) & (self._numbers[box] == label)
+        rest = (self._numbers[box] == label) & ~beyond
+        if not beyond.any() or not rest.any():
+            raise InputError("the line does not divide the grain.")
+        self._write_parts(label, [beyond])
+
+    def _crossed(self, start: FloatArray, end: FloatArray) -> int:
+        """The label that a line crosses over the greatest length."""
+        count = 2 * int(np.abs(end - start).max()) + 1
+        places = np.rint(np.linspace(start, end, count)).astype(int)
+        inside = ((places >= 0) & (places < self._numbers.shape)).all(axis=1)
+        labels: IntArray = self._numbers[tuple(places[inside].T)].astype(np.int64)
+        if not (labels > 0).any():
+            raise InputError(
+                "its line crosses no grain; use the scan and the settings that it was made with."
+            )
+        return int(np.bincount(labels[labels > 0]).argmax())
+
+    def _write_parts(self, label: int, parts: Sequence[BoolArray]) -> None:
+        region = self._numbers[self._boxes[label]]
+        for part in parts:
+            self._highest += 1
+            region[part] = self._highest
+            self._boxes[self._highest] = self._boxes[label]
+
+
+def _about_both(one: Box, other: Box) -> Box:
+    low = [min(a.start, b.start) for a, b in zip(one, other, strict=True)]
+    high = [max(a.stop, b.stop) for a, b in zip(one, other, strict=True)]
+    return box_between(low, high)
+
+
+def edits_document(edits: Sequence[LabelEdit]) -> list[dict[str, Any]]:
+    """Plain JSON of edits."""
+    return [
+        {"kind": each.kind, "points": [list(point) for point in each.points]}
+        | ({"axis": each.axis} if each.kind == "cut" else {})
+        for each in edits
+    ]
+
+
+def edits_from(document: Any) -> tuple[LabelEdit, ...]:
+    """The edits that :func:`edits_document` has written.
+
+    Raises
+    ------
+    InputError
+        If it is no list of edits.
+    """
+    try:
+        return tuple(
+            LabelEdit(each["kind"], tuple(_voxel(point) for point in each["points"]), each.get("axis", 2))
+            for each in document
+        )
+    except (KeyError, TypeError, ValueError, AttributeError):
+        raise InputError(
+            "“edits” in a recipe is a list of edits of labels, each with a kind and points of three whole "
+            "numbers."
+        ) from None
+
+
+def _voxel(point: Any) -> Voxel:
+    x, y, z = point
+    if not all(type(each) is int for each in (x, y, z)):
+        raise ValueError(f"a voxel has whole numbers, got {point!r}")
+    return x, y, z

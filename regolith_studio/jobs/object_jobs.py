@@ -1,0 +1,160 @@
+"""Jobs of the object step: describe segmented objects, classify them by examples, and correct labels."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from regolith_studio.errors import InputError
+from regolith_studio.geometry.arrays import IntArray
+from regolith_studio.imaging.segmentation.classifier_document import objects_document
+from regolith_studio.imaging.segmentation.object_classifier import (
+    OBJECT_CLASSES,
+    ObjectAction,
+    ObjectTable,
+    ObjectTraining,
+    classify_objects,
+    describe_objects,
+    train_on_examples,
+)
+from regolith_studio.imaging.segmentation.segment import (
+    Segmentation,
+    SegmentationSettings,
+    correction_steps,
+)
+from regolith_studio.imaging.slice_images import SliceImages
+from regolith_studio.imaging.volume import Volume
+from regolith_studio.imaging.volume_slabs import ScratchArrays, SliceSource
+from regolith_studio.io.atomic import write_bytes
+from regolith_studio.io.json_text import canonical_json
+from regolith_studio.jobs.events import Progress, Started, Steps
+from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput
+from regolith_studio.jobs.volume_jobs import (
+    IN_MEMORY,
+    GrainSegmentation,
+    reported,
+    scratch_folder,
+    segment_volume,
+    slice_images,
+    volume_sha256,
+    working_bytes,
+)
+from regolith_studio.messages import N_, Message
+
+Examples = Sequence[tuple[tuple[int, int, int], int]]
+
+
+@dataclass(frozen=True, eq=False)
+class ClassifiedObjects:
+    """What examples say of all objects.
+
+    Parameters
+    ----------
+    training
+        ``None`` while fewer than two classes have an example.
+    kinds
+        Class of each object in the order of their labels, shape (n,); empty without a training set.
+    missing
+        What is to be chosen first, if anything: one sentence.
+    """
+
+    training: ObjectTraining | None
+    kinds: IntArray
+    missing: str = ""
+
+    def counts(self) -> dict[str, int]:
+        """Number of objects of each class."""
+        found = np.bincount(self.kinds, minlength=len(OBJECT_CLASSES)).tolist()
+        return dict(zip(OBJECT_CLASSES, found, strict=True))
+
+
+def train_on_objects(given: VolumeInput, settings: GrainSettings, examples: Examples, scratch: Path) -> Steps:
+    """Segment a scan and classify its objects by examples; returns :class:`ClassifiedObjects`.
+
+    Parameters
+    ----------
+    settings
+        Of the region and the segmentation; an object classifier or edits in it are left out.
+    examples
+        Voxels in objects, in the region, each with its class.
+    scratch
+        Folder for temporary files where the volume is too large for the memory.
+
+    Raises
+    ------
+    FileError
+        If the scan is no volume.
+    InputError
+        If it holds labels, a voxel lies in no object, or fewer than two classes have an example.
+    """
+    yield Started(Message(N_("Reading {name}"), name=given.path.name))
+    source = settings.region.of(given.opened())
+    if source.kind != "grey":
+        raise InputError(
+            f"{given.path.name} holds labels; objects are classified where grains are segmented."
+        )
+    with ScratchArrays(scratch if working_bytes(source) > IN_MEMORY else None) as arrays:
+        found: Segmentation = yield from segment_volume(source, settings.segmentation.uncorrected, arrays)
+        table: ObjectTable = yield from describe_grains(source, found)
+        training = train_on_examples(table, found.labels, examples, scan=volume_sha256(given.path))
+    return ClassifiedObjects(training, classify_objects(training, table.vectors))
+
+
+def describe_grains(grey: SliceSource, found: Segmentation) -> Steps:
+    """Measure all objects of a segmentation; returns their :class:`ObjectTable`."""
+    yield Started(N_("Describing objects"))
+    steps = describe_objects(found.labels, grey)
+    while True:
+        try:
+            yield Progress(*next(steps))
+        except StopIteration as end:
+            return end.value
+
+
+def classify_grains(
+    table: ObjectTable, labels: Volume, examples: Examples, actions: tuple[ObjectAction, ...]
+) -> Steps:
+    """Classify all objects by examples; returns :class:`ClassifiedObjects`."""
+    yield Started(N_("Classifying objects"))
+    try:
+        training = train_on_examples(table, labels, examples, actions)
+    except InputError as error:
+        return ClassifiedObjects(None, np.zeros(0, dtype=np.int64), str(error))
+    return ClassifiedObjects(training, classify_objects(training, table.vectors))
+
+
+def correct_grains(
+    grey: SliceSource,
+    found: Segmentation,
+    settings: SegmentationSettings,
+    objects: ObjectTable | None = None,
+) -> Steps:
+    """Apply the objects and edits of `settings` to a segmentation; returns :class:`GrainSegmentation`.
+
+    Raises
+    ------
+    InputError
+        If an edit does not find its grains, or no grain is left.
+    """
+    large = working_bytes(grey) > IN_MEMORY
+    scratch = ScratchArrays(scratch_folder() if large else None)
+    try:
+        made: Segmentation = yield from reported(correction_steps(found, grey, settings, scratch, objects))
+        if not large:
+            return GrainSegmentation(made, SliceImages(made.labels.array), scratch)
+        return GrainSegmentation(made, (yield from slice_images(made.labels)), scratch)
+    except BaseException:
+        scratch.close()
+        raise
+
+
+def write_objects(path: Path, training: ObjectTraining) -> None:
+    """Write the file of an object classifier.
+
+    Raises
+    ------
+    FileError
+        If it cannot be written.
+    """
+    write_bytes(path, canonical_json(objects_document(training)).encode("ascii"))
