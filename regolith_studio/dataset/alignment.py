@@ -1,4 +1,4 @@
-"""Normalise a convex polyhedron: unit volume, centroid at the origin, principal axes along x, y, z."""
+"""Normalise a polyhedron: unit volume, centroid at the origin, principal axes along x, y, z."""
 
 from dataclasses import dataclass
 
@@ -6,6 +6,7 @@ import numpy as np
 
 from regolith_studio.errors import GeometryError
 from regolith_studio.geometry.arrays import FloatArray, locked_floats
+from regolith_studio.geometry.convex_compound import ConvexCompound, Polyhedron
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.half_spaces import HalfSpaces
 from regolith_studio.geometry.mesh import Mesh
@@ -42,13 +43,13 @@ class Frame:
         return np.asarray(points @ self.rotation * self.scale + self.centroid)
 
 
-def aligned(polyhedron: ConvexPolyhedron, centre: FloatArray | None = None) -> tuple[ConvexPolyhedron, Frame]:
+def aligned(polyhedron: Polyhedron, centre: FloatArray | None = None) -> tuple[Polyhedron, Frame]:
     """The polyhedron at unit volume about its centroid, longest axis along x, shortest along z; and its pose.
 
     Parameters
     ----------
     polyhedron
-        About an origin in its interior, in micrometres.
+        About an origin in its interior, in micrometres; of a compound the union is aligned.
     centre
         Position of that origin in the particle's frame; (0, 0, 0) if not given.
 
@@ -63,7 +64,10 @@ def aligned(polyhedron: ConvexPolyhedron, centre: FloatArray | None = None) -> t
     rotation = principal_axes(polyhedron.mesh)
     moved = polyhedron.moved(shift=-polyhedron.centroid, rotation=rotation, scale=1.0 / scale)
     origin = np.zeros(3) if centre is None else np.asarray(centre, dtype=np.float64)
-    return rebuilt(moved.half_spaces), Frame(rotation, origin + polyhedron.centroid, scale)
+    frame = Frame(rotation, origin + polyhedron.centroid, scale)
+    if isinstance(moved, ConvexPolyhedron):
+        return rebuilt(moved.half_spaces), frame
+    return ConvexCompound(tuple(rebuilt(part.half_spaces) for part in moved.parts), moved.places), frame
 
 
 def rebuilt(half_spaces: HalfSpaces) -> ConvexPolyhedron:

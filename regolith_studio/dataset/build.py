@@ -15,9 +15,9 @@ from regolith_studio.dataset.size_distributions import (
     equivalent_diameter,
     normalised_shares,
 )
-from regolith_studio.errors import DatasetError, InputError
+from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray
-from regolith_studio.geometry.convex_compound import ConvexCompound, Polyhedron
+from regolith_studio.geometry.convex_compound import Polyhedron
 from regolith_studio.geometry.particle import Particle
 
 PACKAGES = ("numpy", "scipy", "numba", "pyshtools", "scikit-image", "fast-simplification", "vtk")
@@ -162,20 +162,8 @@ def singleton_class(particle: Particle) -> ShapeClass:
 def representative_of(
     name: str, particle: Particle, coarsened: CoarsenedShape, own: ShapeClass
 ) -> Representative:
-    """The representative of a class, aligned and at unit volume.
-
-    Raises
-    ------
-    DatasetError
-        If the particle is a union of several convex parts.
-    """
-    solid = coarsened.polyhedron
-    if isinstance(solid, ConvexCompound):
-        raise DatasetError(
-            f"A dataset holds convex polyhedra, and {particle.name} is a compound of {solid.n_parts} parts;"
-            " coarsen it by another method."
-        )
-    shape, frame = aligned(solid, coarsened.centre)
+    """The representative of a class, aligned and at unit volume."""
+    shape, frame = aligned(coarsened.polyhedron, coarsened.centre)
     approximation = Approximation(
         method=coarsened.method,
         n_facets_asked=coarsened.n_facets_asked,

@@ -12,7 +12,9 @@ from regolith_studio.dataset.size_distributions import (
     Weighting,
     normalised_shares,
 )
+from regolith_studio.errors import DatasetError
 from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.geometry.convex_compound import Polyhedron
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.particle import Source
 
@@ -59,7 +61,7 @@ class Representative:
     name
         Of the chosen particle; unique within the dataset.
     shape
-        Unit volume, centroid at the origin, principal axes along x, y, z.
+        Unit volume, centroid at the origin, principal axes along x, y, z; those of the union of a compound.
     weight
         alpha_i.
     sizes
@@ -75,7 +77,7 @@ class Representative:
     """
 
     name: str
-    shape: ConvexPolyhedron
+    shape: Polyhedron
     weight: float
     sizes: SizeDistribution
     frame: Frame
@@ -91,6 +93,21 @@ class Representative:
                 f"the shape of {self.name} must have unit volume and its centroid at the origin, "
                 f"got {volume!r} and {centroid.tolist()}"
             )
+
+    @property
+    def convex(self) -> ConvexPolyhedron:
+        """The shape, if it is a single convex polyhedron.
+
+        Raises
+        ------
+        DatasetError
+            If it is a compound.
+        """
+        if isinstance(self.shape, ConvexPolyhedron):
+            return self.shape
+        raise DatasetError(
+            f"{self.name} is a compound of {self.shape.n_parts} convex parts, not one convex polyhedron."
+        )
 
 
 @dataclass(frozen=True)

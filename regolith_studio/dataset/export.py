@@ -4,7 +4,7 @@ import hashlib
 import os
 import shlex
 import subprocess
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any
@@ -15,9 +15,11 @@ from regolith_studio.dataset.folder_io import IGNORED_FILES
 from regolith_studio.dataset.parameters import ContactParameters, LiftingCylinderTest, ScriptTimes
 from regolith_studio.dataset.size_distributions import size_classes
 from regolith_studio.errors import DatasetError, FileError, InputError, os_error_reason
+from regolith_studio.geometry.convex_compound import ConvexCompound
 from regolith_studio.io.atomic import recover_folder, replace_folder
 from regolith_studio.io.json_text import canonical_json, parse_strict_json
 from regolith_studio.io.tables import csv_bytes
+from regolith_studio.messages import N_
 
 FORMAT = "regolith-studio-export"
 RECORD, README = "export.json", "README.txt"
@@ -114,6 +116,9 @@ class Exporter:
         not a file but text for the README, such as measured errors.
     alters
         How shapes are changed, in one sentence; empty if they are exact. Such an export must be accepted.
+    convex_only
+        Why the format cannot hold compounds, in one sentence; empty if it can. A dataset with compounds is
+        refused before anything is written.
     """
 
     key: str
@@ -124,6 +129,7 @@ class Exporter:
     load_command: str
     files: Callable[[Dataset, ExportOptions], dict[str, bytes]]
     alters: str = ""
+    convex_only: str = N_("Its particles are convex polyhedra.")
 
 
 NOTES = "NOTES"
@@ -171,11 +177,12 @@ def write_export(
     Raises
     ------
     DatasetError
-        If the format changes shapes and that was not accepted, the folder holds anything else, or
-        something cannot be written.
+        If the format changes shapes and that was not accepted, cannot hold the dataset's compounds, the
+        folder holds anything else, or something cannot be written.
     """
     chosen, target = options or ExportOptions(), Path(folder).resolve()
     check_loss_accepted(exporter, accept_loss)
+    check_compounds(dataset, [exporter])
     try:
         recover_folder(target)
         _check_replaceable(target)
@@ -204,6 +211,23 @@ def check_loss_accepted(exporter: Exporter, accept_loss: bool) -> None:
         raise DatasetError(
             f"{exporter.label} cannot hold the shapes as they are: {exporter.alters} "
             "Allow formats that change the shapes to export it nevertheless."
+        )
+
+
+def check_compounds(dataset: Dataset, exporters: Sequence[Exporter]) -> None:
+    """Check that formats can hold the compounds of a dataset, if it has any.
+
+    Raises
+    ------
+    DatasetError
+        If one cannot; the message says why.
+    """
+    refusing = next((each for each in exporters if each.convex_only), None)
+    compounds = [one for one in dataset.representatives if isinstance(one.shape, ConvexCompound)]
+    if refusing is not None and compounds:
+        raise DatasetError(
+            f"{refusing.label} cannot hold {compounds[0].name}, a compound of convex parts: "
+            f"{refusing.convex_only} Leave the format {refusing.key} out, or coarsen by another method."
         )
 
 

@@ -66,7 +66,8 @@ def read_mesh_bytes(folder: Path, file: str) -> bytes:
 
 def foreign_files(folder: Path, document: DatasetDocument) -> list[str]:
     """Files and folders below `folder` that do not belong to its dataset, as relative POSIX paths."""
-    own = {DOCUMENT, README, "meshes", *(record.mesh.file for record in document.representatives)}
+    meshes = (mesh.file for record in document.representatives for mesh in record.mesh_records)
+    own = {DOCUMENT, README, "meshes", *meshes}
     found = {
         path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.name not in IGNORED_FILES
     }
@@ -124,7 +125,8 @@ def dataset_files(dataset: Dataset) -> dict[str, bytes]:
     """Content of every file by its relative path; equal datasets give equal bytes."""
     meshes = mesh_files(dataset)
     texts = {DOCUMENT: document_text(dataset, meshes), README: readme_text(dataset)}
-    return meshes | {name: text.encode("utf-8") for name, text in texts.items()}
+    files = {name: content for own in meshes for name, content in own.items()}
+    return files | {name: text.encode("utf-8") for name, text in texts.items()}
 
 
 def read_dataset(folder: Path | str) -> Dataset:
@@ -137,9 +139,9 @@ def read_dataset(folder: Path | str) -> Dataset:
     """
     target = recover_folder(real_path(folder))
     document = read_document(target)
-    for record in document.representatives:
-        if hashlib.sha256(read_mesh_bytes(target, record.mesh.file)).hexdigest() != record.mesh.sha256:
-            raise DatasetError(f"{target / record.mesh.file} is not the file that dataset.json describes.")
+    for mesh in (each for record in document.representatives for each in record.mesh_records):
+        if hashlib.sha256(read_mesh_bytes(target, mesh.file)).hexdigest() != mesh.sha256:
+            raise DatasetError(f"{target / mesh.file} is not the file that dataset.json describes.")
     return dataset_of(document, str(target / DOCUMENT))
 
 
@@ -180,9 +182,10 @@ written by Regolith Studio.
 dataset.json   weights, size distributions, exact half-spaces, provenance.
                Its fields are described by the JSON Schema of the program
                (resources/schema/dataset.schema.json), schema version {version}.
-meshes/        one binary STL a shape: closed, convex, outward normals, volume 1, centroid at
-               the origin, longest principal axis along x, shortest along z. The coordinates
-               have no unit.
+meshes/        one binary STL a shape: closed, outward normals, volume 1, centroid at the origin,
+               longest principal axis along x, shortest along z. The coordinates have no unit.
+               Of a compound, which is the union of convex parts, it is the surface of the
+               union, and each part has a file besides (.part1, .part2, ...) in the same frame.
 
 To make a particle: choose a class by the weights (they count {counted}), draw an equivalent
 diameter d (in micrometres) from the sizes of the class, and scale the shape by
@@ -190,7 +193,9 @@ d * (pi / 6)^(1/3) = 0.80600 d, so that its volume is that of a sphere of diamet
 random. If a program asks for a size, choose the equivalent (volume) diameter.
 
 "n_facets" counts polygonal facets; the STL file divides them into triangles. The half-spaces in
-dataset.json are the exact shape: all x with <normal_i, x> <= offset_i.
+dataset.json are the exact shape: all x with <normal_i, x> <= offset_i, of a part all x with
+<normal_i, x - origin> <= offset_i. Volume, centre of mass, inertia and descriptors of a compound are
+those of the union; what parts share counts once.
 Coordinates in the original particle: x_particle = scale rotation^T x_shape + centroid.
 
 To check the folder:   regolith-studio dataset validate .

@@ -14,7 +14,7 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 from regolith_studio.dataset.size_distributions import WEIGHT_TOLERANCE, AnySizes, Weighting
 
 FORMAT = "regolith-studio-dataset"
-SCHEMA_VERSION = 3
+SCHEMA_VERSION = 4
 MESH_PATH = r"^meshes/[A-Za-z0-9_][A-Za-z0-9_.-]*\.stl$"
 
 Sha256 = Annotated[str, Field(pattern=r"^[0-9a-f]{64}$", description="SHA-256 of the file's bytes.")]
@@ -29,7 +29,11 @@ class SchemaModel(BaseModel):
 
 
 class MeshRecord(SchemaModel):
-    """The STL file of a representative: the facets cut into triangles, outward normals, float32."""
+    """The STL file of a shape or of a part: closed, outward normals, float32.
+
+    Of one convex polyhedron the triangles are those of its facets. Of a compound they are the surface of the
+    union, without what lies inside other parts, and n_facets counts the facets of all parts.
+    """
 
     file: Annotated[
         str, Field(pattern=MESH_PATH, description="Relative to dataset.json, with forward slashes.")
@@ -41,7 +45,7 @@ class MeshRecord(SchemaModel):
 
 
 class HalfSpacesRecord(SchemaModel):
-    """The shape exactly: all x with <normal_i, x> <= offset_i, dimensionless, unit volume."""
+    """A convex polyhedron exactly: all x with <normal_i, x> <= offset_i, dimensionless."""
 
     normals: tuple[Triple, ...] = Field(min_length=4, description="Outward unit normals.")
     offsets: tuple[Annotated[float, Field(gt=0.0)], ...] = Field(min_length=4)
@@ -51,6 +55,31 @@ class HalfSpacesRecord(SchemaModel):
         if len(self.normals) != len(self.offsets):
             raise ValueError(f"{len(self.normals)} normals need as many offsets, got {len(self.offsets)}")
         return self
+
+
+class PartRecord(SchemaModel):
+    """A convex part of a compound: all x with <normal_i, x - origin> <= offset_i."""
+
+    origin: Triple = Field(description="Of the half-spaces, in the frame of the shape.")
+    half_spaces: HalfSpacesRecord
+    mesh: MeshRecord = Field(description="Of the part alone, in the frame of the shape.")
+
+
+class CompoundRecord(SchemaModel):
+    """A shape that is the union of convex parts, which overlap or touch; all numbers are of the union.
+
+    What parts share counts once, so that these are not the sums over the parts.
+    """
+
+    parts: tuple[PartRecord, ...] = Field(min_length=1)
+    volume: float = Field(description="Also the mass at density 1.")
+    centre_of_mass: Triple
+    inertia: tuple[Triple, Triple, Triple] = Field(
+        description="Tensor of inertia about the centre of mass at density 1, row by row."
+    )
+    descriptors: dict[str, float] = Field(
+        description="At unit volume, by the keys of the catalogue; convexity is V / CH."
+    )
 
 
 class FrameRecord(SchemaModel):
@@ -89,10 +118,23 @@ class RepresentativeRecord(SchemaModel):
     n_members: Annotated[int, Field(ge=1, description="Particles that the class stands for.")]
     sizes: AnySizes
     mesh: MeshRecord
-    half_spaces: HalfSpacesRecord
+    half_spaces: HalfSpacesRecord | None = Field(description="Of one convex polyhedron of unit volume.")
+    compound: CompoundRecord | None = Field(description="Of a shape of several convex parts.")
     frame: FrameRecord
     approximation: ApproximationRecord | None
     source: SourceRecord | None
+
+    @model_validator(mode="after")
+    def _is_one_shape(self) -> Self:
+        if (self.half_spaces is None) == (self.compound is None):
+            raise ValueError("a shape has either half_spaces or compound")
+        return self
+
+    @property
+    def mesh_records(self) -> tuple[MeshRecord, ...]:
+        """Of the shape, then of each part of a compound."""
+        parts = self.compound.parts if self.compound else ()
+        return (self.mesh, *(part.mesh for part in parts))
 
 
 class CoarseningRecordModel(SchemaModel):
@@ -155,7 +197,7 @@ class DatasetDocument(SchemaModel):
     """A dataset of representative particles (section 2.5)."""
 
     format: Literal["regolith-studio-dataset"]
-    schema_version: Literal[3]
+    schema_version: Literal[4]
     name: str
     length_unit: Literal["um"] = Field(description="Of all lengths whose key ends in _um.")
     shape_unit: Literal["unit volume"] = Field(description="Shapes have volume 1 and no length unit.")
@@ -176,7 +218,10 @@ class DatasetDocument(SchemaModel):
             raise ValueError(f"weights must add up to 1 within {WEIGHT_TOLERANCE}, they add up to {total!r}")
         for key, values in (
             ("names", [record.name for record in self.representatives]),
-            ("mesh files", [record.mesh.file.casefold() for record in self.representatives]),
+            (
+                "mesh files",
+                [mesh.file.casefold() for record in self.representatives for mesh in record.mesh_records],
+            ),
         ):
             if len(set(values)) != len(values):
                 raise ValueError(f"{key} of representatives must differ")

@@ -1,6 +1,7 @@
 """Convert a dataset to ``dataset.json`` and back."""
 
 import hashlib
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -15,42 +16,74 @@ from regolith_studio.dataset.dataset import (
     Representation,
     Representative,
 )
-from regolith_studio.dataset.schema import FORMAT, SCHEMA_VERSION, DatasetDocument, RepresentativeRecord
+from regolith_studio.dataset.schema import (
+    FORMAT,
+    SCHEMA_VERSION,
+    DatasetDocument,
+    HalfSpacesRecord,
+    RepresentativeRecord,
+)
 from regolith_studio.dataset.size_distributions import Weighting
+from regolith_studio.descriptors.describe import describe
 from regolith_studio.errors import DatasetError, FileError, RegolithError, format_validation_error
+from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.geometry.convex_compound import ConvexCompound, Polyhedron
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.half_spaces import HalfSpaces
+from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Source
 from regolith_studio.io.json_text import canonical_json, parse_strict_json
 from regolith_studio.io.stl import stl_bytes
 
 
-def mesh_files(dataset: Dataset) -> dict[str, bytes]:
-    """Relative path and content of the STL file of each representative, in order."""
-    return {
-        mesh_path(index, len(dataset)): stl_bytes(
-            representative.shape.mesh.triangles, mesh_header(index, len(dataset))
-        )
+def mesh_files(dataset: Dataset) -> list[dict[str, bytes]]:
+    """Relative path and content of the STL files of each representative, in order."""
+    count = len(dataset)
+    return [
+        {
+            mesh_path(index, count, part): content
+            for part, content in enumerate(shape_bytes(representative.shape, index, count))
+        }
         for index, representative in enumerate(dataset.representatives)
-    }
+    ]
 
 
-def mesh_path(index: int, count: int) -> str:
-    """Relative path of the STL file of one of `count` representatives."""
-    return f"meshes/particle_{_numbered(index, count)}.stl"
+def shape_bytes(shape: Polyhedron, index: int, count: int) -> tuple[bytes, ...]:
+    """STL of a shape, one of `count`, and of each part of a compound."""
+    parts = shape.part_meshes if isinstance(shape, ConvexCompound) else ()
+    return tuple(
+        stl_bytes(_stored_triangles(mesh), mesh_header(index, count, part))
+        for part, mesh in enumerate((shape.mesh, *parts))
+    )
 
 
-def mesh_header(index: int, count: int) -> str:
+def _stored_triangles(mesh: Mesh) -> FloatArray:
+    """Without those with two corners that float32 does not tell apart: the surface stays closed.
+
+    Where facets of two parts nearly meet, a union has edges that short.
+    """
+    a, b, c = np.moveaxis(mesh.triangles.astype(np.float32), 1, 0)
+    kept = (a != b).any(axis=1) & (b != c).any(axis=1) & (c != a).any(axis=1)
+    return np.asarray(mesh.triangles[kept])
+
+
+def mesh_path(index: int, count: int, part: int = 0) -> str:
+    """Relative path of the STL file of one of `count` representatives, or of a part, counted from 1."""
+    return f"meshes/particle_{_numbered(index, count)}{f'.part{part}' if part else ''}.stl"
+
+
+def mesh_header(index: int, count: int, part: int = 0) -> str:
     """Header of that file."""
-    return f"regolith-studio unit-volume shape {_numbered(index, count)}"
+    of = f"part {part} of " if part else ""
+    return f"regolith-studio {of}unit-volume shape {_numbered(index, count)}"
 
 
 def _numbered(index: int, count: int) -> str:
     return f"{index:0{max(4, len(str(count - 1)))}d}"
 
 
-def document_text(dataset: Dataset, files: dict[str, bytes]) -> str:
-    """The content of ``dataset.json``; equal datasets give equal text.
+def document_text(dataset: Dataset, files: Sequence[Mapping[str, bytes]]) -> str:
+    """The content of ``dataset.json``; equal datasets give equal text; `files` are those of each shape.
 
     Raises
     ------
@@ -58,8 +91,8 @@ def document_text(dataset: Dataset, files: dict[str, bytes]) -> str:
         If the dataset violates the schema, for example by an error that is not finite.
     """
     records = [
-        record_of(representative, file, content)
-        for representative, (file, content) in zip(dataset.representatives, files.items(), strict=True)
+        record_of(representative, own)
+        for representative, own in zip(dataset.representatives, files, strict=True)
     ]
     content = frame_of(dataset.name, dataset.weighting, dataset.provenance) | {"representatives": records}
     try:
@@ -128,16 +161,32 @@ def dataset_of(document: DatasetDocument, where: str) -> Dataset:
     )
 
 
-def shape_of(record: RepresentativeRecord) -> ConvexPolyhedron:
-    """The polyhedron of the record's half-spaces.
+def shape_of(record: RepresentativeRecord) -> Polyhedron:
+    """The polyhedron of the record's half-spaces, or the compound of its parts.
 
     Raises
     ------
     GeometryError
         If they bound no volume.
     """
-    planes = HalfSpaces(np.array(record.half_spaces.normals), np.array(record.half_spaces.offsets))
-    return ConvexPolyhedron.from_half_spaces(planes)
+    if record.compound is None:
+        assert record.half_spaces is not None
+        return polyhedron_of(record.half_spaces)
+    parts = record.compound.parts
+    return ConvexCompound(
+        tuple(polyhedron_of(part.half_spaces) for part in parts), np.array([part.origin for part in parts])
+    )
+
+
+def polyhedron_of(record: HalfSpacesRecord) -> ConvexPolyhedron:
+    """The polyhedron of half-spaces about their origin.
+
+    Raises
+    ------
+    GeometryError
+        If they bound no volume.
+    """
+    return ConvexPolyhedron.from_half_spaces(HalfSpaces(np.array(record.normals), np.array(record.offsets)))
 
 
 def _representative(record: RepresentativeRecord, where: str) -> Representative:
@@ -173,9 +222,10 @@ def _provenance(document: DatasetDocument) -> Provenance:
     )
 
 
-def record_of(representative: Representative, file: str, content: bytes) -> dict[str, Any]:
-    """The entry of one representative in ``dataset.json``; `content` are the bytes of its STL file."""
+def record_of(representative: Representative, files: Mapping[str, bytes]) -> dict[str, Any]:
+    """The entry of one representative in ``dataset.json``; `files` are its STL files in order."""
     shape, frame = representative.shape, representative.frame
+    whole, *parts = [mesh_record(file, content) for file, content in files.items()]
     approximation, source = representative.approximation, representative.source
     return {
         "name": representative.name,
@@ -183,17 +233,9 @@ def record_of(representative: Representative, file: str, content: bytes) -> dict
         "weight": representative.weight,
         "n_members": representative.n_members,
         "sizes": representative.sizes.model_dump(mode="json"),
-        "mesh": {
-            "file": file,
-            "sha256": hashlib.sha256(content).hexdigest(),
-            "n_facets": shape.n_facets,
-            "n_vertices": shape.n_vertices,
-            "n_triangles": shape.n_triangles,
-        },
-        "half_spaces": {
-            "normals": shape.half_spaces.normals.tolist(),
-            "offsets": shape.half_spaces.offsets.tolist(),
-        },
+        "mesh": whole | _counts(shape),
+        "half_spaces": None if isinstance(shape, ConvexCompound) else _half_spaces(shape),
+        "compound": _compound(shape, parts) if isinstance(shape, ConvexCompound) else None,
         "frame": {
             "rotation": frame.rotation.tolist(),
             "centroid_um": frame.centroid.tolist(),
@@ -201,6 +243,48 @@ def record_of(representative: Representative, file: str, content: bytes) -> dict
         },
         "approximation": None if approximation is None else _plain(vars(approximation)),
         "source": source and {"path": source.path, "sha256": source.sha256, "unit": source.unit},
+    }
+
+
+def mesh_record(file: str, content: bytes) -> dict[str, Any]:
+    """Path and hash of an STL file."""
+    return {"file": file, "sha256": hashlib.sha256(content).hexdigest()}
+
+
+def _counts(shape: Polyhedron) -> dict[str, int]:
+    """Facets; vertices and triangles of the surface, of a compound those of its file."""
+    if isinstance(shape, ConvexPolyhedron):
+        n_vertices, n_triangles = shape.n_vertices, shape.n_triangles
+    else:
+        corners = _stored_triangles(shape.mesh).reshape(-1, 3).astype(np.float32)
+        n_vertices, n_triangles = len(np.unique(corners, axis=0)), len(corners) // 3
+    return {"n_facets": shape.n_facets, "n_vertices": n_vertices, "n_triangles": n_triangles}
+
+
+def _half_spaces(shape: ConvexPolyhedron) -> dict[str, Any]:
+    planes = shape.half_spaces
+    return {"normals": planes.normals.tolist(), "offsets": planes.offsets.tolist()}
+
+
+def _compound(shape: ConvexCompound, files: Sequence[dict[str, Any]]) -> dict[str, Any]:
+    """Parts and properties of the union; `files` are the mesh records of the parts."""
+    parts = zip(shape.parts, shape.places.tolist(), files, strict=True)
+    return {
+        "parts": [
+            {"origin": place, "half_spaces": _half_spaces(part), "mesh": file | _counts(part)}
+            for part, place, file in parts
+        ],
+        **union_properties(shape),
+    }
+
+
+def union_properties(shape: ConvexCompound) -> dict[str, Any]:
+    """Volume, centre of mass, inertia and descriptors of a compound, as its record has them."""
+    return {
+        "volume": shape.volume,
+        "centre_of_mass": shape.centroid.tolist(),
+        "inertia": shape.inertia.tolist(),
+        "descriptors": dict(describe(shape)),
     }
 
 

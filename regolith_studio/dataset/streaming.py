@@ -4,7 +4,6 @@ Each particle is first reduced to a :class:`StoredShape`, in any process; the fo
 them, with one shape in memory at a time.
 """
 
-import hashlib
 import json
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
@@ -28,13 +27,20 @@ from regolith_studio.dataset.folder_io import (
     check_replaceable,
 )
 from regolith_studio.dataset.schema import RepresentativeRecord
-from regolith_studio.dataset.serialization import frame_of, mesh_header, mesh_path, parsed_document, record_of
+from regolith_studio.dataset.serialization import (
+    frame_of,
+    mesh_header,
+    mesh_path,
+    mesh_record,
+    parsed_document,
+    record_of,
+    shape_bytes,
+)
 from regolith_studio.dataset.size_distributions import normalised_shares
 from regolith_studio.errors import DatasetError, InputError, os_error_reason
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.io.atomic import recover_folder, replace_folder
 from regolith_studio.io.json_text import canonical_json
-from regolith_studio.io.stl import stl_bytes
 
 _HEADER = 80
 _PLACE = "representatives"
@@ -50,12 +56,12 @@ class StoredShape:
     ----------
     record
         Its entry in ``dataset.json``; weight, file and hash are filled in later.
-    mesh
-        Binary STL of the shape.
+    meshes
+        Binary STL of the shape, then of each part of a compound.
     """
 
     record: Mapping[str, Any]
-    mesh: bytes
+    meshes: tuple[bytes, ...]
 
 
 def stored_shape(particle: Particle, coarsened: CoarsenedShape) -> StoredShape:
@@ -63,8 +69,9 @@ def stored_shape(particle: Particle, coarsened: CoarsenedShape) -> StoredShape:
     representative: Representative = representative_of(
         particle.name, particle, coarsened, singleton_class(particle)
     )
-    mesh = stl_bytes(representative.shape.mesh.triangles, mesh_header(0, 1))
-    return StoredShape(record_of(representative, mesh_path(0, 1), mesh), mesh)
+    meshes = shape_bytes(representative.shape, 0, 1)
+    files = {mesh_path(0, 1, part): content for part, content in enumerate(meshes)}
+    return StoredShape(record_of(representative, files), meshes)
 
 
 def check_count(count: int, n_facets: int) -> None:
@@ -121,23 +128,28 @@ def write_stored(
 def _files(
     shapes: Callable[[], Iterable[StoredShape]], count: int, name: str, provenance: Provenance
 ) -> Iterator[tuple[str, bytes | Iterable[bytes]]]:
-    digests: list[str] = []
+    files: list[list[dict[str, Any]]] = []
     for index, shape in enumerate(shapes()):
-        content = mesh_header(index, count).encode("ascii").ljust(_HEADER) + shape.mesh[_HEADER:]
-        digests.append(hashlib.sha256(content).hexdigest())
-        yield mesh_path(index, count), content
-    records = _records(shapes(), digests)
+        files.append([])
+        for part, mesh in enumerate(shape.meshes):
+            header = mesh_header(index, count, part).encode("ascii").ljust(_HEADER)
+            file, content = mesh_path(index, count, part), header + mesh[_HEADER:]
+            files[-1].append(mesh_record(file, content))
+            yield file, content
+    records = _records(shapes(), files)
     yield DOCUMENT, _document(records, name, provenance)
     yield README, README_TEMPLATE.format(name=name, count=count, counted="particles").encode("utf-8")
 
 
-def _records(shapes: Iterable[StoredShape], digests: list[str]) -> Iterator[dict[str, Any]]:
-    """Checked records with weight, file and hash."""
-    count = len(digests)
-    weights = normalised_shares([1.0] * count)
-    for index, shape in enumerate(shapes):
-        mesh = {**shape.record["mesh"], "file": mesh_path(index, count), "sha256": digests[index]}
-        record = {**shape.record, "weight": weights[index], "mesh": mesh}
+def _records(shapes: Iterable[StoredShape], files: list[list[dict[str, Any]]]) -> Iterator[dict[str, Any]]:
+    """Checked records with weight, and with path and hash of each file."""
+    weights = normalised_shares([1.0] * len(files))
+    for shape, weight, (whole, *others) in zip(shapes, weights, files, strict=True):
+        record = {**shape.record, "weight": weight, "mesh": {**shape.record["mesh"], **whole}}
+        if compound := shape.record["compound"]:
+            pairs = zip(compound["parts"], others, strict=True)
+            parts = [{**part, "mesh": {**part["mesh"], **file}} for part, file in pairs]
+            record["compound"] = {**compound, "parts": parts}
         try:
             RepresentativeRecord.model_validate_json(json.dumps(record))
         except ValidationError as error:

@@ -168,8 +168,10 @@ def prepare(dataset: Dataset, case: ReposeCase, dataset_hash: str = "") -> Prepa
     Raises
     ------
     InputError
-        If the cylinder is too narrow or too low for them.
+        If the cylinder is too narrow or too low for them, or one is a compound of convex parts.
     """
+    if compound := next((one for one in dataset.representatives if one.shape.part_meshes[1:]), None):
+        raise InputError(f"Heaps of compounds are not simulated, and {compound.name} is one.")
     drawn = sample_dataset(dataset, case.n_particles, case.seed)
     fine = drawn.diameter * MICROMETRE
     mass = case.contact.density * np.pi / 6 * float((fine**3).sum())

@@ -65,6 +65,16 @@ class ConvexCompound:
         """Triangles of all parts."""
         return sum(part.n_triangles for part in self.parts)
 
+    @property
+    def vertices(self) -> FloatArray:
+        """Vertices of all parts in the frame of the compound, shape (n_vertices, 3)."""
+        return np.concatenate([mesh.vertices for mesh in self.part_meshes])
+
+    @property
+    def facet_normals(self) -> FloatArray:
+        """Outward unit normal of each facet, shape (n_facets, 3)."""
+        return np.concatenate([part.half_spaces.normals for part in self.parts])
+
     @cached_property
     def part_meshes(self) -> tuple[Mesh, ...]:
         """Surface of each part in the frame of the compound."""
@@ -102,7 +112,7 @@ class ConvexCompound:
 
     @property
     def _bounds(self) -> tuple[FloatArray, FloatArray]:
-        points = np.concatenate([mesh.vertices for mesh in self.part_meshes])
+        points = self.vertices
         return points.min(axis=0), points.max(axis=0)
 
     @property

@@ -100,6 +100,16 @@ class ConvexPolyhedron:
         return areas.astype(np.float64)
 
     @property
+    def facet_normals(self) -> FloatArray:
+        """Outward unit normal of each facet, shape (n_facets, 3)."""
+        return self.half_spaces.normals
+
+    @property
+    def part_meshes(self) -> tuple[Mesh, ...]:
+        """The mesh alone: a convex polyhedron is its only part."""
+        return (self.mesh,)
+
+    @property
     def volume(self) -> float:
         """Enclosed volume."""
         return self.mesh.volume

@@ -11,6 +11,7 @@ from regolith_studio.dataset.export import (
     Exporter,
     ExportOptions,
     ExportResult,
+    check_compounds,
     check_loss_accepted,
     write_export,
 )
@@ -277,14 +278,15 @@ def export_dataset_folder(
     InputError
         If there is no such format.
     DatasetError
-        If a format changes shapes and that was not accepted (before anything is written), the dataset
-        is broken, or something cannot be written.
+        If a format changes shapes and that was not accepted, or cannot hold the dataset's compounds (before
+        anything is written), the dataset is broken, or something cannot be written.
     """
     exporters = chosen_exporters(keys)
     yield Started(N_("Exporting"), len(exporters))
     for exporter in exporters:
         check_loss_accepted(exporter, accept_loss)
     dataset, digest = read_dataset(source), dataset_hash(source)
+    check_compounds(dataset, exporters)
     done: list[ExportResult] = []
     for number, exporter in enumerate(exporters):
         yield Progress(number, len(exporters), exporter.label)

@@ -7,6 +7,7 @@ import numpy as np
 from regolith_studio.dataset.build import build_dataset
 from regolith_studio.dataset.dataset import CoarseningRecord, Dataset, Provenance
 from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.geometry.convex_compound import Polyhedron
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.half_spaces import HalfSpaces
 from regolith_studio.geometry.particle import Particle, Source
@@ -16,7 +17,7 @@ from regolith_studio.geometry.particle import Particle, Source
 class Coarse:
     """What a coarsening method returns, as far as a dataset looks at it."""
 
-    polyhedron: ConvexPolyhedron
+    polyhedron: Polyhedron
     centre: FloatArray
     errors: dict[str, float] = field(default_factory=lambda: {"volume": 0.0, "sphericity": 0.021})
     jaccard_distance: float = 0.1

@@ -76,7 +76,7 @@ def test_that_the_folder_holds_the_promised_files(tmp_path: Path, make_dataset) 
         "meshes/particle_0002.stl",
     ]
     document = json.loads((folder / "dataset.json").read_text(encoding="utf-8"))
-    assert document["schema_version"] == 3
+    assert document["schema_version"] == 4
     assert document["length_unit"] == "um"
     for record in document["representatives"]:
         content = (folder / record["mesh"]["file"]).read_bytes()

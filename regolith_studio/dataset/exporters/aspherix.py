@@ -18,7 +18,7 @@ examples, and these files were not run by it. LIGGGHTS-PUBLIC has no convex part
 def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
     keys = shape_names(dataset)
     files = {
-        f"meshes/{key}.stl": stl_bytes(one.shape.mesh.triangles, f"regolith-studio unit-volume {key}")
+        f"meshes/{key}.stl": stl_bytes(one.convex.mesh.triangles, f"regolith-studio unit-volume {key}")
         for key, one in zip(keys, dataset.representatives, strict=True)
     }
     to_metres = options.coarse_graining_factor * MICROMETRE * (np.pi / 6) ** (1 / 3)

@@ -19,7 +19,7 @@ The OBJ files are read back by an independent reader in this program's tests; Ch
 
 def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
     keys = shape_names(dataset)
-    shapes = [one.shape for one in dataset.representatives]
+    shapes = [one.convex for one in dataset.representatives]
     files = {f"meshes/{key}.obj": _obj(key, shape) for key, shape in zip(keys, shapes, strict=True)}
     to_metres = options.coarse_graining_factor * MICROMETRE * (np.pi / 6) ** (1 / 3)
     records = []
@@ -30,9 +30,9 @@ def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
                 "key": key,
                 "name": one.name,
                 "mesh": f"meshes/{key}.obj",
-                "volume": one.shape.volume,
-                "moments": one.shape.mesh.inertia.diagonal().tolist(),
-                "circumscribed_radius": float(np.linalg.norm(one.shape.vertices, axis=1).max()),
+                "volume": one.convex.volume,
+                "moments": one.convex.mesh.inertia.diagonal().tolist(),
+                "circumscribed_radius": float(np.linalg.norm(one.convex.vertices, axis=1).max()),
                 "weight_number": float(dataset.class_weights("number")[index]),
                 "scales_m": (sizes.diameters * to_metres).tolist(),
                 "scale_number_shares": sizes.number.tolist(),

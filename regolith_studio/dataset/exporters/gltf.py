@@ -26,7 +26,7 @@ def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
     keys, binary = shape_names(dataset), bytearray()
     document: dict[str, list[dict[str, object]]] = {"bufferViews": [], "accessors": [], "meshes": []}
     for key, one in zip(keys, dataset.representatives, strict=True):
-        positions, normals = _corners(one.shape)
+        positions, normals = _corners(one.convex)
         attributes = {
             "POSITION": _store(document, binary, positions),
             "NORMAL": _store(document, binary, normals),

@@ -16,7 +16,7 @@ def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
     del options
     shapes, rows = [], []
     for index, (key, one) in enumerate(zip(shape_names(dataset), dataset.representatives, strict=True)):
-        planes = one.shape.half_spaces
+        planes = one.convex.half_spaces
         shapes.append(
             {
                 "key": key,

@@ -14,7 +14,7 @@ A type has one size; make one type a size from sizes.csv: multiply vertices by d
 
 def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
     del options
-    shapes = [one.shape for one in dataset.representatives]
+    shapes = [one.convex for one in dataset.representatives]
     content = {
         "types": shape_names(dataset),
         "names": [one.name for one in dataset.representatives],

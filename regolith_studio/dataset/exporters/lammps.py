@@ -42,7 +42,7 @@ print           "total mass $(v_total:%.15g) kg"
 
 def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
     bodies = pack_on_lattice(dataset, options)
-    shapes = [rounded(one.shape, options.rounding) for one in dataset.representatives]
+    shapes = [rounded(one.convex, options.rounding) for one in dataset.representatives]
     counts = [_room(shape) for shape in shapes]
     lost = [100 * (1 - shape.volume) for shape in shapes]
     bounds = {"fewest": min(shape.core.n_vertices for shape in shapes), "most": max(counts)}
@@ -79,7 +79,7 @@ def _data(dataset: Dataset, bodies: PackedParticles, shapes: list[RoundedPolyhed
     ]
     lines += ["", "Bodies", ""]
     for index, which in enumerate(bodies.class_index.tolist()):
-        inertia = dataset.representatives[which].shape.mesh.inertia
+        inertia = dataset.representatives[which].convex.mesh.inertia
         lines += _body(index, shapes[which], inertia, bodies, masses[index])
     return "\n".join(lines) + "\n"
 

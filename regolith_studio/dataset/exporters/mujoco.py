@@ -34,8 +34,8 @@ def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
         ]
     meshes = [
         f'    <mesh name="{mesh}" inertia="exact" scale="{scale!r} {scale!r} {scale!r}" '
-        f'vertex="{_vertices(dataset.representatives[which].shape)}" '
-        f'face="{_faces(dataset.representatives[which].shape)}"/>'
+        f'vertex="{_vertices(dataset.representatives[which].convex)}" '
+        f'face="{_faces(dataset.representatives[which].convex)}"/>'
         for (which, scale), mesh in assets.items()
     ]
     reach = float(np.abs(bodies.position).max() * MILLIMETRES) * 4

@@ -35,17 +35,17 @@ def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
     files, rows, said = {}, [], []
     for key, one in zip(shape_names(dataset), dataset.representatives, strict=True):
         spheres = (
-            fit_spheres_within(one.shape, options.max_error)
+            fit_spheres_within(one.convex, options.max_error)
             if options.max_error
-            else fit_spheres(one.shape, options.n_spheres)
+            else fit_spheres(one.convex, options.n_spheres)
         )
-        errors = sphere_fit_errors(one.shape, spheres)
+        errors = sphere_fit_errors(one.convex, spheres)
         text = "".join(" ".join(map(repr, row)) + "\n" for row in spheres.tolist())
         files[f"spheres/{key}.txt"] = text.encode("ascii")
-        masses = sphere_masses(one.shape, spheres)
+        masses = sphere_masses(one.convex, spheres)
         files[f"masses/{key}.txt"] = "".join(f"{mass!r}\n" for mass in masses.values.tolist()).encode("ascii")
-        moments = np.diag(one.shape.mesh.inertia).tolist()
-        volume = one.shape.volume * (1 + errors.volume)
+        moments = np.diag(one.convex.mesh.inertia).tolist()
+        volume = one.convex.volume * (1 + errors.volume)
         rows.append(
             (key, len(spheres), volume, *moments, *astuple(errors), masses.centre_error, masses.inertia_error)
         )

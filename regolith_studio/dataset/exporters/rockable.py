@@ -20,7 +20,7 @@ read back by an independent reader of the published syntax."""
 def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
     blocks, lost, most = [], [], 0
     for key, one in zip(shape_names(dataset), dataset.representatives, strict=True):
-        text, volume, vertices = _block(key, one.shape, options.rounding)
+        text, volume, vertices = _block(key, one.convex, options.rounding)
         blocks.append(text)
         lost.append(100 * (1 - volume))
         most = max(most, vertices)

@@ -34,7 +34,7 @@ GetExportToolkit().ExportParticleToStl before you trust a long run."""
 def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
     keys = shape_names(dataset)
     meshes = {
-        f"meshes/{key}.stl": stl_bytes(one.shape.mesh.triangles, f"regolith-studio unit-volume {key}")
+        f"meshes/{key}.stl": stl_bytes(one.convex.mesh.triangles, f"regolith-studio unit-volume {key}")
         for key, one in zip(keys, dataset.representatives, strict=True)
     }
     test, factor = options.test, options.coarse_graining_factor

@@ -71,7 +71,7 @@ def _case(dataset: Dataset, options: ExportOptions, bodies: PackedParticles) -> 
         "largest_diameter": float(bodies.diameter.max()),
         "tube_stretch": max(1.0, top / options.test.height),
         "shapes": [
-            {"key": key, "name": one.name, "vertices": one.shape.vertices.tolist()}
+            {"key": key, "name": one.name, "vertices": one.convex.vertices.tolist()}
             for key, one in zip(shape_names(dataset), dataset.representatives, strict=True)
         ],
     }

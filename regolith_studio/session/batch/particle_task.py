@@ -164,11 +164,16 @@ def _store_polyhedron(
     if shapes:
         shape = stored_shape(particle, coarse)
         values["shape"] = _finite(shape.record)
-        blobs[SHAPE] = shape.mesh
+        blobs |= {shape_blob(part): content for part, content in enumerate(shape.meshes)}
     if outcome.coefficients is not None:
         blobs[CUT] = _bytes(outcome.coefficients.values)
     entry.values.update(values)
     entry.blobs.update(blobs)
+
+
+def shape_blob(part: int) -> str:
+    """Name of the STL of a dataset's shape (0), or of a part of it."""
+    return f"part{part}.{SHAPE}" if part else SHAPE
 
 
 def _bytes(values: Any) -> bytes:

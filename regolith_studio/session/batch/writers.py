@@ -20,7 +20,7 @@ from regolith_studio.io.json_text import JsonListWriter
 from regolith_studio.io.tables import csv_bytes
 from regolith_studio.jobs.batch import LOST, Batch
 from regolith_studio.jobs.coarsening_jobs import CoarseningRequest
-from regolith_studio.session.batch.particle_task import COEFFICIENTS, CUT, MESH, SHAPE, STAGES
+from regolith_studio.session.batch.particle_task import COEFFICIENTS, CUT, MESH, STAGES, shape_blob
 from regolith_studio.session.outputs.coarsening import document_head
 from regolith_studio.session.outputs.descriptors import table_columns, table_row
 from regolith_studio.session.outputs.fits import FittedSample, write_fits
@@ -224,7 +224,9 @@ def shapes_of(batch: Batch) -> Iterator[StoredShape]:
     """The shapes of a dataset, one at a time."""
     for record in batch.checkpoint.records():
         if shape := record.values.get("shape"):
-            yield StoredShape(shape, record.blobs[SHAPE])
+            parts = shape["compound"]["parts"] if shape["compound"] else ()
+            meshes = [record.blobs[shape_blob(part)] for part in range(1 + len(parts))]
+            yield StoredShape(shape, tuple(meshes))
 
 
 def reason_of(record: CheckpointRecord, stage: str = "") -> str:

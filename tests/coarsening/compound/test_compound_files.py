@@ -10,10 +10,7 @@ import trimesh
 from regolith_studio.coarsening.coarsen import coarsen
 from regolith_studio.coarsening.result import CoarseningResult
 from regolith_studio.coarsening.weights import LossWeights
-from regolith_studio.dataset.build import representative_of, singleton_class
-from regolith_studio.errors import DatasetError
 from regolith_studio.geometry.mesh import Mesh
-from regolith_studio.geometry.particle import Particle
 from regolith_studio.jobs.coarsening_jobs import CoarsenedParticle, CoarseningRequest
 from regolith_studio.session.outputs.coarsening import write_coarsening
 from regolith_studio.studies.polyhedron_gallery import GalleryPolyhedron
@@ -49,14 +46,6 @@ def test_that_the_union_and_its_parts_are_files_that_trimesh_measures_alike(
         assert gap.max() < 1e-4
         assert len(part["offsets"]) == part["n_facets"]
     assert sum(part["n_facets"] for part in entry["parts"]) == entry["n_facets"] <= 10
-
-
-def test_that_a_dataset_refuses_a_union_of_several_parts_in_one_sentence(
-    mesh: Mesh, found: CoarseningResult
-) -> None:
-    particle = Particle("rock", mesh)
-    with pytest.raises(DatasetError, match="rock is a compound of 2 parts"):
-        representative_of("rock", particle, found, singleton_class(particle))
 
 
 def test_that_the_gallery_says_that_it_does_not_draw_a_union(found: CoarseningResult) -> None:
