@@ -156,7 +156,7 @@ def _heap(dataset: Path, folder: Path, seed: int, problems: list[str]) -> "Steps
 
 
 def _draw_heap(
-    shapes: "tuple[FloatArray, ...]", pile: "ParticleState", test: Any, title: str, path: Path
+    shapes: "tuple[tuple[FloatArray, ...], ...]", pile: "ParticleState", test: Any, title: str, path: Path
 ) -> None:
     from regolith_studio.scene.figure import heap_picture
 

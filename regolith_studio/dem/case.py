@@ -12,6 +12,7 @@ from regolith_studio.dataset.parameters import PAPER_COARSE_GRAINING, ContactPar
 from regolith_studio.dataset.sampling import sample_dataset
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats, locked_integers
+from regolith_studio.geometry.convex_compound import ConvexCompound
 
 MICROMETRE = 1e-6
 MIN_DIAMETERS_ACROSS = 3.0
@@ -83,7 +84,8 @@ class PreparedCase:
     case
         Parameters of the test.
     shapes
-        Vertices of each unit-volume shape about its centroid, each of shape (k, 3).
+        Vertices of each unit-volume shape about its centroid, each of shape (k, 3); of a compound those of
+        all parts, one after the other.
     class_index
         Index of each particle's shape, shape (n,).
     diameters
@@ -94,6 +96,9 @@ class PreparedCase:
         Of the dataset; the hash is empty if it is not on disk.
     n_facets
         Facets of each shape, if known.
+    parts, inertias
+        Number of vertices of each convex part of each shape, and each shape's tensor of inertia at density 1,
+        shape (3, 3), of a compound that of its union. Both empty where all shapes are convex.
     """
 
     case: ReposeCase
@@ -104,6 +109,8 @@ class PreparedCase:
     dataset_name: str = ""
     dataset_hash: str = ""
     n_facets: tuple[int, ...] = ()
+    parts: tuple[tuple[int, ...], ...] = ()
+    inertias: tuple[FloatArray, ...] = ()
 
     def __post_init__(self) -> None:
         n = len(self.diameters)
@@ -121,6 +128,8 @@ class PreparedCase:
             self.dataset_name,
             self.dataset_hash,
             self.n_facets,
+            self.parts,
+            self.inertias,
         )
 
     def __len__(self) -> int:
@@ -140,6 +149,16 @@ class PreparedCase:
     def scales(self) -> FloatArray:
         """Factor from the unit-volume shape to each particle, in metres, shape (n,)."""
         return np.asarray(self.diameters * (np.pi / 6) ** (1 / 3))
+
+    @property
+    def part_vertices(self) -> tuple[tuple[FloatArray, ...], ...]:
+        """Vertices of the convex parts of each shape; a convex shape is its only part."""
+        if not self.parts:
+            return tuple((shape,) for shape in self.shapes)
+        return tuple(
+            tuple(np.split(shape, np.cumsum(counts)[:-1]))
+            for shape, counts in zip(self.shapes, self.parts, strict=True)
+        )
 
     @property
     def mean_facets(self) -> float | None:
@@ -168,10 +187,8 @@ def prepare(dataset: Dataset, case: ReposeCase, dataset_hash: str = "") -> Prepa
     Raises
     ------
     InputError
-        If the cylinder is too narrow or too low for them, or one is a compound of convex parts.
+        If the cylinder is too narrow or too low for them.
     """
-    if compound := next((one for one in dataset.representatives if one.shape.part_meshes[1:]), None):
-        raise InputError(f"Heaps of compounds are not simulated, and {compound.name} is one.")
     drawn = sample_dataset(dataset, case.n_particles, case.seed)
     fine = drawn.diameter * MICROMETRE
     mass = case.contact.density * np.pi / 6 * float((fine**3).sum())
@@ -185,9 +202,21 @@ def prepare(dataset: Dataset, case: ReposeCase, dataset_hash: str = "") -> Prepa
         dataset_name=dataset.name,
         dataset_hash=dataset_hash,
         n_facets=tuple(each.shape.n_facets for each in dataset.representatives),
+        **_compounds(dataset),
     )
     _check_room(prepared)
     return prepared
+
+
+def _compounds(dataset: Dataset) -> dict[str, Any]:
+    """The fields `parts` and `inertias` of a case."""
+    shapes = [each.shape for each in dataset.representatives]
+    if not any(isinstance(shape, ConvexCompound) for shape in shapes):
+        return {}
+    return {
+        "parts": tuple(tuple(len(mesh.vertices) for mesh in shape.part_meshes) for shape in shapes),
+        "inertias": tuple(shape.mesh.inertia for shape in shapes),
+    }
 
 
 def _check_room(prepared: PreparedCase) -> None:

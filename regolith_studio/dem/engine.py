@@ -10,7 +10,10 @@ from regolith_studio.dem.snapshot import ParticleState, Snapshot
 
 @dataclass(frozen=True)
 class EngineCapabilities:
-    """How an engine implements the contact model of Table 1, in phrases for the table of engines."""
+    """How an engine implements the contact model of Table 1, in phrases for the table of engines.
+
+    `compounds` says how it simulates particles of several convex parts; empty if it does not.
+    """
 
     shape: str
     normal: str
@@ -19,6 +22,7 @@ class EngineCapabilities:
     rolling: str
     coarse_graining: str
     missing: str
+    compounds: str = ""
 
 
 @dataclass(frozen=True)

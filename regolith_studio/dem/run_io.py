@@ -93,7 +93,11 @@ def save_snapshot(folder: Path, number: int, particles: ParticleState) -> Path:
 def save_shapes(folder: Path, prepared: PreparedCase) -> Path:
     """The unit-volume shapes of a run, so that it can be replayed without its dataset."""
     buffer = io.BytesIO()
-    shapes: dict[str, Any] = {f"shape_{k:05d}": shape for k, shape in enumerate(prepared.shapes)}
+    shapes: dict[str, Any] = {
+        f"shape_{kind:05d}.part_{number:02d}": vertices
+        for kind, parts in enumerate(prepared.part_vertices)
+        for number, vertices in enumerate(parts)
+    }
     np.savez_compressed(buffer, **shapes)
     return _write(folder / SHAPES, buffer.getvalue())
 
@@ -141,8 +145,8 @@ def snapshot_files(folder: Path) -> list[Path]:
     return sorted((folder / SNAPSHOTS).glob("[0-9]*.npz"))
 
 
-def read_shapes(folder: Path) -> tuple[FloatArray, ...]:
-    """Vertices of the shapes of a run.
+def read_shapes(folder: Path) -> tuple[tuple[FloatArray, ...], ...]:
+    """Vertices of the convex parts of the shapes of a run.
 
     Raises
     ------
@@ -151,7 +155,11 @@ def read_shapes(folder: Path) -> tuple[FloatArray, ...]:
     """
     try:
         with np.load(folder / SHAPES, allow_pickle=False) as content:
-            return tuple(np.asarray(content[name], dtype=np.float64) for name in sorted(content.files))
+            shapes: dict[str, list[FloatArray]] = {}
+            for name in sorted(content.files):
+                part = np.asarray(content[name], dtype=np.float64)
+                shapes.setdefault(name.partition(".")[0], []).append(part)
+            return tuple(tuple(parts) for parts in shapes.values())
     except (OSError, ValueError, EOFError) as error:
         raise FileError(f"{folder / SHAPES} holds no shapes of a run.") from error
 

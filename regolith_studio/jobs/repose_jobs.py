@@ -21,7 +21,7 @@ from regolith_studio.dem.run_io import (
     staged_run,
 )
 from regolith_studio.dem.snapshot import ParticleState, Snapshot
-from regolith_studio.errors import MissingRequirement
+from regolith_studio.errors import InputError, MissingRequirement
 from regolith_studio.jobs.events import Partial, Progress, Started, Steps
 from regolith_studio.messages import N_
 
@@ -101,9 +101,25 @@ def simulate_prepared(prepared: PreparedCase, folder: Path, request: ReposeReque
     settings = engine.Settings() if request.settings is None else request.settings
     if problem := engine.find().problem:
         raise MissingRequirement(problem)
+    check_shapes(prepared, engine)
     with staged_run(folder, request.overwrite) as stage:
         save_shapes(stage, prepared)
         return (yield from _simulate(_RunWriter(prepared, engine, settings, stage), folder, request))
+
+
+def check_shapes(prepared: PreparedCase, engine: Engine) -> None:
+    """Check that an engine simulates the shapes of a case.
+
+    Raises
+    ------
+    InputError
+        If they are compounds and it takes convex particles only.
+    """
+    if prepared.parts and prepared.case.shapes == "polyhedra" and not engine.capabilities.compounds:
+        raise InputError(
+            f"{engine.label} simulates convex particles, and {prepared.dataset_name} holds compounds of "
+            "convex parts; take the engine MuJoCo, or coarsen by another method."
+        )
 
 
 def _simulate(record: "_RunWriter", folder: Path, request: ReposeRequest) -> Steps:

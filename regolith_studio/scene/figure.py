@@ -81,14 +81,18 @@ def three_views(
 
 
 def heap_picture(
-    shapes: Sequence[FloatArray], pile: ParticleState, test: LiftingCylinderTest, title: str, path: Path
+    shapes: Sequence[Sequence[FloatArray]],
+    pile: ParticleState,
+    test: LiftingCylinderTest,
+    title: str,
+    path: Path,
 ) -> None:
     """Draw a heap on its plate into a PNG file.
 
     Parameters
     ----------
     shapes
-        Vertices of the convex unit-volume shapes, each of shape (k, 3).
+        Vertices of the convex parts of each unit-volume shape, each of shape (k, 3).
     title
         One line over the picture.
     """

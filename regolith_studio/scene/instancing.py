@@ -25,7 +25,9 @@ COLOURS = ("#e8b04a", "#c98f2e", "#f3cf85", "#b5a18a", "#d8c3a0", "#9f8f7d", "#e
 N_AROUND = 96
 
 
-def show_heap(plotter: Any, shapes: Sequence[FloatArray], pile: ParticleState, spheres: bool = False) -> None:
+def show_heap(
+    plotter: Any, shapes: Sequence[Sequence[FloatArray]], pile: ParticleState, spheres: bool = False
+) -> None:
     """The particles of one moment.
 
     Parameters
@@ -33,7 +35,7 @@ def show_heap(plotter: Any, shapes: Sequence[FloatArray], pile: ParticleState, s
     plotter
         Any pyvista plotter.
     shapes
-        Vertices of the convex unit-volume shapes, each of shape (k, 3).
+        Vertices of the convex parts of each unit-volume shape, each of shape (k, 3).
     pile
         The particles, in metres.
     spheres
@@ -135,20 +137,28 @@ def _instances(pile: ParticleState, n_shapes: int) -> pv.PolyData:
     return data
 
 
-def _facets(vertices: FloatArray) -> pv.PolyData:
-    """A convex body with one normal a facet, corners repeated, so that edges stay sharp."""
-    hull = ConvexHull(vertices)
-    corners = vertices[hull.simplices]
-    normals = hull.equations[:, :3]
-    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    inward = (across * normals).sum(axis=1) < 0.0
-    corners[inward] = corners[inward][:, ::-1]
+def _facets(parts: Sequence[FloatArray]) -> pv.PolyData:
+    """Convex bodies with one normal a facet, corners repeated, so that edges stay sharp."""
+    hulls = [_oriented_hull(vertices) for vertices in parts]
+    corners = np.concatenate([each[0] for each in hulls])
+    normals = np.concatenate([each[1] for each in hulls])
     n = len(corners)
     cells = np.column_stack([np.full(n, 3), np.arange(3 * n).reshape(n, 3)]).ravel()
     body: pv.PolyData = pv.PolyData(corners.reshape(-1, 3), faces=cells)
     body.point_data["Normals"] = np.repeat(normals, 3, axis=0).astype(np.float32)
     body.GetPointData().SetActiveNormals("Normals")
     return body
+
+
+def _oriented_hull(vertices: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Corners (t, 3, 3) of the hull's triangles, counter-clockwise from outside, and normals (t, 3)."""
+    hull = ConvexHull(vertices)
+    corners = vertices[hull.simplices]
+    normals = hull.equations[:, :3]
+    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    inward = (across * normals).sum(axis=1) < 0.0
+    corners[inward] = corners[inward][:, ::-1]
+    return corners, normals
 
 
 def _ball() -> pv.PolyData:
@@ -161,9 +171,9 @@ def _ball() -> pv.PolyData:
     return body
 
 
-def _signature(shapes: Sequence[FloatArray], spheres: bool) -> tuple[object, ...]:
+def _signature(shapes: Sequence[Sequence[FloatArray]], spheres: bool) -> tuple[object, ...]:
     """What the sources of the instances were made from."""
-    return (spheres, *((len(shape), float(shape[0].sum())) for shape in shapes))
+    return (spheres, *(tuple((len(part), float(part[0].sum())) for part in parts) for parts in shapes))
 
 
 def _kinds(actor: Any) -> object:

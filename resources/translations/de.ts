@@ -1072,6 +1072,10 @@
         <translation>Verbund konvexer Teile</translation>
     </message>
     <message>
+        <source>Compounds</source>
+        <translation>Verbünde</translation>
+    </message>
+    <message>
         <source>Compute</source>
         <translation>Berechnen</translation>
     </message>
@@ -2298,6 +2302,10 @@
     <message>
         <source>Its normals point inwards.</source>
         <translation>Seine Normalen zeigen nach innen.</translation>
+    </message>
+    <message>
+        <source>Its particles are convex polyhedra.</source>
+        <translation>Seine Partikel sind konvexe Polyeder.</translation>
     </message>
     <message>
         <source>Its surface touches itself in 1 corner.</source>
@@ -6300,6 +6308,10 @@
         <translation>keines davon</translation>
     </message>
     <message>
+        <source>none: refused</source>
+        <translation>keine: abgelehnt</translation>
+    </message>
+    <message>
         <source>not below {bound:.3g} {unit} (line)</source>
         <translation>nicht unter {bound:.3g} {unit} (Linie)</translation>
     </message>
@@ -6318,6 +6330,10 @@
     <message>
         <source>number</source>
         <translation>Anzahl</translation>
+    </message>
+    <message>
+        <source>one body of several convex parts, with mass and inertia of their union</source>
+        <translation>ein Körper aus mehreren konvexen Teilen, mit Masse und Trägheit ihrer Vereinigung</translation>
     </message>
     <message>
         <source>or</source>

@@ -20,29 +20,9 @@ from regolith_studio.dataset.streaming import stored_shape, write_stored
 from regolith_studio.dataset.validation import validate_dataset
 from regolith_studio.errors import DatasetError
 from regolith_studio.geometry.convex_compound import ConvexCompound
-from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
-from regolith_studio.geometry.half_spaces import HalfSpaces
-from regolith_studio.geometry.particle import Particle
 from tests.geometry.solids import rotation
 
-from .example import Coarse, entry
-
-SIDES = np.vstack([np.eye(3), -np.eye(3)])
-
-
-def cuboid(x: float, y: float, z: float) -> ConvexPolyhedron:
-    return ConvexPolyhedron.from_half_spaces(HalfSpaces(SIDES, np.array([x, y, z, x, y, z]) / 2))
-
-
-def elbow() -> ConvexCompound:
-    """Two bars of 6 x 2 x 1 at a right angle, which share a corner of 2 x 2 x 1: volume 20."""
-    parts = (cuboid(6, 2, 1), cuboid(2, 6, 1))
-    return ConvexCompound(parts, np.array([[3.0, 1.0, 0.5], [1.0, 3.0, 0.5]])).moved(rotation=rotation(5))
-
-
-def elbow_entry(name: str = "elbow") -> tuple[Particle, Coarse]:
-    shape = elbow()
-    return Particle(name, shape.mesh), Coarse(shape, np.zeros(3), method="compound", n_facets_asked=12)
+from .example import elbow, elbow_entry, elbow_moments, entry
 
 
 @pytest.fixture(scope="module")
@@ -64,13 +44,7 @@ def test_that_the_record_of_an_elbow_has_the_mass_centre_and_inertia_of_its_unio
     stated = record(folder)["compound"]
     assert stated["volume"] == pytest.approx(1.0, abs=1e-12)
     assert stated["centre_of_mass"] == pytest.approx([0.0, 0.0, 0.0], abs=1e-12)
-    # square of 6 x 6 less the square of 4 x 4 that lies between the bars, thickness 1, about its own centre
-    x = (36 * 3 - 16 * 4) / 20
-    second = (36 * (3 + 9) - 16 * (4 / 3 + 16)) / 20 - x * x
-    mixed = (36 * 9 - 16 * 16) / 20 - x * x
-    flat = np.linalg.eigvalsh([[second, mixed], [mixed, second]])
-    moments = np.array([flat[0] + 1 / 12, flat[1] + 1 / 12, flat.sum()]) / 20 ** (2 / 3)
-    assert np.array(stated["inertia"]) == pytest.approx(np.diag(moments), abs=1e-12)
+    assert np.array(stated["inertia"]) == pytest.approx(np.diag(elbow_moments()), abs=1e-12)
     assert stated["descriptors"]["convexity"] == pytest.approx(20 / 28)
     assert stated["descriptors"]["surface_area"] == pytest.approx((2 * 20 + 24) / 20 ** (2 / 3))
 

@@ -42,7 +42,7 @@ def _seen(plotter: pv.Plotter, half_height: float) -> tuple[float, float, float,
 
 
 def test_that_a_particle_is_drawn_where_it_is_and_as_large(boxes: Dataset, plotter: pv.Plotter) -> None:
-    shapes = tuple(each.shape.vertices for each in boxes.representatives)
+    shapes = tuple((each.shape.vertices,) for each in boxes.representatives)
     half = 1e3 * (np.pi / 6) ** (1 / 3)
     instancing.show_heap(plotter, shapes, _at(np.array([[0.003, 0.001, 0.0]])))
     assert _seen(plotter, 6000) == pytest.approx([3e3 - half, 3e3 + half, 1e3 - half, 1e3 + half], abs=120)
@@ -56,9 +56,9 @@ def test_that_a_particle_is_drawn_where_it_is_and_as_large(boxes: Dataset, plott
 
 def test_that_the_next_moment_takes_the_same_actor(boxes: Dataset, plotter: pv.Plotter) -> None:
     prepared = prepare(boxes, ReposeCase(n_particles=200))
-    instancing.show_heap(plotter, prepared.shapes, loose_column(prepared))
+    instancing.show_heap(plotter, prepared.part_vertices, loose_column(prepared))
     first = plotter.actors[instancing.HEAP]
-    instancing.show_heap(plotter, prepared.shapes, loose_column(prepared))
+    instancing.show_heap(plotter, prepared.part_vertices, loose_column(prepared))
     assert plotter.actors[instancing.HEAP] is first
 
 

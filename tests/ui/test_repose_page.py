@@ -401,7 +401,7 @@ def test_that_the_whole_column_of_particles_is_in_the_picture_before_the_lift(sh
     player.resize(800, 400)
     app.processEvents()
     test = LiftingCylinderTest()
-    player.set_scene((icosphere(1).vertices * 1e-3,), True, test)
+    player.set_scene(((icosphere(1).vertices * 1e-3,),), True, test)
     n = 40
     points = np.zeros((n, 3))
     points[:, 2] = np.linspace(0.001, 2.0 * test.height, n)

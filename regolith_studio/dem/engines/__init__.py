@@ -34,6 +34,7 @@ CAPABILITY_LABELS = {
     "cohesion": N_("Cohesion"),
     "rolling": N_("Rolling"),
     "coarse_graining": N_("Coarse graining"),
+    "compounds": N_("Compounds"),
     "missing": N_("Not represented"),
 }
 
@@ -51,6 +52,7 @@ def engine_rows() -> list[dict[str, Any]]:
                 "version": found.version,
                 "problem": found.problem,
                 **asdict(engine.capabilities),
+                "compounds": engine.capabilities.compounds or N_("none: refused"),
             }
         )
     return rows

@@ -25,6 +25,7 @@ REPRESENTS = EngineCapabilities(
     rolling=N_("Coulomb friction against rolling and spinning"),
     coarse_graining=N_("by size; scaling the surface energy keeps cohesion over weight"),
     missing=N_("Hertz and Mindlin stiffness, restitution, friction of rest apart from friction of motion"),
+    compounds=N_("one body of several convex parts, with mass and inertia of their union"),
 )
 
 

@@ -153,31 +153,52 @@ def _add_particles(
 ) -> None:
     contact = _contact(prepared, settings, prepared.case.contact.static_friction)
     pull = adhesion(prepared)
-    names: dict[tuple[int, float], str] = {}
+    spheres = prepared.case.shapes == "spheres"
+    names: dict[tuple[int, float], list[str]] = {}
     for k in range(len(prepared)):
         kind, size = int(prepared.class_index[k]), float(sizes[k])
-        if prepared.case.shapes == "spheres":
-            form = {"type": mujoco.mjtGeom.mjGEOM_SPHERE, "size": [size / (np.pi / 6) ** (1 / 3) / 2, 0, 0]}
+        if spheres:
+            radius = size / (np.pi / 6) ** (1 / 3) / 2
+            forms = [{"type": mujoco.mjtGeom.mjGEOM_SPHERE, "size": [radius, 0, 0]}]
         else:
-            name = names.get((kind, size))
-            if name is None:
-                name = names[kind, size] = f"shape{len(names)}"
-                vertices = (prepared.shapes[kind] * size).ravel()
-                spec.add_mesh(
-                    name=name, uservert=vertices, inertia=mujoco.mjtMeshInertia.mjMESH_INERTIA_CONVEX
-                )
-            form = {"type": mujoco.mjtGeom.mjGEOM_MESH, "meshname": name}
+            if (kind, size) not in names:
+                names[kind, size] = _add_meshes(spec, prepared, kind, size)
+            forms = [{"type": mujoco.mjtGeom.mjGEOM_MESH, "meshname": name} for name in names[kind, size]]
         body = spec.worldbody.add_body(pos=places[k], quat=turns[k])
         body.add_freejoint()
-        body.add_geom(
-            density=1.0,
-            contype=PARTICLE,
-            conaffinity=PARTICLE | WALL | PLATE,
-            gap=ADHESION_GAP if pull.any() else 0.0,
-            adhesion=float(pull[k]),
-            **form,
-            **contact,
+        if len(forms) > 1:  # masses of parts that overlap would add up to more than the body's
+            _set_inertia(body, prepared.inertias[kind], size)
+        for form in forms:
+            body.add_geom(
+                density=1.0,
+                contype=PARTICLE,
+                conaffinity=PARTICLE | WALL | PLATE,
+                gap=ADHESION_GAP if pull.any() else 0.0,
+                adhesion=float(pull[k]),
+                **form,
+                **contact,
+            )
+
+
+def _add_meshes(spec: mujoco.MjSpec, prepared: PreparedCase, kind: int, size: float) -> list[str]:
+    """Meshes of the convex parts of a shape at one size, by their names."""
+    names = []
+    for vertices in prepared.part_vertices[kind]:
+        names.append(f"shape{len(spec.meshes)}")
+        spec.add_mesh(
+            name=names[-1],
+            uservert=(vertices * size).ravel(),
+            inertia=mujoco.mjtMeshInertia.mjMESH_INERTIA_CONVEX,
         )
+    return names
+
+
+def _set_inertia(body: "mujoco.MjsBody", inertia: FloatArray, size: float) -> None:
+    """Mass and inertia of a unit-volume shape about its centroid, at density 1 and a size."""
+    body.explicitinertial = True
+    body.mass = size**3
+    body.ipos = [0.0, 0.0, 0.0]
+    body.fullinertia = (inertia * size**5)[[0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]]
 
 
 def adhesion(prepared: PreparedCase) -> FloatArray:

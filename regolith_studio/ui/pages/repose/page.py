@@ -67,7 +67,7 @@ class ReposePage(PageWidget):
         self._pile: ParticleState | None = None
         self._measured: ReposeMeasurement | None = None
         self._running = False
-        self._live_scene: tuple[Sequence[FloatArray], bool, LiftingCylinderTest] | None = None
+        self._live_scene: tuple[Sequence[Sequence[FloatArray]], bool, LiftingCylinderTest] | None = None
         self._live_pile: ParticleState | None = None
 
     def build(self) -> None:
@@ -186,7 +186,7 @@ class ReposePage(PageWidget):
         """Measure the pile of another program from a file of positions."""
         pile = read_other(self, self._context.toast)
         if pile is not None:
-            ball = (self.player_ball(),)
+            ball = ((self.player_ball(),),)
             self.player.set_scene(ball, True, LiftingCylinderTest())
             self.player.show_moment(
                 pile, tr("Imported particles"), tr("{count:,} particles", count=len(pile))
@@ -269,7 +269,7 @@ class ReposePage(PageWidget):
             longer=duration_text(2 * seconds),
         )
         self.setup.show_consequences([time, *scaling_report(prepared).sentences])
-        scene = (prepared.shapes, request.case.shapes == "spheres", request.case.test)
+        scene = (prepared.part_vertices, request.case.shapes == "spheres", request.case.test)
         if self._running:
             self._live_scene = self._live_scene or scene
             return

@@ -39,7 +39,7 @@ class RunPlayer(QWidget):
         self.frame = ViewFrame(make_view(views, current_theme().surroundings), "repose_view")
         self._camera = CameraLink([self.frame.view])
         self._theme = current_theme()
-        self._shapes: tuple[FloatArray, ...] = ()
+        self._shapes: tuple[Sequence[FloatArray], ...] = ()
         self._spheres = False
         self._framed_height = 0.0
         self._test = LiftingCylinderTest()
@@ -77,7 +77,9 @@ class RunPlayer(QWidget):
         self.frame.set_colour(theme.polyhedron)
         self._draw()
 
-    def set_scene(self, shapes: Sequence[FloatArray], spheres: bool, test: LiftingCylinderTest) -> None:
+    def set_scene(
+        self, shapes: Sequence[Sequence[FloatArray]], spheres: bool, test: LiftingCylinderTest
+    ) -> None:
         """Shapes and apparatus of what is shown from now on; the camera frames the test."""
         fresh = (test.diameter, test.height) != (self._test.diameter, self._test.height) or not self._shapes
         self._shapes, self._spheres, self._test = tuple(shapes), spheres, test
