@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from regolith_studio.harmonics.surface import reconstruct
     from regolith_studio.readers.particles import read_mesh, read_particles, sample_particles
     from regolith_studio.shape_models.models.gaussian_field import GaussianRadiusModel
+    from regolith_studio.web.notebook import show
 
 __version__ = "0.1.0"
 __all__ = [
@@ -41,6 +42,7 @@ __all__ = [
     "read_particles",
     "reconstruct",
     "sample_particles",
+    "show",
     "write_dataset",
 ]
 
@@ -57,6 +59,7 @@ _LAZY_EXPORTS = {
     "read_particles": "readers.particles:read_particles",
     "reconstruct": "harmonics.surface:reconstruct",
     "sample_particles": "readers.particles:sample_particles",
+    "show": "web.notebook:show",
     "write_dataset": "dataset.folder_io:write_dataset",
 }
 

@@ -21,6 +21,7 @@ from regolith_studio.cli import (
     recipe,
     report,
     repose,
+    serve,
     study,
 )
 from regolith_studio.cli.terminal import CommandGroup
@@ -82,6 +83,7 @@ app.command("extract")(extract.extract)
 app.command("run")(recipe.run)
 app.command("demo")(demo.demo)
 app.command("report")(report.report)
+app.command("serve")(serve.serve)
 app.command("check")(check.check)
 app.command("forget")(forget.forget)
 app.command("install-desktop")(install_desktop.install_desktop)

@@ -1,0 +1,198 @@
+"""The page of the three views: sliders, method, descriptors; all work is done by the session."""
+
+import asyncio
+from typing import Any
+
+from trame.ui.html import DivLayout
+from trame.widgets import client, html, vtk
+
+from regolith_studio.coarsening.coarsen import FACETS_LIMITS
+from regolith_studio.coarsening.methods import METHODS
+from regolith_studio.descriptors.catalogue import CATALOGUE
+from regolith_studio.errors import RegolithError
+from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
+from regolith_studio.jobs.particle_jobs import FIT_DEGREE
+from regolith_studio.scene.figure import view_titles
+from regolith_studio.scene.shapes import FIT, NAMES, PARTICLE, POLYHEDRON, SceneShape
+from regolith_studio.scene.side_by_side import SideBySide
+from regolith_studio.session.results import Failure
+from regolith_studio.session.session import Session
+from regolith_studio.session.verdict import polyhedron_verdict
+from regolith_studio.web.style import STYLE
+
+UNITS = {0: "", 1: "µm", 2: "µm²", 3: "µm³", 5: "µm⁵"}
+"""Of a descriptor, by its dimension as a length."""
+EVENTS = ("particles", "choices", "fit", "surface", "descriptors", "coarsening", "comparison", "tasks")
+PICTURE_INTERVAL = 0.05
+"""Seconds between two pictures that are sent while results arrive."""
+CHOICES = ("selected", "l_max", "n_facets", "method")
+"""Choices of the session that the page can change, each a variable of the page of the same name."""
+
+
+class ThreeViewPage:
+    """Shows a session on a page, and passes changes of the page on to it.
+
+    Everybody who has the page open sees, and changes, the same session.
+
+    Parameters
+    ----------
+    server
+        A trame server that has not been started.
+    session
+        With its particles; its events arrive in the thread of the server's event loop, where the page must
+        be made, too.
+    """
+
+    def __init__(self, server: Any, session: Session) -> None:
+        self._server, self._session = server, session
+        self._scene = SideBySide()
+        self._shown: dict[str, Any] = {}
+        self._is_due = False
+        self._problem = ""
+        self._write_state()
+        server.state.change(*CHOICES)(self._choose)
+        for name in EVENTS:
+            getattr(session.events, name).connect(self._refresh_soon)
+        session.events.failed.connect(self._report)
+        self._build()
+
+    def close(self) -> None:
+        """Free the views."""
+        self._scene.close()
+
+    def _build(self) -> None:
+        with DivLayout(self._server, classes="page"):
+            client.Style(STYLE)
+            with html.Div(classes="views"):
+                with html.Div(classes="titles"):
+                    html.Div("{{ title }}", v_for="title in titles", key=("title",))
+                with html.Div(classes="picture"):
+                    self._view = vtk.VtkRemoteView(self._scene.render_window, interactive_ratio=1)
+            with html.Div(classes="controls"):
+                _selection("Particle", "selected", "particles")
+                _slider("Maximum degree l_max", "l_max", 0, FIT_DEGREE)
+                _slider("Facets", "n_facets", *FACETS_LIMITS)
+                _selection("Coarsening method", "method", "methods")
+                html.Div("{{ status }}", classes="status", id="status")
+                html.Div("{{ verdict }}", classes="verdict", id="verdict")
+                self._build_table()
+
+    def _build_table(self) -> None:
+        with html.Table(id="descriptors"):
+            with html.Thead(), html.Tr():
+                for head in ("", "Particle", "Fit", "Polyhedron"):
+                    html.Th(head)
+            with html.Tbody(), html.Tr(v_for="row in rows", key=("row[0]",)):
+                html.Td("{{ cell }}", v_for="(cell, at) in row", key=("at",))
+
+    def _choose(self, **state: Any) -> None:
+        """Take over what has been changed on the page."""
+        choices = self._session.choices
+        changes = {name: state[name] for name in CHOICES if state[name] != getattr(choices, name)}
+        self._problem = ""
+        try:
+            self._session.choose(**changes)
+        except RegolithError as error:
+            self._problem = str(error)
+        self._refresh_soon()
+
+    def _report(self, failure: Failure) -> None:
+        self._problem = failure.sentence
+        self._refresh_soon()
+
+    def _refresh_soon(self) -> None:
+        """Refresh the page once for all events of the next moment."""
+        if not self._is_due:
+            self._is_due = True
+            asyncio.get_running_loop().call_later(PICTURE_INTERVAL, self._refresh)
+
+    def _refresh(self) -> None:
+        self._is_due = False
+        with self._server.state:
+            self._write_state()
+        if self._draw():
+            self._view.update()
+
+    def _draw(self) -> bool:
+        """Fill the views with what has changed; whether anything has."""
+        entry, results = self._session.selected, self._session.results
+        particle = entry.particle.mesh if entry else None
+        wanted = {PARTICLE: particle, FIT: results.surface, POLYHEDRON: results.polyhedron}
+        changed = [name for name in NAMES if wanted[name] is not self._shown.get(name)]
+        if particle is not None and PARTICLE in changed:
+            self._scene.frame(particle.vertices)
+        for name in changed:
+            surface = wanted[name]
+            if surface is None:
+                self._scene.clear(name)
+            else:
+                centre = results.best.centre if name == POLYHEDRON and results.best else None
+                self._scene.show(SceneShape(name, surface, centre))
+        self._shown = wanted
+        return bool(changed)
+
+    def _write_state(self) -> None:
+        """Put choices and results into the variables of the page."""
+        session, state = self._session, self._server.state
+        for name in CHOICES:
+            state[name] = getattr(session.choices, name)
+        state.trame__title = "Regolith Studio"
+        state.particles = [{"value": each.id, "label": each.id} for each in session.particles]
+        state.methods = [{"value": key, "label": str(each.label)} for key, each in METHODS.items()]
+        state.titles = self._titles()
+        state.rows = self._rows()
+        state.status = self._problem or "; ".join(_task_line(each) for each in session.tasks) or "Done."
+        state.verdict = self._verdict()
+
+    def _titles(self) -> list[str]:
+        results, body = self._session.results, self._session.results.polyhedron
+        degree = results.surface_l_max if results.surface else self._session.choices.l_max
+        if isinstance(body, ConvexPolyhedron):
+            return list(map(str, view_titles(degree, body)))
+        parts = f"Compound of {body.n_parts} convex parts" if body else "Polyhedron"
+        return ["Particle", f"Spherical-harmonics fit, l_max = {degree}", parts]
+
+    def _rows(self) -> list[list[str]]:
+        """Symbol with unit, then the value of particle, fit and polyhedron, of each descriptor."""
+        results = self._session.results
+        achieved = results.coarsened.achieved if results.coarsened else None
+        bodies = (results.particle_descriptors, results.fit_descriptors, achieved)
+        shown = {key: row for key, row in CATALOGUE.items() if not row.costly and row.dimension in UNITS}
+        return [
+            [
+                f"{row.symbol.replace('_', '')} {UNITS[row.dimension]}".strip(),
+                *(f"{body[key]:.4g}" if body and key in body else "–" for body in bodies),
+            ]
+            for key, row in shown.items()
+        ]
+
+    def _verdict(self) -> str:
+        results = self._session.results
+        if results.coarsened is None:
+            return ""
+        found = polyhedron_verdict(
+            results.coarsened, self._session.choices.weights, results.against_particle, results.fewer_facets
+        )
+        return f"Loss {found.loss:.4g}, Jaccard distance {found.jaccard_distance:.3g}. {found.sentence}"
+
+
+def _slider(label: str, name: str, low: int, high: int) -> None:
+    with html.Label(classes="control"):
+        html.Span(f"{label} = {{{{ {name} }}}}")
+        html.Input(type="range", min=low, max=high, raw_attrs=[f'v-model.number="{name}"'], id=name)
+
+
+def _selection(label: str, name: str, options: str) -> None:
+    with html.Label(classes="control"):
+        html.Span(label)
+        with html.Select(v_model=(name,), id=name):
+            html.Option(
+                "{{ option.label }}",
+                v_for=f"option in {options}",
+                key=("option.value",),
+                value=("option.value",),
+            )
+
+
+def _task_line(task: Any) -> str:
+    return f"{task.title}: {task.done} of {task.total}" if task.total else str(task.title)
