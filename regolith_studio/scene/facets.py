@@ -47,16 +47,6 @@ class Facet:
     offset: float
     corners: FloatArray
 
-    @property
-    def words(self) -> str:
-        """One line; lengths in micrometres, facets counted from 1."""
-        x, y, z = self.normal
-        return (
-            f"facet {self.index + 1} of {self.count}: {self.area:,.4g} µm² ({self.share:.1%}),"
-            f" normal ({x:.2f}, {y:.2f}, {z:.2f}), {self.offset:.4g} µm from the centre,"
-            f" {len(self.corners)} corners"
-        )
-
 
 def facet_of(polyhedron: ConvexPolyhedron, index: int) -> Facet:
     """The facet number `index` of a polyhedron."""

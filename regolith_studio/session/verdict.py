@@ -59,7 +59,7 @@ def polyhedron_verdict(
     parts = [_met(coarsened, chosen)]
     if fewer is not None:
         template = N_("More facets do not help here: {count} facets had a loss of {loss}.")
-        parts.append(Message(template, count=fewer[0], loss=Number(fewer[1], ".4g")))
+        parts.append(Message(template, count=fewer[0], loss=Number(fewer[1], "#.4g")))
     if against_particle is not None:
         parts.append(cost_of_imitating_the_fit(against_particle))
     return PolyhedronVerdict(

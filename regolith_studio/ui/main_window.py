@@ -15,7 +15,7 @@ from regolith_studio.session.session import Session
 from regolith_studio.ui.actions import Actions
 from regolith_studio.ui.activity import ActivityDock
 from regolith_studio.ui.appearance import Appearance
-from regolith_studio.ui.batch_runs import BatchRuns
+from regolith_studio.ui.batch_runs import BatchRuns, ReportRuns
 from regolith_studio.ui.bindings import Bindings
 from regolith_studio.ui.commands import Commands
 from regolith_studio.ui.dialogs.closing import may_close, worth_asking
@@ -62,6 +62,7 @@ class MainWindow(QMainWindow):
         self.toast = Toast(self)
         self.commands = Commands(session, preferences, self.toast, self)
         self.batches = BatchRuns(session, preferences, self.toast, self)
+        self.reports = ReportRuns(session, preferences, self.toast, self)
         self.bindings = Bindings(session, self.toast.problem, self)
         self.pages = PageStack(tuple(PAGES.values()), self._context)
         self.projects = ProjectFiles(session, self.pages, self.toast, self)
@@ -109,6 +110,7 @@ class MainWindow(QMainWindow):
             **{f"theme_{name}": partial(self.appearance.choose, theme=name) for name in ("system", *THEMES)},
             **{name: partial(self.activity.show_tab, name) for name in ("tasks", "log")},
             "run_batch": self.batches.ask,
+            "report": self.reports.ask,
             "save_project": self.projects.save,
             "save_project_as": self.projects.save_as,
             "repair": lambda repair: self.session.choose(repair=repair),
@@ -136,8 +138,8 @@ class MainWindow(QMainWindow):
         self.window_state.restore_parts(self)
         self.projects.changed.connect(lambda: self.setWindowTitle(self.projects.title()))
         bindings.refresh("tasks", lambda: self.tasks.setValue(session.tasks), slow=True)
-        bindings.refresh("tasks", self.commands.show_tasks, slow=True)
-        bindings.refresh("tasks", self.batches.show_tasks, slow=True)
+        for show in (self.commands.show_tasks, self.batches.show_tasks, self.reports.show_tasks):
+            bindings.refresh("tasks", show, slow=True)
         bindings.listen("choices", self._show_choices)
         bindings.listen("particles", self._show_choices)
         self._show_choices()

@@ -300,6 +300,10 @@
         <translation>1 m in der Datei ist 1 mm der Partikel, mit Vergröberungsfaktor; y zeigt nach oben</translation>
     </message>
     <message>
+        <source>1 open particle</source>
+        <translation>1 offenes Partikel</translation>
+    </message>
+    <message>
         <source>1 pair of faces crosses each other.</source>
         <translation>1 Paar von Flächen kreuzt sich.</translation>
     </message>
@@ -1272,6 +1276,10 @@
         <translation>Übliche Tasten</translation>
     </message>
     <message>
+        <source>Degree at which fits are cut and models draw; the paper uses 10.</source>
+        <translation>Grad, bei dem Anpassungen abgeschnitten werden und Modelle ziehen; im Artikel 10.</translation>
+    </message>
+    <message>
         <source>Degree at which the series is cut: 0 is a sphere, 10 keeps the form, 30 nearly all details.</source>
         <translation>Grad, bei dem die Reihe abgebrochen wird: 0 ist eine Kugel, 10 behält die Form, 30 fast alle Einzelheiten.</translation>
     </message>
@@ -1740,6 +1748,34 @@
         <translation>Feld in log r</translation>
     </message>
     <message>
+        <source>Fig. 2: a particle and its spherical harmonics</source>
+        <translation>Bild 2: ein Partikel und seine Kugelflächenfunktionen</translation>
+    </message>
+    <message>
+        <source>Fig. 3: errors against l_max</source>
+        <translation>Bild 3: Fehler gegen l_max</translation>
+    </message>
+    <message>
+        <source>Fig. 7: polyhedra</source>
+        <translation>Bild 7: Polyeder</translation>
+    </message>
+    <message>
+        <source>Fig. 8: errors by loss</source>
+        <translation>Bild 8: Fehler je Verlustfunktion</translation>
+    </message>
+    <message>
+        <source>Fig. 9: the angle of repose</source>
+        <translation>Bild 9: der Schüttwinkel</translation>
+    </message>
+    <message>
+        <source>Figs. 2 to 9 and Tables 1 and 2 of the paper for the open particles, as one HTML page, PDF, and tables. The command “report” writes the same.</source>
+        <translation>Bild 2 bis 9 und Tab. 1 und 2 des Artikels für die offenen Partikel, als eine HTML-Seite, PDF und Tabellen. Der Befehl „report“ schreibt dasselbe.</translation>
+    </message>
+    <message>
+        <source>Figs. 4 to 6: drawn and measured particles</source>
+        <translation>Bild 4 bis 6: gezogene und gemessene Partikel</translation>
+    </message>
+    <message>
         <source>Figure 7, fifth column: aspect ratio and overlap</source>
         <translation>Bild 7, fünfte Spalte: Seitenverhältnis und Überdeckung</translation>
     </message>
@@ -1766,6 +1802,10 @@
     <message>
         <source>Figures 7 and 8: every descriptor, without overlap</source>
         <translation>Bilder 7 und 8: jeder Deskriptor, ohne Überdeckung</translation>
+    </message>
+    <message>
+        <source>Figures and tables of the paper for the open particles, as one page</source>
+        <translation>Bilder und Tabellen des Artikels für die offenen Partikel, auf einer Seite</translation>
     </message>
     <message>
         <source>Fill a cylinder with the particles of a dataset, lift it, measure the pile</source>
@@ -2364,6 +2404,10 @@
         <translation>Der größte von {count} Körpern wurde behalten, mit {share} ihres Volumens.</translation>
     </message>
     <message>
+        <source>Key of the coarsening method.</source>
+        <translation>Verfahren der Vergröberung.</translation>
+    </message>
+    <message>
         <source>Keyboard and mouse</source>
         <translation>Tastatur und Maus</translation>
     </message>
@@ -2630,6 +2674,10 @@
     <message>
         <source>Making particles</source>
         <translation>Partikel werden erzeugt</translation>
+    </message>
+    <message>
+        <source>Making the report</source>
+        <translation>Bericht wird erstellt</translation>
     </message>
     <message>
         <source>Making virtual particles</source>
@@ -3048,8 +3096,24 @@
         <translation>Anzahl der Facetten</translation>
     </message>
     <message>
+        <source>Number of facets of each polyhedron.</source>
+        <translation>Anzahl der Facetten jedes Polyeders.</translation>
+    </message>
+    <message>
         <source>Number of particles</source>
         <translation>Anzahl der Partikel</translation>
+    </message>
+    <message>
+        <source>Number of particles of the simulated heap of Fig. 9; 0 for none.</source>
+        <translation>Anzahl der Partikel der simulierten Schüttung in Bild 9; 0 für keine.</translation>
+    </message>
+    <message>
+        <source>Number of particles shown in Fig. 7.</source>
+        <translation>Anzahl der Partikel in Bild 7.</translation>
+    </message>
+    <message>
+        <source>Number of particles, taken at random, that Figs. 3 and 8 are made from.</source>
+        <translation>Anzahl der zufällig gewählten Partikel, aus denen Bild 3 und 8 entstehen.</translation>
     </message>
     <message>
         <source>Number of parts</source>
@@ -3060,8 +3124,16 @@
         <translation>Anzahl der Prozesse</translation>
     </message>
     <message>
+        <source>Number of random halves that the models of Figs. 4 to 6 are fitted to.</source>
+        <translation>Anzahl der zufälligen Hälften, an die die Modelle von Bild 4 bis 6 angepasst werden.</translation>
+    </message>
+    <message>
         <source>Number of representatives</source>
         <translation>Anzahl der Repräsentanten</translation>
+    </message>
+    <message>
+        <source>Number of shapes that the heap is made of.</source>
+        <translation>Anzahl der Formen, aus denen die Schüttung besteht.</translation>
     </message>
     <message>
         <source>Numbering grains</source>
@@ -3444,6 +3516,18 @@
         <translation>Partikel der Labels</translation>
     </message>
     <message>
+        <source>Particles of the heap</source>
+        <translation>Partikel der Schüttung</translation>
+    </message>
+    <message>
+        <source>Particles of the studies</source>
+        <translation>Partikel der Studien</translation>
+    </message>
+    <message>
+        <source>Particles shown</source>
+        <translation>Gezeigte Partikel</translation>
+    </message>
+    <message>
         <source>Particles that may lend their surface.</source>
         <translation>Partikel, die ihre Oberfläche leihen können.</translation>
     </message>
@@ -3552,6 +3636,14 @@
         <translation>Ansicht wird vorbereitet</translation>
     </message>
     <message>
+        <source>Preset</source>
+        <translation>Vorgabe</translation>
+    </message>
+    <message>
+        <source>Preset of the loss weights of the representative particles.</source>
+        <translation>Vorgabe für die Verlustgewichte der Repräsentanten.</translation>
+    </message>
+    <message>
         <source>Preset of weights</source>
         <translation>Vorlage der Gewichte</translation>
     </message>
@@ -3594,10 +3686,6 @@
     <message>
         <source>Progress</source>
         <translation>Fortschritt</translation>
-    </message>
-    <message>
-        <source>Progress of the batch</source>
-        <translation>Fortschritt des Stapels</translation>
     </message>
     <message>
         <source>Progress of the coarsening</source>
@@ -3830,6 +3918,14 @@
     <message>
         <source>Replace the dataset that is there</source>
         <translation>Den vorhandenen Datensatz ersetzen</translation>
+    </message>
+    <message>
+        <source>Repor&amp;t …</source>
+        <translation>Beri&amp;cht …</translation>
+    </message>
+    <message>
+        <source>Report</source>
+        <translation>Bericht</translation>
     </message>
     <message>
         <source>Report (HTML)</source>
@@ -4244,6 +4340,10 @@
         <translation>Schnitt</translation>
     </message>
     <message>
+        <source>Section {number} of {total}</source>
+        <translation>Teil {number} von {total}</translation>
+    </message>
+    <message>
         <source>Sections</source>
         <translation>Schnitte</translation>
     </message>
@@ -4258,6 +4358,10 @@
     <message>
         <source>Seed of the draws</source>
         <translation>Startwert der Ziehungen</translation>
+    </message>
+    <message>
+        <source>Seed of the random numbers.</source>
+        <translation>Startwert der Zufallszahlen.</translation>
     </message>
     <message>
         <source>Segment the whole volume</source>
@@ -4516,6 +4620,10 @@
         <translation>Die Oberfläche wurde entlang {count} Kanten mit mehr als zwei Flächen getrennt.</translation>
     </message>
     <message>
+        <source>Splits</source>
+        <translation>Teilungen</translation>
+    </message>
+    <message>
         <source>Standard la&amp;yout</source>
         <translation>&amp;Standardanordnung</translation>
     </message>
@@ -4660,6 +4768,10 @@
         <translation>Abgebrochen; fertige Läufe bleiben erhalten, und der Startknopf setzt fort.</translation>
     </message>
     <message>
+        <source>Stopped; nothing was written.</source>
+        <translation>Angehalten; es wurde nichts geschrieben.</translation>
+    </message>
+    <message>
         <source>Stopping criterion</source>
         <translation>Abbruchkriterium</translation>
     </message>
@@ -4750,6 +4862,10 @@
     <message>
         <source>Tables (*.csv)</source>
         <translation>Tabellen (*.csv)</translation>
+    </message>
+    <message>
+        <source>Tables 1 and 2: parameters of the heap</source>
+        <translation>Tab. 1 und 2: Parameter der Schüttung</translation>
     </message>
     <message>
         <source>Tables of coefficients (*.anm *.sh *.shc *.txt *.dat *.csv)</source>
@@ -5198,6 +5314,10 @@
     <message>
         <source>There is nothing to export: open a particle first.</source>
         <translation>Es gibt nichts zu exportieren: öffnen Sie zuerst ein Partikel.</translation>
+    </message>
+    <message>
+        <source>There is nothing to report on: open a particle first.</source>
+        <translation>Es gibt nichts zu berichten: zuerst ein Partikel öffnen.</translation>
     </message>
     <message>
         <source>They are cut. Each of the others then counts a little more (Miles-Lantuéjoul weights).</source>
@@ -6814,6 +6934,10 @@
     <message>
         <source>{count:,} measured</source>
         <translation>{count:,} gemessen</translation>
+    </message>
+    <message>
+        <source>{count:,} open particles</source>
+        <translation>{count:,} offene Partikel</translation>
     </message>
     <message>
         <source>{count:,} particles</source>

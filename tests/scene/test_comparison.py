@@ -139,7 +139,6 @@ def test_that_a_facet_tells_its_numbers_and_is_outlined(plotter, cube):
     assert facet.area == pytest.approx(1600.0)
     assert facet.share == pytest.approx(1 / 6)
     assert facet.offset == pytest.approx(20.0)
-    assert "facet 3 of 6: 1,600 µm² (16.7%)" in facet.words
     facets.show_facet(plotter, facet, (1.0, 2.0, 3.0))
     outline = plotter.actors[facets.FACET].mapper.dataset
     assert outline.length == pytest.approx(40 * np.sqrt(2), rel=0.01)

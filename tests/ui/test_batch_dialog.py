@@ -146,7 +146,7 @@ def test_that_the_window_writes_what_one_thread_writes_and_tells_it(batches, rec
     assert not dialog.source.isEnabled()
     wait(lambda: not batches._session.tasks)
     wait(lambda: dialog.state.text().startswith("Done"))
-    assert dialog.report.isVisible()
+    assert dialog.results_button.isVisible()
     assert digests(tmp_path / "out") == alone(tmp_path / "alone" / "out")
 
 

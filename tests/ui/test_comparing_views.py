@@ -154,8 +154,11 @@ def test_that_the_facet_under_the_mouse_is_outlined_numbered_and_told(window):
     hover(widget, widget.width() // 2, widget.height() // 2)
     solid = window.session.results.coarsened.polyhedron
     number = int(actor(window, "polyhedron", facets.NUMBER).GetInput())
-    words = facets.facet_of(solid, number - 1).words
-    assert views.frames["polyhedron"].detail.text() == words
+    facet = facets.facet_of(solid, number - 1)
+    words = views.frames["polyhedron"].detail.text()
+    assert words.startswith(
+        f"facet {number} of 20: {facet.area:,.4g} µm² ({100 * facet.share:.1f}\xa0%), normal"
+    )
     assert window.statusBar().currentMessage() == words
     towards = -Projection(views.views["polyhedron"].pose, 1, 1).axes[2]
     assert solid.half_spaces.normals[number - 1] @ towards > 0.0

@@ -60,7 +60,7 @@ def test_that_a_sentence_goes_below_its_figures_where_it_is_narrow_and_high(widt
     tops = [each.mapTo(window, QPoint()).y() for each in (headline.sentence, headline.captions[0])]
     assert (tops[0] > tops[1]) == below
     before = headline.height()
-    headline.show_values(("0.4583", "9.32%", "23.0%"), "All weighted descriptors are met but CH. " * 4)
+    headline.show_values(("0.4583", "9.32 %", "23.0 %"), "All weighted descriptors are met but CH. " * 4)
     app.processEvents()
     assert headline.height() == before
 

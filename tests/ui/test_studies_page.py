@@ -46,7 +46,7 @@ def test_that_the_gallery_fills_row_by_row_and_can_be_stopped(window, wait):
     table = page.gallery.table
     assert (table.rowCount(), table.columnCount()) == (len(paper_variants()), 2)
     for row in range(table.rowCount()):
-        assert re.fullmatch(r"J \d+\.\d%", table.item(row, 0).text())
+        assert re.fullmatch(r"J \d+\.\d\s%", table.item(row, 0).text())
         assert not table.item(row, 0).icon().isNull()
     page.gallery.frame.start.click()
     window.session.cancel(window.session.tasks[-1].id)

@@ -24,6 +24,7 @@ from regolith_studio.ui.dialogs.command_palette import CommandPalette
 from regolith_studio.ui.dialogs.export import ExportDialog
 from regolith_studio.ui.dialogs.help import about_dialog
 from regolith_studio.ui.dialogs.preferences import PreferencesDialog
+from regolith_studio.ui.dialogs.report import ReportDialog
 from regolith_studio.ui.dialogs.shortcuts import ShortcutsDialog
 from regolith_studio.ui.dialogs.unit import UnitDialog
 from regolith_studio.ui.pages.explore.pictures import PictureDialog
@@ -63,6 +64,7 @@ def dialogs_of(window):
     yield PictureDialog(window)
     yield CommandPalette(window.menus.palette(window.pages.pages, window.pages.run), window)
     yield BatchDialog(7, 7, folder, window)
+    yield ReportDialog(7, Choices(), folder, window)
 
 
 @pytest.mark.slow

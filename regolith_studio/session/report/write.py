@@ -12,7 +12,7 @@ from regolith_studio.io.atomic import staged_folder, write_bytes
 from regolith_studio.io.json_text import json_bytes
 from regolith_studio.io.tables import Column, Table
 from regolith_studio.jobs.compile_kernels import compile_first_for
-from regolith_studio.jobs.events import Started, Steps
+from regolith_studio.jobs.events import Partial, Started, Steps
 from regolith_studio.jobs.executor import Executor, open_executor
 from regolith_studio.jobs.study_checkpoint import hash_of_particles
 from regolith_studio.messages import N_
@@ -38,15 +38,15 @@ from regolith_studio.settings import settings_of_kind
 
 PAGE, PDF, DOCUMENT = "report.html", "report.pdf", "report.json"
 PARTS: Mapping[str, Callable[[ReportDraft, str], SectionSteps]] = {
-    "The sample": describe_sample,
-    "Fig. 2: a particle and its spherical harmonics": draw_degrees,
-    "Fig. 3: errors against l_max": compare_degrees,
-    "Figs. 4 to 6: drawn and measured particles": compare_population,
-    "Fig. 7: polyhedra": draw_polyhedra,
-    "Fig. 8: errors by loss": compare_losses,
-    "Representative particles": make_dataset,
-    "Tables 1 and 2: parameters of the heap": show_parameters,
-    "Fig. 9: the angle of repose": simulate_heap,
+    N_("The sample"): describe_sample,
+    N_("Fig. 2: a particle and its spherical harmonics"): draw_degrees,
+    N_("Fig. 3: errors against l_max"): compare_degrees,
+    N_("Figs. 4 to 6: drawn and measured particles"): compare_population,
+    N_("Fig. 7: polyhedra"): draw_polyhedra,
+    N_("Fig. 8: errors by loss"): compare_losses,
+    N_("Representative particles"): make_dataset,
+    N_("Tables 1 and 2: parameters of the heap"): show_parameters,
+    N_("Fig. 9: the angle of repose"): simulate_heap,
 }
 """Title of each section, and what makes it."""
 
@@ -70,6 +70,21 @@ class WrittenReport:
     problems: tuple[str, ...]
 
 
+@dataclass(frozen=True)
+class SectionBegun:
+    """Emitted before a section is made.
+
+    Parameters
+    ----------
+    number, total
+        Of the sections, from 1.
+    """
+
+    number: int
+    total: int
+    title: str
+
+
 def write_report(
     particles: Sequence[Particle],
     folder: Path,
@@ -78,7 +93,8 @@ def write_report(
 ) -> Steps:
     """Make all figures and tables of the paper for a sample, and a page and a PDF with them.
 
-    A section that fails says so in its place and stops nothing. Returns :class:`WrittenReport`.
+    A section that fails says so in its place and stops nothing. Partial results are :class:`SectionBegun`.
+    Returns :class:`WrittenReport`.
 
     Parameters
     ----------
@@ -99,7 +115,8 @@ def write_report(
     with open_executor(workers) as executor, staged_folder(folder, "report") as stage:
         draft = ReportDraft(tuple(particles), settings, stage, executor)
         sections: list[ReportSection] = []
-        for title, part in PARTS.items():
+        for number, (title, part) in enumerate(PARTS.items(), start=1):
+            yield Partial(SectionBegun(number, len(PARTS), title))
             try:
                 sections.append((yield from part(draft, title)))
             except JobCancelled:

@@ -36,5 +36,5 @@ class VerdictPanel(Headline):
             self.show_values(("–",) * 3, tr("The polyhedron is not finished yet."), fresh=False)
             return
         error = "–" if found.rmsre != found.rmsre else number_text(found.rmsre, ".2%")
-        figures = (number_text(found.loss, ".4g"), error, number_text(found.jaccard_distance, ".1%"))
+        figures = (number_text(found.loss, "#.4g"), error, number_text(found.jaccard_distance, ".1%"))
         self.show_values(figures, translate(found.sentence), fresh=done is not None)

@@ -22,6 +22,8 @@ from regolith_studio.ui.widgets.labels import rich_symbol
 from regolith_studio.ui.widgets.number_fields import DecimalField
 
 Scalar = bool | int | float | str
+LARGEST_NUMBER = 2**31 - 1
+"""Of a whole number in a box of Qt."""
 
 
 class SettingsForm(QWidget):
@@ -29,11 +31,16 @@ class SettingsForm(QWidget):
 
     A field's ``metadata`` may have ``label``, ``minimum``, ``maximum``, ``step``, ``decimals``, ``tip`` and
     ``choices``.
+
+    Parameters
+    ----------
+    choices
+        Label of each key of further texts, by the name of the field.
     """
 
     valueChanged = Signal(dict)  # noqa: N815
 
-    def __init__(self, kind: type[Any]) -> None:
+    def __init__(self, kind: type[Any], choices: Mapping[str, Mapping[str, str]] | None = None) -> None:
         super().__init__()
         self._defaults: dict[str, Scalar] = {}
         self._editors: dict[str, QWidget] = {}
@@ -44,7 +51,8 @@ class SettingsForm(QWidget):
                 continue
             self._defaults[each.name] = each.default
             label = tr(str(each.metadata.get("label", each.name.replace("_", " ").capitalize())))
-            editor = self._editors[each.name] = _setting_editor(each.default, each.metadata)
+            known = {"choices": choices[each.name]} if choices and each.name in choices else {}
+            editor = self._editors[each.name] = _setting_editor(each.default, {**each.metadata, **known})
             editor.setObjectName(f"setting_{each.name}")
             editor.setAccessibleName(label)
             editor.setToolTip(tr(str(each.metadata.get("tip", ""))))
@@ -86,7 +94,8 @@ def _setting_editor(default: Scalar, metadata: Mapping[str, Any]) -> QWidget:
         return combo
     if isinstance(default, int):
         whole = QSpinBox()
-        whole.setRange(int(metadata.get("minimum", 0)), int(metadata.get("maximum", 1_000_000)))
+        highest = min(int(metadata.get("maximum", 1_000_000)), LARGEST_NUMBER)
+        whole.setRange(int(metadata.get("minimum", 0)), highest)
         whole.setKeyboardTracking(False)
         return whole
     number = DecimalField()

@@ -8,6 +8,7 @@ from regolith_studio.scene.clipping import DIRECTIONS
 from regolith_studio.scene.shapes import LABELS, NAMES, PARTICLE
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import tr
+from regolith_studio.ui.translation.numbers import number_text
 from regolith_studio.ui.views.three_views import ThreeViews
 from regolith_studio.ui.widgets.combo_box import ChoiceBox
 from regolith_studio.ui.widgets.labels import grouped_number
@@ -111,4 +112,4 @@ def _mirrored(cut: CrossSection, direction: str) -> bool:
 
 def _area_text(area: float, whole: float, name: str) -> str:
     words = f"{grouped_number(area)} µm²"
-    return words if name == PARTICLE or not whole else f"{words} ({area / whole - 1:+.1%})"
+    return words if name == PARTICLE or not whole else f"{words} ({number_text(area / whole - 1, '+.1%')})"

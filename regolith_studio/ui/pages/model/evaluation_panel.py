@@ -204,7 +204,9 @@ class EvaluationPanel(QWidget):
                 model=model,
                 near=float(str(near)),
             )
-        self.verdict.show_values((number_text(float(str(near)), ".2f"), f"{float(str(told)):.0%}"), sentence)
+        self.verdict.show_values(
+            (number_text(float(str(near)), ".2f"), number_text(float(str(told)), ".0%")), sentence
+        )
 
     def _options(self) -> QHBoxLayout:
         row = QHBoxLayout()

@@ -21,7 +21,7 @@ from regolith_studio.jobs.study_jobs import GalleryCell
 from regolith_studio.messages import N_
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import tr
-from regolith_studio.ui.translation.numbers import localized, number_text
+from regolith_studio.ui.translation.numbers import number_text
 from regolith_studio.ui.widgets.heat_table import centred_remark
 from regolith_studio.ui.widgets.study_frame import StudyFrame
 from regolith_studio.ui.widgets.thumbnails import thumbnail
@@ -102,7 +102,7 @@ class GalleryPanel(QWidget):
             item.setToolTip(cell.outcome.problem or "")
             return item
         item.setIcon(QIcon(thumbnail(found.mesh, self._colour, SIZE)))
-        item.setText(localized(f"J {found.jaccard_distance:.1%}"))
+        item.setText(f"J {number_text(found.jaccard_distance, '.1%')}")
         worst = "\n".join(
             f"{tr(CATALOGUE[key].label)}: {number_text(error, '.2%')}" for key, error in found.errors.items()
         )
