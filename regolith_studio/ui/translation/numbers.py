@@ -20,7 +20,7 @@ def localized(text: str) -> str:
     return text.translate({ord("."): locale.decimalPoint(), ord(","): locale.groupSeparator()})
 
 
-def number_text(value: float, form: str) -> str:
+def number_text(value: float | Real, form: str) -> str:
     """A number in a format of Python, such as ``.3g``, with the signs of the language.
 
     A per cent sign stands behind a space that keeps the line, as everywhere in the window.

@@ -9,6 +9,7 @@ from regolith_studio.studies.coarsening import COLUMNS, CoarseningStudy
 from regolith_studio.studies.sweeps import differences, format_difference, significant
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import tr, translate
+from regolith_studio.ui.translation.numbers import localized
 from regolith_studio.ui.widgets.definitions import definition
 from regolith_studio.ui.widgets.heat_table import centred_remark, keep_legible, numbers_table, set_head_tips
 from regolith_studio.ui.widgets.table import FontRowHeight
@@ -61,7 +62,7 @@ class SensitivityTable(QWidget):
         for r, label in enumerate(labels):
             for k, header in enumerate(self._headers):
                 value = float(values[r, k])
-                text = format_difference(value)
+                text = localized(format_difference(value))
                 item = QTableWidgetItem(text if sure[r, k] or text == "0" else f"({text})")
                 item.setTextAlignment(Qt.AlignmentFlag.AlignCenter)
                 item.setBackground(self._ground(value / top))
