@@ -6,11 +6,11 @@ import sys
 import traceback
 from collections.abc import Sequence
 
+from regolith_studio.cli.stop_signals import STOPPED
 from regolith_studio.errors import JobCancelled, RegolithError, format_os_error
 from regolith_studio.readers.error_messages import printable
 
 DONE, BAD_INPUT, BAD_USE, INTERRUPTED = 0, 1, 2, 130
-STOPPED = "Stopped."
 
 
 def run(arguments: Sequence[str]) -> int:

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from regolith_studio.errors import MissingRequirement
+from regolith_studio.jobs.runners.worker import end_with_parent, interrupts_blocked
 
 if TYPE_CHECKING:
     from multiprocessing.connection import Connection
@@ -57,15 +58,18 @@ def draw_in_process(draw: Callable[..., None], arguments: tuple[Any, ...], path:
     context = multiprocessing.get_context("spawn")
     errors, sending = context.Pipe(duplex=False)
     child = context.Process(target=_draw_and_report, args=(sending, draw, (*arguments, stage)), daemon=True)
-    child.start()
-    child.join(_TIMEOUT)
-    if child.is_alive():
+    with interrupts_blocked():
+        child.start()
+    try:
+        child.join(_TIMEOUT)
+    finally:
         child.kill()
         child.join()
-    if child.exitcode == 0 and stage.is_file():
-        stage.replace(path)
+        if child.exitcode == 0 and stage.is_file():
+            stage.replace(path)
+        stage.unlink(missing_ok=True)
+    if child.exitcode == 0 and path.is_file():
         return
-    stage.unlink(missing_ok=True)
     if errors.poll():
         raise errors.recv()
     raise MissingRequirement("This machine cannot draw in three dimensions; `check` tells more.")
@@ -73,6 +77,7 @@ def draw_in_process(draw: Callable[..., None], arguments: tuple[Any, ...], path:
 
 def _draw_and_report(sending: "Connection", draw: Callable[..., None], arguments: tuple[Any, ...]) -> None:
     """Draw; what the file system refuses is raised where the picture is waited for."""
+    end_with_parent()
     try:
         draw(*arguments)
     except OSError as error:

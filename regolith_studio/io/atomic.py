@@ -22,7 +22,7 @@ from pathlib import Path
 from typing import IO
 
 from regolith_studio.errors import FileError, RegolithError, os_error_reason
-from regolith_studio.io.output_lock import LOCK, NEW, hidden_beside, output_lock
+from regolith_studio.io.output_lock import LOCK, NEW, hidden_beside, output_lock, release_all, remove_hidden
 
 CONCURRENT_SYNCS = 16
 """Files flushed to the disk at the same time."""
@@ -32,6 +32,9 @@ JOURNAL = "journal"
 
 Content = bytes | Iterable[bytes]
 """Of a file: as a whole, or in pieces."""
+
+_unfinished: set[Path] = set()
+"""Hidden files and folders of this process that have not taken their places."""
 
 _RENAME_SWAP = 2  # RENAME_EXCHANGE of Linux's renameat2 and RENAME_SWAP of macOS's renamex_np
 _AT_FDCWD = -100
@@ -47,14 +50,14 @@ def staged_file(path: Path) -> Iterator[IO[bytes]]:
         If it cannot be written, or its folder is not there.
     """
     try:
-        hidden = _hidden_name(path)
-        try:
-            with hidden.open("xb") as stream:
-                yield stream
-            hidden.replace(path)
-        except BaseException:
-            hidden.unlink(missing_ok=True)
-            raise
+        with _hidden_path(path) as hidden:
+            try:
+                with hidden.open("xb") as stream:
+                    yield stream
+                hidden.replace(path)
+            except BaseException:
+                hidden.unlink(missing_ok=True)
+                raise
     except OSError as error:
         raise FileError(f"The file {path} cannot be written ({os_error_reason(error)}).") from error
 
@@ -185,8 +188,7 @@ def swap_folders(first: Path, second: Path) -> bool:
 @contextmanager
 def hidden_folder(target: Path) -> Iterator[Path]:
     """A new hidden folder beside `target`, removed at the end if it is still there."""
-    with output_lock(target):
-        stage = _hidden_name(Path(os.path.realpath(target)))
+    with output_lock(target), _hidden_path(Path(os.path.realpath(target))) as stage:
         try:
             os.mkdir(stage)  # noqa: PTH102
             yield stage
@@ -197,8 +199,21 @@ def hidden_folder(target: Path) -> Iterator[Path]:
             remove_quietly(stage)
 
 
-def _hidden_name(target: Path) -> Path:
-    return hidden_beside(target, f".{uuid.uuid4().hex[:12]}{NEW}")
+def remove_unfinished() -> None:
+    """Remove the hidden files and folders of this process, and its locks, because it ends at once."""
+    for hidden in list(_unfinished):
+        remove_hidden(hidden)
+    release_all()
+
+
+@contextmanager
+def _hidden_path(target: Path) -> Iterator[Path]:
+    hidden = hidden_beside(target, f".{uuid.uuid4().hex[:12]}{NEW}")
+    _unfinished.add(hidden)
+    try:
+        yield hidden
+    finally:
+        _unfinished.discard(hidden)
 
 
 def _sha256_list(folder: Path) -> bytes:

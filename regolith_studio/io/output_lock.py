@@ -69,6 +69,12 @@ def output_lock(output: Path) -> Iterator[None]:
                 _release(held)
 
 
+def release_all() -> None:
+    """Give up all locks, because this process ends at once."""
+    for held in list(_held.values()):
+        _release(held)
+
+
 def hidden_beside(target: Path, end: str) -> Path:
     """A hidden path in the folder of `target`, whose name begins with the target's and has this end."""
     name = target.name
@@ -92,7 +98,7 @@ def _acquire(place: Path, output: Path) -> _Held:
     except BlockingIOError:
         raise FileError(f"Another process is writing to {output}; wait for its end.") from None
     for path in leftovers(place):
-        _remove(path)
+        remove_hidden(path)
     return held
 
 
@@ -152,7 +158,8 @@ def _release(held: _Held) -> None:
             folder.rmdir()
 
 
-def _remove(path: Path) -> None:
+def remove_hidden(path: Path) -> None:
+    """Remove a file or a folder if it is there; errors are ignored."""
     with contextlib.suppress(OSError):
         if path.is_dir():
             shutil.rmtree(path, ignore_errors=True)

@@ -90,3 +90,10 @@ def import_slowly(path: str) -> int:
     time.sleep(60)
     Path(path).with_suffix(".ended").write_text("ended")
     return 1
+
+
+def sleep_without_steps(path: str) -> Steps:
+    """A job whose only step takes a minute; it says that it has begun by a file."""
+    yield Started("Sleeping")
+    Path(path).touch()
+    time.sleep(60)

@@ -19,6 +19,7 @@ from .small_jobs import (
     hold,
     process_id,
     refuse,
+    sleep_without_steps,
     square,
     stumble,
     wait_for,
@@ -221,3 +222,19 @@ def test_that_closing_waits_for_no_process_that_is_still_importing(
     assert received == [Stopped()]
     assert not begun.with_suffix(".ended").exists()
     assert not runner._workers
+
+
+def test_that_closing_waits_for_no_step_that_takes_long(tmp_path: Path) -> None:
+    runner, received = ProcessPoolRunner(2), list[Event]()
+    for name in ("one", "two"):
+        runner.submit(Job(sleep_without_steps, (str(tmp_path / name),)), received.append)
+    end = time.monotonic() + 60
+    while len(list(tmp_path.iterdir())) < 2 and time.monotonic() < end:
+        time.sleep(0.01)
+    processes = [worker.process for worker in runner._workers]
+    begun = time.monotonic()
+    runner.close()
+    assert time.monotonic() - begun < 10  # 1 s where the machine is not busy
+    assert received == [Stopped(), Stopped()]
+    assert len(processes) == 2
+    assert not any(process.is_alive() for process in processes)

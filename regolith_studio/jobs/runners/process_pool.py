@@ -2,11 +2,13 @@
 
 import contextlib
 import logging
+import math
 import multiprocessing
 import multiprocessing.util
 import os
 import pickle
 import threading
+import time
 from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -15,13 +17,13 @@ from typing import Any
 
 from regolith_studio.io.machine_memory import machine_memory
 from regolith_studio.jobs.events import Failed, Finished, Job, JobResult, Listener, Stopped
-from regolith_studio.jobs.runners.worker import SLOTS, STARTED, run_jobs
+from regolith_studio.jobs.runners.worker import SLOTS, STARTED, interrupts_blocked, run_jobs
 
 _log = logging.getLogger(__name__)
 _THREAD_LIMITS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
 _MIN_MEMORY, _MAX_MEMORY, _MEMORY_FRACTION = 768 * 1024**2, 2 * 1024**3, 0.6
-_CLOSE_SECONDS = 10.0
-"""Seconds that a closing pool waits for a job that does not stop between two steps."""
+_CLOSE_SECONDS = 1.0
+"""Seconds after which a closing pool kills what has not ended: jobs between two steps, then processes."""
 
 
 def cores() -> int:
@@ -106,7 +108,7 @@ class ProcessPoolRunner:
         self._context = multiprocessing.get_context("spawn")
         self._flags: Any = self._context.Array("q", SLOTS, lock=False)
         self._number = 0
-        self._closed = False
+        self._closed, self._deadline = False, math.inf
         self._lock = threading.Lock()
         self._waiting: deque[_PoolHandle] = deque()
         self._workers: list[_Worker] = []
@@ -135,13 +137,13 @@ class ProcessPoolRunner:
         return handle
 
     def close(self) -> None:
-        """Stop the jobs between two of their steps and end the processes.
+        """Stop the jobs between two of their steps and end the processes, within little over a second.
 
         A process that is still importing what its job needs is not waited for.
         """
         if self._closed:
             return
-        self._closed = True
+        self._deadline, self._closed = time.monotonic() + _CLOSE_SECONDS, True
         for number in range(max(1, self._number - SLOTS + 1), self._number + 1):
             self._flags[number % SLOTS] = number
         if self._manager is not None:
@@ -165,7 +167,7 @@ class ProcessPoolRunner:
                     break
             self._dispatch()
             ready = wait([self._wakeup_recv, *[worker.pipe for worker in self._workers]], self._timeout)
-            if not ready:
+            if time.monotonic() >= self._deadline:
                 for worker in self._busy:
                     worker.process.kill()
             while self._wakeup_recv.poll():
@@ -175,7 +177,7 @@ class ProcessPoolRunner:
         for worker in self._workers:
             worker.stop()
         for process in [*self._retired, *[worker.process for worker in self._workers]]:
-            _end(process)
+            _end(process, self._deadline)
         self._workers.clear()
 
     @property
@@ -184,7 +186,7 @@ class ProcessPoolRunner:
 
     @property
     def _timeout(self) -> float | None:
-        return _CLOSE_SECONDS if self._closed else None
+        return max(0.02, self._deadline - time.monotonic()) if self._closed else None
 
     def _drop_cancelled(self) -> None:
         with self._lock:
@@ -231,7 +233,7 @@ class ProcessPoolRunner:
     def _start_worker(self) -> _Worker:
         ours, theirs = self._context.Pipe()
         process = self._context.Process(target=run_jobs, args=(theirs, self._flags), name="worker")
-        with _SingleThreadedBlas():
+        with _SingleThreadedBlas(), interrupts_blocked():
             process.start()
         theirs.close()
         worker = _Worker(process, ours)
@@ -277,8 +279,8 @@ class ProcessPoolRunner:
         self._retired = [process for process in [*self._retired, worker.process] if process.is_alive()]
 
 
-def _end(process: Any) -> None:
-    process.join(_CLOSE_SECONDS)
+def _end(process: Any, deadline: float) -> None:
+    process.join(max(0.0, deadline - time.monotonic()))
     if process.is_alive():
         process.kill()
         process.join()

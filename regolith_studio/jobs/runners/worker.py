@@ -1,10 +1,16 @@
 """Main loop of a worker process of the pool: runs one job after the other."""
 
+import multiprocessing
 import os
 import pickle
 import signal
 import sys
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from multiprocessing import resource_tracker
 from multiprocessing.connection import Connection
+from multiprocessing.process import BaseProcess
 from pathlib import Path
 from typing import Any
 
@@ -28,7 +34,7 @@ def run_jobs(pipe: Connection, flags: Any) -> None:
     flags
         Shared with the parent: slot n holds the number of a job that shall stop.
     """
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent handles Ctrl-C
+    end_with_parent()
     while True:
         try:
             message = pipe.recv_bytes()
@@ -39,6 +45,36 @@ def run_jobs(pipe: Connection, flags: Any) -> None:
             pipe.send_bytes(_pickled(_run(job, number, flags)))
         except (EOFError, OSError):
             return  # the parent is gone
+
+
+@contextmanager
+def interrupts_blocked() -> Iterator[None]:
+    """Processes that are started meanwhile see no Ctrl+C and no closing of the terminal.
+
+    Terminals send those to all processes of a command; the parent acts on them.
+    """
+    if os.name == "nt":
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGHUP})
+    try:
+        resource_tracker.ensure_running()  # a process of its own, whose start unblocks SIGINT
+        signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def end_with_parent() -> None:
+    """Let this process leave Ctrl+C to its parent, and end when that has ended, in whichever way."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    if parent := multiprocessing.parent_process():
+        threading.Thread(target=_exit_after, args=(parent,), name="parent", daemon=True).start()
+
+
+def _exit_after(parent: BaseProcess) -> None:
+    parent.join()
+    os._exit(1)
 
 
 def resident_memory() -> int:

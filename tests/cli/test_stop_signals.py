@@ -1,0 +1,137 @@
+"""A command that is told to stop ends within two seconds, whatever it waits for."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import psutil
+import pytest
+
+from regolith_studio.cli.stop_signals import STOP_SECONDS
+
+ROOT = Path(__file__).resolve().parents[2]
+PATIENCE = 60.0
+
+STUCK = """
+import subprocess, sys, threading, time
+from pathlib import Path
+from regolith_studio import __main__ as program
+from regolith_studio.cli import entry
+from regolith_studio.io.atomic import hidden_folder, staged_file
+from regolith_studio.jobs.events import Job
+from regolith_studio.jobs.executor import Executor
+from tests.jobs.small_jobs import sleep_without_steps
+
+folder = Path(sys.argv[1])
+
+def run(words):
+    executor = Executor(2)
+    results = executor.results([Job(sleep_without_steps, (str(folder / name),)) for name in ("one", "two")])
+    with hidden_folder(folder / "out" / "result") as stage, staged_file(folder / "table.csv") as table:
+        (stage / "half").write_text("x")
+        while not ((folder / "one").exists() and (folder / "two").exists()):
+            next(results)
+        (folder / "ready").touch()
+        {waits}
+
+entry.run, sys.argv = run, ["regolith-studio", "fit"]
+program.main()
+"""
+WAITS = {
+    "does not notice": "while True:\n            try:\n                time.sleep(60)\n"
+    "            except BaseException:\n                pass",
+    "waits for a thread": "try:\n            time.sleep(60)\n        finally:\n"
+    "            thread = threading.Thread(target=time.sleep, args=(60,))\n            thread.start()\n"
+    "            thread.join()",
+    "leaves a thread": "threading.Thread(target=time.sleep, args=(60,)).start()\n        time.sleep(60)",
+    "waits for a program": "try:\n            time.sleep(60)\n        finally:\n"
+    "            subprocess.run(['sleep', '3'])",
+    "ends by itself": "time.sleep(60)",
+}
+
+
+def wait_until(path: Path, child: "subprocess.Popen[str]") -> None:
+    end = time.monotonic() + PATIENCE
+    while not path.exists():
+        assert child.poll() is None, child.communicate()
+        assert time.monotonic() < end
+        time.sleep(0.02)
+
+
+def start(code: str, folder: Path) -> "subprocess.Popen[str]":
+    child = subprocess.Popen(
+        [sys.executable, "-c", code, str(folder)],
+        cwd=ROOT,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    )
+    wait_until(folder / "ready", child)
+    return child
+
+
+@pytest.mark.skipif(os.name == "nt", reason="signals are a matter of POSIX")
+@pytest.mark.parametrize(
+    ("waits", "name", "code"),
+    [
+        ("waits for a thread", "SIGTERM", 143),
+        pytest.param("does not notice", "SIGHUP", 129, marks=pytest.mark.slow),
+        pytest.param("leaves a thread", "SIGINT", 130, marks=pytest.mark.slow),
+        pytest.param("waits for a program", "SIGINT", 130, marks=pytest.mark.slow),
+        pytest.param("ends by itself", "SIGINT", 130, marks=pytest.mark.slow),
+    ],
+)
+def test_that_a_command_that_waits_for_something_ends_two_seconds_after_a_signal(
+    tmp_path: Path, waits: str, name: str, code: int
+) -> None:
+    child = start(STUCK.replace("{waits}", WAITS[waits]), tmp_path)
+    family = psutil.Process(child.pid).children(recursive=True)
+    assert len(family) >= 2
+    begun = time.monotonic()
+    os.killpg(child.pid, getattr(signal, name))  # as a terminal does
+    _, said = child.communicate(timeout=PATIENCE)
+    _, alive = psutil.wait_procs(family, timeout=PATIENCE)
+    seconds = time.monotonic() - begun
+    assert (child.returncode, said) == (code, "Stopped.\n")
+    assert not alive
+    assert seconds < max(2.0, os.getloadavg()[0]) + STOP_SECONDS
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["one", "ready", "two"]
+
+
+@pytest.mark.skipif(os.name == "nt", reason="signals are a matter of POSIX")
+def test_that_a_second_signal_does_not_disturb_the_tidying_up(tmp_path: Path) -> None:
+    code = (
+        "import os, signal, sys, time\n"
+        "from pathlib import Path\n"
+        "from regolith_studio import __main__ as program\n"
+        "from regolith_studio.cli import entry\n"
+        "def run(words):\n"
+        "    try:\n"
+        "        os.kill(os.getpid(), signal.SIGINT)\n"
+        "        time.sleep(60)\n"
+        "    finally:\n"
+        "        os.kill(os.getpid(), signal.SIGINT)\n"
+        "        os.kill(os.getpid(), signal.SIGTERM)\n"
+        "        Path(sys.argv[0]).touch()\n"
+        "entry.run, sys.argv = run, [sys.argv[1], 'fit']\n"
+        "program.main()\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code, str(tmp_path / "tidied")], cwd=ROOT, capture_output=True, text=True
+    )
+    assert (done.returncode, done.stderr) == (130, "Stopped.\n")
+    assert (tmp_path / "tidied").exists()
+
+
+@pytest.mark.skipif(os.name == "nt", reason="signals are a matter of POSIX")
+def test_that_the_processes_of_a_killed_command_end_in_the_middle_of_a_step(tmp_path: Path) -> None:
+    child = start(STUCK.replace("{waits}", WAITS["ends by itself"]), tmp_path)
+    family = psutil.Process(child.pid).children(recursive=True)
+    child.kill()
+    child.communicate(timeout=PATIENCE)
+    _, alive = psutil.wait_procs(family, timeout=PATIENCE / 4)
+    assert not alive
