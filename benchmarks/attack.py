@@ -15,13 +15,18 @@ mixed
 left
     How many left hidden files or processes behind, after SIGKILL once the next run has ended.
 
+A command runs in a process that is forked from this one, which has loaded the program's modules, so that all
+moments fall into its work and none into imports. SIGINT and SIGHUP go to all processes of the command, as a
+terminal sends them, SIGTERM and SIGKILL to the first alone. `demo` is shortened (:func:`shorten_demo`).
+
 Linux only. Full and read-only disks are small file systems in memory, which needs root.
-``--share 0.1 --seed 1`` runs a sample, ``--only WORD`` the commands whose name contains one of the words.
+``--share 0.1 --seed 1`` runs a sample, ``--only NAME ...`` some of :data:`COMMANDS`.
 Ctrl+C ends it with the table of what ran.
 """
 
 import argparse
 import hashlib
+import multiprocessing
 import os
 import random
 import shutil
@@ -31,14 +36,19 @@ import sys
 import tempfile
 import time
 import uuid
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager, suppress
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import ExitStack, contextmanager, nullcontext, redirect_stderr, redirect_stdout, suppress
 from dataclasses import astuple, dataclass, replace
+from functools import partial
 from pathlib import Path
+from typing import Any
+from unittest.mock import patch
 
 import numpy as np
 
 from benchmarks.sample_inputs import write_inputs
+from regolith_studio import __main__ as program
+from regolith_studio.cli import entry
 
 ROOT = Path(__file__).resolve().parents[1]
 DISK_MOMENTS, KILL_MOMENTS = 5, 10
@@ -62,14 +72,14 @@ QUICK = (
 COMMANDS = {
     "fit": ("fit IN/meshes -o OUT/f.json --l-max 6", "--l-max 4"),
     "fit surfaces": ("fit IN/meshes -o OUT/f.json --surfaces OUT/surfaces --l-max 6 --level 2", "--l-max 4"),
-    "generate": ("generate IN/fit.json -o OUT/g -n 6 --level 2 --jobs 2", "-n 4"),
+    "generate": ("generate IN/fit.json -o OUT/g -n 6 --level 2", "-n 4"),
     "generate npz": ("generate IN/fit.json -o OUT/g -n 6 --format npz --save-model OUT/m.json", "-n 4"),
     "coarsen": ("coarsen IN/meshes -o OUT/c --method quadric --facets 12 --jobs 2", "--facets 8"),
     "extract": ("extract IN/labels.npy -o OUT/e --kind labels --voxel-size 2", "--voxel-size 3"),
     "gallery": ("gallery IN/meshes/grain-0.stl -o OUT/p --degrees 1 --no-animation", "--degrees 2"),
     "run": ("run IN/recipe.json -o OUT/r --jobs 2", "--seed 5"),
     "demo": ("demo -o OUT/d", "--seed 5"),
-    "study lmax": ("study lmax IN/meshes/grain-0.stl -o OUT/s --degrees 1-2 --jobs 2", "--degrees 1"),
+    "study lmax": ("study lmax IN/meshes/grain-0.stl -o OUT/s --degrees 1-2", "--degrees 1"),
     "study coarsening": (
         "study coarsening IN/meshes -o OUT/s --method quadric --loss all --facets 12",
         "--facets 8",
@@ -97,7 +107,7 @@ COMMANDS = {
         "dataset build IN/meshes -o OUT/d --method quadric --facets 12 --overwrite --name d",
         "--facets 8",
     ),
-    "dataset sample": ("dataset sample IN/dataset -o OUT/d.csv -n 100000", "-n 50000"),
+    "dataset sample": ("dataset sample IN/dataset -o OUT/d.csv -n 5000", "-n 4000"),
     "dataset export": ("dataset export IN/dataset -o OUT/x --to rocky,gltf --particles 40", "--particles 30"),
     "repose measure": ("repose measure IN/heap.csv -o OUT/m", "--base 0.0001"),
     "repose run": (
@@ -110,9 +120,10 @@ COMMANDS = {
     ),
 }
 """What is run, and what its earlier run had instead."""
-
-ONE_IN = {"demo": 5}
-"""Of a long command's attacks one in so many is made."""
+TO_ALL = {signal.SIGINT, signal.SIGHUP}
+"""Signals that a terminal sends to all processes of a command."""
+_FORK = multiprocessing.get_context("fork")
+_MARK = "REGOLITH_ATTACK"
 
 Tree = dict[str, str]
 
@@ -173,8 +184,8 @@ class Arena:
         )
 
     def start(self, words: tuple[str, ...]) -> "Running":
-        """Start a command."""
-        return Running(words, self.temporary)
+        """Start a command of the program."""
+        return Running(partial(run_program, words), self.temporary)
 
     def reset(self, content: Path | None) -> None:
         """Let the place hold a copy of `content`, or nothing."""
@@ -191,46 +202,91 @@ class Arena:
 
 
 class Running:
-    """A command in a process of its own, whose descendants are known by a variable of their environment."""
+    """A function in a process of its own, whose descendants are known by a variable of their environment."""
 
-    def __init__(self, words: tuple[str, ...], temporary: Path) -> None:
-        self._mark = f"REGOLITH_ATTACK={uuid.uuid4().hex}"
-        name, value = self._mark.split("=")
-        environment = {**os.environ, name: value, "TMPDIR": str(temporary), "PYTHONPATH": str(ROOT)}
-        command = [sys.executable, "-m", "regolith_studio", *words]
-        self._stderr = temporary.parent / f"{value}.txt"  # a pipe would stay open until the last process ends
-        with self._stderr.open("wb") as stderr:
-            self.process = subprocess.Popen(
-                command,
-                env=environment,
-                cwd=temporary.parent,
-                stdout=subprocess.DEVNULL,
-                stderr=stderr,
-                start_new_session=True,
-            )
+    def __init__(self, function: Callable[[], Any], temporary: Path) -> None:
+        self._mark = uuid.uuid4().hex
+        self._stderr = temporary.parent / f"{self._mark}.txt"  # a pipe would stay open until the last ends
+        ready, told = _FORK.Pipe(duplex=False)
+        self.process = _FORK.Process(target=self._run, args=(function, temporary, told))
+        self.process.start()
+        ready.recv()
+
+    def _run(self, function: Callable[[], Any], temporary: Path, told: Any) -> None:
+        os.setsid()
+        os.chdir(temporary.parent)
+        os.environ.update({_MARK: self._mark, "TMPDIR": str(temporary), "PYTHONPATH": str(ROOT)})
+        tempfile.tempdir = None
+        for number, path in ((1, os.devnull), (2, self._stderr)):
+            os.dup2(os.open(path, os.O_WRONLY | os.O_CREAT, 0o600), number)
+        sys.stdout, sys.stderr = (os.fdopen(number, "w", 1, closefd=False) for number in (1, 2))
+        told.send(None)
+        function()
+
+    def send(self, number: signal.Signals) -> None:
+        """Send a signal as a terminal, a queue or somebody else does."""
+        with suppress(ProcessLookupError):
+            (os.killpg if number in TO_ALL else os.kill)(self.process.pid, number)
 
     def end(self, signalled: bool = False) -> Ended:
         """Wait for its end, unless it was signalled, then for that of its processes; kill those that stay."""
-        with suppress(subprocess.TimeoutExpired):
-            self.process.wait(0.0 if signalled else PATIENCE)
+        self.process.join(0.0 if signalled else PATIENCE)
         limit = time.monotonic() + GRACE * max(1.0, os.getloadavg()[0])
         while (alive := self._alive()) and time.monotonic() < limit:
             time.sleep(0.05)
         for number in alive:
             with suppress(ProcessLookupError):
                 os.kill(number, signal.SIGKILL)
-        self.process.wait()
+        self.process.join()
         stderr = self._stderr.read_text("utf-8", "backslashreplace")
         self._stderr.unlink()
-        return Ended(self.process.returncode, stderr, len(alive))
+        return Ended(self.process.exitcode, stderr, len(alive))
 
     def _alive(self) -> list[int]:
-        found = []
-        for entry in Path("/proc").iterdir():
+        found = [self.process.pid] if self.process.is_alive() else []
+        mark = f"{_MARK}={self._mark}".encode()
+        for process in Path("/proc").glob("[0-9]*"):
             with suppress(OSError):
-                if entry.name.isdigit() and self._mark.encode() in (entry / "environ").read_bytes():
-                    found.append(int(entry.name))
+                if mark in (process / "environ").read_bytes():
+                    found.append(int(process.name))
         return found
+
+
+def run_program(words: Sequence[str]) -> None:
+    """The program as it is started by its name."""
+    sys.argv = ["regolith-studio", *words]
+    sys.modules["__main__"] = program  # what its own processes import
+    program.main()
+
+
+@contextmanager
+def shorten_demo() -> Iterator[None]:
+    """One particle, three representatives, polyhedra by quadrics and a heap of 40 particles in ``demo``."""
+    from regolith_studio.cli import demo
+    from regolith_studio.dataset.parameters import LiftingCylinderTest
+    from regolith_studio.dem.evaluation.settings import EvaluationSettings
+    from regolith_studio.jobs import repose_jobs
+    from regolith_studio.readers.particles import sample_particles
+    from regolith_studio.session.batch import inputs
+
+    first = list(sample_particles())[:1]
+    few = {"N_REPRESENTATIVES": 3, "N_DRAWN": 4, "N_HEAP": 40}
+    complete = repose_jobs.ReposeRequest
+
+    def quick_heap(heap: Any, settings: Any) -> Any:
+        test = LiftingCylinderTest(mass=0.003, lift_speed=0.15)
+        settings = replace(settings, rest_energy=2e-3, snapshots=12)
+        measure = EvaluationSettings(min_particles=40)
+        return complete(replace(heap, test=test), settings=settings, evaluation=measure)
+
+    with ExitStack() as stack:
+        for name, value in few.items():
+            stack.enter_context(patch.object(demo, name, value))
+        quick = partial(demo._run_recipe, method="quadric", n_facets=12)
+        stack.enter_context(patch.object(demo, "_run_recipe", quick))
+        stack.enter_context(patch.object(inputs, "sample_particles", lambda: first))
+        stack.enter_context(patch.object(repose_jobs, "ReposeRequest", quick_heap))
+        yield
 
 
 def tree(folder: Path) -> Tree:
@@ -248,14 +304,15 @@ def prepared(arena: Arena, name: str) -> Prepared:
     line, other = COMMANDS[name]
     words = arena.words(line)
     arena.reset(None)
-    for each in ((*words, *other.split()), words):
-        begun = time.monotonic()
-        ended = arena.start(each).end()
-        if ended.code:
-            raise SystemExit(f"{' '.join(each)}: {ended.stderr}")
-        if each != words:
-            earlier = arena.kept / name.replace(" ", "-")
-            shutil.copytree(arena.place, earlier)
+    with Path(os.devnull).open("w") as nowhere, redirect_stdout(nowhere), redirect_stderr(nowhere):
+        if entry.run([*words, *other.split()]):  # in this process, which loads the modules that it needs
+            raise SystemExit(f"{name} fails undisturbed")
+    earlier = arena.kept / name.replace(" ", "-")
+    shutil.copytree(arena.place, earlier)
+    begun = time.monotonic()
+    ended = arena.start(words).end()
+    if ended.code:
+        raise SystemExit(f"{' '.join(words)}: {ended.stderr}")
     new = tree(arena.place)
     size = sum(-(-path.stat().st_size // BLOCK) * BLOCK for path in arena.place.rglob("*") if path.is_file())
     seconds, remarks = time.monotonic() - begun, tuple(ended.stderr.splitlines())
@@ -296,8 +353,7 @@ def kill(arena: Arena, case: Prepared, row: Row, number: signal.Signals, moment:
     arena.reset(case.earlier)
     running = arena.start(case.words)
     time.sleep(case.seconds * (moment + 0.5) / KILL_MOMENTS)
-    with suppress(ProcessLookupError):
-        running.process.send_signal(number)
+    running.send(number)
     ended = running.end(signalled=True)
     if number is signal.SIGKILL:
         killed = Row()
@@ -369,7 +425,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(prog="python -m benchmarks.attack")
     parser.add_argument("--share", type=float, default=1.0)
     parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--only", nargs="*", default=[""], metavar="WORD")
+    parser.add_argument("--only", nargs="+", default=[], choices=COMMANDS, metavar="NAME")
     options = parser.parse_args()
     signal.signal(signal.SIGINT, signal.default_int_handler)  # the background of a shell ignores it, nohup
     signal.signal(signal.SIGHUP, signal.SIG_DFL)  # this, and so would what is started here
@@ -388,23 +444,23 @@ def main() -> None:
 
 
 def attack(folder: Path, only: Sequence[str], share: float, seed: int, rows: Rows) -> Iterator[str]:
-    """All attacks on the commands whose name contains a word of `only`, or a seeded share of them.
+    """All attacks on the commands `only`, all if there is none, or a seeded share of them.
 
     Yields the name of each command once its rows are complete.
     """
     arena, rng = Arena(folder), random.Random(seed)
     write_inputs(arena.inputs)
     is_root = os.geteuid() == 0
-    for name in [name for name in COMMANDS if any(word in name for word in only)]:
+    for name in only or COMMANDS:
         attacks = [("killed", kill, (number, k)) for number in SIGNALS for k in range(KILL_MOMENTS)]
         attacks += [("full disk", fill_disk, (k,)) for k in range(DISK_MOMENTS)] if is_root else []
         attacks += [("read-only", forbid, ())] if is_root else []
         attacks += [("two writers", race, ())]
-        attacks = attacks[:: ONE_IN.get(name, 1)]
         if chosen := [each for each in attacks if rng.random() < share]:
-            case = prepared(arena, name)
-            for kind, act, arguments in chosen:
-                act(arena, case, rows.setdefault((name, kind), Row()), *arguments)
+            with shorten_demo() if name == "demo" else nullcontext():
+                case = prepared(arena, name)
+                for kind, act, arguments in chosen:
+                    act(arena, case, rows.setdefault((name, kind), Row()), *arguments)
             yield name
 
 
