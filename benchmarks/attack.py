@@ -29,6 +29,7 @@ import hashlib
 import multiprocessing
 import os
 import random
+import re
 import shutil
 import signal
 import subprocess
@@ -55,6 +56,8 @@ DISK_MOMENTS, KILL_MOMENTS = 5, 10
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGKILL)
 NOT_COMPARED = {"times.json", "journal"}
 """Durations differ, and a journal is there to be resumed."""
+PROGRESS = re.compile(r"[\d,]+ of [\d,]+: ")
+"""A line that long batches print every half minute where there is no terminal."""
 PATIENCE = 900.0
 BLOCK = 4096
 """Bytes in which a file system in memory counts."""
@@ -324,7 +327,8 @@ def judge(arena: Arena, case: Prepared, ended: Ended, row: Row, signalled: bool 
     row.runs += 1
     found = tree(arena.place)
     if ended.code:
-        said = [line for line in ended.stderr.strip().splitlines() if line not in case.remarks]
+        lines = ended.stderr.strip().splitlines()
+        said = [line for line in lines if line not in case.remarks and not PROGRESS.match(line)]
         is_sentence = len(said) == 1 and "made a mistake" not in ended.stderr
         row.sentences += is_sentence
         if not is_sentence and not (signalled and not said):
