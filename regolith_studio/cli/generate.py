@@ -130,7 +130,7 @@ def generate(
 ) -> None:
     """Draw virtual particles with the shapes and sizes of a sample (section 2.3)."""
     from regolith_studio.harmonics.surface import DEFAULT_LEVEL
-    from regolith_studio.io.atomic import staged_folder
+    from regolith_studio.io.atomic import staged_folder, staged_together
     from regolith_studio.jobs.model_jobs import GenerationRequest, draw, fit_model, groups_of
     from regolith_studio.session.choices import Choices
     from regolith_studio.session.outputs.particles import GeneratedParticles
@@ -145,10 +145,13 @@ def generate(
     fitted = _named(run_with_progress(fit_model(source, request)), names)
     draws = run_with_progress(draw(fitted, request))
     made = GeneratedParticles(source, request, fitted, draws, groups_of(draws, fitted))
-    with staged_folder(output, "generate") as stage:
-        document = write_particles(stage, made, format_, level, jobs)
-    if save_model is not None:
-        _save(save_model, made)
+    if save_model is None:
+        with staged_folder(output, "generate") as stage:
+            document = write_particles(stage, made, format_, level, jobs)
+    else:
+        with staged_together(output, "generate", save_model) as (stage, stream):
+            document = write_particles(stage, made, format_, level, jobs)
+            stream.write(_model_bytes(made))
     if json:
         print_json(document | {"folder": str(output)})
     else:
@@ -214,7 +217,7 @@ def write_particles(
     return outputs.write_document(folder, made, {"level": level, "files": ["*.stl", outputs.TABLE]})
 
 
-def _save(path: Path, made: Any) -> None:
-    from regolith_studio.shape_models.io import write_model
+def _model_bytes(made: "GeneratedParticles") -> bytes:
+    from regolith_studio.shape_models.io import model_bytes
 
-    write_model(path, made.model, {"source": made.source.name, "sha256": made.source.sha256 or None})
+    return model_bytes(made.model, {"source": made.source.name, "sha256": made.source.sha256 or None})

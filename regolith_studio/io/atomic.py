@@ -103,12 +103,44 @@ def staged_folder(folder: Path, kind: str) -> Iterator[Path]:
     FileError
         If it cannot be written, or another process is writing to it.
     """
+    with _reported(folder), hidden_folder(folder) as stage:
+        yield stage
+        _replace_listed(stage, Path(os.path.realpath(folder)), _written_list(stage, kind))
+
+
+@contextmanager
+def staged_together(folder: Path, kind: str, file: Path) -> Iterator[tuple[Path, IO[bytes]]]:
+    """:func:`staged_folder` and :func:`staged_file`, which take their places at the same moment.
+
+    Both are complete by then, and nothing is done in between: only what ends the process within some
+    microseconds leaves the new folder beside the earlier file. The file may be one of the folder.
+
+    Raises
+    ------
+    FileError
+        As these do.
+    """
+    place, path = Path(os.path.realpath(folder)), Path(os.path.realpath(file))
+    if path.is_relative_to(place):
+        with staged_folder(folder, kind) as stage:
+            inside = stage / path.relative_to(place)
+            inside.parent.mkdir(parents=True, exist_ok=True)
+            with inside.open("wb") as stream:
+                yield stage, stream
+        return
+    with _reported(folder), hidden_folder(folder) as stage, staged_file(file) as stream:
+        with _reported(folder):
+            yield stage, stream
+            listed = _written_list(stage, kind)
+        stream.flush()
+        with _reported(folder):
+            _replace_listed(stage, place, listed)
+
+
+@contextmanager
+def _reported(folder: Path) -> Iterator[None]:
     try:
-        with hidden_folder(folder) as stage:
-            yield stage
-            listed = f"{kind}.sha256"
-            (stage / listed).write_bytes(_sha256_list(stage))
-            _replace_listed(stage, Path(os.path.realpath(folder)), listed)
+        yield
     except OSError as error:
         raise FileError(f"The folder {folder} cannot be written ({os_error_reason(error)}).") from error
 
@@ -214,6 +246,12 @@ def _hidden_path(target: Path) -> Iterator[Path]:
         yield hidden
     finally:
         _unfinished.discard(hidden)
+
+
+def _written_list(folder: Path, kind: str) -> str:
+    """Write the list of a folder; its name."""
+    (folder / f"{kind}.sha256").write_bytes(_sha256_list(folder))
+    return f"{kind}.sha256"
 
 
 def _sha256_list(folder: Path) -> bytes:

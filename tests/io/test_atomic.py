@@ -1,5 +1,6 @@
 """Outputs appear whole or not at all."""
 
+import contextlib
 import hashlib
 import os
 import shutil
@@ -9,7 +10,7 @@ import pytest
 
 from regolith_studio.errors import FileError
 from regolith_studio.io import atomic
-from regolith_studio.io.atomic import staged_folder, write_bytes, write_files
+from regolith_studio.io.atomic import staged_folder, staged_together, write_bytes, write_files
 
 
 def write_and_fail(folder: Path) -> None:
@@ -141,3 +142,46 @@ def test_that_files_get_the_permissions_that_the_user_gives_to_all_files(tmp_pat
     (tmp_path / "plain").write_text("")
     write_bytes(tmp_path / "ours", b"")
     assert (tmp_path / "ours").stat().st_mode == (tmp_path / "plain").stat().st_mode
+
+
+@pytest.mark.parametrize("fails", [False, True])
+def test_that_nothing_is_done_between_a_folder_and_its_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, fails: bool
+) -> None:
+    """An earlier folder was removed in between, which takes milliseconds in which a signal left a mixture."""
+    folder, file = tmp_path / "surfaces", tmp_path / "fit.json"
+
+    def write(content: str) -> None:
+        with staged_together(folder, "fit", file) as (stage, stream):
+            (stage / "grain.stl").write_text(content)
+            stream.write(content.encode())
+            if fails and content == "new":
+                raise KeyboardInterrupt
+
+    write("old")
+    removed: list[tuple[str, str]] = []
+    remove = atomic.remove_quietly
+
+    def look_and_remove(stage: Path) -> None:
+        removed.append(((folder / "grain.stl").read_text(), file.read_text()))
+        remove(stage)
+
+    monkeypatch.setattr(atomic, "remove_quietly", look_and_remove)
+    with pytest.raises(KeyboardInterrupt) if fails else contextlib.nullcontext():
+        write("new")
+    assert removed == [("old", "old") if fails else ("new", "new")]
+    assert sorted(path.name for path in tmp_path.rglob("*")) == [
+        *("fit.json", "fit.sha256", "grain.stl", "surfaces")
+    ]
+
+
+def test_that_a_file_within_the_folder_it_belongs_to_is_part_of_it(tmp_path: Path) -> None:
+    for content in ("old", "new"):
+        with staged_together(tmp_path / "out", "fit", tmp_path / "out" / "fit.json") as (stage, stream):
+            (stage / "grain.stl").write_text(content)
+            stream.write(content.encode())
+    assert {path.name: path.read_text() for path in (tmp_path / "out").glob("*.[js]*")}.items() >= {
+        ("fit.json", "new"),
+        ("grain.stl", "new"),
+    }
+    assert "fit.json" in (tmp_path / "out" / "fit.sha256").read_text()

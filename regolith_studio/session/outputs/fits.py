@@ -11,7 +11,7 @@ from regolith_studio.harmonics import io as fit_io
 from regolith_studio.harmonics.fit import HarmonicFit
 from regolith_studio.harmonics.spectrum import PowerSpectrum, power_spectrum, roughness_split, sample_spectrum
 from regolith_studio.harmonics.surface import reconstruct
-from regolith_studio.io.atomic import staged_file, staged_folder, write_bytes
+from regolith_studio.io.atomic import staged_together, write_bytes
 from regolith_studio.io.json_arrays import arrays_document
 from regolith_studio.io.json_text import json_bytes
 from regolith_studio.io.stl import stl_bytes
@@ -66,7 +66,7 @@ def write_fits(
 ) -> dict[str, str]:
     """Write a fit's JSON file, as :mod:`regolith_studio.harmonics.io` defines it, and surfaces on request.
 
-    Both are written completely before either takes the place of an earlier one.
+    Both take the places of earlier ones at the same moment.
 
     Parameters
     ----------
@@ -80,24 +80,26 @@ def write_fits(
     reasons
         Why a particle has no surface, by its name.
     """
-    with staged_file(path) as stream:
-        stream.write(json_bytes(fits_document(sample)))
-        stream.flush()
-        return _write_surfaces(surfaces, sample, level) if surfaces is not None else {}
+    content = json_bytes(fits_document(sample))
+    if surfaces is None:
+        write_bytes(path, content)
+        return {}
+    with staged_together(surfaces, "fit", path) as (stage, stream):
+        stream.write(content)
+        return _write_surfaces(stage, sample, level)
 
 
 def _write_surfaces(folder: Path, sample: FittedSample, level: int) -> dict[str, str]:
     """Write ``<name>.stl``, the surface of each fit in the particle's frame; the reasons of those without."""
     reasons = {}
-    with staged_folder(folder, "fit") as stage:
-        for particle, fit in zip(sample.particles, sample.fits, strict=True):
-            header = f"Regolith Studio, spherical-harmonics fit, l_max {fit.l_max}, micrometres"
-            try:
-                surface = reconstruct(fit, level=level)
-            except GeometryError as error:
-                reasons[particle.name] = str(error)
-            else:
-                write_bytes(stage / f"{particle.name}.stl", stl_bytes(surface.triangles, header))
+    for particle, fit in zip(sample.particles, sample.fits, strict=True):
+        header = f"Regolith Studio, spherical-harmonics fit, l_max {fit.l_max}, micrometres"
+        try:
+            surface = reconstruct(fit, level=level)
+        except GeometryError as error:
+            reasons[particle.name] = str(error)
+        else:
+            write_bytes(folder / f"{particle.name}.stl", stl_bytes(surface.triangles, header))
     return reasons
 
 
