@@ -145,11 +145,8 @@ def read_grain_settings(path: Path) -> GrainSettings:
     InputError
         As :meth:`GrainSettings.from_document`.
     """
-    try:
-        document = json.loads(read_bytes(path, _LARGEST))
-    except (ValueError, RecursionError):
-        raise FileError(f"{path.name} is no recipe: it holds no JSON.") from None
-    if not isinstance(document, dict) or not {"segmentation", "extraction"} & set(document):
+    document = _read_group(path, "recipe")
+    if not {"segmentation", "extraction"} & set(document):
         raise FileError(f"{path.name} is no recipe of a segmentation: it names neither of its settings.")
     return GrainSettings.from_document(document)
 

@@ -1,7 +1,7 @@
 """Jobs of the object step: describe segmented objects, classify them by examples, and correct labels."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -147,6 +147,19 @@ def correct_grains(
     except BaseException:
         scratch.close()
         raise
+
+
+def save_objects(path: Path, training: ObjectTraining, scan: Path) -> Steps:
+    """Write the file of an object classifier with the SHA-256 of the scan of its examples; returns the path.
+
+    Raises
+    ------
+    FileError
+        If it cannot be written.
+    """
+    yield Started(Message(N_("Writing {name}"), name=path.name))
+    write_objects(path, replace(training, scan=volume_sha256(scan)))
+    return path
 
 
 def write_objects(path: Path, training: ObjectTraining) -> None:

@@ -400,6 +400,14 @@
         <translation>Eine Karte entsteht aus einer Probe mit Modell: passen Sie zuerst eines an.</translation>
     </message>
     <message>
+        <source>A click on an object makes it an example of a class; all others are classified.</source>
+        <translation>Ein Klick auf ein Objekt macht es zum Beispiel einer Klasse; alle anderen werden klassifiziert.</translation>
+    </message>
+    <message>
+        <source>A click shows the slices through a voxel.</source>
+        <translation>Ein Klick zeigt die Schnitte durch ein Voxel.</translation>
+    </message>
+    <message>
         <source>A closed mesh without faults.</source>
         <translation>Ein geschlossenes, fehlerfreies Netz.</translation>
     </message>
@@ -612,12 +620,20 @@
         <translation>Jeder Befehl nach wenigen Buchstaben</translation>
     </message>
     <message>
+        <source>Apply to the grains</source>
+        <translation>Auf die Körner anwenden</translation>
+    </message>
+    <message>
         <source>Area of the triangles that close holes</source>
         <translation>Fläche der Dreiecke, die Löcher schließen</translation>
     </message>
     <message>
         <source>Artefact</source>
         <translation>Artefakt</translation>
+    </message>
+    <message>
+        <source>Artefacts</source>
+        <translation>Artefakte</translation>
     </message>
     <message>
         <source>As a CSV file</source>
@@ -742,6 +758,10 @@
     <message>
         <source>Browse …</source>
         <translation>Durchsuchen …</translation>
+    </message>
+    <message>
+        <source>Brush</source>
+        <translation>Pinsel</translation>
     </message>
     <message>
         <source>Build the dataset in this folder</source>
@@ -916,6 +936,10 @@
         <translation>Klasse des Pinsels</translation>
     </message>
     <message>
+        <source>Class of the next example</source>
+        <translation>Klasse des nächsten Beispiels</translation>
+    </message>
+    <message>
         <source>Classifier</source>
         <translation>Klassifikator</translation>
     </message>
@@ -944,8 +968,20 @@
         <translation>&amp;Filter leeren</translation>
     </message>
     <message>
+        <source>Click a grain.</source>
+        <translation>Klicken Sie ein Korn an.</translation>
+    </message>
+    <message>
         <source>Click into a slice to move the frame.</source>
         <translation>Ein Klick in ein Schichtbild verschiebt den Rahmen.</translation>
+    </message>
+    <message>
+        <source>Click two grains that are one.</source>
+        <translation>Klicken Sie zwei Körner an, die eines sind.</translation>
+    </message>
+    <message>
+        <source>Click two places in a grain that are two grains.</source>
+        <translation>Klicken Sie zwei Stellen in einem Korn an, das zwei Körner ist.</translation>
     </message>
     <message>
         <source>Close Regolith Studio?</source>
@@ -1188,12 +1224,24 @@
         <translation>Formfaktor nach Corey</translation>
     </message>
     <message>
+        <source>Correct</source>
+        <translation>Korrektur</translation>
+    </message>
+    <message>
         <source>Correct for grain size</source>
         <translation>Um die Korngröße berichtigen</translation>
     </message>
     <message>
         <source>Correcting labels</source>
         <translation>Labels werden korrigiert</translation>
+    </message>
+    <message>
+        <source>Corrections by hand</source>
+        <translation>Korrekturen von Hand</translation>
+    </message>
+    <message>
+        <source>Corrections so far</source>
+        <translation>Bisherige Korrekturen</translation>
     </message>
     <message>
         <source>Coulomb friction against rolling and spinning</source>
@@ -1298,6 +1346,10 @@
     <message>
         <source>Degrees of the fit</source>
         <translation>Grade des Fits</translation>
+    </message>
+    <message>
+        <source>Delete</source>
+        <translation>Löschen</translation>
     </message>
     <message>
         <source>Delete this preset</source>
@@ -1412,6 +1464,10 @@
         <translation>Ziehen</translation>
     </message>
     <message>
+        <source>Draw a line across a grain.</source>
+        <translation>Ziehen Sie eine Linie durch ein Korn.</translation>
+    </message>
+    <message>
         <source>Draw again</source>
         <translation>Neu ziehen</translation>
     </message>
@@ -1466,6 +1522,10 @@
     <message>
         <source>Drawn</source>
         <translation>Gezogen</translation>
+    </message>
+    <message>
+        <source>Drop</source>
+        <translation>Verwerfen</translation>
     </message>
     <message>
         <source>Drop mesh files or folders anywhere in the window to open them.</source>
@@ -2092,6 +2152,10 @@
         <translation>Korn eines zweiten Minerals</translation>
     </message>
     <message>
+        <source>Grains</source>
+        <translation>Körner</translation>
+    </message>
+    <message>
         <source>Grains are dark</source>
         <translation>Körner sind dunkel</translation>
     </message>
@@ -2384,6 +2448,10 @@
         <translation>KS bis</translation>
     </message>
     <message>
+        <source>Keep</source>
+        <translation>Behalten</translation>
+    </message>
+    <message>
         <source>Keep the best so far</source>
         <translation>Das bisher Beste behalten</translation>
     </message>
@@ -2394,6 +2462,10 @@
     <message>
         <source>Keep working</source>
         <translation>Weiterarbeiten</translation>
+    </message>
+    <message>
+        <source>Keep, split or drop the grains by their class</source>
+        <translation>Körner nach ihrer Klasse behalten, teilen oder verwerfen</translation>
     </message>
     <message>
         <source>Keeping the sphericity costs overlap: the Jaccard distance is {kept}; with the sphericity free it is {free}, and the sphericity is off by {error} %. The preset Shape first leaves it free.</source>
@@ -2600,6 +2672,10 @@
         <translation>Längste Wartezeit</translation>
     </message>
     <message>
+        <source>Look</source>
+        <translation>Ansehen</translation>
+    </message>
+    <message>
         <source>Look &amp;from</source>
         <translation>&amp;Blickrichtung</translation>
     </message>
@@ -2682,6 +2758,10 @@
     <message>
         <source>Making virtual particles</source>
         <translation>Virtuelle Partikel werden erzeugt</translation>
+    </message>
+    <message>
+        <source>Mark examples</source>
+        <translation>Beispiele markieren</translation>
     </message>
     <message>
         <source>Mars</source>
@@ -2786,6 +2866,10 @@
     <message>
         <source>Median of 27 voxels</source>
         <translation>Median von 27 Voxeln</translation>
+    </message>
+    <message>
+        <source>Merge</source>
+        <translation>Vereinen</translation>
     </message>
     <message>
         <source>Mesh</source>
@@ -3088,6 +3172,10 @@
         <translation>Neuheit</translation>
     </message>
     <message>
+        <source>Now click the second place.</source>
+        <translation>Klicken Sie nun die zweite Stelle an.</translation>
+    </message>
+    <message>
         <source>Number</source>
         <translation>Anzahl</translation>
     </message>
@@ -3154,6 +3242,14 @@
     <message>
         <source>Numerics of the engine</source>
         <translation>Numerik des Rechenkerns</translation>
+    </message>
+    <message>
+        <source>Object classifier</source>
+        <translation>Objektklassifikator</translation>
+    </message>
+    <message>
+        <source>Objects</source>
+        <translation>Objekte</translation>
     </message>
     <message>
         <source>Of all random numbers: the same seed gives the same polyhedron.</source>
@@ -3310,6 +3406,10 @@
     <message>
         <source>Open a volume of grey values to see its histogram.</source>
         <translation>Öffnen Sie ein Volumen mit Grauwerten, um sein Histogramm zu sehen.</translation>
+    </message>
+    <message>
+        <source>Open an object classifier and apply it</source>
+        <translation>Einen Objektklassifikator öffnen und anwenden</translation>
     </message>
     <message>
         <source>Open edges</source>
@@ -3824,6 +3924,10 @@
         <translation>Wiederherstellen</translation>
     </message>
     <message>
+        <source>Redo</source>
+        <translation>Wiederholen</translation>
+    </message>
+    <message>
         <source>Reference surface</source>
         <translation>Bezugsfläche</translation>
     </message>
@@ -4256,6 +4360,10 @@
         <translation>Modell speichern</translation>
     </message>
     <message>
+        <source>Save the object classifier for other scans</source>
+        <translation>Den Objektklassifikator für andere Scans speichern</translation>
+    </message>
+    <message>
         <source>Save turntable</source>
         <translation>Drehung speichern</translation>
     </message>
@@ -4416,6 +4524,10 @@
         <translation>Satz SACCI 425 (synthetisch)</translation>
     </message>
     <message>
+        <source>Settings</source>
+        <translation>Einstellungen</translation>
+    </message>
+    <message>
         <source>Settings (*.json);;All files (*)</source>
         <translation>Einstellungen (*.json);;Alle Dateien (*)</translation>
     </message>
@@ -4426,6 +4538,10 @@
     <message>
         <source>Settling time</source>
         <translation>Absetzzeit</translation>
+    </message>
+    <message>
+        <source>Several grains</source>
+        <translation>Mehrere Körner</translation>
     </message>
     <message>
         <source>Shape</source>
@@ -4610,6 +4726,18 @@
     <message>
         <source>Sphericity {sphericity} needs more than 100,000 facets; with {faces} the most is {most}.</source>
         <translation>Die Sphärizität {sphericity} braucht mehr als 100,000 Facetten; mit {faces} sind höchstens {most} möglich.</translation>
+    </message>
+    <message>
+        <source>Split again</source>
+        <translation>Erneut teilen</translation>
+    </message>
+    <message>
+        <source>Split by a line</source>
+        <translation>Durch eine Linie teilen</translation>
+    </message>
+    <message>
+        <source>Split by seeds</source>
+        <translation>Durch Keime teilen</translation>
     </message>
     <message>
         <source>Split the surface along 1 edge of more than two faces.</source>
@@ -4872,8 +5000,16 @@
         <translation>Tabellen von Koeffizienten (*.anm *.sh *.shc *.txt *.dat *.csv)</translation>
     </message>
     <message>
+        <source>Take all examples back</source>
+        <translation>Alle Beispiele zurücknehmen</translation>
+    </message>
+    <message>
         <source>Take all strokes back</source>
         <translation>Alle Striche zurücknehmen</translation>
+    </message>
+    <message>
+        <source>Take it again (Ctrl+Shift+Z)</source>
+        <translation>Ihn wiederholen (Strg+Umschalt+Z)</translation>
     </message>
     <message>
         <source>Take settings from a file</source>
@@ -4882,6 +5018,10 @@
     <message>
         <source>Take the classifier as the threshold of the segmentation</source>
         <translation>Den Klassifikator als Schwelle der Segmentierung nehmen</translation>
+    </message>
+    <message>
+        <source>Take the last step back (Ctrl+Z)</source>
+        <translation>Den letzten Schritt zurücknehmen (Strg+Z)</translation>
     </message>
     <message>
         <source>Take the last stroke back (Ctrl+Z)</source>
@@ -5440,6 +5580,10 @@
         <translation>Unsicherheit</translation>
     </message>
     <message>
+        <source>Undo</source>
+        <translation>Zurück</translation>
+    </message>
+    <message>
         <source>Undo stroke</source>
         <translation>Strich zurück</translation>
     </message>
@@ -5666,6 +5810,10 @@
     <message>
         <source>What has been exported is listed here, with the command that loads it.</source>
         <translation>Was exportiert wurde, steht hier, mit dem Befehl, der es lädt.</translation>
+    </message>
+    <message>
+        <source>What is done with them</source>
+        <translation>Was mit ihnen geschieht</translation>
     </message>
     <message>
         <source>What is laid over it, or shown to the right of the line</source>
@@ -7246,6 +7394,22 @@
     <message>
         <source>{noun} {at} of {last}</source>
         <translation>{noun} {at} von {last}</translation>
+    </message>
+    <message>
+        <source>{number}. Grain deleted at {place}</source>
+        <translation>{number}. Korn gelöscht bei {place}</translation>
+    </message>
+    <message>
+        <source>{number}. Grain split by a line at {place}</source>
+        <translation>{number}. Korn durch Linie geteilt bei {place}</translation>
+    </message>
+    <message>
+        <source>{number}. Grain split by seeds at {place}</source>
+        <translation>{number}. Korn durch Keime geteilt bei {place}</translation>
+    </message>
+    <message>
+        <source>{number}. Grains merged at {place}</source>
+        <translation>{number}. Körner vereint bei {place}</translation>
     </message>
     <message>
         <source>{plane}, {axis} = {number} of {count}</source>

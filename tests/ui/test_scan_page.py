@@ -22,6 +22,7 @@ from regolith_studio.jobs.extraction_settings import (
     VolumeInput,
     read_classifier,
     read_grain_settings,
+    read_objects,
 )
 from regolith_studio.jobs.runners.thread import ThreadRunner
 from regolith_studio.readers.file_bytes import sha256_of
@@ -437,6 +438,7 @@ def test_that_strokes_train_a_classifier_that_finds_the_grains(page, minerals, w
     page.read(VolumeInput(minerals, 2.0, kind="grey"))
     wait(lambda: page.scan is not None and page.brush.isEnabled(), SECONDS)
     page.slices.go_to((28, 16, 16))
+    page.tabs.setCurrentWidget(page.brush)
     page.brush.paint.click()
     page.brush.kind.setCurrentIndex(0)
     (view, *_) = page.slices.views  # along z
@@ -467,6 +469,7 @@ def test_that_ctrl_z_takes_strokes_back_and_the_eraser_paint(page, minerals, wai
     page.read(VolumeInput(minerals, 2.0, kind="grey"))
     wait(lambda: page.scan is not None and page.brush.isEnabled(), SECONDS)
     page.slices.go_to((28, 16, 16))
+    page.tabs.setCurrentWidget(page.brush)
     page.brush.paint.click()
     (view, *_) = page.slices.views
     paint(view, [(2, 2), (53, 2)])
@@ -480,3 +483,131 @@ def test_that_ctrl_z_takes_strokes_back_and_the_eraser_paint(page, minerals, wai
     QTest.keyClick(view.canvas, Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier)
     assert page.painting.strokes == ()
     assert not page.brush.undo.isEnabled()
+
+
+CENTRES = ((16, 16), (16, 48), (48, 16), (48, 48), (80, 16), (80, 48))
+KINDS = (0, 1, 2, 1, 0, 2)
+
+
+@pytest.fixture
+def objects(page, tmp_path, wait):
+    """A scan of two balls, two pairs of them, and two bright plates, each found as one object."""
+    z, y, x = np.mgrid[:32, :64, :96]
+    values = np.full(x.shape, 60.0)
+    for (cx, cy), kind in zip(CENTRES, KINDS, strict=True):
+        dx, across = x - cx, (y - cy) ** 2 + (z - 16) ** 2
+        ball, pair = dx**2 + across <= 81, np.minimum((dx - 7) ** 2, (dx + 7) ** 2) + across <= 64
+        values[(ball, pair, (np.abs(dx) <= 2) & (across <= 81))[kind]] = 190 if kind == 2 else 140
+    np.save(tmp_path / "objects.npy", values.astype(np.uint8))
+    page.controls.h_maxima.field.setValue(20.0)
+    page.read(VolumeInput(tmp_path / "objects.npy", 2.0, kind="grey"))
+    wait(lambda: page.preview is not None, SECONDS)
+    page.find_grains()
+    wait(lambda: page.grains is not None, SECONDS)
+    assert page.grains.n_grains == 6
+    page.slices.go_to((48, 32, 16))
+    return tmp_path / "objects.npy"
+
+
+def click_voxel(view, across, down):
+    scene = view.canvas.view.mapViewToScene(QPointF(*((np.array([across, down]) + 0.5) * page_edges(view))))
+    target = view.canvas.viewport()
+    QTest.mouseClick(target, Qt.MouseButton.LeftButton, pos=view.canvas.mapFromScene(scene))
+
+
+def undo_by_key(page):
+    page.setFocus()
+    QTest.keyClick(page, Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier)
+
+
+def labels_of_recipe(page, path, tmp_path, monkeypatch):
+    """What ``extract`` finds with the settings that the page saves."""
+    monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *_: (str(tmp_path / "r.json"), ""))
+    page.save_settings()
+    settings = read_grain_settings(tmp_path / "r.json").segmentation
+    return segment(read_volume(path, voxel_size=2.0, kind="grey"), settings).labels.array
+
+
+def test_that_marked_examples_classify_the_objects_which_are_split_and_dropped(
+    page, objects, wait, tmp_path, monkeypatch
+):
+    page.tabs.setCurrentWidget(page.objects)
+    page.objects.mark.click()
+    (view, *_) = page.slices.views
+    for number in (0, 1, 2):
+        page.objects.kind.setCurrentIndex(KINDS[number])
+        click_voxel(view, *CENTRES[number])
+        if number == 0:
+            wait(lambda: page.objects.state.text() != "", SECONDS)
+            assert "examples of two classes" in page.objects.state.text()
+            assert not page.objects.apply.isEnabled()
+    wait(lambda: page.objects.counts[2].text() == "Artefacts: 2", SECONDS)
+    assert [label.text() for label in page.objects.counts[:2]] == ["Grains: 2", "Several grains: 2"]
+    assert page.grains.n_grains == 6
+    wait(page.objects.apply.isEnabled, SECONDS)
+    page.objects.apply.click()
+    wait(lambda: page.grains is not None, SECONDS)
+    assert page.grains.n_grains == 2 + 2 * 2
+    found = page.grains.labels.array
+    assert np.array_equal(labels_of_recipe(page, objects, tmp_path, monkeypatch), found)
+    file = tmp_path / "o.json"
+    monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *_: (str(file), ""))
+    press(page.objects.save)
+    wait(file.is_file, SECONDS)
+    assert read_objects(file).scan == sha256_of(objects)
+    for _ in range(4):
+        undo_by_key(page)
+    assert page.corrections.state.examples == ()
+    wait(lambda: page.grains is not None, SECONDS)
+    monkeypatch.setattr(QFileDialog, "getOpenFileName", lambda *_: (str(file), ""))
+    press(page.objects.browse)
+    wait(lambda: page.grains is not None, SECONDS)
+    assert np.array_equal(page.grains.labels.array, found)
+
+
+def test_that_grains_are_merged_split_and_deleted_with_undo_and_the_recipe_does_the_same(
+    page, objects, wait, tmp_path, monkeypatch
+):
+    page.tabs.setCurrentWidget(page.edits)
+    (view, *_) = page.slices.views
+
+    def use(tool, *places):
+        page.edits.tools[tool].click()
+        for place in places:
+            click_voxel(view, *place)
+        wait(lambda: page.grains is not None, SECONDS)
+
+    use("seeds", (9, 48), (23, 48))
+    assert page.grains.n_grains == 7
+    use("delete", CENTRES[2])
+    assert page.grains.n_grains == 6
+    use("merge", CENTRES[0], CENTRES[4])
+    assert page.grains.n_grains == 5
+    page.edits.tools["cut"].click()
+    paint(view, [(48, 38), (48, 58)])
+    wait(lambda: page.grains is not None, SECONDS)
+    assert page.grains.n_grains == 6
+    found = page.grains.labels.array
+    assert page.edits.list.count() == 4
+    assert len(set(found[[9, 23], 48, 16])) == 2
+    assert len(set(found[[41, 55], 48, 16])) == 2
+    assert found[16, 16, 16] == found[80, 16, 16] > 0
+    assert np.array_equal(labels_of_recipe(page, objects, tmp_path, monkeypatch), found)
+    for expected in (5, 6, 7, 6):
+        undo_by_key(page)
+        wait(lambda: page.grains is not None, SECONDS)
+        assert page.grains.n_grains == expected
+    press(page.edits.redo)
+    wait(lambda: page.grains is not None, SECONDS)
+    assert page.grains.n_grains == 7
+
+
+@pytest.mark.usefixtures("objects")
+def test_that_a_line_which_divides_nothing_is_taken_back_with_a_sentence(page, wait):
+    page.tabs.setCurrentWidget(page.edits)
+    page.edits.tools["cut"].click()
+    paint(page.slices.views[0], [(32, 2), (32, 28)])
+    wait(lambda: page.context.toast.isVisible(), SECONDS)
+    wait(lambda: page.grains is not None, SECONDS)
+    assert page.corrections.state.edits == ()
+    assert page.grains.n_grains == 6

@@ -1,6 +1,7 @@
 """The brush: class, size, eraser, what the prediction shows, and the buttons of the classifier."""
 
 from dataclasses import dataclass
+from typing import Literal
 
 from PySide6.QtCore import Signal
 from PySide6.QtGui import QColor, QIcon, QPixmap
@@ -33,10 +34,15 @@ SIZE = NumberSpec(N_("Size"), N_("Diameter of the brush in voxels"), 1, 30, limi
 
 @dataclass(frozen=True)
 class Brush:
-    """What a stroke paints: a class from 0 or the eraser, with a diameter in voxels."""
+    """What a stroke paints: a class from 0 or the eraser, with a diameter in voxels.
+
+    `shape` says whether the line follows the mouse (``free``), is straight (``line``), or is the diagonal
+    of a rectangle (``box``).
+    """
 
     label: int
     diameter: float
+    shape: Literal["free", "line", "box"] = "free"
 
 
 class BrushPanel(QWidget):
@@ -63,18 +69,18 @@ class BrushPanel(QWidget):
         self.diameter.field.setObjectName("brush_size")
         self.diameter.setValue(4)
         self.overlay = choice("brush_overlay", tr("What the prediction shows"), OVERLAYS)
-        self.undo = _button("brush_undo", tr("Undo stroke"), tr("Take the last stroke back (Ctrl+Z)"))
-        self.clear = _button("brush_clear", tr("Clear"), tr("Take all strokes back"))
-        self.use = _button(
+        self.undo = button("brush_undo", tr("Undo stroke"), tr("Take the last stroke back (Ctrl+Z)"))
+        self.clear = button("brush_clear", tr("Clear"), tr("Take all strokes back"))
+        self.use = button(
             "brush_use",
             tr("Use for the grains"),
             tr("Take the classifier as the threshold of the segmentation"),
         )
-        self.browse = _button("brush_open", tr("Open …"), tr("Open a classifier and use it for the grains"))
-        self.save = _button("brush_save", tr("Save …"), tr("Save the classifier for other scans"))
+        self.browse = button("brush_open", tr("Open …"), tr("Open a classifier and use it for the grains"))
+        self.save = button("brush_save", tr("Save …"), tr("Save the classifier for other scans"))
         self.state = remark()
         for number, colour in enumerate(CLASS_COLOURS):
-            self.kind.setItemIcon(number, _swatch(colour))
+            self.kind.setItemIcon(number, swatch(colour))
         self.kind.setCurrentIndex(1)
         self._arrange()
         self._connect()
@@ -105,11 +111,11 @@ class BrushPanel(QWidget):
         self.paint.toggled.connect(self.paintingChanged)
         self.overlay.currentIndexChanged.connect(lambda: self.overlayChanged.emit(self.overlay.currentData()))
         self.kind.currentIndexChanged.connect(lambda: self.eraser.setChecked(False))
-        for button, signal in (
+        for part, signal in (
             (self.undo, self.undoRequested), (self.clear, self.clearRequested), (self.use, self.useRequested),
             (self.browse, self.openRequested), (self.save, self.saveRequested),
         ):  # fmt: skip
-            button.clicked.connect(signal)
+            part.clicked.connect(signal)
 
     def _arrange(self) -> None:
         layout = QVBoxLayout(self)
@@ -127,14 +133,16 @@ class BrushPanel(QWidget):
         layout.addWidget(self.state)
 
 
-def _button(name: str, words: str, tip: str) -> QPushButton:
-    button = QPushButton(words)
-    button.setObjectName(name)
-    button.setToolTip(tip)
-    return button
+def button(name: str, words: str, tip: str) -> QPushButton:
+    """A button with its object name and tool tip."""
+    made = QPushButton(words)
+    made.setObjectName(name)
+    made.setToolTip(tip)
+    return made
 
 
-def _swatch(colour: str) -> QIcon:
+def swatch(colour: str) -> QIcon:
+    """A square of one colour."""
     pixmap = QPixmap(12, 12)
     pixmap.fill(QColor(colour))
     return QIcon(pixmap)

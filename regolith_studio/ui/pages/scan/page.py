@@ -9,7 +9,7 @@ from typing import Any, cast
 import numpy as np
 from PySide6.QtCore import QEvent, QTimer
 from PySide6.QtGui import QDragEnterEvent, QDropEvent, QKeyEvent, QKeySequence
-from PySide6.QtWidgets import QFileDialog, QHBoxLayout
+from PySide6.QtWidgets import QFileDialog, QHBoxLayout, QSizePolicy
 
 from regolith_studio.errors import RegolithError
 from regolith_studio.imaging.extraction import Extraction
@@ -24,6 +24,7 @@ from regolith_studio.jobs.extraction_settings import (
     VolumeInput,
     read_classifier,
     read_grain_settings,
+    read_objects,
 )
 from regolith_studio.jobs.label_jobs import write_labels
 from regolith_studio.jobs.volume_jobs import (
@@ -44,10 +45,13 @@ from regolith_studio.readers.voxels.scanner_headers import header_beside
 from regolith_studio.session.batch.preprocessing import entry_of
 from regolith_studio.session.provenance import VolumeSource
 from regolith_studio.session.recipe import VolumeEntry
-from regolith_studio.ui.layout import CONTROLS_WIDTH, padded, scrolled_column, side_by_side
+from regolith_studio.ui.layout import CONTROLS_WIDTH, padded, scrolled_column, side_by_side, tabs
 from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.pages.scan.brush_panel import BrushPanel
 from regolith_studio.ui.pages.scan.controls import SegmentationControls
+from regolith_studio.ui.pages.scan.corrections import Corrections
+from regolith_studio.ui.pages.scan.edits_panel import EditsPanel
+from regolith_studio.ui.pages.scan.objects_panel import ObjectsPanel
 from regolith_studio.ui.pages.scan.painting import Painting
 from regolith_studio.ui.pages.scan.slices_view import SlicesView
 from regolith_studio.ui.pages.scan.volume_dialog import RAW_SUFFIXES, VolumeDialog, needs_asking
@@ -73,7 +77,6 @@ class ScanPage(PageWidget):
         self.scan: Scan | None = None
         self._given = self._wanted = VolumeInput(Path())
         self._region = self._wanted_region = RegionSettings()
-        self._segmented: GrainSegmentation | None = None
         self.preview: Segmentation | None = None
         self._found_with: SegmentationSettings | None = None
 
@@ -83,6 +86,8 @@ class ScanPage(PageWidget):
         self.workflow = WorkflowPanel()
         self.brush = BrushPanel()
         self.painting = Painting(self._context, self.brush, self.slices, self)
+        self.objects, self.edits = ObjectsPanel(), EditsPanel()
+        self.corrections = Corrections(self._context, self.objects, self.edits, self.slices, self)
         self._timer = QTimer(self, interval=PREVIEW_DELAY, singleShot=True)
         self._arrange()
         self._connect()
@@ -90,8 +95,8 @@ class ScanPage(PageWidget):
 
     @property
     def grains(self) -> Segmentation | None:
-        """The grains of the whole volume, or ``None``."""
-        return self._segmented.segmentation if self._segmented else None
+        """The grains of the whole volume, corrected, or ``None``."""
+        return self.corrections.grains
 
     def set_theme(self, theme: Theme) -> None:
         self.slices.set_theme(theme)
@@ -109,7 +114,7 @@ class ScanPage(PageWidget):
         }
 
     def state(self) -> dict[str, Any]:
-        return self.controls.value().as_document()
+        return self._all_settings().as_document()
 
     def restore(self, state: Mapping[str, Any]) -> None:
         with contextlib.suppress(RegolithError):
@@ -117,7 +122,7 @@ class ScanPage(PageWidget):
 
     def on_close(self) -> None:
         self._timer.stop()
-        self._discard_grains()
+        self.corrections.discard()
         if self.scan is not None:
             self.scan.scratch.close()
 
@@ -200,8 +205,8 @@ class ScanPage(PageWidget):
 
     def _take(self, scan: Scan, volume: VolumeInput, region: RegionSettings) -> None:
         self._stop_work()
-        self._discard_grains()
         if self.scan is not None:
+            self.corrections.forget()
             self.scan.scratch.close()
         self.scan, self.preview, self._given, self._region = scan, None, volume, region
         self.slices.set_scan(scan)
@@ -261,9 +266,36 @@ class ScanPage(PageWidget):
         command = f"regolith-studio extract --classifier {path.name}"
         self._context.toast.note(tr("Saved; use it with: {command}", command=command))
 
+    def ask_for_objects(self) -> None:
+        """Ask for the file of an object classifier and apply it."""
+        name, _ = QFileDialog.getOpenFileName(self, tr("Open a classifier"), self._folder(), tr(CLASSIFIERS))
+        if not name:
+            return
+        try:
+            self.corrections.load(read_objects(Path(name)))
+        except RegolithError as error:
+            self._context.toast.problem(str(error))
+
+    def save_objects(self) -> None:
+        """Ask for a file and write the object classifier."""
+        start = str(Path(self._folder()) / "objects.json")
+        name, _ = QFileDialog.getSaveFileName(self, tr("Save the classifier"), start, tr(CLASSIFIERS))
+        if name:
+            self.corrections.save(Path(name), self._given.path, self._on_objects_saved)
+
+    def _on_objects_saved(self, path: Path) -> None:
+        command = f"regolith-studio extract --objects {path.name}"
+        self._context.toast.note(tr("Saved; use it with: {command}", command=command))
+
     def _use(self, recipe: GrainSettings) -> None:
         self.controls.setValue(recipe)
-        self._on_settings(recipe)
+        self.corrections.take_from(recipe.segmentation)
+        self._on_settings(self.controls.value())
+
+    def _all_settings(self) -> GrainSettings:
+        """The settings with the object step and the corrections by hand."""
+        chosen = self.controls.value()
+        return replace(chosen, segmentation=self.corrections.added_to(chosen.segmentation))
 
     # --- segmenting ----------------------------------------------------------------------------
 
@@ -310,7 +342,7 @@ class ScanPage(PageWidget):
             self._context.toast.note(tr("Find the grains first."))
             return
         chosen = self.controls.value()
-        segmentation = self._found_with or SegmentationSettings()
+        segmentation = self.corrections.added_to(self._found_with or SegmentationSettings())
         settings = replace(chosen, segmentation=segmentation, region=self._region)
         entry = entry_of(self._given, settings)
         grey = self.scan.volume if self.scan.volume.kind == "grey" else None
@@ -318,11 +350,16 @@ class ScanPage(PageWidget):
         self._context.start(tr("Making particles"), job, lambda made: self._adopt(made, entry), lane="grains")
 
     def _show_grains(self, found: GrainSegmentation, settings: SegmentationSettings) -> None:
-        self._discard_grains()
-        self._segmented, self.preview, self._found_with = found, None, settings
-        self.slices.show_segmentation(found.segmentation, found.sections)
-        self._hide_probabilities(settings)
+        assert self.scan is not None
+        self.preview, self._found_with = None, settings
+        self.corrections.begin(self.scan.volume, found, settings)
         self.controls.show_automatic_level(found.segmentation.level)
+        self._show_state()
+
+    def _on_corrected(self) -> None:
+        """Follow the grains as they are corrected."""
+        if self._found_with is not None:
+            self._hide_probabilities(self._found_with)
         self._show_state()
 
     def _hide_probabilities(self, settings: SegmentationSettings) -> None:
@@ -330,11 +367,6 @@ class ScanPage(PageWidget):
         if settings.classifier is not None:
             self.slices.histogram.set_denoised(None)
             self.slices.histogram.set_level(None)
-
-    def _discard_grains(self) -> None:
-        if self._segmented is not None:
-            self._segmented.scratch.close()
-        self._segmented = None
 
     def _adopt(self, extraction: Extraction, entry: VolumeEntry) -> None:
         if not extraction.found:
@@ -361,7 +393,7 @@ class ScanPage(PageWidget):
         if self.grains is not None and recipe.segmentation == self._found_with:
             self._show_state()
             return
-        self._discard_grains()
+        self.corrections.discard()
         self._context.stop("grains")
         self._show_level()
         self._schedule_preview()
@@ -429,6 +461,10 @@ class ScanPage(PageWidget):
         self._timer.timeout.connect(self._start_preview)
         self.controls.valueChanged.connect(self._on_settings)
         self.painting.trained.connect(self.controls.set_classifier)
+        self.corrections.changed.connect(self._on_corrected)
+        self.objects.openRequested.connect(self.ask_for_objects)
+        self.objects.saveRequested.connect(self.save_objects)
+        self.tabs.currentChanged.connect(self._stop_tools)
         self.brush.useRequested.connect(self.controls.use_classifier)
         self.brush.openRequested.connect(self.ask_for_classifier)
         self.brush.saveRequested.connect(self.save_classifier)
@@ -442,35 +478,52 @@ class ScanPage(PageWidget):
         self.workflow.showRequested.connect(lambda: self._context.go("sample"))
 
     def _arrange(self) -> None:
-        controls = scrolled_column([self.workflow, self.brush, self.controls])
-        parts = [padded(self.slices, 10, 10, 2, 8), controls]
-        columns = side_by_side(parts, [1100, CONTROLS_WIDTH + 20], stretch=0)
+        parts = ((self.controls, tr("Settings")), (self.brush, tr("Brush")), (self.objects, tr("Objects")),
+                 (self.edits, tr("Correct")))  # fmt: skip
+        self.tabs = tabs("scan_tabs", parts)
+        for part, _ in parts:
+            if (inside := part.layout()) is not None:
+                inside.setContentsMargins(8, 8, 8, 8)
+        self.tabs.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Preferred)
+        controls = scrolled_column([self.workflow, self.tabs])
+        columns = side_by_side(
+            [padded(self.slices, 10, 10, 2, 8), controls], [1100, CONTROLS_WIDTH + 20], stretch=0
+        )
         columns.setObjectName("scan_columns")
         layout = QHBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(columns)
 
     def event(self, event: QEvent) -> bool:
-        """Take Ctrl+Z for strokes while the page has the focus and there are some."""
-        if event.type() == QEvent.Type.ShortcutOverride and self._stroke_step(cast(QKeyEvent, event)):
+        """Take Ctrl+Z for strokes and corrections while the page has the focus and there are some."""
+        if event.type() == QEvent.Type.ShortcutOverride and self._step_of(cast(QKeyEvent, event)):
             event.accept()
             return True
         return super().event(event)
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
-        if step := self._stroke_step(event):
+        if step := self._step_of(event):
             step()
         else:
             super().keyPressEvent(event)
 
-    def _stroke_step(self, event: QKeyEvent) -> Callable[[], None] | None:
-        """What the keys of undo and redo do to strokes."""
-        if not self.brush.paint.isChecked():
+    def _stop_tools(self) -> None:
+        """Let clicks show slices again when another tab is chosen."""
+        self.brush.paint.setChecked(False)
+        self.corrections.stop_tools()
+
+    def _step_of(self, event: QKeyEvent) -> Callable[[], None] | None:
+        """What the keys of undo and redo do to strokes, or to examples and corrections of grains."""
+        shown = self.tabs.currentWidget()
+        steps: Painting | Corrections = self.painting
+        if shown in (self.objects, self.edits):
+            steps = self.corrections
+        elif not self.brush.paint.isChecked():
             return None
-        if event.matches(QKeySequence.StandardKey.Undo) and self.painting.can_undo:
-            return self.painting.undo
-        if event.matches(QKeySequence.StandardKey.Redo) and self.painting.can_redo:
-            return self.painting.redo
+        if event.matches(QKeySequence.StandardKey.Undo) and steps.can_undo:
+            return steps.undo
+        if event.matches(QKeySequence.StandardKey.Redo) and steps.can_redo:
+            return steps.redo
         return None
 
     def dragEnterEvent(self, event: QDragEnterEvent) -> None:

@@ -96,7 +96,7 @@ class Painting(QObject):
         self._predict()
 
     def _add(self, axis: int, number: int, points: object) -> None:
-        if self._volume is None:
+        if self._volume is None or not self._panel.paint.isChecked():
             return
         brush = self._panel.brush
         corners = np.asarray(points, dtype=np.float64)

@@ -53,6 +53,7 @@ class SliceView(QWidget):
         self._volume: Volume | None = None
         self._sections: SliceImages | None = None
         self._colours = label_colours()
+        self._class_colours: NDArray[np.uint8] | None = None
         self.title = QLabel()
         self.title.setProperty("role", "heading")
         self.slider = QSlider(Qt.Orientation.Horizontal)
@@ -132,6 +133,10 @@ class SliceView(QWidget):
         size = (_length(box[self.across]), _length(box[self.down]))
         self._set(self._grains, self._painted(picture), start, size)
 
+    def set_class_colours(self, colours: NDArray[np.uint8] | None) -> None:
+        """Give each label a colour, RGBA of shape (n_labels + 1, 4), or go back to distant hues."""
+        self._class_colours = colours
+
     def show_overlay(self, picture: NDArray[np.uint8] | None) -> None:
         """Overlay the prediction of this slice, RGBA of shape (n_across, n_down, 4); it may be coarser."""
         if picture is None or self._volume is None:
@@ -168,10 +173,14 @@ class SliceView(QWidget):
 
     def extend_stroke(self, point: QPointF) -> None:
         """Draw the line on to a point of the view."""
-        self._corners.append(point)
+        shape = self.brush().shape if self.brush is not None else "free"
+        self._corners = [*(self._corners if shape == "free" else self._corners[:1]), point]
         path = QPainterPath(self._corners[0])
-        for corner in self._corners if len(self._corners) > 1 else self._corners * 2:
-            path.lineTo(corner)
+        if shape == "box":
+            path.addRect(QRectF(self._corners[0], point).normalized())
+        else:
+            for corner in self._corners if len(self._corners) > 1 else self._corners * 2:
+                path.lineTo(corner)
         self._line.setPath(path)
 
     def end_stroke(self) -> None:
@@ -194,6 +203,8 @@ class SliceView(QWidget):
 
     def _painted(self, labels: NDArray[Any]) -> NDArray[np.uint8]:
         number = labels.astype(np.int64)
+        if self._class_colours is not None:
+            return self._class_colours[np.clip(number, 0, len(self._class_colours) - 1)]
         return self._colours[np.where(number > 0, (number - 1) % 255 + 1, 0)]
 
     def _set(self, item: Any, picture: NDArray[Any], start: tuple[int, int], size: tuple[int, int]) -> None:

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QStackedLayout, QVBoxLayout, QWidget
 
@@ -13,7 +14,7 @@ from regolith_studio.imaging.slice_images import SliceImages
 from regolith_studio.jobs.classifier_jobs import SlicePrediction
 from regolith_studio.jobs.volume_jobs import Scan
 from regolith_studio.ui.layout import equal_parts
-from regolith_studio.ui.pages.scan.brush_panel import BrushPanel
+from regolith_studio.ui.pages.scan.brush_panel import Brush, BrushPanel
 from regolith_studio.ui.pages.scan.histogram_plot import HistogramPlot
 from regolith_studio.ui.pages.scan.painted_pictures import overlay_picture, paint_picture
 from regolith_studio.ui.pages.scan.slice_view import SliceView
@@ -34,6 +35,8 @@ class SlicesView(QWidget):
     """Other slices are shown."""
     strokeDrawn = Signal(int, int, object)  # noqa: N815
     """As of a :class:`SliceView`."""
+    picked = Signal(int, int, int)
+    """A voxel that was clicked, after its slices are shown."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -51,6 +54,7 @@ class SlicesView(QWidget):
         self._arrange()
         for view in self.views:
             view.placePicked.connect(lambda x, y, z: self.go_to((x, y, z)))
+            view.placePicked.connect(self.picked)
             view.sliceChosen.connect(self._turn)
             view.strokeDrawn.connect(self.strokeDrawn)
 
@@ -90,14 +94,20 @@ class SlicesView(QWidget):
     def show_preview(self, found: Segmentation | None, box: Box) -> None:
         """Overlay the grains of the preview."""
         self._labels = None if found is None else SliceImages(found.labels.array)
+        for view in self.views:
+            view.set_class_colours(None)
         self._part = box
         self.histogram.set_denoised(None if found is None else found.seen)
         for view in self.views:
             view.set_box_shown(True)
         self._lay_over()
 
-    def show_segmentation(self, found: Segmentation, labels: SliceImages) -> None:
-        """Overlay the grains of the whole volume."""
+    def show_segmentation(
+        self, found: Segmentation, labels: SliceImages, colours: NDArray[np.uint8] | None = None
+    ) -> None:
+        """Overlay the grains of the whole volume, in colours as of :meth:`SliceView.set_class_colours`."""
+        for view in self.views:
+            view.set_class_colours(colours)
         self._labels, self._part = labels, box_between((0, 0, 0), found.labels.shape)
         self.histogram.set_denoised(found.seen)
         self.histogram.set_level(found.level)
@@ -113,6 +123,12 @@ class SlicesView(QWidget):
             view.canvas.setCursor(Qt.CursorShape.ArrowCursor if panel is None else Qt.CursorShape.CrossCursor)
         self._lay_over()
         self._show_painting()
+
+    def set_line_tool(self, brush: Brush | None) -> None:
+        """Let the mouse draw lines or boxes over the grains, or go back to choosing voxels."""
+        for view in self.views:
+            view.brush = None if brush is None else lambda: brush
+            view.canvas.setCursor(Qt.CursorShape.ArrowCursor if brush is None else Qt.CursorShape.CrossCursor)
 
     def set_overlay(self, overlay: str) -> None:
         """Show another side of the prediction: probability, class, uncertainty or none."""

@@ -1,11 +1,12 @@
 """The three steps from a volume to particles, with their results."""
 
 from PySide6.QtCore import Signal
-from PySide6.QtWidgets import QHBoxLayout, QPushButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
 
 from regolith_studio.imaging.segmentation.segment import Segmentation
 from regolith_studio.jobs.volume_jobs import Scan
 from regolith_studio.messages import N_
+from regolith_studio.ui.pages.scan.brush_panel import button
 from regolith_studio.ui.translation import tr, tr_count, translate
 from regolith_studio.ui.translation.numbers import number_text
 from regolith_studio.ui.widgets.fixed_height_text import FixedHeightText
@@ -28,24 +29,24 @@ class WorkflowPanel(QWidget):
     def __init__(self) -> None:
         super().__init__()
         self.setObjectName("scan_steps")
-        self.browse = _button(
+        self.browse = button(
             "scan_open", tr("Open volume …"), tr("Open a CT volume of grey values or labels")
         )
-        self.sample = _button(
+        self.sample = button(
             "scan_sample", tr("Sample scan"), tr("Open the scan that ships with the program")
         )
-        self.search = _button(
+        self.search = button(
             "scan_find", tr("Find all grains"), tr("Segment the whole volume with these settings")
         )
-        self.save = _button(
+        self.save = button(
             "scan_save_labels",
             tr("Save labels …"),
             tr("Write the volume of labels and a table of them for other programs"),
         )
-        self.convert = _button(
+        self.convert = button(
             "scan_make", tr("Make particles"), tr("Contour each grain and open it as a particle")
         )
-        self.show_them = _button("scan_show", tr("Show particles"), tr("Go to the table of particles"))
+        self.show_them = button("scan_show", tr("Show particles"), tr("Go to the table of particles"))
         self.volume, self.found, self.made = _words(), _words(), _words()
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
@@ -59,8 +60,8 @@ class WorkflowPanel(QWidget):
         ):
             layout.addWidget(heading(title))
             row = QHBoxLayout()
-            for button in buttons:
-                row.addWidget(button)
+            for each in buttons:
+                row.addWidget(each)
             layout.addLayout(row)
             layout.addWidget(FixedHeightText((words,)))
         self.browse.clicked.connect(self.openRequested)
@@ -159,10 +160,3 @@ def _words() -> WrappedLabel:
     label = WrappedLabel()
     label.setProperty("role", "remark")
     return label
-
-
-def _button(name: str, words: str, tip: str) -> QPushButton:
-    button = QPushButton(words)
-    button.setObjectName(name)
-    button.setToolTip(tip)
-    return button

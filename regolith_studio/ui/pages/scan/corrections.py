@@ -1,0 +1,379 @@
+"""Object step and corrections by hand in the window: examples, edits, undo, and the grains that follow."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from PySide6.QtCore import QObject, Signal
+from PySide6.QtGui import QColor
+
+from regolith_studio.errors import InputError
+from regolith_studio.imaging.segmentation.label_edits import LabelEdit, Voxel
+from regolith_studio.imaging.segmentation.object_classifier import (
+    OBJECT_ACTIONS,
+    ObjectAction,
+    ObjectTable,
+    ObjectTraining,
+)
+from regolith_studio.imaging.segmentation.segment import Segmentation, SegmentationSettings
+from regolith_studio.imaging.segmentation.strokes import ERASER
+from regolith_studio.imaging.volume import Volume
+from regolith_studio.jobs.events import Failed, Job
+from regolith_studio.jobs.object_jobs import (
+    ClassifiedObjects,
+    classify_grains,
+    correct_grains,
+    describe_grains,
+    save_objects,
+)
+from regolith_studio.jobs.volume_jobs import GrainSegmentation
+from regolith_studio.session.history import History
+from regolith_studio.ui.page import PageContext
+from regolith_studio.ui.pages.scan.brush_panel import Brush
+from regolith_studio.ui.pages.scan.edits_panel import NO_TOOL, EditsPanel
+from regolith_studio.ui.pages.scan.objects_panel import OBJECT_COLOURS, ObjectsPanel
+from regolith_studio.ui.pages.scan.slices_view import SlicesView
+from regolith_studio.ui.translation import tr, translate
+
+_OPACITY, _EXAMPLE_OPACITY = 90, 190
+_CUT = Brush(ERASER, 1.0, "line")
+_CLICKS = {"merge": 2, "delete": 1, "seeds": 2}
+
+
+@dataclass(frozen=True)
+class CorrectionState:
+    """What a step of undo takes back.
+
+    Parameters
+    ----------
+    examples
+        Voxels in marked objects, and their classes.
+    loaded
+        An object classifier from a file or a recipe, used while nothing is marked.
+    actions
+        What is done with each class.
+    applied
+        Whether the object step is part of the segmentation.
+    edits
+        Corrections by hand.
+    """
+
+    examples: tuple[tuple[Voxel, int], ...] = ()
+    loaded: ObjectTraining | None = None
+    actions: tuple[ObjectAction, ...] = OBJECT_ACTIONS
+    applied: bool = False
+    edits: tuple[LabelEdit, ...] = ()
+
+
+class Corrections(QObject):
+    """Connects both panels, the slices and the jobs that describe, classify and correct."""
+
+    changed = Signal()
+    """Other grains, or none while they are being corrected."""
+
+    def __init__(
+        self,
+        context: PageContext,
+        objects: ObjectsPanel,
+        edits: EditsPanel,
+        slices: SlicesView,
+        parent: QObject,
+    ) -> None:
+        super().__init__(parent)
+        self._context, self._objects, self._edits, self._slices = context, objects, edits, slices
+        self._history: History[CorrectionState] = History(CorrectionState())
+        self._clicks: tuple[Voxel, ...] = ()
+        self._grey: Volume | None = None
+        self._base: GrainSegmentation | None = None
+        self._found_with = SegmentationSettings()
+        self._corrected: GrainSegmentation | None = None
+        self._table: ObjectTable | None = None
+        self.classified: ClassifiedObjects | None = None
+        self._connect()
+
+    @property
+    def state(self) -> CorrectionState:
+        """Examples and edits so far."""
+        return self._history.value
+
+    @property
+    def can_undo(self) -> bool:
+        """Whether there is a step to take back."""
+        return self._history.can_undo
+
+    @property
+    def can_redo(self) -> bool:
+        """Whether there is a step to take again."""
+        return self._history.can_redo
+
+    @property
+    def grains(self) -> Segmentation | None:
+        """The corrected grains; ``None`` where there are none yet."""
+        return self._corrected.segmentation if self._corrected is not None else None
+
+    def added_to(self, settings: SegmentationSettings) -> SegmentationSettings:
+        """Settings with the object step and the edits."""
+        state = self.state
+        training = self._training() if state.applied else None
+        return replace(settings, objects=training, edits=state.edits)
+
+    def take_from(self, settings: SegmentationSettings) -> None:
+        """Begin with the object step and the edits of a recipe."""
+        objects = settings.objects
+        self._history.restart(
+            CorrectionState(
+                (),
+                objects,
+                objects.actions if objects else OBJECT_ACTIONS,
+                objects is not None,
+                settings.edits,
+            )
+        )
+        self.classified = None
+        self._refresh()
+
+    def forget(self) -> None:
+        """Begin again with nothing, for another volume."""
+        self.discard()
+        self.classified = None
+        self._history.restart(CorrectionState())
+        self._refresh()
+
+    def begin(self, grey: Volume, base: GrainSegmentation, settings: SegmentationSettings) -> None:
+        """Correct the grains that were found with `settings`, which hold neither objects nor edits."""
+        self.discard()
+        self._grey, self._base, self._found_with = grey, base, settings
+        self._refresh()
+
+    def discard(self) -> None:
+        """Forget the grains, but neither examples nor edits."""
+        for lane in ("describe", "classify", "correct"):
+            self._context.stop(lane)
+        self._close_corrected()
+        if self._base is not None:
+            self._base.scratch.close()
+        self._grey = self._base = self._table = None
+        self._clicks = ()
+        self._objects.mark.setChecked(False)
+        self._edits.tools[NO_TOOL].setChecked(True)
+        self._show_panels()
+
+    def stop_tools(self) -> None:
+        """Let clicks show slices again."""
+        self._objects.mark.setChecked(False)
+        self._edits.tools[NO_TOOL].setChecked(True)
+
+    def undo(self) -> None:
+        """Take the last step back."""
+        self._clicks = ()
+        self._history.undo()
+        self._refresh()
+
+    def redo(self) -> None:
+        """Take it again."""
+        self._history.redo()
+        self._refresh()
+
+    def load(self, training: ObjectTraining) -> None:
+        """Use an object classifier from a file."""
+        self._push(replace(self.state, examples=(), loaded=training, actions=training.actions, applied=True))
+
+    def save(self, path: Path, scan: Path, done: Callable[[Path], None]) -> None:
+        """Write the object classifier, and call `done` with its path."""
+        training = self._training()
+        if training is not None:
+            job = Job(save_objects, (path, training, scan))
+            self._context.start(tr("Saving the classifier"), job, done, lane="classifier")
+
+    # --- steps ---------------------------------------------------------------------------------
+
+    def _training(self) -> ObjectTraining | None:
+        if self.state.examples:
+            return self.classified.training if self.classified is not None else None
+        loaded = self.state.loaded
+        return replace(loaded, actions=self.state.actions) if loaded is not None else None
+
+    def _push(self, state: CorrectionState) -> None:
+        self._history.push(state)
+        self._refresh()
+
+    def _refresh(self) -> None:
+        """Bring classes and grains up to the state."""
+        self._show_panels()
+        if self._base is None or self._grey is None:
+            return
+        self._context.stop("correct")
+        self._close_corrected()
+        self.changed.emit()
+        needs_table = self._objects.mark.isChecked() or self.state.examples or self.state.applied
+        if needs_table and self._table is None:
+            job = Job(describe_grains, (self._grey, self._base.segmentation))
+            self._context.start(tr("Describing objects"), job, self._take_table, lane="describe")
+        elif self.state.examples and self._table is not None:
+            labels = self._base.segmentation.labels
+            job = Job(classify_grains, (self._table, labels, self.state.examples, self.state.actions))
+            self._context.start(tr("Classifying objects"), job, self._take_classes, lane="classify")
+        else:
+            self.classified = None
+            self._correct()
+
+    def _take_table(self, table: ObjectTable) -> None:
+        self._table = table
+        self._refresh()
+
+    def _take_classes(self, found: ClassifiedObjects) -> None:
+        self.classified = found
+        self._correct()
+
+    def _correct(self) -> None:
+        """Apply object step and edits in the background, if there are some."""
+        assert self._base is not None
+        self._show_panels()
+        settings = self.added_to(self._found_with)
+        if settings.objects is None and not settings.edits:
+            self._corrected = self._base
+            self._show()
+            return
+        job = Job(correct_grains, (self._grey, self._base.segmentation, settings, self._table))
+        self._context.start(
+            tr("Correcting labels"), job, self._take_corrected, failed=self._on_failed, lane="correct"
+        )
+
+    def _take_corrected(self, made: GrainSegmentation) -> None:
+        self._corrected = made
+        self._show()
+
+    def _on_failed(self, failure: Failed) -> None:
+        """Say what cannot be done, and go back to where it could."""
+        self._context.toast.problem(failure.sentence)
+        if self._history.can_undo:
+            self.undo()
+        else:
+            self._push(replace(self.state, applied=False, edits=()))
+
+    def _close_corrected(self) -> None:
+        if self._corrected is not None and self._corrected is not self._base:
+            self._corrected.scratch.close()
+        self._corrected = None
+
+    # --- the mouse -----------------------------------------------------------------------------
+
+    def _on_click(self, x: int, y: int, z: int) -> None:
+        if self._base is None:
+            return
+        place = (x, y, z)
+        if self._objects.mark.isChecked():
+            if self._base.segmentation.labels.array[place] > 0:
+                kind = int(self._objects.kind.currentData())
+                others = tuple(each for each in self.state.examples if not self._same_object(each[0], place))
+                self._push(replace(self.state, examples=(*others, (place, kind))))
+        elif (needed := _CLICKS.get(self._edits.tool)) is not None and self.grains is not None:
+            if self.grains.labels.array[place] <= 0:
+                return
+            self._clicks = (*self._clicks, place)
+            if len(self._clicks) == needed:
+                clicks, self._clicks = self._clicks, ()
+                self._edit(self._edits.tool, clicks)
+            else:
+                self._edits.hint.setText(tr("Now click the second place."))
+
+    def _same_object(self, one: Voxel, other: Voxel) -> bool:
+        assert self._base is not None
+        labels = self._base.segmentation.labels.array
+        return bool(labels[one] == labels[other])
+
+    def _on_line(self, axis: int, number: int, points: NDArray[np.float64]) -> None:
+        if self._edits.tool != "cut" or self.grains is None:
+            return
+        ends = []
+        for point in (points[0], points[-1]):
+            place = [0, 0, 0]
+            place[axis] = number
+            for each, at in zip((k for k in range(3) if k != axis), point, strict=True):
+                place[each] = int(np.floor(at))
+            ends.append((place[0], place[1], place[2]))
+        self._edit("cut", tuple(ends), axis)
+
+    def _edit(self, kind: str, points: tuple[Voxel, ...], axis: int = 2) -> None:
+        try:
+            edit = LabelEdit(kind, points, axis)  # type: ignore[arg-type]  # one of the tools
+        except InputError as error:
+            self._context.toast.problem(str(error))
+            return
+        self._push(replace(self.state, edits=(*self.state.edits, edit)))
+
+    def _set_tool(self, kind: str) -> None:
+        self._clicks = ()
+        if kind:
+            self._objects.mark.setChecked(False)
+        self._slices.set_line_tool(_CUT if kind == "cut" else None)
+
+    def _set_marking(self, on: bool) -> None:
+        if on:
+            self._edits.tools[NO_TOOL].setChecked(True)
+        if self._base is not None:
+            if on and self._table is None:
+                self._refresh()
+            elif self.grains is not None:
+                self._show()
+
+    # --- what is shown -------------------------------------------------------------------------
+
+    def _show(self) -> None:
+        """The classes of the objects while examples are marked, else the corrected grains."""
+        if self._base is None or self._corrected is None:
+            return
+        if self._objects.mark.isChecked():
+            self._slices.show_segmentation(self._base.segmentation, self._base.sections, self._colours())
+        else:
+            self._slices.show_segmentation(self._corrected.segmentation, self._corrected.sections)
+        self._show_panels()
+        self.changed.emit()
+
+    def _colours(self) -> NDArray[np.uint8]:
+        """A colour for each label: grey without a class, more opaque for examples."""
+        assert self._base is not None
+        labels = self._base.segmentation.labels.array
+        highest = int(self._table.table.labels[-1]) if self._table is not None else 0
+        table = np.full((highest + 1, 4), (150, 150, 150, _OPACITY), dtype=np.uint8)
+        table[0] = 0
+        colours = np.array([QColor(each).getRgb() for each in OBJECT_COLOURS], dtype=np.uint8)
+        if self.classified is not None and self.classified.training is not None and self._table is not None:
+            table[self._table.table.labels] = colours[self.classified.kinds]
+            table[1:, 3] = _OPACITY
+        for place, kind in self.state.examples:
+            table[int(labels[place])] = colours[kind]
+            table[int(labels[place]), 3] = _EXAMPLE_OPACITY
+        return table
+
+    def _show_panels(self) -> None:
+        found, state = self._base is not None, self.state
+        trained = self._training() is not None
+        self._objects.set_state(
+            found=found, trained=trained, applied=state.applied, can_undo=self._history.can_undo
+        )
+        self._objects.set_actions(state.actions)
+        classified = self.classified
+        known = classified is not None and classified.training is not None and self._table is not None
+        counts = classified.counts() if known and classified is not None else {}
+        self._objects.set_counts(counts, translate(classified.missing) if classified is not None else "")
+        self._edits.set_state(found=found, can_undo=self._history.can_undo, can_redo=self._history.can_redo)
+        self._edits.set_edits(state.edits)
+
+    def _connect(self) -> None:
+        self._slices.picked.connect(self._on_click)
+        self._slices.strokeDrawn.connect(self._on_line)
+        self._objects.markingChanged.connect(self._set_marking)
+        self._objects.actionsChanged.connect(
+            lambda: self._push(replace(self.state, actions=self._objects.action_of_each()))
+        )
+        self._objects.applyChanged.connect(lambda on: self._push(replace(self.state, applied=on)))
+        self._objects.clearRequested.connect(
+            lambda: self._push(replace(self.state, examples=(), loaded=None, applied=False))
+        )
+        for panel in (self._objects, self._edits):
+            panel.undoRequested.connect(self.undo)
+        self._edits.redoRequested.connect(self.redo)
+        self._edits.toolChanged.connect(self._set_tool)
