@@ -23,6 +23,7 @@ from regolith_studio.imaging.extraction import (
     ExtractionSettings,
     extraction_steps,
 )
+from regolith_studio.imaging.label_surface import label_surface
 from regolith_studio.imaging.sample_volumes import SampleVolume, sample_volume
 from regolith_studio.imaging.segmentation.segment import (
     Segmentation,
@@ -145,6 +146,12 @@ def find_grains(scan: Scan, settings: SegmentationSettings) -> Steps:
     except BaseException:
         scratch.close()
         raise
+
+
+def view_labels(labels: Volume) -> Steps:
+    """Coarse surfaces of all labels for a picture; returns a ``LabelSurface``."""
+    yield Started(N_("Drawing grains"))
+    return label_surface(labels.array, labels.voxel_size)
 
 
 def scratch_folder() -> Path:

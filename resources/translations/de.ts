@@ -284,6 +284,10 @@
         <translation>1 Format ist geschrieben.</translation>
     </message>
     <message>
+        <source>1 grain</source>
+        <translation>1 Korn</translation>
+    </message>
+    <message>
         <source>1 grain from 1 connected body</source>
         <translation>1 Korn aus 1 zusammenhängenden Körper</translation>
     </message>
@@ -1498,6 +1502,10 @@
     <message>
         <source>Drawing</source>
         <translation>Ziehung läuft</translation>
+    </message>
+    <message>
+        <source>Drawing grains</source>
+        <translation>Körner werden gezeichnet</translation>
     </message>
     <message>
         <source>Drawing particles</source>
@@ -7140,6 +7148,10 @@
         <translation>{count} Formate sind geschrieben.</translation>
     </message>
     <message>
+        <source>{count} grains</source>
+        <translation>{count} Körner</translation>
+    </message>
+    <message>
         <source>{count} left out</source>
         <translation>{count} ausgelassen</translation>
     </message>
@@ -7246,6 +7258,10 @@
     <message>
         <source>{edges} voxels, {dtype}.</source>
         <translation>{edges} Voxel, {dtype}.</translation>
+    </message>
+    <message>
+        <source>{edges} µm</source>
+        <translation>{edges} µm</translation>
     </message>
     <message>
         <source>{grains} grains from 1 connected body</source>

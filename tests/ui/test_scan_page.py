@@ -611,3 +611,17 @@ def test_that_a_line_which_divides_nothing_is_taken_back_with_a_sentence(page, w
     wait(lambda: page.grains is not None, SECONDS)
     assert page.corrections.state.edits == ()
     assert page.grains.n_grains == 6
+
+
+@pytest.mark.usefixtures("objects")
+def test_that_the_grains_stand_beside_the_slices_in_the_same_colours(page, wait):
+    wait(lambda: page.slices._surface is not None, SECONDS)
+    _, surface = page.slices._surface
+    assert set(surface.labels) == {1, 2, 3, 4, 5, 6}
+    assert "6 grains" in page.slices.grains.frame.title
+    picture = page.slices.grains.frame.view.picture().astype(int)
+    coloured = np.ptp(picture, axis=2) > 60
+    assert 0.02 < coloured.mean() < 0.9
+    page.controls.split.click()  # discards them
+    wait(lambda: page.slices._surface is None, SECONDS)
+    assert page.slices.grains.frame.title == "Volume"

@@ -16,6 +16,7 @@ from regolith_studio.imaging.extraction import Extraction
 from regolith_studio.imaging.label_files import LABEL_SUFFIXES
 from regolith_studio.imaging.sample_volumes import sample_file
 from regolith_studio.imaging.segmentation.segment import Segmentation, SegmentationSettings
+from regolith_studio.imaging.volume import Volume
 from regolith_studio.io.atomic import write_bytes
 from regolith_studio.io.json_text import json_bytes
 from regolith_studio.jobs.events import Job
@@ -36,6 +37,7 @@ from regolith_studio.jobs.volume_jobs import (
     read_header,
     read_sample_scan,
     read_scan,
+    view_labels,
 )
 from regolith_studio.messages import N_
 from regolith_studio.readers.volume_formats import volume_suffixes
@@ -81,7 +83,7 @@ class ScanPage(PageWidget):
         self._found_with: SegmentationSettings | None = None
 
     def build(self) -> None:
-        self.slices = SlicesView()
+        self.slices = SlicesView(self._context.views)
         self.controls = SegmentationControls()
         self.workflow = WorkflowPanel()
         self.brush = BrushPanel()
@@ -123,6 +125,7 @@ class ScanPage(PageWidget):
     def on_close(self) -> None:
         self._timer.stop()
         self.corrections.discard()
+        self.slices.grains.release()
         if self.scan is not None:
             self.scan.scratch.close()
 
@@ -362,6 +365,12 @@ class ScanPage(PageWidget):
             self._hide_probabilities(self._found_with)
         self._show_state()
 
+    def _make_surface(self, labels: Volume) -> None:
+        """Contour labels in the background for the view of all grains."""
+        show = self.slices.show_surface
+        job = Job(view_labels, (labels,))
+        self._context.start(tr("Drawing grains"), job, lambda made: show(labels, made), lane="surface")
+
     def _hide_probabilities(self, settings: SegmentationSettings) -> None:
         """Keep a classifier's probabilities out of the histogram of grey values."""
         if settings.classifier is not None:
@@ -394,6 +403,7 @@ class ScanPage(PageWidget):
             self._show_state()
             return
         self.corrections.discard()
+        self._context.stop("surface")
         self._context.stop("grains")
         self._show_level()
         self._schedule_preview()
@@ -451,7 +461,7 @@ class ScanPage(PageWidget):
 
     def _stop_work(self) -> None:
         self._timer.stop()
-        for lane in ("preview", "grains"):
+        for lane in ("preview", "grains", "surface"):
             self._context.stop(lane)
 
     def _folder(self) -> str:
@@ -469,6 +479,7 @@ class ScanPage(PageWidget):
         self.brush.openRequested.connect(self.ask_for_classifier)
         self.brush.saveRequested.connect(self.save_classifier)
         self.slices.boxMoved.connect(self._schedule_preview)
+        self.slices.surfaceWanted.connect(self._make_surface)
         self.slices.histogram.levelDragged.connect(self._on_level_dragged)
         self.workflow.openRequested.connect(self.ask_for_file)
         self.workflow.sampleRequested.connect(self.open_sample)

@@ -1,6 +1,7 @@
 """View of one slice of a volume with an overlay of the grains."""
 
 from collections.abc import Callable
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -21,6 +22,7 @@ AXES = "xyz"
 _OPACITY = 105
 
 
+@cache
 def label_colours() -> NDArray[np.uint8]:
     """RGBA colours of 255 labels with distant hues, shape (256, 4); entry 0 is transparent."""
     hues = (np.arange(255) * 0.618033988749895) % 1.0
@@ -28,6 +30,11 @@ def label_colours() -> NDArray[np.uint8]:
     for row, hue in zip(table[1:], hues, strict=True):
         row[:] = QColor.fromHsvF(float(hue), 0.75, 1.0, _OPACITY / 255).getRgb()
     return table
+
+
+def colours_of_labels(labels: NDArray[np.int64]) -> NDArray[np.uint8]:
+    """RGBA colours of labels of any shape, which come again after 255; 0 and less is transparent."""
+    return label_colours()[np.where(labels > 0, (labels - 1) % 255 + 1, 0)]
 
 
 class SliceView(QWidget):
@@ -52,7 +59,6 @@ class SliceView(QWidget):
         self.across, self.down = (each for each in range(3) if each != axis)
         self._volume: Volume | None = None
         self._sections: SliceImages | None = None
-        self._colours = label_colours()
         self._class_colours: NDArray[np.uint8] | None = None
         self.title = QLabel()
         self.title.setProperty("role", "heading")
@@ -205,7 +211,7 @@ class SliceView(QWidget):
         number = labels.astype(np.int64)
         if self._class_colours is not None:
             return self._class_colours[np.clip(number, 0, len(self._class_colours) - 1)]
-        return self._colours[np.where(number > 0, (number - 1) % 255 + 1, 0)]
+        return colours_of_labels(number)
 
     def _set(self, item: Any, picture: NDArray[Any], start: tuple[int, int], size: tuple[int, int]) -> None:
         """Set an image that covers so many voxels, which may have fewer pixels."""

@@ -1,4 +1,4 @@
-"""Three slices through one voxel and the histogram."""
+"""Three slices through one voxel, the histogram, and the grains in three dimensions."""
 
 from collections.abc import Sequence
 
@@ -9,15 +9,18 @@ from PySide6.QtWidgets import QStackedLayout, QVBoxLayout, QWidget
 
 from regolith_studio.geometry.arrays import IntArray
 from regolith_studio.imaging.bounding_boxes import Box, box_about, box_between
+from regolith_studio.imaging.label_surface import LabelSurface
 from regolith_studio.imaging.segmentation.segment import Segmentation
 from regolith_studio.imaging.slice_images import SliceImages
+from regolith_studio.imaging.volume import Volume
 from regolith_studio.jobs.classifier_jobs import SlicePrediction
 from regolith_studio.jobs.volume_jobs import Scan
 from regolith_studio.ui.layout import equal_parts
 from regolith_studio.ui.pages.scan.brush_panel import Brush, BrushPanel
+from regolith_studio.ui.pages.scan.grains_view import GrainsView
 from regolith_studio.ui.pages.scan.histogram_plot import HistogramPlot
 from regolith_studio.ui.pages.scan.painted_pictures import overlay_picture, paint_picture
-from regolith_studio.ui.pages.scan.slice_view import SliceView
+from regolith_studio.ui.pages.scan.slice_view import SliceView, colours_of_labels
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.labels import remark
@@ -37,11 +40,16 @@ class SlicesView(QWidget):
     """As of a :class:`SliceView`."""
     picked = Signal(int, int, int)
     """A voxel that was clicked, after its slices are shown."""
+    surfaceWanted = Signal(object)  # noqa: N815
+    """Labels whose surfaces are to be made and given to :meth:`show_surface`."""
 
-    def __init__(self) -> None:
+    def __init__(self, views: str) -> None:
         super().__init__()
         self.views = [SliceView(axis) for axis in (2, 1, 0)]
         self.histogram = HistogramPlot()
+        self.grains = GrainsView(views)
+        self._surface: tuple[Volume, LabelSurface] | None = None
+        self._class_colours: NDArray[np.uint8] | None = None
         self.position = (0, 0, 0)
         self.box: Box = box_between((0, 0, 0), (1, 1, 1))
         self._scan: Scan | None = None
@@ -63,6 +71,7 @@ class SlicesView(QWidget):
         for view in self.views:
             view.set_theme(theme)
         self.histogram.set_theme(theme)
+        self.grains.set_theme(theme)
 
     def set_scan(self, scan: Scan) -> None:
         """Show another volume, with slices through its centre."""
@@ -72,6 +81,10 @@ class SlicesView(QWidget):
             view.set_box_shown(scan.volume.kind == "grey")
         self.histogram.set_scanned(scan.histogram)
         self._stack.setCurrentIndex(1)
+        self._class_colours, self._surface = None, None
+        self.grains.set_volume(scan.volume)
+        if scan.volume.kind == "labels":
+            self.surfaceWanted.emit(scan.volume)
         self.box = box_between((0, 0, 0), (0, 0, 0))
         x, y, z = (edge // 2 for edge in scan.volume.shape)
         self.go_to((x, y, z))
@@ -96,7 +109,8 @@ class SlicesView(QWidget):
         self._labels = None if found is None else SliceImages(found.labels.array)
         for view in self.views:
             view.set_class_colours(None)
-        self._part = box
+        self.grains.clear()
+        self._surface, self._part = None, box
         self.histogram.set_denoised(None if found is None else found.seen)
         for view in self.views:
             view.set_box_shown(True)
@@ -108,12 +122,24 @@ class SlicesView(QWidget):
         """Overlay the grains of the whole volume, in colours as of :meth:`SliceView.set_class_colours`."""
         for view in self.views:
             view.set_class_colours(colours)
+        self._class_colours = colours
+        if self._surface is not None and self._surface[0] is found.labels:
+            self.show_surface(*self._surface)
+        else:
+            self.surfaceWanted.emit(found.labels)
         self._labels, self._part = labels, box_between((0, 0, 0), found.labels.shape)
         self.histogram.set_denoised(found.seen)
         self.histogram.set_level(found.level)
         for view in self.views:
             view.set_box_shown(False)
         self._lay_over()
+
+    def show_surface(self, labels: Volume, surface: LabelSurface) -> None:
+        """Show the surfaces of labels in three dimensions, in the colours of the slices."""
+        self._surface = labels, surface
+        highest = int(surface.labels.max(initial=0))
+        colours = self._class_colours
+        self.grains.show(surface, colours_of_labels(np.arange(highest + 1)) if colours is None else colours)
 
     def set_painting(self, panel: BrushPanel | None) -> None:
         """Let the mouse paint with the brush of a panel, or go back to choosing voxels."""
@@ -176,8 +202,8 @@ class SlicesView(QWidget):
             view.show_grains(labels, self._part, self.position[view.axis])
 
     def _arrange(self) -> None:
-        above = equal_parts(Qt.Orientation.Horizontal, self.views[:2])
-        below = equal_parts(Qt.Orientation.Horizontal, [self.views[2], self.histogram])
+        above = equal_parts(Qt.Orientation.Horizontal, self.views)
+        below = equal_parts(Qt.Orientation.Horizontal, [self.histogram, self.grains.frame])
         page = equal_parts(Qt.Orientation.Vertical, [above, below])
         hint = QWidget()
         column_of_words = QVBoxLayout(hint)

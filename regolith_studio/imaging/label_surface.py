@@ -1,0 +1,66 @@
+"""Surfaces of all labels at once, coarse and quick: for a picture of a segmentation, not for particles."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from regolith_studio.geometry.arrays import FloatArray, IntArray
+
+MAX_EDGE = 128
+"""Voxels along the longest edge that are contoured."""
+
+
+@dataclass(frozen=True, eq=False)
+class LabelSurface:
+    """Triangles between labels and what has none.
+
+    Parameters
+    ----------
+    vertices
+        In micrometres from the corner of the volume, shape (n, 3).
+    faces
+        Shape (m, 3).
+    labels
+        Of each face, shape (m,).
+    """
+
+    vertices: FloatArray
+    faces: IntArray
+    labels: IntArray
+
+
+def label_surface(labels: NDArray[Any], voxel_size: FloatArray, max_edge: int = MAX_EDGE) -> LabelSurface:
+    """Surfaces of labels by surface nets (VTK), of every n-th voxel of a large volume.
+
+    Parameters
+    ----------
+    labels
+        0 and less between grains, shape (nx, ny, nz).
+    voxel_size
+        Edges of a voxel along x, y and z, in micrometres, shape (3,).
+    max_edge
+        Voxels along the longest edge that are contoured.
+    """
+    import pyvista
+
+    step = max(1, -(-max(labels.shape) // max_edge))
+    coarse = np.maximum(labels[::step, ::step, ::step], 0)
+    present, compact = np.unique(coarse, return_inverse=True)
+    if present[0] != 0:  # no voxel is free: the margin of the contour is
+        present, compact = np.concatenate([[0], present]), compact + 1
+    spacing = np.asarray(voxel_size, float) * step
+    image: Any = pyvista.ImageData(dimensions=coarse.shape, spacing=spacing, origin=spacing / 2)
+    image.point_data["labels"] = compact.reshape(coarse.shape).astype(np.int32).ravel(order="F")
+    found: Any = image.contour_labels(
+        boundary_style="external", scalars="labels", output_mesh_type="triangles", progress_bar=False
+    )
+    if not found.n_cells:
+        return LabelSurface(np.zeros((0, 3)), np.zeros((0, 3), np.int64), np.zeros(0, np.int64))
+    sides = np.asarray(found.cell_data["boundary_labels"]).reshape(found.n_cells, -1)
+    return LabelSurface(
+        np.asarray(found.points, dtype=np.float64),
+        np.asarray(found.regular_faces, dtype=np.int64),
+        np.asarray(present[sides.max(axis=1).astype(np.int64)], dtype=np.int64),
+    )
