@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from regolith_studio.geometry.arrays import FloatArray, IntArray
+from regolith_studio.geometry.kernels import kernel
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.harmonics.legendre import harmonics
 from regolith_studio.harmonics.sphere_grid import enclosed_volumes, sphere_grid
@@ -26,7 +27,6 @@ COARSE, FINE = 3, 4
 MIN_HULL_DEGREE = 13
 _MIN_RADIUS = 1e-3
 _BATCH = 250
-_AREA_BATCH = 50
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,7 +68,7 @@ class SurfaceForms:
             (points / lengths[:, None, :]).astype(np.float32),
             np.swapaxes(found.axes, 1, 2) / lengths[:, :, None],
             found.axes,
-            _unit_product(np.sqrt(np.ptp(points, axis=1) * lengths)),
+            _unit_product(np.sqrt(extents(points) * lengths)),
             shares,
             areas(points) / (1 + np.exp(-shares[:, 0])),
         )
@@ -90,7 +90,7 @@ class SurfaceForms:
         Linear maps of determinant one (k, 3, 3), and ln(s / (1 - s)) of the sphericities (k,).
         """
         turned = self.vertices[picks] @ np.swapaxes(turns, 1, 2).astype(np.float32)
-        factors = _unit_product(self.forms[targets] / np.sqrt(np.ptp(turned, axis=1)))
+        factors = _unit_product(self.forms[targets] / np.sqrt(extents(turned)))
         turned *= factors[:, None, :].astype(np.float32)
         return factors[:, :, None] * turns, log_share(self.area_factors[picks] / areas(turned))
 
@@ -98,13 +98,42 @@ class SurfaceForms:
 def areas(vertices: FloatArray | Floats) -> FloatArray:
     """Areas (n,) of meshes with these vertices (n, v, 3) and the triangles of the icosphere with so many."""
     level = {len(icosphere(each).vertices): each for each in (COARSE, FINE)}[vertices.shape[1]]
-    faces = icosphere(level).faces
     found = np.empty(len(vertices))
-    for first in range(0, len(vertices), _AREA_BATCH):
-        a, b, c = (vertices[first : first + _AREA_BATCH, faces[:, i]] for i in range(3))
-        doubled = np.linalg.norm(np.cross(b - a, c - a), axis=2).sum(axis=1, dtype=np.float64)
-        found[first : first + _AREA_BATCH] = 0.5 * doubled
+    _fill_areas(np.ascontiguousarray(vertices, dtype=np.float32), icosphere(level).faces, found)
     return found
+
+
+@kernel
+def _fill_areas(vertices: Floats, faces: IntArray, found: FloatArray) -> None:
+    """Fill `found`, shape (n,), with the areas of the triangles `faces` (f, 3) of each row of `vertices`."""
+    for n in range(len(vertices)):
+        points, total = vertices[n], 0.0
+        for f in range(len(faces)):
+            a, b, c = faces[f, 0], faces[f, 1], faces[f, 2]
+            ux, uy, uz = points[b, 0] - points[a, 0], points[b, 1] - points[a, 1], points[b, 2] - points[a, 2]
+            vx, vy, vz = points[c, 0] - points[a, 0], points[c, 1] - points[a, 1], points[c, 2] - points[a, 2]
+            x, y, z = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
+            total += np.sqrt(x * x + y * y + z * z)
+        found[n] = 0.5 * total
+
+
+def extents(vertices: FloatArray | Floats) -> FloatArray:
+    """Extents along the axes of meshes with these vertices (n, v, 3), shape (n, 3)."""
+    found = np.empty((len(vertices), 3))
+    _fill_extents(np.ascontiguousarray(vertices, dtype=np.float32), found)
+    return found
+
+
+@kernel
+def _fill_extents(vertices: Floats, found: FloatArray) -> None:
+    """Fill `found`, shape (n, 3), with the extents of each row of `vertices`, shape (n, v, 3)."""
+    for n in range(len(vertices)):
+        for k in range(3):
+            low = high = vertices[n, 0, k]
+            for v in range(vertices.shape[1]):
+                value = vertices[n, v, k]
+                low, high = min(low, value), max(high, value)
+            found[n, k] = high - low
 
 
 def sphericity_and_convexity(rows: FloatArray) -> FloatArray:

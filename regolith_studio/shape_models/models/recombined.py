@@ -4,9 +4,9 @@ Two ideas. The surface of one particle, turned at random on its sphere of inerti
 another that fills about the same share of its hull, which linear maps do not change. Of several such bodies
 the one is kept whose sphericity is nearest to that of the other particle.
 
-What a map and the cut at l_max change on average is measured on draws and taken off what is asked for: first
-the power of each degree, then the sphericity and the share of the hull. Sizes, forms and sphericities are
-those of measured particles; it makes none beyond them.
+What a map, the choice and the cut at l_max change is measured on draws and taken off what is asked for: first
+the power of each degree, then mean and deviation of the sphericity and of the share of the hull. Sizes, forms
+and sphericities are those of measured particles; it makes none beyond them.
 """
 
 from collections.abc import Callable, Mapping
@@ -33,8 +33,10 @@ from regolith_studio.shape_models.surface_forms import (
 )
 
 KEY = "recombined"
-ROUNDS = 3
+ROUNDS = 4
 """Rounds of calibration, of a chunk of particles each."""
+SPREADS = (0.5, 2.0)
+"""Limits of the factors on deviations that are asked for."""
 ATTEMPTS = 5
 """Times that a particle is made anew where the cut has a negative radius; then it stays as measured."""
 
@@ -63,7 +65,7 @@ class RecombinedSettings:
         },
     )
     n_candidates: int = field(
-        default=8,
+        default=32,
         metadata={
             "label": N_("Surfaces tried"),
             "minimum": 1,
@@ -95,9 +97,9 @@ class Recombined(SizedSampler):
         Length unit of the sample.
     gain
         Factor of each degree of mapped particles, shape (l_max + 1,); ones if ``None``.
-    offsets
-        Added to ln(s / (1 - s)) of the sphericity and of the share of the hull that are asked for, shape
-        (2,).
+    offsets, spreads
+        What is asked for of ln(s / (1 - s)) of the sphericity and of the share of the hull: mean + offset +
+        spread (measured - mean), shapes (2,); zeros and ones if ``None``.
     """
 
     coefficients: FloatArray
@@ -105,18 +107,21 @@ class Recombined(SizedSampler):
     unit: str = "um"
     gain: FloatArray | None = None
     offsets: FloatArray | None = None
+    spreads: FloatArray | None = None
     key: ClassVar[str] = KEY
     scale: ClassVar[Scale] = "radius"
 
     def __post_init__(self) -> None:
-        for name, filler, length in (("gain", np.ones, self.l_max + 1), ("offsets", np.zeros, 2)):
+        lengths = (("gain", np.ones, self.l_max + 1), ("offsets", np.zeros, 2), ("spreads", np.ones, 2))
+        for name, filler, length in lengths:
             given = getattr(self, name)
             values = filler(length) if given is None else given
             object.__setattr__(self, name, locked_floats(values, (length,), name))
         object.__setattr__(self, "coefficients", self.surfaces.coefficients)
 
     def __reduce__(self) -> tuple[Callable[..., "Recombined"], tuple[Any, ...]]:
-        return Recombined, (self.coefficients, self.settings, self.unit, self.gain, self.offsets)
+        calibration = self.gain, self.offsets, self.spreads
+        return Recombined, (self.coefficients, self.settings, self.unit, *calibration)
 
     @property
     def l_max(self) -> int:
@@ -158,7 +163,9 @@ class Recombined(SizedSampler):
 
     def _made(self, targets: IntArray, rng: np.random.Generator) -> tuple[FloatArray, IntArray]:
         """Rows on the forms of `targets`, and the particles that their surfaces are from."""
-        wanted = self.forms.shares[targets] + np.asarray(self.offsets)
+        middle = self.forms.shares.mean(axis=0)
+        asked = middle + np.asarray(self.offsets) + np.asarray(self.spreads) * (self.forms.shares - middle)
+        wanted = asked[targets]
         parents, maps = np.zeros_like(targets), np.empty((len(targets), 3, 3))
         nearest = np.full(len(targets), np.inf)
         for _ in range(self.settings.n_candidates):
@@ -189,8 +196,13 @@ class Recombined(SizedSampler):
         rows, _ = self._made(targets, rng)
         if first:
             return self._with(gain=roughness_gain(rows, self.surfaces.cut[targets]))
-        missing = self.forms.shares[targets].mean(axis=0) - sphericity_and_convexity(rows).mean(axis=0)
-        return self._with(offsets=np.asarray(self.offsets) + missing)
+        measured, drawn = self.forms.shares[targets], sphericity_and_convexity(rows)
+        missing = measured.mean(axis=0) - drawn.mean(axis=0)
+        ratio = (measured.std(axis=0) + 1e-9) / (drawn.std(axis=0) + 1e-9)
+        return self._with(
+            offsets=np.asarray(self.offsets) + missing,
+            spreads=np.clip(np.asarray(self.spreads) * ratio, *SPREADS),
+        )
 
     def _with(self, **changes: Any) -> "Recombined":
         """A copy that shares what does not depend on the calibration."""
@@ -207,12 +219,13 @@ class Recombined(SizedSampler):
             "unit": self.unit,
             "gain": np.asarray(self.gain).tolist(),
             "offsets": np.asarray(self.offsets).tolist(),
+            "spreads": np.asarray(self.spreads).tolist(),
         }
         return values, {"coefficients": self.coefficients}
 
 
 class RecombinedModel:
-    """Keeps the measured particles, and calibrates what is asked for until draws have their averages."""
+    """Keeps the measured particles, and calibrates what is asked for on draws."""
 
     key = KEY
     label = N_("Recombined surfaces")
@@ -253,6 +266,7 @@ class RecombinedModel:
             str(values["unit"]),
             values["gain"],
             values["offsets"],
+            values["spreads"],
         )
 
 
