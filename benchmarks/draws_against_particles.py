@@ -1,20 +1,23 @@
 """Draws against the particles themselves: fit to one half, draw, compare with the other half at all degrees.
 
-    python -m benchmarks.draws_against_particles [FIT.json] [SEED] [PARTICLES] [SPLITS] [RESULT.json]
+    python -m benchmarks.draws_against_particles [SAMPLE] [--seed 11] [--particles 1200] [--splits 3]
+        [--models recombined,hull_field,sample_matched] [--odd] [--l-max L] [--name NAME] [-o RESULT.json]
 
-Wasserstein distances in percent of the mean, by number, of as many draws as the half fitted to has particles;
-means over the splits, and processor seconds of a fit and of 2,000 draws. With a result file the numbers are
-added to it under the name of the sample.
+Wasserstein distances in percent of the mean, by number, of as many draws as the half fitted to has
+particles; means over the splits, and processor seconds of a fit and of 2,000 draws. SAMPLE is a fit, or
+tables of complex coefficients. With ``--l-max`` its particles are cut at that degree first, with ``--odd``
+only every second one is taken, from the second on. Set OPENBLAS_NUM_THREADS=1 for seconds that compare.
 """
 
-import json
-import sys
+import argparse
 import time
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 
 from benchmarks.populations import CARD, measured, realized, sample_from
+from benchmarks.result_files import Rows, add_result, show_row
 from regolith_studio.geometry.arrays import FloatArray, IntArray
 from regolith_studio.shape_models.goodness_of_fit import relative_wasserstein
 from regolith_studio.shape_models.models import MODELS
@@ -24,7 +27,6 @@ from regolith_studio.studies.population import KEYS, N_FLOOR_SPLITS
 CUTS = (10, 20)
 N_DRAWS = 2000
 MODEL_KEYS = ("recombined", "hull_field", "sample_matched")
-Rows = dict[str, list[float]]
 
 
 def far(one: FloatArray, two: FloatArray) -> FloatArray:
@@ -32,12 +34,6 @@ def far(one: FloatArray, two: FloatArray) -> FloatArray:
     ones, others = np.ones(len(one)), np.ones(len(two))
     pairs = zip(one.T, two.T, strict=True)
     return np.array([100 * relative_wasserstein(a, b, ones, others) for a, b in pairs])
-
-
-def show(rows: Rows, name: str, numbers: FloatArray) -> None:
-    """Print a row of the table and keep it."""
-    rows[name] = [round(float(number), 2) for number in numbers]
-    print("|", name, "|", " | ".join(f"{number:.2f}" for number in numbers), "|", flush=True)
 
 
 def judged(
@@ -54,36 +50,46 @@ def judged(
     return np.mean(found, axis=0)
 
 
-def table_of(sample: Sample, seed: int, n_splits: int) -> Rows:
+def table_of(sample: Sample, seed: int, n_splits: int, keys: Sequence[str]) -> Rows:
     """All rows of the table of one sample."""
     rows: Rows = {}
     table = measured(realized(sample), KEYS)
     halves = [sample.halves(seed + split) for split in range(N_FLOOR_SPLITS)]
     floor = [far(table[a], table[b]) for a, b in halves]
-    show(rows, "floor", np.mean(floor, axis=0))
-    show(rows, "floor, 95th percentile", np.quantile(floor, 0.95, axis=0))
-    show(rows, "the half fitted to", np.mean([far(table[b], table[a]) for a, b in halves[:n_splits]], axis=0))
+    show_row(rows, "floor", np.mean(floor, axis=0))
+    show_row(rows, "floor, 95th percentile", np.quantile(floor, 0.95, axis=0))
+    show_row(
+        rows, "the half fitted to", np.mean([far(table[b], table[a]) for a, b in halves[:n_splits]], axis=0)
+    )
     for degree in (degree for degree in CUTS if degree < sample.l_max):
         cut = measured(realized(sample.truncated(degree)), KEYS)
-        show(rows, f"cut at l = {degree}", far(table, cut))
-    for key in MODEL_KEYS:
-        show(rows, key, judged(key, sample, table, halves[:n_splits]))
+        show_row(rows, f"cut at l = {degree}", far(table, cut))
+    for key in keys:
+        show_row(rows, key, judged(key, sample, table, halves[:n_splits]))
     return rows
 
 
-def main(path: str, seed: int, n: int, n_splits: int, result: str) -> None:
+def main() -> None:
     """Print the table of one sample, and add it to a result file."""
-    whole = sample_from(path)
-    rng = np.random.default_rng(np.random.SeedSequence(seed))
-    sample = whole.chosen(rng.permutation(len(whole))[:n])
-    rows = table_of(sample, seed, n_splits)
-    if result:
-        file, name = Path(result), Path(path).stem or CARD
-        known = json.loads(file.read_text(encoding="utf-8")) if file.exists() else {}
-        known[name] = {"seed": seed, "particles": len(sample), "splits": n_splits, "rows": rows}
-        file.write_text(json.dumps(known, indent=1) + "\n", encoding="utf-8")
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("sample", nargs="?", default="")
+    for name, number in (("seed", 11), ("particles", 1200), ("splits", 3), ("l-max", 0)):
+        parser.add_argument(f"--{name}", type=int, default=number)
+    parser.add_argument("--models", default=",".join(MODEL_KEYS))
+    parser.add_argument("--odd", action="store_true")
+    parser.add_argument("--name", default="")
+    parser.add_argument("-o", "--output", default="")
+    options = parser.parse_args()
+    whole = sample_from(options.sample)
+    whole = whole.chosen(range(1, len(whole), 2)) if options.odd else whole
+    whole = whole.truncated(options.l_max) if options.l_max else whole
+    rng = np.random.default_rng(np.random.SeedSequence(options.seed))
+    sample = whole.chosen(rng.permutation(len(whole))[: options.particles])
+    rows = table_of(sample, options.seed, options.splits, options.models.split(","))
+    made_with = {"seed": options.seed, "particles": len(sample), "splits": options.splits}
+    name = options.name or Path(options.sample).stem or CARD
+    add_result(options.output, name, rows, **made_with)
 
 
 if __name__ == "__main__":
-    words = [*sys.argv[1:], *("", "11", "1200", "4", "")[len(sys.argv) - 1 :]]
-    main(words[0], int(words[1]), int(words[2]), int(words[3]), words[4])
+    main()

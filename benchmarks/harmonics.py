@@ -119,19 +119,6 @@ def compare(contest: Contest, repeats: int) -> str:
     return f"{row} {np.median(rounds[:, 1]):9.2f} {spread}"
 
 
-def round_trip() -> str:
-    """Relative error of coefficients -> mesh -> coefficients at l = 10 for five particles."""
-    rows = []
-    for level in (3, 4, 5, 6):
-        errors = []
-        for seed in range(5):
-            before = rough_particle(seed, 10)
-            after = fit_harmonics(reconstruct(before, level=level), 10, star_point=(0, 0, 0)).coefficients
-            errors.append(np.linalg.norm(after.values - before.values) / np.linalg.norm(before.values))
-        rows.append(f"level {level} {np.median(errors):.1e} (worst {max(errors):.1e})")
-    return "round trip at l = 10: " + ", ".join(rows)
-
-
 def study_seconds(n_particles: int) -> str:
     """Processor time of Fig. 3 for a particle, and what 150 particles would take on two free cores."""
     sample = [Particle(f"p{i}", reconstruct(rough_particle(i), level=4)) for i in range(n_particles)]
@@ -152,5 +139,4 @@ if __name__ == "__main__":
     print(f"{'':58s} {'ours ms':>9s} {'plain ms':>9s}   ratio")
     for contest in contests():
         print(compare(contest, options.repeats), flush=True)
-    print(round_trip(), flush=True)
     print(study_seconds(options.particles))

@@ -1,6 +1,6 @@
 """Volumes and areas of balls that touch each other, by number of contacts, and extents in anisotropic voxels.
 
-    python -m benchmarks.touching_grains [SEED] [REPEATS]
+    python -m benchmarks.touching_grains [SEED] [REPEATS] [RESULT.json]
 
 Balls of 22 voxels in diameter, turned lattices at random places, partial volumes, a blur of 0.8 voxels,
 noise of 3 %; segmented and extracted as a user does. Then single ellipsoids in voxels of 1:1:2, 1:1:3 and
@@ -14,6 +14,7 @@ import numpy as np
 from scipy import ndimage
 from scipy.spatial.transform import Rotation
 
+from benchmarks.result_files import Rows, add_result, show_row
 from regolith_studio.geometry.arrays import BoolArray, FloatArray
 from regolith_studio.imaging.extraction import extract_particles
 from regolith_studio.imaging.segmentation.segment import segment
@@ -98,17 +99,22 @@ def extents(spacing: tuple[float, float, float], rng: np.random.Generator) -> Fl
     return 100 * (np.array(ratio) - 1)
 
 
-def main(seed: int, repeats: int) -> None:
-    """Print both tables."""
+def main(seed: int, repeats: int, result: str) -> None:
+    """Print both tables: means and largest errors; and volume and extents along x, y and z."""
     rng = np.random.default_rng(np.random.SeedSequence(seed))
+    touching: Rows = {}
     for name, (_, contacts) in LATTICES.items():
         found = np.array([balls(name, rng) for _ in range(repeats)])
-        mean, worst = found.mean(axis=0), np.abs(found).max(axis=0)
-        print(f"| {name} | {contacts} | {mean[0]:+.2f} ({worst[0]:.2f}) | {mean[1]:+.2f} ({worst[1]:.2f}) |")
+        both = np.array([found.mean(axis=0), np.abs(found).max(axis=0)])
+        show_row(touching, str(contacts), both.T.ravel(), 1)
+    add_result(result, "contacts", touching, seed=seed, repeats=repeats)
+    stretched: Rows = {}
     for spacing in SPACINGS:
         found = np.array([extents(spacing, rng) for _ in range(repeats)])
-        print("|", spacing, "|", " | ".join(f"{value:+.2f}" for value in found.mean(axis=0)), "|", flush=True)
+        show_row(stretched, " : ".join(f"{edge:g}" for edge in spacing), found.mean(axis=0), 1)
+    add_result(result, "voxels of", stretched, seed=seed, repeats=repeats)
 
 
 if __name__ == "__main__":
-    main(*(int(word) for word in (*sys.argv[1:], *("3", "6")[len(sys.argv) - 1 :])))
+    words = [*sys.argv[1:], *("3", "6", "")[len(sys.argv) - 1 :]]
+    main(int(words[0]), int(words[1]), words[2])
