@@ -133,6 +133,11 @@ def fit_spheres_within(shape: ConvexPolyhedron, max_error: float) -> FloatArray:
     )
 
 
+def fit_spheres_by(shape: ConvexPolyhedron, count: int, max_error: float) -> FloatArray:
+    """`count` spheres; where `max_error` is positive, as :func:`fit_spheres_within` instead."""
+    return fit_spheres_within(shape, max_error) if max_error else fit_spheres(shape, count)
+
+
 def inscribed_spheres(shape: ConvexPolyhedron, count: int) -> FloatArray:
     """At most `count` spheres inside `shape`, each row x, y, z, r; the first is the largest that fits.
 

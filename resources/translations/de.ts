@@ -6212,6 +6212,10 @@
         <translation>Grad</translation>
     </message>
     <message>
+        <source>density</source>
+        <translation>Dichte</translation>
+    </message>
+    <message>
         <source>descriptor</source>
         <translation>Deskriptor</translation>
     </message>
@@ -6266,6 +6270,10 @@
     <message>
         <source>edges, corners and flat faces; friction of rest apart from friction of motion</source>
         <translation>Kanten, Ecken und ebene Flächen; Haftreibung getrennt von Gleitreibung</translation>
+    </message>
+    <message>
+        <source>elastic constants and friction: they belong to the materials of the input script</source>
+        <translation>elastische Konstanten und Reibung: sie gehören zu den Materialien des Eingabeskripts</translation>
     </message>
     <message>
         <source>elastic constants, friction</source>
@@ -6330,6 +6338,10 @@
     <message>
         <source>flat facets and edges</source>
         <translation>ebene Facetten und Kanten</translation>
+    </message>
+    <message>
+        <source>flat facets and edges of the clumps</source>
+        <translation>ebene Facetten und Kanten der Clumps</translation>
     </message>
     <message>
         <source>flat shading of facets</source>
@@ -6760,6 +6772,10 @@
         <translation>Formen näherungsweise</translation>
     </message>
     <message>
+        <source>shapes approximately, as pebbles</source>
+        <translation>Formen näherungsweise, als Kugeln (Pebbles)</translation>
+    </message>
+    <message>
         <source>shapes as triangles</source>
         <translation>Formen als Dreiecke</translation>
     </message>
@@ -6772,12 +6788,20 @@
         <translation>Formen genau</translation>
     </message>
     <message>
+        <source>shapes exactly, as geometry sets</source>
+        <translation>Formen genau, als Geometriesätze</translation>
+    </message>
+    <message>
         <source>shapes of volume 1 (before rounding) without a length unit; diameters in micrometres</source>
         <translation>Formen vom Volumen 1 (vor dem Runden) ohne Längeneinheit; Durchmesser in Mikrometern</translation>
     </message>
     <message>
         <source>shapes of volume 1 without a length unit; diameters in micrometres</source>
         <translation>Formen vom Volumen 1 ohne Längeneinheit; Durchmesser in Mikrometern</translation>
+    </message>
+    <message>
+        <source>shapes of volume 1; diameters in micrometres</source>
+        <translation>Formen mit Volumen 1; Durchmesser in Mikrometern</translation>
     </message>
     <message>
         <source>shapes of volume 1; scales in metres, coarse graining applied</source>
@@ -6812,6 +6836,10 @@
         <translation>Größen, je eine Vorlage</translation>
     </message>
     <message>
+        <source>sizes, one template each, by mass</source>
+        <translation>Größen, je eine Vorlage, nach Masse</translation>
+    </message>
+    <message>
         <source>sound</source>
         <translation>fehlerfrei</translation>
     </message>
@@ -6822,6 +6850,10 @@
     <message>
         <source>spheres in the frame of a shape of volume 1; diameters in micrometres</source>
         <translation>Kugeln im Bezug einer Form vom Volumen 1; Durchmesser in Mikrometern</translation>
+    </message>
+    <message>
+        <source>spheres of shapes of volume 1; scales, masses and moments in SI, coarse graining applied</source>
+        <translation>Kugeln von Formen mit Volumen 1; Maßstäbe, Massen und Trägheitsmomente in SI, vergröbert</translation>
     </message>
     <message>
         <source>sphericity</source>

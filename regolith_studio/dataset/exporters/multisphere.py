@@ -6,7 +6,7 @@ import numpy as np
 
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.export import NOTES, Exporter, ExportOptions, shape_names, sizes_csv
-from regolith_studio.dataset.multisphere import fit_spheres, fit_spheres_within, sphere_fit_errors
+from regolith_studio.dataset.multisphere import fit_spheres_by, sphere_fit_errors
 from regolith_studio.dataset.sphere_masses import sphere_masses
 from regolith_studio.io.tables import csv_bytes
 from regolith_studio.messages import N_
@@ -34,11 +34,7 @@ HEADER = (
 def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
     files, rows, said = {}, [], []
     for key, one in zip(shape_names(dataset), dataset.representatives, strict=True):
-        spheres = (
-            fit_spheres_within(one.convex, options.max_error)
-            if options.max_error
-            else fit_spheres(one.convex, options.n_spheres)
-        )
+        spheres = fit_spheres_by(one.convex, options.n_spheres, options.max_error)
         errors = sphere_fit_errors(one.convex, spheres)
         text = "".join(" ".join(map(repr, row)) + "\n" for row in spheres.tolist())
         files[f"spheres/{key}.txt"] = text.encode("ascii")
