@@ -2,7 +2,7 @@
 
 import sys
 
-from regolith_studio.cli.stop_signals import STOPPED, StopSignals
+from regolith_studio.cli.stop_signals import STOPPED, StopSignals, remove_unfinished
 
 
 def main() -> None:
@@ -21,7 +21,9 @@ def main() -> None:
         print(STOPPED, file=sys.stderr)  # noqa: T201
         code = 130
     signals.ended = True
-    sys.exit(128 + signals.number if signals.number else code)
+    if signals.received:
+        remove_unfinished()
+    sys.exit(128 + signals.received[0] if signals.received else code)
 
 
 if __name__ == "__main__":

@@ -6,7 +6,7 @@ import sys
 import traceback
 from collections.abc import Sequence
 
-from regolith_studio.cli.stop_signals import STOPPED
+from regolith_studio.cli.stop_signals import STOPPED, StopSignals
 from regolith_studio.errors import JobCancelled, RegolithError, format_os_error
 from regolith_studio.readers.error_messages import printable
 
@@ -48,6 +48,9 @@ def run(arguments: Sequence[str]) -> int:
 
 
 def _report(sentence: str, code: int) -> int:
+    """Print why a command ended; libraries make other errors (matplotlib's ValueError) of an interruption."""
+    if StopSignals.received:
+        sentence, code = STOPPED, INTERRUPTED
     if os.environ.get("REGOLITH_STUDIO_DEBUG"):
         traceback.print_exc()
     print(printable(sentence), file=sys.stderr)  # noqa: T201  the only output of a failed command

@@ -6,7 +6,7 @@ import socket
 import sys
 import threading
 import time
-from typing import Any
+from typing import Any, ClassVar
 
 STOP_SECONDS = 1.5
 """Seconds after a signal in which a command may tidy up; then the process ends wherever it is.
@@ -25,14 +25,16 @@ class StopSignals:
 
     Attributes
     ----------
-    number
-        Of the first signal; 0 before it.
+    received
+        Numbers of the signals of this process.
     ended
         Set by the caller once it has said how the command ended.
     """
 
+    received: ClassVar[list[int]] = []
+
     def __init__(self) -> None:
-        self.number, self.ended, self._raised = 0, False, False
+        self.ended, self._raised = False, False
         self._handled: set[int] = set()
         self._reading, self._writing = socket.socketpair()
         self._writing.setblocking(False)
@@ -49,7 +51,7 @@ class StopSignals:
         signal.set_wakeup_fd(self._writing.fileno(), warn_on_full_buffer=False)
 
     def _stop(self, number: int, _frame: Any) -> None:
-        self.number = self.number or number
+        self.received.append(number)
         if not (self._raised or self.ended):
             self._raised = True
             raise KeyboardInterrupt
@@ -59,7 +61,7 @@ class StopSignals:
         if isinstance(ignored.exc_value, KeyboardInterrupt) and hasattr(signal, "pthread_kill"):
             self._raised = False
             main = threading.main_thread().ident
-            threading.Timer(0.05, signal.pthread_kill, (main, self.number or signal.SIGINT)).start()
+            threading.Timer(0.05, signal.pthread_kill, (main, [*self.received, signal.SIGINT][0])).start()
         else:
             sys.__unraisablehook__(ignored)
 
@@ -71,8 +73,13 @@ class StopSignals:
         if "multiprocessing" in sys.modules:
             for child in sys.modules["multiprocessing"].active_children():
                 child.kill()
-        if "regolith_studio.io.atomic" in sys.modules:
-            sys.modules["regolith_studio.io.atomic"].remove_unfinished()
+        remove_unfinished()
         if not self.ended:
             os.write(2, f"{STOPPED}\n".encode())
         os._exit(128 + number)
+
+
+def remove_unfinished() -> None:
+    """Remove hidden files and locks, also those that an interruption within the tidying up has left."""
+    if "regolith_studio.io.atomic" in sys.modules:
+        sys.modules["regolith_studio.io.atomic"].remove_unfinished()

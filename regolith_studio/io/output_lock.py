@@ -56,7 +56,7 @@ def output_lock(output: Path) -> Iterator[None]:
     place = Path(os.path.realpath(output))
     with _guard:
         if place not in _held:
-            _held[place] = _acquire(place, output)
+            _acquire(place, output)
         _held[place].count += 1
     try:
         yield
@@ -65,14 +65,14 @@ def output_lock(output: Path) -> Iterator[None]:
             held = _held[place]
             held.count -= 1
             if not held.count:
-                del _held[place]
                 _release(held)
+                del _held[place]
 
 
 def release_all() -> None:
-    """Give up all locks, because this process ends at once."""
-    for held in list(_held.values()):
-        _release(held)
+    """Give up all locks, because this process ends; also those that an interruption has left."""
+    while _held:
+        _release(_held.popitem()[1])
 
 
 def hidden_beside(target: Path, end: str) -> Path:
@@ -89,17 +89,17 @@ def leftovers(target: Path) -> list[Path]:
     return sorted([*target.parent.glob(f"{name}.{_TWELVE}{NEW}"), *target.glob(f".*.{_TWELVE}{NEW}")])
 
 
-def _acquire(place: Path, output: Path) -> _Held:
+def _acquire(place: Path, output: Path) -> None:
+    """Lock, and tidy up; known to :func:`release_all` as soon as the file is there."""
     made = [folder for folder in place.parents if not folder.exists()]
     place.parent.mkdir(parents=True, exist_ok=True)
     file = hidden_beside(place, LOCK)
     try:
-        held = _Held(lock_file(file), file, made)
+        _held[place] = _Held(lock_file(file), file, made)
     except BlockingIOError:
         raise FileError(f"Another process is writing to {output}; wait for its end.") from None
     for path in leftovers(place):
         remove_hidden(path)
-    return held
 
 
 def lock_file(file: Path) -> int:

@@ -135,3 +135,77 @@ def test_that_the_processes_of_a_killed_command_end_in_the_middle_of_a_step(tmp_
     child.communicate(timeout=PATIENCE)
     _, alive = psutil.wait_procs(family, timeout=PATIENCE / 4)
     assert not alive
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(sys.platform != "linux", reason="the cache's folder and the display are those of Linux")
+@pytest.mark.parametrize(
+    ("words", "name"),
+    [
+        (["warm-up"], "SIGINT"),
+        (["warm-up"], "SIGTERM"),
+        (["describe", "sample:all"], "SIGINT"),
+        ([], "SIGINT"),
+    ],
+)
+def test_that_nothing_goes_on_compiling_after_a_command_or_the_window_was_interrupted(
+    tmp_path: Path, words: list[str], name: str
+) -> None:
+    if not words and not os.environ.get("DISPLAY"):
+        pytest.skip("The window needs a display.")
+    places = {"NUMBA_CACHE_DIR": str(tmp_path / "code"), "REGOLITH_STUDIO_CONFIG": str(tmp_path / "config")}
+    with (tmp_path / "said").open("w") as said:
+        child = subprocess.Popen(
+            [sys.executable, "-m", "regolith_studio", *words],
+            cwd=ROOT,
+            env={**os.environ, **places},
+            stdout=said,
+            stderr=said,
+            start_new_session=True,
+        )
+    family, end = list[psutil.Process](), time.monotonic() + 2 * PATIENCE
+    while not any("compile_kernels" in " ".join(each.cmdline()) for each in family):
+        assert child.poll() is None
+        assert time.monotonic() < end
+        time.sleep(0.1)
+        family = psutil.Process(child.pid).children(recursive=True)
+    while not list(tmp_path.rglob("*.nbc")):  # it has begun
+        assert time.monotonic() < end
+        time.sleep(0.1)
+    os.killpg(child.pid, getattr(signal, name))
+    begun = time.monotonic()
+    child.wait(PATIENCE)
+    _, alive = psutil.wait_procs(family, timeout=PATIENCE)
+    assert not alive
+    assert time.monotonic() - begun < 2.0 * max(1.0, os.getloadavg()[0])
+    assert "Traceback" not in (tmp_path / "said").read_text()
+
+
+@pytest.mark.skipif(os.name == "nt", reason="signals are a matter of POSIX")
+def test_that_an_interruption_is_no_mistake_of_a_library_and_leaves_no_lock(tmp_path: Path) -> None:
+    """Matplotlib makes a ValueError of one; one that came while leftovers were looked for left the lock."""
+    code = (
+        "import os, signal, sys\n"
+        "from pathlib import Path\n"
+        "from regolith_studio import __main__ as program\n"
+        "from regolith_studio.cli import entry, commands\n"
+        "from regolith_studio.io import output_lock\n"
+        "def look(place):\n"
+        "    os.kill(os.getpid(), signal.SIGTERM)\n"
+        "    return []\n"
+        "def fit(words, prog_name):\n"
+        "    try:\n"
+        "        with output_lock.output_lock(Path(words[1])):\n"
+        "            pass\n"
+        "    except KeyboardInterrupt:\n"
+        "        raise ValueError('Invalid affine transformation matrix') from None\n"
+        "output_lock.leftovers, commands.app = look, fit\n"
+        "sys.argv = ['regolith-studio', 'fit', sys.argv[1]]\n"
+        "from regolith_studio.io import atomic\n"
+        "program.main()\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code, str(tmp_path / "out")], cwd=ROOT, capture_output=True, text=True
+    )
+    assert (done.returncode, done.stderr) == (143, "Stopped.\n")
+    assert list(tmp_path.iterdir()) == []
