@@ -26,6 +26,7 @@ Ctrl+C ends it with the table of what ran.
 
 import argparse
 import hashlib
+import math
 import multiprocessing
 import os
 import random
@@ -37,10 +38,12 @@ import sys
 import tempfile
 import time
 import uuid
+import warnings
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager, nullcontext, redirect_stderr, redirect_stdout, suppress
 from dataclasses import astuple, dataclass, replace
 from functools import partial
+from itertools import takewhile
 from pathlib import Path
 from typing import Any
 from unittest.mock import patch
@@ -212,7 +215,9 @@ class Running:
         self._stderr = temporary.parent / f"{self._mark}.txt"  # a pipe would stay open until the last ends
         ready, told = _FORK.Pipe(duplex=False)
         self.process = _FORK.Process(target=self._run, args=(function, temporary, told))
-        self.process.start()
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", DeprecationWarning)  # of threads, which the child does not use
+            self.process.start()
         ready.recv()
 
     def _run(self, function: Callable[[], Any], temporary: Path, told: Any) -> None:
@@ -447,11 +452,14 @@ def main() -> None:
         raise SystemExit(1)
 
 
-def attack(folder: Path, only: Sequence[str], share: float, seed: int, rows: Rows) -> Iterator[str]:
+def attack(
+    folder: Path, only: Sequence[str], share: float, seed: int, rows: Rows, seconds: float = math.inf
+) -> Iterator[str]:
     """All attacks on the commands `only`, all if there is none, or a seeded share of them.
 
-    Yields the name of each command once its rows are complete.
+    Yields the name of each command once its rows are complete. After so many seconds no attack begins.
     """
+    end = time.monotonic() + seconds
     arena, rng = Arena(folder), random.Random(seed)
     write_inputs(arena.inputs)
     is_root = os.geteuid() == 0
@@ -460,10 +468,11 @@ def attack(folder: Path, only: Sequence[str], share: float, seed: int, rows: Row
         attacks += [("full disk", fill_disk, (k,)) for k in range(DISK_MOMENTS)] if is_root else []
         attacks += [("read-only", forbid, ())] if is_root else []
         attacks += [("two writers", race, ())]
-        if chosen := [each for each in attacks if rng.random() < share]:
+        chosen = [each for each in attacks if rng.random() < share]
+        if chosen and time.monotonic() < end:
             with shorten_demo() if name == "demo" else nullcontext():
                 case = prepared(arena, name)
-                for kind, act, arguments in chosen:
+                for kind, act, arguments in takewhile(lambda _: time.monotonic() < end, chosen):
                     act(arena, case, rows.setdefault((name, kind), Row()), *arguments)
             yield name
 
