@@ -7,6 +7,8 @@ from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QScrollArea, QSizePolicy, QSplitter, QTabWidget, QVBoxLayout, QWidget
 
 CONTROLS_WIDTH = 290
+MAX_FIXED = 0.55
+"""Largest share of a row that parts which do not stretch take when letters grow."""
 
 
 class Splitter(QSplitter):
@@ -37,6 +39,7 @@ class Splitter(QSplitter):
         self.fit: Callable[[], None] | None = None
         self.moved = False
         self._unscaled: tuple[float, list[int]] | None = None
+        self._scaled: list[int] = []
         self.splitterMoved.connect(self._note_move)
         self.setChildrenCollapsible(False)
         self.setHandleWidth(7)
@@ -51,21 +54,34 @@ class Splitter(QSplitter):
         if self.fit is not None and not self.moved:
             self.fit()
 
+    def event(self, event: QEvent) -> bool:
+        done = super().event(event)
+        if event.type() == QEvent.Type.LayoutRequest and self._scaled and self.fit is None:
+            self._place(self._scaled)  # the parts learn their minimum sizes some time after the letters
+        return done
+
     def restore_standard(self) -> None:
         """Put the borders where they stood at first."""
-        self.moved, self._unscaled = False, None
+        self.moved, self._unscaled, self._scaled = False, None, []
         if self.fit is not None:
             self.fit()
         else:
             self._place(self._standard)
 
     def scale_fixed(self, before: float, after: float) -> None:
-        """Scale the parts that do not stretch with letters of other points; back again, as before."""
+        """Scale the parts that do not stretch with letters of other points; back again, as before.
+
+        They take at most :data:`MAX_FIXED` of the room, where they did so before.
+        """
         points, sizes = self._unscaled = self._unscaled or (before, self.sizes())
-        self._place([round(after / points * size) for size in sizes])
+        factor = after / points
+        if (fixed := sum(s for number, s in enumerate(sizes) if not self._stretches(number))) < sum(sizes):
+            factor = min(factor, max(1.0, MAX_FIXED * sum(self.sizes()) / max(1, fixed)))
+        self._scaled = [round(factor * size) for size in sizes]
+        self._place(self._scaled)
 
     def _note_move(self) -> None:
-        self.moved, self._unscaled = True, None
+        self.moved, self._unscaled, self._scaled = True, None, []
 
     def _place(self, sizes: Sequence[int]) -> None:
         """Set the sizes of the fixed parts; the others share the rest."""

@@ -288,10 +288,13 @@ def test_that_a_stopped_lesson_says_so_and_begins_again_at_the_next_visit(page):
 
 
 @pytest.mark.slow
-def test_that_plots_of_annealing_are_high_enough_for_their_letters_in_a_low_window(page, app):
+def test_that_plots_are_high_enough_for_their_letters_in_a_low_window(page, app):
     page.resize(900, 420)
     for _ in range(3):
         app.processEvents()
-    for plot in (page.annealing.loss, page.annealing.chance, page.annealing.terms):
-        assert plot.height() >= 11 * plot.fontMetrics().height()
+    annealing = (page.annealing.loss, page.annealing.chance, page.annealing.terms)
+    for plot in (*annealing, page.degrees.errors, page.field.spectrum):
+        assert plot.minimumHeight() == 11 * plot.fontMetrics().height()
+    for plot in annealing:
+        assert plot.height() >= plot.minimumHeight()
         assert plot.legend.height() + 4 * plot.fontMetrics().height() < plot.height()

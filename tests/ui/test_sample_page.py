@@ -3,6 +3,7 @@
 import csv
 from dataclasses import replace
 
+import pyqtgraph as pg
 import pytest
 from PySide6.QtCore import QItemSelectionModel, QPoint, Qt
 from PySide6.QtTest import QTest
@@ -13,6 +14,7 @@ from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.session.results import ParticleEntry
 from regolith_studio.ui.app import open_window
+from regolith_studio.ui.dialogs.preferences import LETTERS
 from regolith_studio.ui.pages.sample.scatter import ScatterPanel
 from regolith_studio.ui.pages.sample.statistics import StatisticsPanel
 
@@ -148,6 +150,30 @@ def test_that_statistics_undo_the_loss_at_the_border_only_where_there_was_one(sh
     assert panel.value().rows[0][2] == pytest.approx((small + 3 * large) / 4)
     QTest.mouseClick(panel.border, Qt.MouseButton.LeftButton, pos=QPoint(8, panel.border.height() // 2))
     assert panel.value().rows[0][2] == pytest.approx((small + large) / 2)
+
+
+def test_that_the_choices_of_statistics_wrap_where_they_have_no_room(shown):
+    panel = shown(StatisticsPanel())
+    panel.border.show()
+    for width, rows in ((1000, 1), (420, 2)):
+        panel.resize(width, 200)
+        QApplication.processEvents()
+        controls = (panel.key, panel.weighting, panel.border)
+        assert len({each.mapTo(panel, each.rect().center()).y() // 16 for each in controls}) == rows
+        assert panel.border.width() >= panel.border.sizeHint().width()
+
+
+def test_that_the_names_of_the_classes_of_zingg_take_the_letters_of_the_window(window, page, wait):
+    usual = QApplication.font().pointSizeF()
+
+    def sizes():
+        words = [each for each in page.scatter._items if isinstance(each, pg.TextItem)]
+        return {each.textItem.font().pointSizeF() for each in words}
+
+    for letters in (200, 100):
+        window.appearance.choose(**{LETTERS: letters})
+        wait(lambda: sizes() == {QApplication.font().pointSizeF()})
+    assert QApplication.font().pointSizeF() == pytest.approx(usual)
 
 
 def test_that_a_logarithmic_plot_cannot_be_dragged_to_where_numbers_end(shown):

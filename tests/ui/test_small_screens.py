@@ -56,6 +56,39 @@ def test_that_views_are_as_high_as_wide_where_plots_have_enough(shown, preferenc
             assert 0.7 <= view.height() / view.width() <= 1.6
 
 
+@pytest.mark.usefixtures("usual_letters")
+def test_that_no_button_of_the_tool_bar_is_lost_in_large_letters(shown, preferences, app):
+    window = shown(MainWindow(Session(InlineRunner()), preferences, "image"))
+    bar = window.menus.bar
+    picture = bar.widgetForAction(window.menus.by_name["explore.save_picture"])
+    for letters, width, words in (
+        (100, 1480, True),
+        (150, 1280, False),
+        (200, 1280, False),
+        (100, 1480, True),
+    ):
+        window.resize(width, 800)
+        window.appearance.choose(**{LETTERS: letters})
+        for _ in range(3):
+            app.processEvents()
+        seen = [bar.widgetForAction(each) for each in bar.actions() if each.isVisible()]
+        assert all(button.isVisible() for button in seen), letters
+        assert all(bar.rect().contains(button.geometry()) for button in seen), letters
+        assert (picture.toolButtonStyle() == Qt.ToolButtonStyle.ToolButtonTextUnderIcon) == words
+
+
+@pytest.mark.usefixtures("usual_letters")
+def test_that_larger_letters_leave_nearly_half_of_explore_to_its_views(shown, preferences, wait):
+    window = shown(MainWindow(Session(InlineRunner()), preferences, "image"))
+    window.resize(1920, 1080)
+    columns = window.page.findChild(QSplitter, "explore_columns")
+    before = columns.sizes()
+    window.appearance.choose(**{LETTERS: 200})
+    wait(lambda: columns.sizes()[0] > before[0] and columns.sizes()[1] >= 0.4 * sum(columns.sizes()), 5.0)
+    window.appearance.choose(**{LETTERS: 100})
+    wait(lambda: columns.sizes() == pytest.approx(before, abs=3), 5.0)
+
+
 def test_that_the_sidebar_gives_up_room_before_words(shown):
     place = shown(QWidget())
     bar = Sidebar({page.key: page for page in PAGES.values()})
@@ -153,8 +186,7 @@ def test_that_boxes_and_legends_of_explore_are_whole(shown, preferences, settled
     for _ in range(3):
         app.processEvents()
     page = window.page
-    whole = (letters, width) != (200, 1280)  # the large figures leave too little there: boxes elide
-    for box in (page.coarsening.target, page.coarsening.method) if whole else ():
+    for box in (page.coarsening.target, page.coarsening.method):
         metrics = box.fontMetrics()
         assert all(metrics.horizontalAdvance(box.itemText(at)) <= text_room(box) for at in range(box.count()))
     for panel in (page.plots.error_bars, page.plots.loss_curve):

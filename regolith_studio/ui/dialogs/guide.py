@@ -19,7 +19,7 @@ from regolith_studio.ui.translation import tr
 
 PAGES = {
     "explore": "window",
-    "sample": "reading",
+    "sample": "window",
     "scan": "segmentation",
     "model": "shape_model",
     "studies": "studies",

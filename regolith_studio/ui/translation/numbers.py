@@ -14,19 +14,17 @@ from PySide6.QtCore import QLocale
 def localized(text: str) -> str:
     """A text with numbers as Python writes them, with the decimal and group signs of the language.
 
-    Every point and comma of the text is taken for one of a number.
+    Every point and comma of the text is taken for one of a number. A per cent sign stands behind a space that
+    keeps the line.
     """
     locale = QLocale()
-    return text.translate({ord("."): locale.decimalPoint(), ord(","): locale.groupSeparator()})
+    text = text.translate({ord("."): locale.decimalPoint(), ord(","): locale.groupSeparator()})
+    return re.sub(r"(?<=\d)%", "\N{NO-BREAK SPACE}%", text)
 
 
 def number_text(value: float | Real, form: str) -> str:
-    """A number in a format of Python, such as ``.3g``, with the signs of the language.
-
-    A per cent sign stands behind a space that keeps the line, as everywhere in the window.
-    """
-    text = localized(format(value, form))
-    return f"{text[:-1]}\N{NO-BREAK SPACE}%" if text.endswith("%") else text
+    """A number in a format of Python, such as ``.3g``, with the signs of the language."""
+    return localized(format(value, form))
 
 
 def with_decimal_point(text: str) -> str:

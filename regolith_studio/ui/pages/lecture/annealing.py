@@ -4,8 +4,6 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-from PySide6.QtCore import QEvent
-from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QLabel, QSplitter, QVBoxLayout, QWidget
 
 from regolith_studio.jobs.lecture_jobs import AnnealingLesson, AnnealingStep
@@ -26,14 +24,11 @@ from regolith_studio.ui.widgets.definitions import definition
 from regolith_studio.ui.widgets.formula import FormulaLabel, prepare
 from regolith_studio.ui.widgets.labels import WrappedLabel
 from regolith_studio.ui.widgets.plots.bars import BarPlot, BarSeries
-from regolith_studio.ui.widgets.plots.base import Plot
 from regolith_studio.ui.widgets.plots.curves import CurvePlot, PlotCurve
 
 TRANSLUCENT = 0.6
 """Opacity of a polyhedron that is shown with the edges of another one."""
 WAIT = N_("The particle is annealed …")
-PLOT_LINES = 11
-"""Minimum height of a plot in lines of text."""
 
 
 class AnnealingView(QWidget):
@@ -51,7 +46,6 @@ class AnnealingView(QWidget):
         self._theme = current_theme()
         self._lesson: AnnealingLesson | None = None
         self._kind = kind
-        self._plots: tuple[Plot, ...] = ()
 
     def build(self) -> None:
         """Make the parts, right after construction."""
@@ -67,8 +61,8 @@ class AnnealingView(QWidget):
         self.loss = CurvePlot(tr("Step k"), tr("Loss L"), tr(WAIT))
         self.chance = CurvePlot(tr("Step k"), tr("Probability"), tr(WAIT))
         self.terms = BarPlot(tr("Term of the loss"), "α ε", tr(WAIT), unit="")
-        self._plots = (self.loss, self.chance, self.terms)
-        for plot, name in zip(self._plots, ("loss", "chance", "terms"), strict=True):
+        for plot, name in ((self.loss, "loss"), (self.chance, "chance"), (self.terms, "terms")):
+            plot.keep_readable()
             plot.setObjectName(f"annealing_{name}")
         self.frames["annealing"].set_texts(tr("Annealing"))
         self.frames["exact"].set_texts(tr("Exact method"))
@@ -264,20 +258,6 @@ class AnnealingView(QWidget):
             series.append(BarSeries(tr("exact method"), theme.polyhedron, tuple(exact.values())))
         tips = [definition(key) for key in before]
         self.terms.set_bars([texts.plain(key) for key in before], series, tips=tips)
-
-    def resizeEvent(self, event: QResizeEvent) -> None:
-        super().resizeEvent(event)
-        self._make_room()
-
-    def changeEvent(self, event: QEvent) -> None:
-        super().changeEvent(event)
-        if event.type() in (QEvent.Type.FontChange, QEvent.Type.StyleChange):
-            self._make_room()
-
-    def _make_room(self) -> None:
-        """Set the minimum height of the plots from the font; the page is scrolled."""
-        for plot in self._plots:
-            plot.setMinimumHeight(PLOT_LINES * plot.fontMetrics().height())
 
     def _arrange(self) -> None:
         texts = QWidget()

@@ -8,7 +8,7 @@ from regolith_studio.jobs.lecture_jobs import DegreeStep
 from regolith_studio.messages import N_
 from regolith_studio.scene import surfaces
 from regolith_studio.scene.palette import DESCRIPTOR_COLOURS
-from regolith_studio.ui.layout import side_by_side
+from regolith_studio.ui.layout import scrolled, side_by_side
 from regolith_studio.ui.pages.lecture import texts
 from regolith_studio.ui.pages.lecture.playback_bar import PlaybackBar
 from regolith_studio.ui.theme import Theme, current_theme
@@ -51,6 +51,7 @@ class DegreesView(QWidget):
         self.formula = FormulaLabel(tr("The series with its numbers"))
         self.errors = CurvePlot(tr("Degree l<sub>max</sub>"), tr("Error [%]"), tr(WAIT), log_y=True)
         self.errors.setObjectName("degrees_errors")
+        self.errors.keep_readable()
         self.playback = PlaybackBar("degrees", N_("degree"), self._is_ready)
         self.playback.stepChanged.connect(self._show_step)
         self._arrange()
@@ -141,7 +142,7 @@ class DegreesView(QWidget):
         column.addWidget(self.sentence)
         column.addWidget(self.formula)
         column.addWidget(self.errors, 1)
-        parts = side_by_side([*self.frames.values(), texts], [500, 500, 560], stretch=2)
+        parts = side_by_side([*self.frames.values(), scrolled(texts)], [500, 500, 560], stretch=2)
         parts.setObjectName("lecture_degrees_columns")
         for place in range(parts.count()):
             parts.setStretchFactor(place, 1)

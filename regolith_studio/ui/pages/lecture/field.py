@@ -10,7 +10,7 @@ from regolith_studio.jobs.lecture_jobs import DrawnField, draw_field_later
 from regolith_studio.scene.lecture_scenes import show_field
 from regolith_studio.shape_models.materials import materials
 from regolith_studio.ui.latest_job import LatestJob
-from regolith_studio.ui.layout import side_by_side
+from regolith_studio.ui.layout import scrolled, side_by_side
 from regolith_studio.ui.pages.lecture import texts
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import tr
@@ -61,6 +61,7 @@ class FieldView(QWidget):
         )
         self.spectrum = SpectrumEditor(tr("No material."))
         self.spectrum.setObjectName("field_spectrum")
+        self.spectrum.keep_readable()
         self.reset, self.another = QPushButton(tr("Reset the spectrum")), QPushButton(tr("Draw again"))
         self.reset.setObjectName("field_reset")
         self.another.setObjectName("field_another")
@@ -147,7 +148,7 @@ class FieldView(QWidget):
         column.addWidget(self.sentence)
         column.addWidget(self.formula)
         column.addWidget(self.spectrum, 1)
-        parts = side_by_side([*self.frames.values(), texts], [500, 500, 560], stretch=2)
+        parts = side_by_side([*self.frames.values(), scrolled(texts)], [500, 500, 560], stretch=2)
         parts.setObjectName("lecture_field_columns")
         for place in range(parts.count()):
             parts.setStretchFactor(place, 1)

@@ -74,10 +74,8 @@ class ScatterPanel(QWidget):
 
     def set_theme(self, theme: Theme) -> None:
         """Take the colours of a theme."""
-        before = self.plot.theme
         self.plot.set_theme(theme)
-        if theme != before:
-            self._draw()
+        self._draw()  # the names of Zingg's classes take the font of when they are drawn
 
     def _arrange(self) -> None:
         against = QLabel(tr("against"))

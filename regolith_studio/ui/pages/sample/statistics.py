@@ -7,7 +7,6 @@ from PySide6.QtWidgets import (
     QAbstractItemView,
     QCheckBox,
     QComboBox,
-    QHBoxLayout,
     QHeaderView,
     QLabel,
     QTableWidget,
@@ -27,6 +26,7 @@ from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.definitions import definition
 from regolith_studio.ui.widgets.labels import short_number
 from regolith_studio.ui.widgets.table import FontRowHeight
+from regolith_studio.ui.widgets.wrapping_row import WrappingRow
 
 _WEIGHTING_LABELS = {"number": N_("each counts once"), "volume": N_("weighted by volume")}
 _SHORT = {
@@ -77,15 +77,10 @@ class StatisticsPanel(QWidget):
         self.table.verticalHeader().hide()
         FontRowHeight(self.table, 8)
         self.table.horizontalHeader().setSectionResizeMode(QHeaderView.ResizeMode.Stretch)
-        row_ = QHBoxLayout()
-        row_.addWidget(QLabel(tr("Statistics of")))
-        row_.addWidget(self.key)
-        row_.addWidget(self.weighting)
-        row_.addWidget(self.border)
-        row_.addStretch(1)
+        choices = (QLabel(tr("Statistics of")), self.key, self.weighting)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
-        layout.addLayout(row_)
+        layout.addWidget(WrappingRow(choices, (self.border,), margins=(0, 0, 0, 0)))
         layout.addWidget(self.table, 1)
         self.key.currentIndexChanged.connect(lambda _at: self._fill())
         self.weighting.currentIndexChanged.connect(lambda _at: self._fill())

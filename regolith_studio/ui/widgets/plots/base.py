@@ -27,6 +27,8 @@ from regolith_studio.ui.widgets.plots.export import FIGURE_WRITERS, plain_text, 
 
 Numbers = tuple[tuple[str, ...], list[tuple[str | float, ...]]]
 """Column names, and rows."""
+READABLE_LINES = 11
+"""Height in lines of text below which the numbers of an axis touch."""
 
 
 class Plot(QWidget):
@@ -47,7 +49,7 @@ class Plot(QWidget):
         self.theme: Theme = current_theme()
         self._painted: Theme | None = None
         self._labels = (x, y)
-        self._point_size = 0.0
+        self._point_size, self._min_lines = 0.0, 0
         self._legend_entries: list[tuple[str, str]] = []
         self.count_axis = CountAxis("bottom")
         self.axes = {"bottom": self.count_axis, "left": FittedAxis("left")}
@@ -161,8 +163,15 @@ class Plot(QWidget):
             self._set_fonts()
             self.redraw()
 
+    def keep_readable(self) -> None:
+        """Be at least as high as :data:`READABLE_LINES`, in letters of any size."""
+        self._min_lines = READABLE_LINES
+        self._set_fonts()
+
     def _set_fonts(self) -> None:
-        """Set the fonts of the axes from the font of the plot."""
+        """Set the fonts of the axes and the minimum height from the font of the plot."""
+        if self._min_lines:
+            self.setMinimumHeight(self._min_lines * self.fontMetrics().height())
         self._point_size = self.font().pointSizeF()
         small = self.small_font()
         for axis in self.axes.values():
