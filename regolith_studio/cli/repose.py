@@ -198,8 +198,8 @@ def run(
     from regolith_studio.dem.case import prepare
     from regolith_studio.dem.scaling_report import scaling_report
     from regolith_studio.jobs.repose_jobs import simulate_prepared
+    from regolith_studio.jobs.runners.process_pool import cores
 
-    del jobs  # a run is one process
     request = how.request(
         n_particles=particles,
         coarse_graining=coarse_graining,
@@ -209,7 +209,8 @@ def run(
     )
     prepared = prepare(read_dataset(dataset), request.case, dataset_hash(dataset))
     print_errors(scaling_report(prepared).sentences)
-    done = run_with_progress(simulate_prepared(prepared, output, replace(request, overwrite=overwrite)))
+    request = replace(request, overwrite=overwrite, threads=jobs or cores())
+    done = run_with_progress(simulate_prepared(prepared, output, request))
     print_errors(run_remarks(done.document))
     if json:
         print_json(done.document)

@@ -2,10 +2,10 @@
 
 from collections.abc import Generator
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any, Protocol, runtime_checkable
 
 from regolith_studio.dem.case import PreparedCase
-from regolith_studio.dem.snapshot import ParticleState, Snapshot
+from regolith_studio.dem.snapshot import EngineState, ParticleState, Snapshot
 
 
 @dataclass(frozen=True)
@@ -116,4 +116,21 @@ class Engine(Protocol):
 
     def simulate(self, prepared: PreparedCase, settings: Any) -> Generator[Snapshot, None, SimulationResult]:
         """Run in this process; yields snapshots in the order of time."""
+        ...
+
+
+@runtime_checkable
+class ResumableEngine(Protocol):
+    """An engine whose snapshots offer a state, from which it can go on after the program was killed."""
+
+    def resume(
+        self, prepared: PreparedCase, settings: Any, state: EngineState
+    ) -> Generator[Snapshot, None, SimulationResult]:
+        """The rest of the run: snapshots after that of the state, and the result.
+
+        Raises
+        ------
+        RegolithError
+            If the state is that of another case, or broken.
+        """
         ...

@@ -6,6 +6,7 @@ its input is closed, the parent is gone, and the child ends itself with everythi
 """
 
 import contextlib
+import itertools
 import os
 import pickle
 import queue
@@ -13,19 +14,31 @@ import signal
 import subprocess
 import sys
 import threading
+import time
 from collections.abc import Generator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, BinaryIO
 
 from regolith_studio.dem.case import PreparedCase
-from regolith_studio.dem.engine import SimulationResult
+from regolith_studio.dem.engine import ResumableEngine, SimulationResult
 from regolith_studio.dem.engines import engine_named
-from regolith_studio.dem.run_io import save_snapshot
-from regolith_studio.dem.snapshot import Snapshot
+from regolith_studio.dem.run_io import (
+    STATE,
+    remove_snapshots,
+    run_key,
+    save_engine_state,
+    save_snapshot,
+)
+from regolith_studio.dem.snapshot import Snapshot, engine_state_bytes, read_engine_state
 from regolith_studio.errors import MissingRequirement, RegolithError
 
 POLL_INTERVAL = 0.2
 """Seconds without a message after which ``None`` is yielded, so that the caller can cancel."""
+STATE_INTERVAL = 60.0
+"""Seconds between two states that are saved, and at least 20 times as long as saving one takes."""
+ENGINE_THREADS = "RAYON_NUM_THREADS"
+"""Environment variable with the number of threads of an engine that uses several."""
 _THREAD_LIMITS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
 
 
@@ -42,11 +55,12 @@ class EngineError(RegolithError):
 
 
 def run_engine(
-    key: str, prepared: PreparedCase, settings: Any, folder: Path
+    key: str, prepared: PreparedCase, settings: Any, folder: Path, threads: int = 1
 ) -> Generator[Snapshot | None, None, SimulationResult]:
     """Snapshots of a run as they come, ``None`` while there is none; closing the generator ends the child.
 
-    Every snapshot is saved in the folder before it is yielded.
+    Every snapshot is saved in the folder before it is yielded, and from time to time the engine's state. A
+    state of the same run that the folder holds already is where the engine goes on.
 
     Raises
     ------
@@ -58,7 +72,7 @@ def run_engine(
     engine = engine_named(key)
     if problem := engine.find().problem:
         raise MissingRequirement(problem)
-    child = _start((key, prepared, settings, folder))
+    child = _start((key, prepared, settings, folder), threads)
     messages: queue.SimpleQueue[Any] = queue.SimpleQueue()
     reader = threading.Thread(
         target=_listen, args=(child.stdout, messages), name=f"engine {key}", daemon=True
@@ -89,14 +103,15 @@ def run_engine(
             child.stdout.close()
 
 
-def _start(task: tuple[Any, ...]) -> subprocess.Popen[bytes]:
+def _start(task: tuple[Any, ...], threads: int) -> subprocess.Popen[bytes]:
     """The child with its task; it leads a process group, so that everything in it can be ended together."""
+    limits = dict.fromkeys(_THREAD_LIMITS, "1") | {ENGINE_THREADS: str(threads)}
     child = subprocess.Popen(
         [sys.executable, "-P", "-m", "regolith_studio.dem.engine_process"],
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         stderr=subprocess.DEVNULL,
-        env=os.environ | dict.fromkeys(_THREAD_LIMITS, "1") | {"PYTHONPATH": _path()},
+        env=os.environ | limits | {"PYTHONPATH": _path()},
         start_new_session=True,
         creationflags=getattr(subprocess, "CREATE_NO_WINDOW", 0),
     )
@@ -152,15 +167,21 @@ def main() -> None:
 def run_task(target: BinaryIO, key: str, prepared: PreparedCase, settings: Any, folder: Path) -> None:
     """Simulate; every snapshot is saved before it is sent; the last message is a result or a sentence."""
     try:
-        steps = engine_named(key).simulate(prepared, settings)
-        for number in range(10**9):
+        steps, first, run = _begin(key, prepared, settings, folder)
+        saved, interval = time.monotonic(), STATE_INTERVAL
+        for number in itertools.count(first):
             try:
                 snapshot = next(steps)
             except StopIteration as end:
                 _send(target, end.value)
                 return
             save_snapshot(folder, number, snapshot.particles)
-            _send(target, snapshot)
+            if snapshot.state is not None and time.monotonic() - saved > interval:
+                began = time.monotonic()
+                save_engine_state(folder, engine_state_bytes(snapshot.state(), run, number + 1))
+                saved = time.monotonic()
+                interval = max(STATE_INTERVAL, 20.0 * (saved - began))
+            _send(target, replace(snapshot, state=None))
     except RegolithError as error:
         _send(target, str(error))
     except MemoryError:
@@ -169,6 +190,19 @@ def run_task(target: BinaryIO, key: str, prepared: PreparedCase, settings: Any, 
         _send(target, f"The simulation could not go on: {error.strerror or error}. What was saved is kept.")
     except Exception as error:  # noqa: BLE001 (the parent reports it)
         _send(target, f"The engine failed ({type(error).__name__}: {error}). What was saved is kept.")
+
+
+def _begin(
+    key: str, prepared: PreparedCase, settings: Any, folder: Path
+) -> tuple[Generator[Snapshot, None, SimulationResult], int, str]:
+    """The engine from its beginning or a saved state on, the number of its first snapshot, the run's key."""
+    engine = engine_named(key)
+    run = run_key(prepared, engine, settings)
+    found = read_engine_state(folder / STATE, run) if isinstance(engine, ResumableEngine) else None
+    remove_snapshots(folder, found[1] if found else 0)
+    if isinstance(engine, ResumableEngine) and found:
+        return engine.resume(prepared, settings, found[0]), found[1], run
+    return engine.simulate(prepared, settings), 0, run
 
 
 def _send(target: BinaryIO, message: Any) -> None:

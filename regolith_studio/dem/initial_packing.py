@@ -11,8 +11,8 @@ HEADROOM = 1.02
 """Factor on the circumscribed spheres at the start."""
 TRIALS = 24
 """Random candidate positions for a particle."""
-NEIGHBOURS = 600
-"""Number of preceding particles that a new one is checked against."""
+NEIGHBOURS, LAYERS = 600, 5
+"""Preceding particles that a new one is checked against: at least so many, and so many layers."""
 
 
 def loose_column(prepared: PreparedCase) -> ParticleState:
@@ -48,6 +48,7 @@ def start_places(
         Of the cylinder.
     """
     wide = HEADROOM * reach
+    window = max(NEIGHBOURS, LAYERS * int((radius / np.median(wide)) ** 2))
     places = np.empty((len(reach), 3))
     for k in range(len(reach)):
         room = max(radius - wide[k], 0.0)
@@ -56,7 +57,7 @@ def start_places(
             generator.uniform(0.0, 2 * np.pi, TRIALS),
         )
         positions = np.column_stack([away * np.cos(angle), away * np.sin(angle)])
-        near = slice(max(0, k - NEIGHBOURS), k)
+        near = slice(max(0, k - window), k)
         heights = _resting_heights(positions, wide[k], places[near], wide[near])
         best = int(heights.argmin())
         places[k] = *positions[best], heights[best]

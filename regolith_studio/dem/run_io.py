@@ -3,6 +3,7 @@
 import hashlib
 import io
 import os
+import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass
@@ -19,17 +20,22 @@ from regolith_studio.dem.engine import Engine, RunChecks, SimulationResult
 from regolith_studio.dem.evaluation.settings import NotAPileError
 from regolith_studio.dem.scaling_report import scaling_report
 from regolith_studio.dem.snapshot import ParticleState, particle_state_bytes, read_particle_state
-from regolith_studio.errors import FileError, os_error_reason
+from regolith_studio.errors import FileError, RegolithError, os_error_reason
 from regolith_studio.geometry.arrays import FloatArray
-from regolith_studio.io.atomic import exchange, hidden_folder
+from regolith_studio.io.atomic import exchange, remove_quietly
 from regolith_studio.io.json_text import canonical_json, parse_strict_json
 from regolith_studio.io.natural_order import natural_key
+from regolith_studio.io.output_lock import NEW, hidden_beside, output_lock
 
 FORMAT = "regolith-studio-repose"
 SCHEMA_VERSION = 1
 DOCUMENT, FINAL, SHAPES, SNAPSHOTS = "repose.json", "final.npz", "shapes.npz", "snapshots"
 TIMES = "times.json"
-OWN = {DOCUMENT, FINAL, SHAPES, SNAPSHOTS, TIMES, "sections.png", "sections.svg"}
+STATE = "state.zip"
+"""State of the engine in an unfinished run."""
+OWN = {DOCUMENT, FINAL, SHAPES, SNAPSHOTS, TIMES, STATE, "sections.png", "sections.svg"}
+UNFINISHED = f".unfinished{NEW}"
+"""End of the hidden name of a run on its way."""
 
 
 @dataclass(frozen=True)
@@ -51,6 +57,8 @@ def staged_run(folder: Path, overwrite: bool) -> Iterator[Path]:
     """A hidden folder to save a run in, which takes the place of `folder` in one step at the end.
 
     Without a document in it there is nothing to keep, and a run that did not finish replaces no finished one.
+    A killed process leaves the folder; where a state of the engine is in it, or in the stopped run that
+    `folder` holds, the next run begins with its content.
 
     Raises
     ------
@@ -59,15 +67,41 @@ def staged_run(folder: Path, overwrite: bool) -> Iterator[Path]:
     """
     try:
         _check_replaceable(folder, overwrite)
-        with hidden_folder(folder) as stage:
-            (stage / SNAPSHOTS).mkdir()
+        with output_lock(folder):
+            target = Path(os.path.realpath(folder))
+            stage = hidden_beside(target, UNFINISHED)
+            _fill_stage(stage, target)
             try:
                 yield stage
+            except RegolithError as error:
+                error.args = tuple(str(each).replace(str(stage), str(target)) for each in error.args)
+                raise
             finally:
-                if (stage / DOCUMENT).is_file() and (_is_finished(stage) or not _is_finished(folder)):
-                    exchange(stage, Path(os.path.realpath(folder)))
+                _end_stage(stage, target)
     except OSError as error:
         raise FileError(f"The folder {folder} cannot be written ({os_error_reason(error)}).") from error
+
+
+def _fill_stage(stage: Path, target: Path) -> None:
+    """Make the hidden folder, with what an unfinished run left that can go on."""
+    if not (stage / STATE).is_file():
+        remove_quietly(stage)
+        stage.mkdir()
+        if (target / STATE).is_file() and not _is_finished(target):
+            shutil.copy(target / STATE, stage / STATE)
+            shutil.copytree(target / SNAPSHOTS, stage / SNAPSHOTS)
+    (stage / SNAPSHOTS).mkdir(exist_ok=True)
+    (stage / DOCUMENT).unlink(missing_ok=True)
+
+
+def _end_stage(stage: Path, target: Path) -> None:
+    if (stage / DOCUMENT).is_file() and (_is_finished(stage) or not _is_finished(target)):
+        if _is_finished(stage):
+            (stage / STATE).unlink(missing_ok=True)
+        exchange(stage, target)
+    elif (stage / STATE).is_file():
+        return
+    remove_quietly(stage)
 
 
 def _check_replaceable(folder: Path, overwrite: bool) -> None:
@@ -88,6 +122,33 @@ def _is_finished(folder: Path) -> bool:
 def save_snapshot(folder: Path, number: int, particles: ParticleState) -> Path:
     """Write one snapshot in one step."""
     return _write(folder / SNAPSHOTS / f"{number:06d}.npz", particle_state_bytes(particles))
+
+
+def save_engine_state(folder: Path, content: bytes) -> Path:
+    """Write the state of the engine in one step."""
+    return _write(folder / STATE, content)
+
+
+def remove_snapshots(folder: Path, first: int) -> None:
+    """Remove the snapshots from this number on, which an interrupted run wrote after its last state."""
+    for path in snapshot_files(folder):
+        if int(path.stem) >= first:
+            path.unlink()
+
+
+def run_key(prepared: PreparedCase, engine: Engine, settings: Any) -> str:
+    """Hash of all that a run depends on."""
+    document = {
+        "case": case_document(prepared.case),
+        "dataset": prepared.dataset_hash,
+        "parts": [list(counts) for counts in prepared.parts],
+        "engine": [engine.key, engine.find().version, asdict(settings)],
+        "coarse_graining": prepared.coarse_graining,
+    }
+    found = hashlib.sha256(canonical_json(document).encode("utf-8"))
+    for array in (prepared.diameters, prepared.class_index, *prepared.shapes):
+        found.update(array.tobytes())
+    return found.hexdigest()
 
 
 def save_shapes(folder: Path, prepared: PreparedCase) -> Path:

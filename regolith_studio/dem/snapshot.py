@@ -1,8 +1,9 @@
 """State of the particles at one moment, and its ``.npz`` file."""
 
 import io
+import json
 import zipfile
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -61,6 +62,22 @@ class ParticleState:
 
 
 @dataclass(frozen=True, eq=False)
+class EngineState:
+    """All that an engine needs to go on from one moment.
+
+    Parameters
+    ----------
+    records
+        Of the run, as JSON.
+    solver
+        The solver's own state.
+    """
+
+    records: Mapping[str, Any]
+    solver: bytes
+
+
+@dataclass(frozen=True, eq=False)
 class Snapshot:
     """One moment of a running simulation.
 
@@ -72,11 +89,44 @@ class Snapshot:
         Of the work that is done, 0 to 1.
     message
         One line on the progress.
+    state
+        Gives all that is needed to go on from here, for an engine that can; called at once or never.
     """
 
     particles: ParticleState
     share: float
     message: str
+    state: Callable[[], EngineState] | None = None
+
+
+def engine_state_bytes(state: EngineState, key: str, number: int) -> bytes:
+    """The content of a file of a state.
+
+    Parameters
+    ----------
+    key
+        Of the run that may go on from it.
+    number
+        Of the next snapshot.
+    """
+    buffer = io.BytesIO()
+    head = json.dumps({"key": key, "number": number, "records": dict(state.records)})
+    with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED, compresslevel=1) as archive:
+        archive.writestr("head.json", head)
+        archive.writestr("solver.bin", state.solver)
+    return buffer.getvalue()
+
+
+def read_engine_state(path: Path, key: str) -> tuple[EngineState, int] | None:
+    """State of a run and number of its next snapshot; ``None`` if there is none, or that of another run."""
+    try:
+        with zipfile.ZipFile(path) as archive:
+            head = json.loads(archive.read("head.json"))
+            if head["key"] != key:
+                return None
+            return EngineState(head["records"], archive.read("solver.bin")), int(head["number"])
+    except (OSError, zipfile.BadZipFile, KeyError, TypeError, ValueError, EOFError):
+        return None
 
 
 def particle_state_bytes(pile: ParticleState) -> bytes:

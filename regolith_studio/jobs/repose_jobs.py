@@ -45,6 +45,8 @@ class ReposeRequest:
         How the pile is measured.
     overwrite
         Whether an earlier run in the folder may be replaced.
+    threads
+        Of an engine that uses several; they change no result.
 
     Raises
     ------
@@ -57,6 +59,7 @@ class ReposeRequest:
     settings: Any = None
     evaluation: EvaluationSettings = field(default_factory=EvaluationSettings)
     overwrite: bool = False
+    threads: int = 1
 
     def __post_init__(self) -> None:
         check_number(self.case.n_particles, self.evaluation)
@@ -88,7 +91,8 @@ def simulate_repose(dataset_folder: Path, folder: Path, request: ReposeRequest) 
     """Draw particles from a dataset on disk, simulate, measure, write; returns :class:`ReposeRun`.
 
     Partial results are :class:`~regolith_studio.dem.engine.Snapshot`. What was saved stays when the run
-    is stopped or fails, and ``repose.json`` says so; but it replaces no finished run.
+    is stopped or fails, and ``repose.json`` says so; but it replaces no finished run. A run that was killed
+    or stopped goes on from the last state of its engine when the same is asked for again.
     """
     prepared = prepare(read_dataset(dataset_folder), request.case, dataset_hash(dataset_folder))
     return (yield from simulate_prepared(prepared, folder, request))
@@ -124,7 +128,7 @@ def check_shapes(prepared: PreparedCase, engine: Engine) -> None:
 
 def _simulate(record: "_RunWriter", folder: Path, request: ReposeRequest) -> Steps:
     """Run the engine and save how it ends."""
-    steps = run_engine(record.engine.key, record.prepared, record.settings, record.folder)
+    steps = run_engine(record.engine.key, record.prepared, record.settings, record.folder, request.threads)
     share, message = 0.0, "starting"
     try:
         while True:

@@ -1256,6 +1256,10 @@
         <translation>Coulomb-Reibung in elliptischem Kegel, ein Beiwert (der der Haftreibung)</translation>
     </message>
     <message>
+        <source>Coulomb friction of each patch of contact, one coefficient (the static one)</source>
+        <translation>Coulomb-Reibung jeder Berührfläche, ein Beiwert (der der Haftreibung)</translation>
+    </message>
+    <message>
         <source>Coulomb friction while sliding, one coefficient (the static one), no memory at rest</source>
         <translation>Coulomb-Reibung beim Gleiten, ein Beiwert (der der Haftreibung), kein Gedächtnis in Ruhe</translation>
     </message>
@@ -2238,6 +2242,10 @@
     <message>
         <source>Health of the mesh</source>
         <translation>Zustand des Netzes</translation>
+    </message>
+    <message>
+        <source>Hertz and Mindlin stiffness, cohesion, rolling resistance; single precision</source>
+        <translation>Steifigkeit nach Hertz und Mindlin, Kohäsion, Rollwiderstand; einfache Genauigkeit</translation>
     </message>
     <message>
         <source>Hertz and Mindlin stiffness, restitution, friction of rest apart from friction of motion</source>
@@ -6924,6 +6932,10 @@
         <translation>die konvexen Polyeder selbst</translation>
     </message>
     <message>
+        <source>the convex polyhedra, their edges rounded by a fiftieth of the diameter</source>
+        <translation>die konvexen Polyeder, ihre Kanten mit einem Fünfzigstel des Durchmessers gerundet</translation>
+    </message>
+    <message>
         <source>the fewest facets with all errors below {limit} %</source>
         <translation>den wenigsten Facetten, deren Fehler alle unter {limit} % liegen</translation>
     </message>
@@ -6966,6 +6978,10 @@
     <message>
         <source>undo the loss at the border</source>
         <translation>Verlust am Rand ausgleichen</translation>
+    </message>
+    <message>
+        <source>unilateral constraint with restitution; penetration is reported, stiffness is not used</source>
+        <translation>einseitige Zwangsbedingung mit Stoßzahl; Eindringung wird gemeldet, die Steifigkeit nicht verwendet</translation>
     </message>
     <message>
         <source>unilateral constraint, no bounce; penetration is reported, stiffness is not used</source>

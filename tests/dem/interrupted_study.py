@@ -81,7 +81,7 @@ def main(folder: Path, every: int) -> None:
 
 
 def instant_engine(
-    _key: str, prepared: PreparedCase, _settings: Any, folder: Path
+    _key: str, prepared: PreparedCase, _settings: Any, folder: Path, _threads: int
 ) -> Generator[Snapshot | None, None, SimulationResult]:
     """A run whose particles stay where they begin, on one level."""
     column = loose_column(prepared)

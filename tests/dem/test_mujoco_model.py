@@ -3,6 +3,7 @@
 import mujoco
 import numpy as np
 import pytest
+from scipy.spatial import cKDTree
 from scipy.spatial.distance import pdist, squareform
 
 from regolith_studio.dataset.dataset import Dataset
@@ -14,12 +15,12 @@ from regolith_studio.dem.engines.mujoco.model import (
     N_WALLS,
     PARTICLE,
     POINTS_PER_PAIR,
-    Units,
     adhesion,
     build_model,
 )
 from regolith_studio.dem.engines.mujoco.settings import MujocoSettings
 from regolith_studio.dem.initial_packing import start_places
+from regolith_studio.dem.lifting_cylinder import Units
 from regolith_studio.errors import InputError
 
 
@@ -32,6 +33,13 @@ def test_that_particles_start_apart_and_within_the_cylinder() -> None:
     assert (np.hypot(places[:, 0], places[:, 1]) + reach).max() <= 5.0
     assert (places[:, 2] - reach).min() >= 0.0
     assert top < 3.5 * (4 / 3 * np.pi * reach**3).sum() / (np.pi * 25)
+
+
+def test_that_particles_start_apart_in_a_cylinder_that_is_many_particles_wide() -> None:
+    """2,000 lie in one layer here, as many as a filling of 100,000 has in its cylinder."""
+    reach = np.full(3000, 0.5)
+    places, _ = start_places(reach, 26.0, np.random.default_rng(1))
+    assert cKDTree(places).query(places, k=2)[0][:, 1].min() > 1.0
 
 
 def test_that_bodies_have_the_mass_and_inertia_of_their_polyhedra(boxes: Dataset) -> None:
@@ -146,26 +154,27 @@ def test_that_the_memory_for_contacts_grows_with_the_number_and_not_with_its_squ
     assert 100_000 * 2000 < large < 1e9
 
 
-def friction_of_sliding_grains(boxes: Dataset, degrees: float) -> tuple[float, simulation.MujocoRun]:
-    """Mean of tan(slope) - a / (g cos(slope)) over 12 time units of 40 boxes on the tilted plate."""
+def friction_of_sliding_grains(boxes: Dataset, degrees: float) -> tuple[float, set[float]]:
+    """Mean of tan(slope) - a / (g cos(slope)) over 12 time units of 40 boxes on the tilted plate; steps."""
     test = LiftingCylinderTest(mass=0.003, plate_friction=0.8)
-    prepared, settings = prepare(boxes, ReposeCase(test, n_particles=40, seed=2)), MujocoSettings()
-    built = build_model(prepared, settings)
-    run = simulation.MujocoRun(prepared, settings, built, mujoco.MjData(built.model), Units.of(prepared))
-    run.phase = "rest"
+    prepared = prepare(boxes, ReposeCase(test, n_particles=40, seed=2))
+    solver = simulation.MujocoSolver(prepared, MujocoSettings())
     half = np.array([shape[:, 2].max() for shape in prepared.shapes])[prepared.class_index]
-    rows = run.data.qpos.reshape(-1, 7)
+    rows = solver.data.qpos.reshape(-1, 7)
     rows[:, :3] = np.column_stack(
-        [np.zeros(40), 4.0 * np.arange(40), half * prepared.scales / run.units.length]
+        [np.zeros(40), 4.0 * np.arange(40), half * prepared.scales / prepared.mean_diameter]
     )
     rows[:, 3:] = (1.0, 0.0, 0.0, 0.0)
-    run.data.mocap_pos[0] = (0.0, 0.0, 1e3)
+    solver.begin("rest")
     slope = np.radians(degrees)
-    built.model.opt.gravity = (np.sin(slope), 0.0, -np.cos(slope))
-    for _ in simulation.advance(run, None, lambda _: False, 12.0):
-        pass
-    speed = run.data.qvel.reshape(-1, 6)[:, 0]
-    return float(np.tan(slope) - speed.mean() / run.time / np.cos(slope)), run
+    solver.model.opt.gravity = (np.sin(slope), 0.0, -np.cos(slope))
+    steps = set()
+    while solver.time < 12.0:
+        step = solver.time_step()
+        solver.advance(step, round(0.5 / step))
+        steps.add(step)
+    speed = solver.data.qvel.reshape(-1, 6)[:, 0]
+    return float(np.tan(slope) - speed.mean() / solver.time / np.cos(slope)), steps
 
 
 @pytest.mark.slow
@@ -173,23 +182,20 @@ def test_that_grains_which_slide_fast_feel_the_friction_that_is_set(
     boxes: Dataset, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Coulomb's law on a slope of 50 degrees; with one step for all speeds they bounce and feel less."""
-    felt, run = friction_of_sliding_grains(boxes, 50.0)
+    felt, steps = friction_of_sliding_grains(boxes, 50.0)
     assert felt == pytest.approx(0.8, abs=0.03)
-    assert min(run.times) < max(run.times) == MujocoSettings().time_step
-    assert sum(run.times.values()) == pytest.approx(run.time)
+    assert min(steps) < max(steps) == MujocoSettings().time_step
     monkeypatch.setattr(simulation, "MAX_MOVE", 1.0)
     assert friction_of_sliding_grains(boxes, 50.0)[0] < 0.77
 
 
 def test_that_a_run_says_which_steps_it_took(boxes: Dataset) -> None:
     prepared, settings = prepare(boxes, ReposeCase(n_particles=120, seed=2)), MujocoSettings()
-    built = build_model(prepared, settings)
-    run = simulation.MujocoRun(prepared, settings, built, mujoco.MjData(built.model), Units.of(prepared))
-    run.data.qvel.reshape(-1, 6)[:, 0] = 0.5
-    assert simulation.time_step(run) == settings.time_step  # a fall
-    run.phase = "lift"
-    assert simulation.time_step(run) == settings.time_step / 2
-    run.data.qvel.reshape(-1, 6)[:, 0] = 1e3
-    assert simulation.time_step(run) == settings.time_step / 8
-    run.times = {0.025: 3.0, 0.0125: 1.0}
-    assert "0.025 for 75.0 %, 0.0125 for 25.0 %" in simulation.steps_in_words(run)
+    solver = simulation.MujocoSolver(prepared, settings)
+    solver.data.qvel.reshape(-1, 6)[:, 0] = 0.5
+    assert solver.time_step() == settings.time_step  # a fall
+    solver.begin("lift")
+    assert solver.time_step() == settings.time_step / 2
+    solver.data.qvel.reshape(-1, 6)[:, 0] = 1e3
+    assert solver.time_step() == settings.time_step / 8
+    assert "0.025 for 75.0 %, 0.0125 for 25.0 %" in solver.notes({0.025: 3.0, 0.0125: 1.0})[0]

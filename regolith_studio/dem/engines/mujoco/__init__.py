@@ -6,8 +6,14 @@ from importlib.metadata import PackageNotFoundError, version
 
 from regolith_studio.dem.case import PreparedCase
 from regolith_studio.dem.engine import Availability, EngineCapabilities, SimulationResult
-from regolith_studio.dem.engines.mujoco.settings import MujocoSettings, expected_duration
-from regolith_studio.dem.snapshot import Snapshot
+from regolith_studio.dem.engines.mujoco.settings import MujocoSettings
+from regolith_studio.dem.lifting_cylinder import (
+    LiftingRun,
+    expected_duration,
+    resume_lifting,
+    simulate_lifting,
+)
+from regolith_studio.dem.snapshot import EngineState, Snapshot
 from regolith_studio.messages import N_
 
 SECONDS_PER_PARTICLE_AND_STEP = {"polyhedra": 18e-6, "spheres": 6e-6}
@@ -58,9 +64,19 @@ class MujocoEngine:
         self, prepared: PreparedCase, settings: MujocoSettings
     ) -> Generator[Snapshot, None, SimulationResult]:
         """Fill, settle, lift, rest."""
-        from regolith_studio.dem.engines.mujoco.simulation import simulate
+        return simulate_lifting(_run(prepared, settings))
 
-        return simulate(prepared, settings)
+    def resume(
+        self, prepared: PreparedCase, settings: MujocoSettings, state: EngineState
+    ) -> Generator[Snapshot, None, SimulationResult]:
+        """Go on from a state."""
+        return resume_lifting(_run(prepared, settings), state)
+
+
+def _run(prepared: PreparedCase, settings: MujocoSettings) -> LiftingRun:
+    from regolith_studio.dem.engines.mujoco.simulation import MujocoSolver
+
+    return LiftingRun(prepared, settings, MujocoSolver(prepared, settings))
 
 
 ENGINE = MujocoEngine()

@@ -1,8 +1,4 @@
-"""A lifting cylinder in MuJoCo: plate, 32 walls on a moving frame, free convex bodies.
-
-Inside, lengths are in mean diameters d, the density is 1 and gravity is 1; the unit of time is
-sqrt(d / g). Friction, shape and the ratio of cohesion to weight are free of units already.
-"""
+"""A lifting cylinder in MuJoCo: plate, 32 walls on a moving frame, free convex bodies."""
 
 from dataclasses import dataclass
 
@@ -12,6 +8,7 @@ import numpy as np
 from regolith_studio.dem.case import PreparedCase
 from regolith_studio.dem.engines.mujoco.settings import MujocoSettings
 from regolith_studio.dem.initial_packing import enclosing_radii, loose_column
+from regolith_studio.dem.lifting_cylinder import Units, lift_speed
 from regolith_studio.geometry.arrays import FloatArray, IntArray
 
 N_WALLS = 32
@@ -27,24 +24,6 @@ ADHESION_GAP = 0.001
 drawn together, and heaps came out flatter with cohesion than without."""
 POINTS_PER_PAIR = 1.6
 """Contact points of two touching polyhedra in the mean of a settled filling; they share the force."""
-
-
-@dataclass(frozen=True, eq=False)
-class Units:
-    """From the solver's numbers to SI."""
-
-    length: float
-    time: float
-
-    @classmethod
-    def of(cls, prepared: PreparedCase) -> "Units":
-        """Mean diameter, and the time in which it is about fallen through."""
-        length = prepared.mean_diameter
-        return cls(length, float(np.sqrt(length / prepared.case.test.gravity)))
-
-    @property
-    def speed(self) -> float:
-        return self.length / self.time
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,7 +117,7 @@ def _add_walls(
             priority=1,
             density=0.0,
             # a surface that never moves would be compiled away
-            surfacevel=[0.0, 0.0, prepared.case.test.lift_speed / Units.of(prepared).speed, 0.0, 0.0, 0.0],
+            surfacevel=[0.0, 0.0, lift_speed(prepared), 0.0, 0.0, 0.0],
             **_contact(prepared, settings, prepared.case.test.wall_friction),
         )
 

@@ -25,6 +25,7 @@ from regolith_studio.dem.engines import CAPABILITY_LABELS, ENGINES, engine_named
 from regolith_studio.dem.evaluation.settings import EvaluationSettings
 from regolith_studio.errors import InputError
 from regolith_studio.jobs.repose_jobs import ReposeRequest
+from regolith_studio.jobs.runners.process_pool import cores
 from regolith_studio.messages import N_
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.translation.numbers import number_text
@@ -132,7 +133,7 @@ class SetupPanel(QWidget):
             seed=self.seed.value(),
         )
         settings = engine.Settings(**self.numerics.value())
-        return ReposeRequest(case, engine.key, settings, self.evaluation_settings())
+        return ReposeRequest(case, engine.key, settings, self.evaluation_settings(), threads=cores())
 
     def evaluation_settings(self) -> EvaluationSettings:
         """The settings of the evaluation.

@@ -1,0 +1,193 @@
+"""Rapier as a solver of the lifting-cylinder test: plate, a ring of boxes, free convex bodies."""
+
+import os
+
+import numpy as np
+import rapier3d as rapier
+from scipy.spatial import ConvexHull, HalfspaceIntersection
+
+from regolith_studio.dem.case import PreparedCase
+from regolith_studio.dem.engines.rapier.settings import RapierSettings
+from regolith_studio.dem.initial_packing import enclosing_radii, loose_column
+from regolith_studio.dem.lifting_cylinder import PHASES, Units, lift_speed
+from regolith_studio.errors import RegolithError
+from regolith_studio.geometry.arrays import FloatArray
+
+N_WALLS = 32
+WALL_THICKNESS = 2.0
+PLATE_WIDTH = 12.0
+"""In diameters of the cylinder; a box, since contacts of a half-space with polyhedra get lost."""
+ROUNDING = 0.02
+"""Radius of the edges in equivalent diameters. With sharp ones the solver finds overlaps that are none (0.6
+diameters deep at rest), and heaps never come to rest."""
+THREADS = "RAYON_NUM_THREADS"
+"""Environment variable with the number of threads."""
+REPEATABLE = "Equal seeds give equal bytes on one machine, with any number of threads."
+MAX_SPEED = 400.0
+"""Limit of the solver where none is set."""
+
+
+class RapierSolver:
+    """Rapier's world: the particles, then the cylinder, then the plate."""
+
+    def __init__(self, prepared: PreparedCase, settings: RapierSettings) -> None:
+        self.prepared, self.settings, self.lift_speed = prepared, settings, lift_speed(prepared)
+        units = Units.of(prepared)
+        self.unit_length, self.unit_time = units.length, units.time
+        self.n, self.time, self.phase = len(prepared), 0.0, PHASES[0]
+        self.world = rapier.PhysicsWorld(gravity=(0.0, 0.0, -1.0))
+        self.top = _build(self.world, prepared)
+        self.masses = np.pi / 6 * (prepared.diameters / prepared.mean_diameter) ** 3
+        self._find_bodies()
+
+    def _find_bodies(self) -> None:
+        """Handles of the bodies, and the threads and numerics of the world."""
+        bodies = self.world.rigid_bodies
+        handles = [rapier.RigidBodyHandle.from_raw_parts(k, 0) for k in range(self.n + 1)]
+        self.particles = [bodies[handle] for handle in handles[:-1]]
+        self.cylinder = bodies[handles[-1]]
+        self.world.set_num_threads(int(os.environ.get(THREADS, "1")))
+        numerics = self.world.integration_parameters
+        numerics.num_solver_iterations = self.settings.iterations
+        # heaps are calmer and overlap less with both; sharp columns walk and fall with recycled contacts
+        numerics.contact_recycling = False
+        numerics.friction_in_bias_pass = True
+
+    @property
+    def points(self) -> FloatArray:
+        return np.array([body.translation.to_tuple() for body in self.particles], dtype=np.float64)
+
+    @property
+    def orientations(self) -> FloatArray:
+        xyzw = [body.rotation.quaternion for body in self.particles]
+        return np.roll(np.array(xyzw, dtype=np.float64), 1, axis=1)
+
+    @property
+    def rim(self) -> float:
+        return float(self.cylinder.translation.z)
+
+    def energies(self) -> tuple[float, float]:
+        heights = np.array([body.translation.z for body in self.particles])
+        return float(self.masses @ heights), float(sum(body.kinetic_energy() for body in self.particles))
+
+    def overlaps(self) -> FloatArray:
+        pairs = self.world.narrow_phase.contact_pairs()
+        points = (point for pair in pairs for each in pair.manifolds for point in each.points)
+        return np.array([-point.dist for point in points if point.dist < 0.0])
+
+    def begin(self, phase: str) -> None:
+        self.phase = phase
+        limit = self.settings.max_fill_speed if phase == "fill" else MAX_SPEED
+        self.world.integration_parameters.normalized_max_linear_velocity = limit
+        self.cylinder.linvel = rapier.Vec3(0.0, 0.0, self.lift_speed if phase == "lift" else 0.0)
+        if phase == "rest":
+            self.cylinder.translation = rapier.Vec3(0.0, 0.0, self.rim + 10.0 * self.top)
+
+    def time_step(self) -> float:
+        return self.settings.time_step
+
+    def advance(self, step: float, count: int) -> None:
+        self.world.integration_parameters.dt = step
+        for _ in range(count):
+            self.world.step()
+            if not self.world.quarantine.is_empty():
+                raise RegolithError(
+                    f"The simulation diverged after {self.time * self.unit_time:.3g} s; take a smaller time "
+                    f"step than {self.settings.time_step:g}."
+                )
+            self.time += step
+
+    def problems(self) -> list[str]:
+        return []
+
+    def notes(self, times: dict[float, float]) -> list[str]:
+        del times  # one step for all speeds: what slides fast feels the friction that is set
+        return [REPEATABLE]
+
+    def state(self) -> bytes:
+        return np.float64(self.time).tobytes() + self.world.snapshot()
+
+    def load(self, state: bytes) -> None:
+        self.time = float(np.frombuffer(state[:8])[0])
+        try:
+            self.world = rapier.PhysicsWorld.restore(state[8:])
+        except rapier.SerializationError as error:
+            raise RegolithError(f"The state of Rapier to go on from cannot be read ({error}).") from error
+        self._find_bodies()
+
+
+def _build(world: rapier.PhysicsWorld, prepared: PreparedCase) -> float:
+    """Particles in a loose column, the cylinder, and the plate; returns the height of the column."""
+    length = prepared.mean_diameter
+    column = loose_column(prepared)
+    places, turns = column.points / length, np.roll(column.orientations, -1, axis=1)
+    forms: dict[tuple[int, float], tuple[rapier.SharedShape, rapier.MassProperties]] = {}
+    sizes = prepared.scales / length
+    for kind, size, place, turn in zip(
+        prepared.class_index.tolist(), sizes.tolist(), places.tolist(), turns.tolist(), strict=True
+    ):
+        if (kind, size) not in forms:
+            forms[kind, size] = _form(prepared, kind, size)
+        shape, mass = forms[kind, size]
+        collider = rapier.Collider.new(shape).mass_properties(mass)
+        collider = _with_friction(collider, prepared, prepared.case.contact.static_friction)
+        body = rapier.RigidBody.dynamic().position((place, turn)).can_sleep(False)
+        world.add_body(body, colliders=[collider])
+    top = float((places[:, 2] + enclosing_radii(prepared) / length).max())
+    walls = _walls(prepared, 1.1 * top + 2.0)
+    world.add_body(rapier.RigidBody.kinematic_velocity_based(), colliders=walls)
+    half = prepared.case.test.diameter / length * PLATE_WIDTH / 2
+    plate = rapier.Collider.cuboid(half, half, half).translation((0.0, 0.0, -half))
+    plate = _with_friction(plate, prepared, prepared.case.test.plate_friction, of_particles=False)
+    world.add_body(rapier.RigidBody.fixed(), colliders=[plate])
+    return top
+
+
+def _form(prepared: PreparedCase, kind: int, size: float) -> tuple[rapier.SharedShape, rapier.MassProperties]:
+    """Shape and mass of a particle, shared by all of a kind and size, which saves memory."""
+    if prepared.case.shapes == "spheres":
+        ball = rapier.SharedShape.ball(size / (np.pi / 6) ** (1 / 3) / 2)
+        return ball, ball.compute_mass_properties(1.0)
+    sharp = prepared.shapes[kind] * size
+    edge = ROUNDING * size / (np.pi / 6) ** (1 / 3)
+    rounded = rapier.SharedShape.round_convex_hull(inner_parallel_body(sharp, edge), edge)
+    return rounded, rapier.SharedShape.convex_hull(sharp).compute_mass_properties(1.0)
+
+
+def inner_parallel_body(vertices: FloatArray, distance: float) -> FloatArray:
+    """Vertices of a convex polyhedron about the origin whose facets are moved inwards, shape (k, 3).
+
+    With a ball of this radius added (Minkowski), it has the planes of the polyhedron and rounded edges.
+    """
+    planes = np.unique(np.round(ConvexHull(vertices).equations, 9), axis=0)
+    planes[:, 3] += distance
+    return np.asarray(HalfspaceIntersection(planes, np.zeros(3)).intersections)
+
+
+def _walls(prepared: PreparedCase, height: float) -> list[rapier.Collider | rapier.ColliderBuilder]:
+    """A ring of boxes; each is so wide that it overlaps its neighbours, and no gap is between them."""
+    radius = prepared.case.test.diameter / 2 / prepared.mean_diameter
+    half_width = (radius + WALL_THICKNESS) * np.tan(np.pi / N_WALLS)
+    distance = radius + WALL_THICKNESS / 2
+    walls: list[rapier.Collider | rapier.ColliderBuilder] = []
+    for angle in 2 * np.pi * np.arange(N_WALLS) / N_WALLS:
+        place = (distance * np.cos(angle), distance * np.sin(angle), height / 2)
+        turn = (0.0, 0.0, np.sin(angle / 2), np.cos(angle / 2))
+        wall = rapier.Collider.cuboid(WALL_THICKNESS / 2, half_width, height / 2).position((place, turn))
+        friction = prepared.case.test.wall_friction
+        walls.append(_with_friction(wall, prepared, friction, of_particles=False))
+    return walls
+
+
+def _with_friction(
+    collider: rapier.ColliderBuilder, prepared: PreparedCase, friction: float, *, of_particles: bool = True
+) -> rapier.ColliderBuilder:
+    """Coefficients of a pair: the mean of two particles, the product of a particle and what is not one."""
+    rules = rapier.CoefficientCombineRule
+    own = prepared.case.contact.static_friction
+    collider = collider.restitution(prepared.case.contact.restitution)
+    if of_particles:
+        return collider.friction(friction).friction_combine_rule(rules.AVERAGE)
+    if own > 0.0:
+        return collider.friction(friction / own).friction_combine_rule(rules.MULTIPLY)
+    return collider.friction(friction).friction_combine_rule(rules.MAX)

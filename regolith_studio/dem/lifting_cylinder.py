@@ -1,0 +1,310 @@
+"""The lifting-cylinder test on a solver that is stepped from here: fill, settle, lift, rest.
+
+Inside, lengths are in mean diameters d, the density is 1 and gravity is 1; the unit of time is
+sqrt(d / g). Friction, shape and the ratio of cohesion to weight are free of units already.
+"""
+
+import json
+from collections.abc import Callable, Generator
+from dataclasses import dataclass, field
+from typing import Protocol
+
+import numpy as np
+
+from regolith_studio.dem.case import PreparedCase
+from regolith_studio.dem.engine import RunChecks, SimulationResult
+from regolith_studio.dem.run_checks import check_run, measure_filling
+from regolith_studio.dem.snapshot import EngineState, ParticleState, Snapshot
+from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.messages import N_
+
+LOOK = 0.5
+"""Simulated time between two samples of the energies and speeds."""
+CLEAR = 0.5
+"""Distance between rim and pile, in mean diameters, at which the cylinder is removed."""
+PHASES = ("fill", "settle", "lift", "rest")
+FALL, SETTLE, REST = 25.0, 6.0, 18.0
+
+
+@dataclass(frozen=True, eq=False)
+class Units:
+    """From the solver's numbers to SI."""
+
+    length: float
+    time: float
+
+    @classmethod
+    def of(cls, prepared: PreparedCase) -> "Units":
+        """Mean diameter, and the time in which it is about fallen through."""
+        length = prepared.mean_diameter
+        return cls(length, float(np.sqrt(length / prepared.case.test.gravity)))
+
+    @property
+    def speed(self) -> float:
+        return self.length / self.time
+
+
+@dataclass(frozen=True)
+class LiftingSettings:
+    """Course of the test; times in sqrt(d/g).
+
+    Parameters
+    ----------
+    max_fill_speed
+        Speed limit during filling, in sqrt(g d).
+    rest_energy
+        Mean kinetic energy of a particle, in units of its weight times d, below which a heap is at rest.
+    rest_time
+        Time for which it must stay below.
+    max_rest_time
+        Maximum time of waiting for rest.
+    snapshots
+        Number of snapshots of a run.
+    """
+
+    max_fill_speed: float = field(
+        default=6.0, metadata={"label": N_("Filling speed"), "minimum": 0.1, "maximum": 100.0}
+    )
+    rest_energy: float = field(
+        default=2e-4, metadata={"label": N_("Energy at rest"), "minimum": 1e-9, "maximum": 0.1, "decimals": 9}
+    )
+    rest_time: float = field(
+        default=3.0, metadata={"label": N_("Time at rest"), "minimum": 0.1, "maximum": 1000.0}
+    )
+    max_rest_time: float = field(
+        default=60.0, metadata={"label": N_("Longest wait"), "minimum": 1.0, "maximum": 1e5}
+    )
+    snapshots: int = field(default=120, metadata={"label": N_("Snapshots"), "minimum": 2, "maximum": 10_000})
+
+
+class Solver(Protocol):
+    """Particles, plate and cylinder in a solver."""
+
+    top: float
+    """Height of the highest particle at the start."""
+    phase: str
+
+    @property
+    def time(self) -> float: ...
+
+    @property
+    def points(self) -> FloatArray:
+        """Centres, shape (n, 3)."""
+        ...
+
+    @property
+    def orientations(self) -> FloatArray:
+        """Quaternions (w, x, y, z), shape (n, 4)."""
+        ...
+
+    @property
+    def rim(self) -> float:
+        """Height of the cylinder's lower rim."""
+        ...
+
+    def energies(self) -> tuple[float, float]:
+        """Potential and kinetic energy of all particles."""
+        ...
+
+    def overlaps(self) -> FloatArray:
+        """Depths to which particles overlap, shape (m,)."""
+        ...
+
+    def begin(self, phase: str) -> None:
+        """Set the speed of walls and the limit of that of particles for a phase; no walls in ``rest``."""
+        ...
+
+    def time_step(self) -> float:
+        """Step for the next look."""
+        ...
+
+    def advance(self, step: float, count: int) -> None:
+        """Take steps.
+
+        Raises
+        ------
+        RegolithError
+            If the solver diverges.
+        """
+        ...
+
+    def problems(self) -> list[str]:
+        """Sentences on what failed."""
+        ...
+
+    def notes(self, times: dict[float, float]) -> list[str]:
+        """Sentences on the run, from the simulated time with each step."""
+        ...
+
+    def state(self) -> bytes:
+        """Everything that is needed to go on."""
+        ...
+
+    def load(self, state: bytes) -> None:
+        """Go on from a state."""
+        ...
+
+
+@dataclass(eq=False)
+class LiftingRun:
+    """A test on its way, with the records of the run."""
+
+    prepared: PreparedCase
+    settings: LiftingSettings
+    solver: Solver
+    units: Units = field(init=False)
+    expected: float = field(init=False)
+    phase: str = "fill"
+    end: float = 0.0
+    energy: float = float("inf")
+    energy_gain: float = 0.0
+    steps: int = 0
+    next_picture: float = 0.0
+    calm_since: float | None = None
+    fill: tuple[float, float] = (0.0, 0.0)
+    times: dict[float, float] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        self.units, self.expected = Units.of(self.prepared), expected_duration(self.prepared)
+
+
+RECORDS = ("phase", "end", "energy", "energy_gain", "steps", "next_picture", "calm_since", "fill")
+"""Fields of a run that its state keeps beside that of the solver."""
+
+
+def lift_speed(prepared: PreparedCase) -> float:
+    """Of the cylinder in sqrt(g d)."""
+    return prepared.case.test.lift_speed / Units.of(prepared).speed
+
+
+def expected_duration(prepared: PreparedCase) -> float:
+    """Of the whole test; the rim must rise above the pile, which is about 0.6 of the filling's height."""
+    lift = 0.75 * prepared.fill_height / prepared.mean_diameter / lift_speed(prepared)
+    return float(FALL + SETTLE + lift + REST)
+
+
+def simulate_lifting(run: LiftingRun) -> Generator[Snapshot, None, SimulationResult]:
+    """Run the test from its beginning.
+
+    Raises
+    ------
+    RegolithError
+        If the solver diverges.
+    """
+    _begin(run, PHASES[0])
+    yield _snapshot(run)
+    return (yield from _go_on(run))
+
+
+def resume_lifting(run: LiftingRun, state: EngineState) -> Generator[Snapshot, None, SimulationResult]:
+    """Go on from a state that a snapshot offered."""
+    for name in RECORDS:
+        setattr(run, name, state.records[name])
+    run.fill = (run.fill[0], run.fill[1])
+    run.times = {float(step): time for step, time in state.records["times"].items()}
+    run.solver.phase = run.phase
+    run.solver.load(state.solver)
+    return (yield from _go_on(run, resumed=True))
+
+
+def _go_on(run: LiftingRun, *, resumed: bool = False) -> Generator[Snapshot, None, SimulationResult]:
+    while True:
+        done = _is_clear if run.phase == "lift" else _is_calm
+        if not (resumed and run.steps and done(run)):  # a snapshot comes before this question
+            yield from advance(run, done)
+        resumed = False
+        if run.phase == "settle":
+            run.fill = measure_filling(run.prepared, particles_of(run))
+        if run.phase == PHASES[-1]:
+            break
+        _begin(run, PHASES[PHASES.index(run.phase) + 1])
+    simulated = run.solver.time * run.units.time
+    return SimulationResult(
+        particles_of(run), _checks(run), run.steps, simulated, tuple(run.solver.notes(run.times))
+    )
+
+
+def _begin(run: LiftingRun, phase: str) -> None:
+    top, longest = run.solver.top, run.settings.max_rest_time
+    if phase == "fill":
+        longest = 40.0 + 2.0 * top / run.settings.max_fill_speed
+    elif phase == "lift":
+        longest = 2.0 * top / lift_speed(run.prepared) + 10.0
+    run.solver.begin(phase)
+    run.phase, run.end = phase, run.solver.time + longest
+    run.calm_since, run.energy = None, float("inf")
+
+
+def advance(run: LiftingRun, done: Callable[[LiftingRun], bool]) -> Generator[Snapshot, None, None]:
+    """Step until `done` or the phase is over; `done` is asked and energies are noted once a look."""
+    while run.solver.time < run.end:
+        step = run.solver.time_step()
+        count = max(1, round(LOOK / step))
+        run.solver.advance(step, count)
+        run.steps += count
+        run.times[step] = run.times.get(step, 0.0) + count * step
+        if run.phase in ("settle", "rest"):  # where no wall moves and no speed is limited
+            total = sum(run.solver.energies()) / len(run.prepared)
+            run.energy_gain = max(run.energy_gain, total - run.energy)
+            run.energy = total
+        if run.solver.time >= run.next_picture:
+            run.next_picture = run.solver.time + run.expected / run.settings.snapshots
+            yield _snapshot(run)
+        if done(run):
+            return
+
+
+def _is_calm(run: LiftingRun) -> bool:
+    """Whether the mean kinetic energy has been small for long enough."""
+    if run.solver.energies()[1] / len(run.prepared) > run.settings.rest_energy:
+        run.calm_since = None
+        return False
+    if run.calm_since is None:
+        run.calm_since = run.solver.time
+    return run.solver.time - run.calm_since >= run.settings.rest_time
+
+
+def _is_clear(run: LiftingRun) -> bool:
+    """Whether the rim is above everything."""
+    reach = run.prepared.diameters / run.units.length
+    return bool(run.solver.rim > (run.solver.points[:, 2] + reach).max() + CLEAR)
+
+
+def _snapshot(run: LiftingRun) -> Snapshot:
+    share = min(0.99, run.solver.time / run.expected)
+    simulated = run.solver.time * run.units.time
+    return Snapshot(
+        particles_of(run), share, f"{run.phase}, {simulated:.2f} s simulated", lambda: _state(run)
+    )
+
+
+def _state(run: LiftingRun) -> EngineState:
+    records = {name: getattr(run, name) for name in RECORDS} | {"times": run.times}
+    return EngineState(json.loads(json.dumps(records)), run.solver.state())
+
+
+def particles_of(run: LiftingRun) -> ParticleState:
+    """The particles in SI units."""
+    gone = run.phase == "rest"
+    return ParticleState(
+        points=run.solver.points * run.units.length,
+        diameters=run.prepared.diameters,
+        orientations=run.solver.orientations,
+        class_index=run.prepared.class_index,
+        time=run.solver.time * run.units.time,
+        wall=float("inf") if gone else run.solver.rim * run.units.length,
+        phase=run.phase,
+    )
+
+
+def _checks(run: LiftingRun) -> RunChecks:
+    rested = run.calm_since is not None and run.solver.time - run.calm_since >= run.settings.rest_time
+    return check_run(
+        run.solver.points[:, 2],
+        run.solver.overlaps(),
+        energy_gain=run.energy_gain,
+        kinetic_energy=run.solver.energies()[1] / len(run.prepared),
+        at_rest=rested,
+        filling=run.fill,
+        problems=run.solver.problems(),
+    )

@@ -1,0 +1,289 @@
+"""Rapier as an engine, against theory: friction, restitution, a column; and that it repeats itself."""
+
+import io
+from collections.abc import Generator
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+pytest.importorskip("rapier3d")
+
+from regolith_studio.dataset.dataset import Dataset
+from regolith_studio.dataset.parameters import ContactParameters, LiftingCylinderTest
+from regolith_studio.dem import engine_process
+from regolith_studio.dem.case import PreparedCase, ReposeCase, prepare
+from regolith_studio.dem.engine import SimulationResult
+from regolith_studio.dem.engine_process import run_task
+from regolith_studio.dem.engines import engine_named
+from regolith_studio.dem.engines.rapier.settings import RapierSettings
+from regolith_studio.dem.engines.rapier.simulation import N_WALLS, RapierSolver, inner_parallel_body
+from regolith_studio.dem.evaluation.settings import EvaluationSettings
+from regolith_studio.dem.initial_packing import enclosing_radii
+from regolith_studio.dem.lifting_cylinder import LiftingSettings
+from regolith_studio.dem.run_io import read_run, snapshot_files
+from regolith_studio.dem.snapshot import EngineState, Snapshot, read_particle_state
+from regolith_studio.errors import InputError
+from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.jobs.repose_jobs import ReposeRequest, simulate_repose
+
+TEST = LiftingCylinderTest(mass=0.003, lift_speed=0.15)
+SHORT = {"rest_energy": 2e-3, "rest_time": 1.0, "snapshots": 20}
+
+
+def quick(key: str) -> LiftingSettings:
+    """Settings of a short run."""
+    settings: LiftingSettings = replace(engine_named(key).Settings(), **SHORT, time_step=0.04)
+    return settings
+
+
+def solver_of(boxes: Dataset, n: int = 10, **values: Any) -> RapierSolver:
+    """Boxes in a world, with the values of Table 1 or 2."""
+    known = LiftingCylinderTest.__dataclass_fields__
+    test = replace(TEST, **{key: value for key, value in values.items() if key in known})
+    contact = replace(
+        ContactParameters(), **{key: value for key, value in values.items() if key not in known}
+    )
+    return RapierSolver(prepare(boxes, ReposeCase(test, contact, n_particles=n, seed=2)), RapierSettings())
+
+
+def place(solver: RapierSolver, points: FloatArray) -> None:
+    """Put the particles there, unturned."""
+    for body, point in zip(solver.particles, points.tolist(), strict=True):
+        body.translation = point
+        body.rotation = (0.0, 0.0, 0.0, 1.0)
+
+
+def half_heights(solver: RapierSolver) -> FloatArray:
+    prepared = solver.prepared
+    half = np.array([shape[:, 2].max() for shape in prepared.shapes])[prepared.class_index]
+    return np.asarray(half * prepared.scales / prepared.mean_diameter)
+
+
+@pytest.mark.parametrize("friction", [0.2, 0.5, 0.8])
+def test_that_boxes_begin_to_slide_at_the_angle_of_friction(boxes: Dataset, friction: float) -> None:
+    """Within 0.2 degrees of arctan mu; grains have another coefficient than grain and plate."""
+    slides = {}
+    for offset in (-0.2, 0.2):
+        solver = solver_of(boxes, plate_friction=friction, static_friction=0.6)
+        rows = np.column_stack([np.zeros(10), 1.5 * np.arange(10) - 7.0, half_heights(solver)])
+        place(solver, rows)
+        solver.begin("rest")
+        slope = np.arctan(friction) + np.radians(offset)
+        solver.world.gravity = (np.sin(slope), 0.0, -np.cos(slope))
+        solver.advance(0.025, 1200)
+        slides[offset] = solver.points[:, 0]
+    assert slides[-0.2].max() < 0.05
+    assert slides[0.2].min() > 0.5
+    distance = (np.sin(slope) - friction * np.cos(slope)) * 30.0**2 / 2
+    assert slides[0.2].mean() == pytest.approx(distance, rel=0.4)  # a fifth of a degree is little to slide on
+
+
+def test_that_sliding_boxes_feel_the_friction_that_is_set(boxes: Dataset) -> None:
+    """Coulomb's law on a slope of 50 degrees."""
+    solver = solver_of(boxes, plate_friction=0.8)
+    place(solver, np.column_stack([np.full(10, -14.0), 1.5 * np.arange(10) - 7.0, half_heights(solver)]))
+    solver.begin("rest")
+    slope = np.radians(50.0)
+    solver.world.gravity = (np.sin(slope), 0.0, -np.cos(slope))
+    solver.advance(0.025, 400)
+    speed = np.mean([body.linvel.x for body in solver.particles])
+    assert np.tan(slope) - speed / solver.time / np.cos(slope) == pytest.approx(0.8, abs=0.01)
+
+
+def test_that_a_column_of_boxes_stands(boxes: Dataset) -> None:
+    solver = solver_of(boxes, n=20)
+    half = half_heights(solver)
+    tops = np.cumsum(2 * half)
+    place(solver, np.column_stack([np.zeros(20), np.zeros(20), tops - half]))
+    solver.begin("rest")
+    solver.advance(0.025, 4000)
+    assert np.abs(solver.points[:, :2]).max() < 0.02
+    assert solver.points[-1, 2] == pytest.approx(tops[-1] - half[-1], rel=2e-3)
+
+
+@pytest.mark.parametrize("restitution", [0.0, 0.3, 0.6, 0.9])
+def test_that_a_ball_rebounds_with_the_restitution_that_is_set(boxes: Dataset, restitution: float) -> None:
+    contact = ContactParameters(restitution=restitution)
+    case = ReposeCase(TEST, contact, n_particles=10, shapes="spheres")
+    solver = RapierSolver(prepare(boxes, case), RapierSettings())
+    place(solver, np.column_stack([1.5 * np.arange(10) - 7.0, np.zeros(10), np.full(10, 5.5)]))
+    solver.begin("rest")
+    before = 0.0
+    for _ in range(200):
+        solver.advance(0.025, 1)
+        after = float(np.mean([body.linvel.z for body in solver.particles]))
+        if after > 0.5 * before:
+            break
+        before = after
+    rebound = float(np.max([body.linvel.z for body in solver.particles]))
+    assert max(rebound, 0.0) / -before == pytest.approx(restitution, abs=0.02)
+
+
+def test_that_no_particle_gets_between_the_boxes_of_the_wall(boxes: Dataset) -> None:
+    """Balls thrown at the corners of the ring."""
+    case = ReposeCase(TEST, n_particles=N_WALLS, shapes="spheres")
+    solver = RapierSolver(prepare(boxes, case), RapierSettings())
+    radius = 0.01 / solver.prepared.mean_diameter
+    angle = 2 * np.pi * (np.arange(N_WALLS) + 0.5) / N_WALLS
+    out = np.column_stack([np.cos(angle), np.sin(angle)])
+    heights = 0.6 + 1.3 * (np.arange(N_WALLS) % 4)
+    place(solver, np.column_stack([(radius - 0.7) * out, heights]))
+    for body, way in zip(solver.particles, out.tolist(), strict=True):
+        body.linvel = (5.0 * way[0], 5.0 * way[1], 0.0)
+    solver.begin("settle")
+    for _ in range(40):
+        solver.advance(0.025, 1)
+        reach = np.hypot(*solver.points[:, :2].T) + solver.prepared.diameters / solver.unit_length / 2
+        assert reach.max() < radius / np.cos(np.pi / N_WALLS) + 0.05
+
+
+def test_that_facets_of_the_core_lie_a_radius_within_those_of_the_polyhedron() -> None:
+    cube = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1.0, 1)])
+    core = inner_parallel_body(cube, 0.1)
+    assert np.unique(np.round(np.abs(core), 12)).tolist() == [0.9]
+    assert len(core) == 8
+
+
+def test_that_bodies_have_the_mass_and_inertia_of_their_polyhedra(boxes: Dataset) -> None:
+    solver = solver_of(boxes, n=40)
+    prepared = solver.prepared
+    volumes = np.pi / 6 * (prepared.diameters / prepared.mean_diameter) ** 3
+    assert [body.mass for body in solver.particles] == pytest.approx(volumes.tolist(), rel=1e-5)
+    edges = np.array([[1, 1, 1], np.array([3, 2, 1.5]) / 9 ** (1 / 3)])[prepared.class_index]
+    squares = (edges * (volumes ** (1 / 3))[:, None]) ** 2
+    inertia = volumes[:, None] / 12 * (squares.sum(axis=1)[:, None] - squares)
+    found = [body.mass_properties.principal_inertia.to_tuple() for body in solver.particles]
+    assert np.sort(found, axis=1) == pytest.approx(np.sort(inertia, axis=1), rel=1e-5)
+
+
+def test_that_particles_begin_as_the_initial_packing_has_them(boxes: Dataset) -> None:
+    solver = solver_of(boxes, n=60)
+    from regolith_studio.dem.initial_packing import loose_column
+
+    column = loose_column(solver.prepared)
+    assert solver.points == pytest.approx(column.points / solver.prepared.mean_diameter, rel=1e-5, abs=1e-5)
+    assert solver.orientations == pytest.approx(column.orientations, abs=1e-6)
+    assert solver.top >= (solver.points[:, 2] + enclosing_radii(solver.prepared) / solver.unit_length).max()
+
+
+def finish(steps: Generator[Snapshot, None, SimulationResult]) -> tuple[SimulationResult, list[EngineState]]:
+    """The result, and the state of every third snapshot."""
+    states = []
+    while True:
+        try:
+            snapshot = next(steps)
+        except StopIteration as end:
+            return end.value, states
+        if len(states) < 8 and snapshot.state is not None:
+            states.append(snapshot.state())
+
+
+@pytest.mark.parametrize("key", ["mujoco", "rapier"])
+def test_that_a_run_goes_on_from_any_state_as_if_it_had_not_been_interrupted(
+    boxes: Dataset, key: str
+) -> None:
+    prepared = prepare(boxes, ReposeCase(TEST, n_particles=40, seed=1))
+    engine = engine_named(key)
+    whole, states = finish(engine.simulate(prepared, quick(key)))
+    for state in (states[0], states[3], states[-1]):
+        rest, _ = finish(engine.resume(prepared, quick(key), state))  # type: ignore[attr-defined]
+        assert rest.particles.points.tobytes() == whole.particles.points.tobytes()
+        assert (rest.checks, rest.steps, rest.notes) == (whole.checks, whole.steps, whole.notes)
+
+
+def test_that_equal_seeds_give_equal_bytes_with_any_number_of_threads(
+    boxes: Dataset, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    prepared = prepare(boxes, ReposeCase(TEST, n_particles=60, seed=1))
+    found = set()
+    for threads in ("1", "1", "2", "3"):
+        monkeypatch.setenv("RAYON_NUM_THREADS", threads)
+        result, _ = finish(engine_named("rapier").simulate(prepared, quick("rapier")))
+        found.add(result.particles.points.tobytes() + result.particles.orientations.tobytes())
+        assert "Equal seeds give equal bytes" in result.notes[0]
+    assert len(found) == 1
+
+
+class Killed(BaseException):
+    """In place of a signal."""
+
+
+@pytest.mark.parametrize("key", ["mujoco", "rapier"])
+def test_that_a_killed_run_goes_on_and_ends_as_one_that_was_not(
+    boxes_folder: Path, tmp_path: Path, key: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    request = ReposeRequest(
+        ReposeCase(TEST, n_particles=40, seed=1), key, quick(key), EvaluationSettings(min_particles=40)
+    )
+    for _ in simulate_repose(boxes_folder, tmp_path / "whole", request):
+        pass
+    kill_after_states(boxes_folder, tmp_path / "killed", request, 5, monkeypatch)
+    (stage,) = tmp_path.glob(".killed*")
+    written = {path.name for path in snapshot_files(stage)}
+    for path in snapshot_files(stage)[:2]:
+        path.write_bytes(b"was here")  # a run from the beginning would write it again
+    for _ in simulate_repose(boxes_folder, tmp_path / "killed", request):
+        pass
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["killed", "whole"]
+    assert snapshot_files(tmp_path / "killed")[0].read_bytes() == b"was here"
+    for name in ("repose.json", "final.npz", "shapes.npz"):
+        assert (tmp_path / "killed" / name).read_bytes() == (tmp_path / "whole" / name).read_bytes()
+    assert not (tmp_path / "killed" / "state.zip").exists()
+    assert written < {path.name for path in snapshot_files(tmp_path / "killed")}
+    first, second = (snapshot_files(tmp_path / name)[-1] for name in ("killed", "whole"))
+    assert read_particle_state(first).time == read_particle_state(second).time
+
+
+def test_that_what_another_run_left_is_not_gone_on_from(
+    boxes_folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    request = ReposeRequest(
+        ReposeCase(TEST, n_particles=40, seed=1),
+        "rapier",
+        quick("rapier"),
+        EvaluationSettings(min_particles=40),
+    )
+    kill_after_states(boxes_folder, tmp_path / "run", request, 5, monkeypatch)
+    other = replace(request, case=replace(request.case, seed=2))
+    for name in ("run", "fresh"):
+        for _ in simulate_repose(boxes_folder, tmp_path / name, other):
+            pass
+    assert read_run(tmp_path / "run").document == read_run(tmp_path / "fresh").document
+    names = [[path.name for path in snapshot_files(tmp_path / name)] for name in ("run", "fresh")]
+    assert names[0] == names[1]
+
+
+def kill_after_states(
+    dataset: Path, folder: Path, request: ReposeRequest, states: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What a killed run leaves, its states saved at every snapshot."""
+    from regolith_studio.dataset.folder_io import dataset_hash, read_dataset
+
+    class Pipe(io.BytesIO):
+        written = 0
+
+        def flush(self) -> None:
+            self.written += 1
+            if self.written > states + 1:
+                raise Killed
+
+    monkeypatch.setattr(engine_process, "STATE_INTERVAL", -1.0)
+    stage = folder.with_name(f".{folder.name}.unfinished.regolith-new")
+    (stage / "snapshots").mkdir(parents=True)
+    prepared: PreparedCase = prepare(read_dataset(dataset), request.case, dataset_hash(dataset))
+    with pytest.raises(Killed):
+        run_task(Pipe(), request.engine, prepared, request.settings, stage)
+    assert (stage / "state.zip").exists()
+
+
+def test_that_what_rapier_lacks_is_refused(boxes: Dataset) -> None:
+    rough = ReposeCase(TEST, ContactParameters(rolling_friction=0.1), n_particles=40)
+    sticky = ReposeCase(TEST, n_particles=40, cohesion="given")
+    for case, sentence in ((rough, "no rolling resistance"), (sticky, "no cohesion")):
+        with pytest.raises(InputError, match=sentence):
+            engine_named("rapier").simulate(prepare(boxes, case), RapierSettings())
+    with pytest.raises(InputError, match="time_step"):
+        RapierSettings(time_step=1.0)
