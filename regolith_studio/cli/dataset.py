@@ -233,7 +233,7 @@ def formats(json: Json = False, jobs: Jobs = 1, seed: Seed = 0) -> None:
 
     del jobs, seed  # taken by every command
     if json:
-        names = ("key", "label", "units", "carries", "loses", "alters", "load_command")
+        names = ("key", "label", "units", "carries", "loses", "alters", "convex_only", "load_command")
         print_json([{name: getattr(each, name) for name in names} for each in EXPORTERS.values()])
         return
     for each in EXPORTERS.values():
@@ -241,6 +241,7 @@ def formats(json: Json = False, jobs: Jobs = 1, seed: Seed = 0) -> None:
         typer.echo(
             f"{each.key}: {each.label}\n  units: {each.units}\n  carries: {'; '.join(each.carries)}"
             f"\n  loses: {'; '.join(each.loses)}{changed}"
+            f"\n  compounds: {f'refused. {each.convex_only}' if each.convex_only else 'yes'}"
         )
 
 

@@ -1,4 +1,4 @@
-"""Approximate a convex polyhedron by overlapping spheres with its volume and inertia.
+"""Approximate a polyhedron, or a union of several, by overlapping spheres with its volume and inertia.
 
 The spheres begin inside, each where it covers most of what is bare (the idea of Ferellec and McDowell 2010,
 Granular Matter 12, 459). Then centres and radii together descend the volume that polyhedron and union do not
@@ -16,7 +16,7 @@ from scipy.stats import qmc
 
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import BoolArray, FloatArray
-from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
+from regolith_studio.geometry.convex_compound import Polyhedron
 from regolith_studio.geometry.sphere_points import fibonacci_directions
 
 PROBES = 4096
@@ -90,7 +90,7 @@ class UnionMoments:
     area: float
 
 
-def fit_spheres(shape: ConvexPolyhedron, count: int) -> FloatArray:
+def fit_spheres(shape: Polyhedron, count: int) -> FloatArray:
     """At most `count` spheres whose union stands for `shape`, each row x, y, z, r.
 
     The union has the shape's volume and, from :data:`FEWEST_FOR_INERTIA` spheres on, its centroid and moments
@@ -113,7 +113,7 @@ def fit_spheres(shape: ConvexPolyhedron, count: int) -> FloatArray:
     return np.asarray(spheres * size + [*shape.centroid, 0.0])
 
 
-def fit_spheres_within(shape: ConvexPolyhedron, max_error: float) -> FloatArray:
+def fit_spheres_within(shape: Polyhedron, max_error: float) -> FloatArray:
     """The fewest spheres of :data:`COUNTS` whose Jaccard distance is at most `max_error`.
 
     Raises
@@ -133,12 +133,12 @@ def fit_spheres_within(shape: ConvexPolyhedron, max_error: float) -> FloatArray:
     )
 
 
-def fit_spheres_by(shape: ConvexPolyhedron, count: int, max_error: float) -> FloatArray:
+def fit_spheres_by(shape: Polyhedron, count: int, max_error: float) -> FloatArray:
     """`count` spheres; where `max_error` is positive, as :func:`fit_spheres_within` instead."""
     return fit_spheres_within(shape, max_error) if max_error else fit_spheres(shape, count)
 
 
-def inscribed_spheres(shape: ConvexPolyhedron, count: int) -> FloatArray:
+def inscribed_spheres(shape: Polyhedron, count: int) -> FloatArray:
     """At most `count` spheres inside `shape`, each row x, y, z, r; the first is the largest that fits.
 
     Each further sphere is the one that covers most of the uncovered points, among many candidate centres with
@@ -146,7 +146,7 @@ def inscribed_spheres(shape: ConvexPolyhedron, count: int) -> FloatArray:
     """
     probes = inner_points(shape, PROBES)
     centres = np.vstack([_incentre(shape), probes[:CENTRES]])
-    radii = (shape.half_spaces.offsets - centres @ shape.half_spaces.normals.T).min(axis=1)
+    radii = -_depth(shape, centres)
     inside = cdist(centres, probes) <= radii[:, None]
     uncovered, chosen = np.ones(len(probes), dtype=bool), [0]
     uncovered &= ~inside[0]
@@ -199,7 +199,7 @@ def _bare_shares(spheres: FloatArray, k: int, directions: FloatArray) -> FloatAr
     return np.asarray(np.clip(0.5 + beyond.min(axis=1, initial=np.inf) / width, 0.0, 1.0))
 
 
-def sphere_fit_errors(shape: ConvexPolyhedron, spheres: FloatArray) -> SphereFitErrors:
+def sphere_fit_errors(shape: Polyhedron, spheres: FloatArray) -> SphereFitErrors:
     """Errors of a union of spheres; of the Jaccard distance to about 0.001."""
     moved = spheres - [*shape.centroid, 0.0]
     union = union_moments(moved)
@@ -238,7 +238,7 @@ class _Mismatch:
     monomials: FloatArray
 
     @classmethod
-    def of(cls, shape: ConvexPolyhedron) -> "_Mismatch":
+    def of(cls, shape: Polyhedron) -> "_Mismatch":
         size = shape.volume ** (1 / 3)
         low, high = shape.vertices.min(axis=0) - MARGIN * size, shape.vertices.max(axis=0) + MARGIN * size
         points = low + np.asarray(qmc.Sobol(3, scramble=False).random(SAMPLES)) * (high - low)
@@ -305,7 +305,7 @@ def _with_moments(spheres: FloatArray, target: FloatArray, scaling: FloatArray) 
     return np.asarray(best[visible] * (target[0] / union.values[0]) ** (1 / 3))
 
 
-def _moments_of(shape: ConvexPolyhedron) -> FloatArray:
+def _moments_of(shape: Polyhedron) -> FloatArray:
     """Integrals of the monomials over a shape about its centroid, shape (10,)."""
     inertia = shape.mesh.inertia
     second = np.trace(inertia) / 2 * np.eye(3) - inertia
@@ -332,20 +332,20 @@ def _covered(points: FloatArray, spheres: FloatArray) -> BoolArray:
     return covered
 
 
-def _depth(shape: ConvexPolyhedron, points: FloatArray) -> FloatArray:
-    """Largest distance from a facet's plane, negative inside, shape (k,)."""
-    planes = shape.half_spaces
-    return np.asarray((points @ planes.normals.T - planes.offsets).max(axis=1))
+def _depth(shape: Polyhedron, points: FloatArray) -> FloatArray:
+    """Largest distance from a plane of the part in which a point is deepest, negative inside, shape (k,)."""
+    depths = [(points @ normals.T - offsets).max(axis=1) for normals, offsets in shape.part_planes]
+    return np.asarray(np.min(depths, axis=0))
 
 
-def _box(shape: ConvexPolyhedron, spheres: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _box(shape: Polyhedron, spheres: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Lower and upper corner of a box about a shape and spheres."""
     centres, radii = spheres[:, :3], spheres[:, 3:]
     low = np.minimum(shape.vertices.min(axis=0), (centres - radii).min(axis=0))
     return low, np.maximum(shape.vertices.max(axis=0), (centres + radii).max(axis=0))
 
 
-def inner_points(shape: ConvexPolyhedron, count: int) -> FloatArray:
+def inner_points(shape: Polyhedron, count: int) -> FloatArray:
     """About `count` points inside, evenly spread (Sobol, no chance in it), shape (k, 3)."""
     low, high = shape.vertices.min(axis=0), shape.vertices.max(axis=0)
     share = shape.volume / float(np.prod(high - low))
@@ -354,9 +354,11 @@ def inner_points(shape: ConvexPolyhedron, count: int) -> FloatArray:
     return np.asarray(points[_depth(shape, points) <= 0.0])
 
 
-def _incentre(shape: ConvexPolyhedron) -> FloatArray:
-    """Centre of the largest sphere inside, by linear programming."""
-    planes = shape.half_spaces
-    matrix = np.column_stack([planes.normals, np.ones(len(planes))])
-    answer = linprog([0, 0, 0, -1], A_ub=matrix, b_ub=planes.offsets, bounds=[(None, None)] * 3 + [(0, None)])
-    return np.asarray(answer.x)[:3]
+def _incentre(shape: Polyhedron) -> FloatArray:
+    """Centre of the largest sphere inside a convex part, by linear programming."""
+    best = np.zeros(4)
+    for normals, offsets in shape.part_planes:
+        matrix = np.column_stack([normals, np.ones(len(normals))])
+        answer = linprog([0, 0, 0, -1], A_ub=matrix, b_ub=offsets, bounds=[(None, None)] * 3 + [(0, None)])
+        best = max(best, np.asarray(answer.x), key=lambda found: float(found[3]))
+    return np.asarray(best)[:3]

@@ -6,6 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.geometry.convex_compound import Polyhedron
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.half_spaces import HalfSpaces
 
@@ -46,10 +47,29 @@ def rounded(shape: ConvexPolyhedron, rounding: float) -> RoundedPolyhedron:
     planes = shape.half_spaces
     radius = rounding * float(planes.offsets.min())
     while True:
-        core = ConvexPolyhedron.from_half_spaces(HalfSpaces(planes.normals, planes.offsets - radius))
+        core = _eroded(shape, radius)
         if core.n_facets == shape.n_facets or radius < 1e-9 * float(planes.offsets.min()):
             return RoundedPolyhedron(core, radius)
         radius /= 2
+
+
+def rounded_parts(shape: Polyhedron, rounding: float) -> list[tuple[RoundedPolyhedron, FloatArray]]:
+    """The convex parts of a shape, rounded with one radius, each with its place, shape (3,).
+
+    The union of rounded parts is the rounded union. The radius is the smallest that `rounded` gives a part.
+    """
+    if isinstance(shape, ConvexPolyhedron):
+        return [(rounded(shape, rounding), np.zeros(3))]
+    radius = min(rounded(part, rounding).radius for part in shape.parts)
+    return [
+        (RoundedPolyhedron(_eroded(part, radius), radius), place)
+        for part, place in zip(shape.parts, shape.places, strict=True)
+    ]
+
+
+def _eroded(shape: ConvexPolyhedron, radius: float) -> ConvexPolyhedron:
+    planes = shape.half_spaces
+    return ConvexPolyhedron.from_half_spaces(HalfSpaces(planes.normals, planes.offsets - radius))
 
 
 def edges_of(shape: ConvexPolyhedron) -> list[tuple[int, int]]:

@@ -10,7 +10,7 @@ import numpy as np
 from scipy.optimize import lsq_linear
 
 from regolith_studio.geometry.arrays import FloatArray
-from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
+from regolith_studio.geometry.convex_compound import Polyhedron
 
 LOWEST = 0.05
 """Lowest mass of a sphere, in that which it has at equal density; some programs refuse spheres without."""
@@ -40,7 +40,7 @@ class SphereMasses:
     inertia_error: float
 
 
-def sphere_masses(shape: ConvexPolyhedron, spheres: FloatArray) -> SphereMasses:
+def sphere_masses(shape: Polyhedron, spheres: FloatArray) -> SphereMasses:
     """Masses of solid balls, rows x, y, z, r, that together have the shape's mass, centre and inertia.
 
     Among all that do, nearly those of the most even density; as near as it goes where few spheres cannot.

@@ -76,6 +76,17 @@ class ConvexCompound:
         return np.concatenate([part.half_spaces.normals for part in self.parts])
 
     @cached_property
+    def part_planes(self) -> tuple[tuple[FloatArray, FloatArray], ...]:
+        """Normals (n, 3) and offsets (n,) of the planes of each part, about the origin of the compound.
+
+        All x of a part have <normal, x> <= offset; an offset is negative where the origin lies outside.
+        """
+        return tuple(
+            (part.half_spaces.normals, part.half_spaces.offsets + part.half_spaces.normals @ place)
+            for part, place in zip(self.parts, self.places, strict=True)
+        )
+
+    @cached_property
     def part_meshes(self) -> tuple[Mesh, ...]:
         """Surface of each part in the frame of the compound."""
         return tuple(

@@ -110,6 +110,11 @@ class ConvexPolyhedron:
         return (self.mesh,)
 
     @property
+    def part_planes(self) -> tuple[tuple[FloatArray, FloatArray], ...]:
+        """Normals (n, 3) and offsets (n,) of the planes, of the only part."""
+        return ((self.half_spaces.normals, self.half_spaces.offsets),)
+
+    @property
     def volume(self) -> float:
         """Enclosed volume."""
         return self.mesh.volume

@@ -82,7 +82,7 @@ def make_particle(study, folder, case, record):
     particle.SetName(record["key"])
     particle.SetMaterial("regolith")
     mesh = str(folder / record["mesh"])
-    if not particle.ImportFromSTL(mesh, False):
+    if not particle.ImportFromSTL(mesh, record["concave"]):
         raise RuntimeError("Rocky could not import " + mesh)
     particle.EnableRandomOrientation()
     sizes = particle.GetSizeDistributionList()

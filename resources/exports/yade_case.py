@@ -22,6 +22,7 @@ from yade.minieigenHP import Quaternion
 
 FOLDER = Path(sys.argv[0]).resolve().parent
 BLOCKS = 24
+TETRAHEDRON = ((1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1))
 ANY, BLOCK = 1, 2
 """Bits of masks: bodies with a common bit meet, but not the blocks of the tube, which touch for good."""
 
@@ -47,7 +48,7 @@ def build(case):
         )
     grain = O.materials["regolith"]
     for record in read_particles():
-        O.bodies.append(make_particle(case, record, grain))
+        add_particle(case, record, grain)
     O.bodies.append(utils.wall(0.0, axis=2, sense=1, material="plate"))
     return [O.bodies.append(block) for block in make_tube(case, O.materials["tube"])]
 
@@ -75,13 +76,38 @@ def read_particles():
             yield {key: float(value) for key, value in row.items()}
 
 
-def make_particle(case, record, material):
-    """The scaled and turned hull of a shape's vertices; YADE finds centroid and principal axes itself."""
+def add_particle(case, record, material):
+    """The scaled and turned hull of a shape's vertices, or a clump of those of its convex parts.
+
+    YADE finds centroid, mass and principal axes itself. Those of a clump are sums over its members: the parts
+    weigh a hundredth, and points without extent, which touch nothing, the rest, so that the sums are those of
+    the union.
+    """
     turn = Quaternion(record["qw"], record["qx"], record["qy"], record["qz"])
-    place = Vector3(record["x"], record["y"], record["z"])
-    corners = case["shapes"][int(record["class"])]["vertices"]
-    points = [place + turn * (Vector3(*corner) * record["scale"]) for corner in corners]
-    return polyhedra_utils.polyhedra(material, v=points)
+    middle, scale = Vector3(record["x"], record["y"], record["z"]), record["scale"]
+
+    def placed(point):
+        return middle + turn * (Vector3(*point) * scale)
+
+    shape, mass = case["shapes"][int(record["class"])], material.density * scale**3
+    solids = [polyhedra_utils.polyhedra(material, v=list(map(placed, part))) for part in shape["parts"]]
+    if len(solids) == 1:
+        return O.bodies.append(solids[0])
+    for solid, share in zip(solids, shape["mass_shares"], strict=True):
+        solid.state.inertia *= share * mass / solid.state.mass
+        solid.state.mass = share * mass
+    points = []
+    for *point, share in shape["points"]:
+        corners = [[x + 0.05 * side for x, side in zip(point, corner, strict=True)] for corner in TETRAHEDRON]
+        body = polyhedra_utils.polyhedra(
+            material, v=list(map(placed, corners))
+        )  # of spheres YADE takes volumes
+        body.state.mass, body.state.inertia = share * mass, Vector3(0, 0, 0)
+        body.mask, body.bounded = 0, False
+        points.append(body)
+    clump, _ = O.bodies.appendClumped([*solids, *points])
+    O.bodies[clump].aspherical = True
+    return clump
 
 
 def set_engines(case):
@@ -115,8 +141,18 @@ def lift():
 
 
 def particles():
-    """Bodies that are neither plate nor tube."""
-    return [body for body in O.bodies if isinstance(body.shape, wrapper.Polyhedra) and body.mask == ANY]
+    """Bodies that are neither plate nor tube nor members of a clump."""
+    return [
+        body
+        for body in O.bodies
+        if body.isClump
+        or (body.isStandalone and isinstance(body.shape, wrapper.Polyhedra) and body.mask == ANY)
+    ]
+
+
+def volume(body):
+    """Of a clump by its mass, which is that of the union."""
+    return body.state.mass / CASE["contact"]["density"] if body.isClump else body.shape.GetVolume()
 
 
 def check():
@@ -124,7 +160,8 @@ def check():
     rows = []
     for body in particles():
         inertia = sorted(body.state.inertia)
-        rows.append({"volume": body.shape.GetVolume(), "mass": body.state.mass, "inertia": inertia})
+        place = list(body.state.pos)
+        rows.append({"volume": volume(body), "mass": body.state.mass, "inertia": inertia, "position": place})
     text = json.dumps({"time_step": O.dt, "particles": rows})
     (FOLDER / "check.json").write_text(text, encoding="utf-8")
 
@@ -135,7 +172,7 @@ def write_positions():
         writer = csv.writer(file)
         writer.writerow(("x", "y", "z", "radius"))
         for body in particles():
-            radius = (3 * body.shape.GetVolume() / (4 * math.pi)) ** (1 / 3)
+            radius = (3 * volume(body) / (4 * math.pi)) ** (1 / 3)
             writer.writerow((*body.state.pos, radius))
 
 

@@ -372,6 +372,10 @@
         <translation>; {count} Facetten waren verlangt</translation>
     </message>
     <message>
+        <source>&lt;b&gt;Not for compounds:&lt;/b&gt; {why}</source>
+        <translation>&lt;b&gt;Nicht für Verbünde:&lt;/b&gt; {why}</translation>
+    </message>
+    <message>
         <source>&lt;b&gt;Shapes are changed:&lt;/b&gt; {how}</source>
         <translation>&lt;b&gt;Formen werden verändert:&lt;/b&gt; {how}</translation>
     </message>
@@ -398,6 +402,10 @@
     <message>
         <source>A Dask cluster started on this machine</source>
         <translation>Ein auf diesem Rechner gestarteter Dask-Cluster</translation>
+    </message>
+    <message>
+        <source>A body rounded/polyhedron is one polyhedron; the format lammps-clumps can hold compounds.</source>
+        <translation>Ein Körper rounded/polyhedron ist ein einziges Polyeder; das Format lammps-clumps kann Verbünde aufnehmen.</translation>
     </message>
     <message>
         <source>A card is made of a fitted sample: fit a model to one first.</source>
@@ -2136,6 +2144,10 @@
         <translation>GIF von l_max 0 bis 30</translation>
     </message>
     <message>
+        <source>GSD has type_shapes of convex polyhedra and of unions of spheres, not of unions of polyhedra.</source>
+        <translation>GSD kennt type_shapes konvexer Polyeder und von Vereinigungen von Kugeln, nicht von Vereinigungen von Polyedern.</translation>
+    </message>
+    <message>
         <source>Gallery</source>
         <translation>Galerie</translation>
     </message>
@@ -2434,6 +2446,10 @@
     <message>
         <source>Its surface touches itself in {count} corners.</source>
         <translation>Seine Oberfläche berührt sich selbst in {count} Ecken.</translation>
+    </message>
+    <message>
+        <source>JKR, true stiffness: the modulus is soft</source>
+        <translation>JKR, wahre Steifigkeit: der Modul ist weich</translation>
     </message>
     <message>
         <source>Jaccard distance</source>
@@ -3150,6 +3166,10 @@
     <message>
         <source>Not fitted yet.</source>
         <translation>Noch nicht angepasst.</translation>
+    </message>
+    <message>
+        <source>Not for compounds: {why}</source>
+        <translation>Nicht für Verbünde: {why}</translation>
     </message>
     <message>
         <source>Not represented</source>
@@ -6248,6 +6268,10 @@
         <translation>von OpenGL im Fenster gezeichnet</translation>
     </message>
     <message>
+        <source>drawn particles: shape approximately, size, orientation</source>
+        <translation>gezogene Partikel: Form näherungsweise, Größe, Orientierung</translation>
+    </message>
+    <message>
         <source>drawn particles: shape, size, orientation</source>
         <translation>gezogene Partikel: Form, Größe, Lage</translation>
     </message>
@@ -6382,6 +6406,10 @@
     <message>
         <source>friction</source>
         <translation>Reibung</translation>
+    </message>
+    <message>
+        <source>friction, restitution</source>
+        <translation>Reibung, Restitution</translation>
     </message>
     <message>
         <source>from</source>
@@ -7330,6 +7358,10 @@
     <message>
         <source>{keys} is no key that a command can have.</source>
         <translation>{keys} ist keine Taste, die ein Befehl haben kann.</translation>
+    </message>
+    <message>
+        <source>{label} cannot hold the compounds of this dataset: {why}</source>
+        <translation>{label} kann die Verbünde dieses Datensatzes nicht aufnehmen: {why}</translation>
     </message>
     <message>
         <source>{label}: {share:.3g} % of voxels</source>

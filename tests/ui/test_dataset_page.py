@@ -9,8 +9,9 @@ from PySide6.QtGui import QGuiApplication
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QFileDialog, QMessageBox, QPushButton, QWidget
 
+from regolith_studio.dataset.build import build_dataset
 from regolith_studio.dataset.exporters import EXPORTERS
-from regolith_studio.dataset.folder_io import dataset_hash, read_dataset
+from regolith_studio.dataset.folder_io import dataset_hash, read_dataset, write_dataset
 from regolith_studio.dataset.validation import validate_dataset
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
@@ -27,6 +28,7 @@ from regolith_studio.ui.pages.dataset import PAGE
 from regolith_studio.ui.theme import DARK, LIGHT
 from regolith_studio.ui.widgets.thumbnails import TRIANGLES_PER_STEP, paint_thumbnail, thumbnail
 from regolith_studio.ui.widgets.toast import Toast
+from tests.dataset.example import elbow_entry, entry
 
 
 def grains(count=8, first=0):
@@ -134,6 +136,22 @@ def test_that_shapes_are_changed_only_with_a_second_tick(chosen, tmp_path, wait)
     assert chosen.targets.export.isEnabled()
     chosen.targets.setValue({"targets": []})
     assert not chosen.targets.export.isEnabled()
+
+
+def test_that_a_format_of_convex_particles_says_why_it_does_not_take_compounds(page, tmp_path) -> None:
+    dataset = build_dataset([elbow_entry()], name="elbows")
+    page._take_dataset(write_dataset(tmp_path / "set", dataset), dataset)
+    page.targets.setValue({"targets": ["mujoco", "gltf"]})
+    assert page.targets.export.isEnabled()
+    page.targets.boxes["hoomd"].setChecked(True)
+    assert not page.targets.export.isEnabled()
+    assert "GSD" in page.targets.export.toolTip()
+    assert "Not for compounds" in page.losses.label.text()
+    assert "Not for compounds" in page.targets.boxes["hoomd"].toolTip()
+    assert "Not for compounds" not in page.targets.boxes["mujoco"].toolTip()
+    convex = build_dataset([entry(1)], name="convex")
+    page._take_dataset(write_dataset(tmp_path / "other", convex), convex)
+    assert page.targets.export.isEnabled()
 
 
 def test_that_settings_reach_the_exports(chosen, tmp_path, wait) -> None:

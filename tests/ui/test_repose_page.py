@@ -86,7 +86,7 @@ def watch_moments(page, monkeypatch):
     drawn, show = [], page.player.show_moment
 
     def watch(pile, title, detail=""):
-        drawn.append((title, page.player._spheres, len(page.player._shapes[0])))
+        drawn.append((title, page.player._spheres, len(page.player._shapes[0][0])))
         show(pile, title, detail)
 
     monkeypatch.setattr(page.player, "show_moment", watch)

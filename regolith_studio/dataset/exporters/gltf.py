@@ -9,7 +9,7 @@ from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.export import NOTES, Exporter, ExportOptions, shape_names
 from regolith_studio.dataset.packing import pack_on_lattice
 from regolith_studio.geometry.arrays import FloatArray
-from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
+from regolith_studio.geometry.convex_compound import Polyhedron
 from regolith_studio.messages import N_
 
 ENLARGED = 1000.0
@@ -19,6 +19,7 @@ _FLOAT, _ARRAY_BUFFER = 5126, 34962
 _Z_UP_TO_Y_UP = [-np.sqrt(0.5), 0.0, 0.0, np.sqrt(0.5)]
 _NOTE = b"""particles.glb: 1 m in the file is 1 mm of the particles, so that a viewer's clipping planes fit.
 The file is y up as glTF demands; Blender turns it back to z up. Facets are shaded flat.
+Of compounds the surface of the union is drawn.
 Each particle is a node with its mesh's key, diameter and dataset name under 'extras'."""
 
 
@@ -26,7 +27,7 @@ def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
     keys, binary = shape_names(dataset), bytearray()
     document: dict[str, list[dict[str, object]]] = {"bufferViews": [], "accessors": [], "meshes": []}
     for key, one in zip(keys, dataset.representatives, strict=True):
-        positions, normals = _corners(one.convex)
+        positions, normals = _corners(one.shape)
         attributes = {
             "POSITION": _store(document, binary, positions),
             "NORMAL": _store(document, binary, normals),
@@ -79,9 +80,9 @@ def _nodes(dataset: Dataset, options: ExportOptions, keys: list[str]) -> list[di
     return nodes
 
 
-def _corners(shape: ConvexPolyhedron) -> tuple[FloatArray, FloatArray]:
+def _corners(shape: Polyhedron) -> tuple[FloatArray, FloatArray]:
     """Three corners a triangle and the normal of its facet at each, shape (3 t, 3)."""
-    normals = shape.half_spaces.normals[shape.triangle_facets]
+    normals = shape.facet_normals[shape.triangle_facets]
     return shape.mesh.triangles.reshape(-1, 3), np.repeat(normals, 3, axis=0)
 
 
@@ -138,4 +139,5 @@ EXPORTER = Exporter(
     ),
     load_command=_LOAD,
     files=_files,
+    convex_only="",
 )

@@ -39,4 +39,7 @@ EXPORTER = Exporter(
     loses=(N_("facets: they are those of the vertices' hull"), N_("contact parameters")),
     load_command="python -m json.tool {shell}/type_shapes.json",
     files=_files,
+    convex_only=N_(
+        "GSD has type_shapes of convex polyhedra and of unions of spheres, not of unions of polyhedra."
+    ),
 )

@@ -30,11 +30,11 @@ def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
     to_metres = options.coarse_graining_factor * MICROMETRE * (np.pi / 6) ** (1 / 3)
     by_mass = dataset.class_weights("volume")
     for key, one, weight in zip(shape_names(dataset), dataset.representatives, by_mass, strict=True):
-        spheres = fit_spheres_by(one.convex, options.n_spheres, options.max_error)
+        spheres = fit_spheres_by(one.shape, options.n_spheres, options.max_error)
         name = f"spheres/{key}.txt"
         files[name] = "".join(" ".join(map(repr, row)) + "\n" for row in spheres.tolist()).encode("ascii")
-        said.append(f"  {key}: {len(spheres)} spheres, {sphere_fit_errors(one.convex, spheres).jaccard:.3f}")
-        moments = one.convex.mesh.inertia.diagonal()
+        said.append(f"  {key}: {len(spheres)} spheres, {sphere_fit_errors(one.shape, spheres).jaccard:.3f}")
+        moments = one.shape.mesh.inertia.diagonal()
         sizes = size_classes(one.sizes)
         for number, (diameter, share) in enumerate(zip(sizes.diameters, sizes.mass, strict=True)):
             scale = float(diameter * to_metres)
@@ -78,5 +78,6 @@ EXPORTER = Exporter(
     ),
     load_command="include {folder}/templates.in",
     files=_files,
+    convex_only="",
     alters=N_("overlapping spheres stand for each polyhedron; facets become bumpy, corners round."),
 )

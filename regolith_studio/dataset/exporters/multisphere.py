@@ -34,14 +34,14 @@ HEADER = (
 def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
     files, rows, said = {}, [], []
     for key, one in zip(shape_names(dataset), dataset.representatives, strict=True):
-        spheres = fit_spheres_by(one.convex, options.n_spheres, options.max_error)
-        errors = sphere_fit_errors(one.convex, spheres)
+        spheres = fit_spheres_by(one.shape, options.n_spheres, options.max_error)
+        errors = sphere_fit_errors(one.shape, spheres)
         text = "".join(" ".join(map(repr, row)) + "\n" for row in spheres.tolist())
         files[f"spheres/{key}.txt"] = text.encode("ascii")
-        masses = sphere_masses(one.convex, spheres)
+        masses = sphere_masses(one.shape, spheres)
         files[f"masses/{key}.txt"] = "".join(f"{mass!r}\n" for mass in masses.values.tolist()).encode("ascii")
-        moments = np.diag(one.convex.mesh.inertia).tolist()
-        volume = one.convex.volume * (1 + errors.volume)
+        moments = np.diag(one.shape.mesh.inertia).tolist()
+        volume = one.shape.volume * (1 + errors.volume)
         rows.append(
             (key, len(spheres), volume, *moments, *astuple(errors), masses.centre_error, masses.inertia_error)
         )
@@ -70,5 +70,6 @@ EXPORTER = Exporter(
     loses=(N_("flat facets and edges"), N_("contact parameters")),
     load_command="file {folder}/spheres/shape_00.txt",
     files=_files,
+    convex_only="",
     alters=N_("overlapping spheres stand for each polyhedron; facets become bumpy, corners round."),
 )

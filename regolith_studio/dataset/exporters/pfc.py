@@ -4,7 +4,7 @@ from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.export import NOTES, Exporter, ExportOptions, shape_names, sizes_csv
 from regolith_studio.dataset.multisphere import fit_spheres_by, sphere_fit_errors
 from regolith_studio.geometry.arrays import FloatArray
-from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
+from regolith_studio.geometry.convex_compound import Polyhedron
 from regolith_studio.io.stl import stl_bytes
 from regolith_studio.messages import N_
 
@@ -22,11 +22,11 @@ def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
     files, said = {}, []
     lines = ["; regolith-studio: shapes of volume 1, for PFC3D"]
     for key, one in zip(shape_names(dataset), dataset.representatives, strict=True):
-        spheres = fit_spheres_by(one.convex, options.n_spheres, options.max_error)
-        said.append(f"  {key}: {len(spheres)} pebbles, {sphere_fit_errors(one.convex, spheres).jaccard:.3f}")
-        triangles = one.convex.mesh.triangles
+        spheres = fit_spheres_by(one.shape, options.n_spheres, options.max_error)
+        said.append(f"  {key}: {len(spheres)} pebbles, {sphere_fit_errors(one.shape, spheres).jaccard:.3f}")
+        triangles = one.shape.mesh.triangles
         files[f"meshes/{key}.stl"] = stl_bytes(triangles, f"regolith-studio unit-volume {key}")
-        lines += _template(key, one.convex, spheres)
+        lines += _template(key, one.shape, spheres)
     return files | {
         "templates.dat": ("\n".join(lines) + "\n").encode("ascii"),
         "sizes.csv": sizes_csv(dataset),
@@ -34,7 +34,7 @@ def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
     }
 
 
-def _template(key: str, shape: ConvexPolyhedron, spheres: FloatArray) -> list[str]:
+def _template(key: str, shape: Polyhedron, spheres: FloatArray) -> list[str]:
     """Commands of one shape; ``...`` continues a line."""
     pebbles = [f"        {r!r} {x!r} {y!r} {z!r} ..." for x, y, z, r in spheres.tolist()]
     moments = " ".join(map(repr, shape.mesh.inertia.diagonal().tolist()))
@@ -64,5 +64,6 @@ EXPORTER = Exporter(
     loses=(N_("flat facets and edges of the clumps"), N_("contact parameters")),
     load_command="program call '{folder}/templates.dat'",
     files=_files,
+    convex_only="",
     alters=N_("overlapping spheres stand for each polyhedron; facets become bumpy, corners round."),
 )

@@ -4,13 +4,15 @@ import numpy as np
 
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.export import NOTES, Exporter, ExportOptions, shape_names, sizes_csv
-from regolith_studio.dataset.rounded_polyhedra import rounded
-from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
+from regolith_studio.dataset.rounded_polyhedra import rounded_parts
+from regolith_studio.geometry.convex_compound import Polyhedron
 from regolith_studio.messages import N_
 
 _NOTE = """shapes.shp holds all shapes, of volume 1 before rounding; a particle's homothety is its
 scale d (pi/6)^(1/3), and the Minkowski radius scales with it. Facets stay in their planes: vertices lie
 inside by the radius. 'volume' is that of the rounded body (Steiner's formula), 'I/m' that of the sharp one.
+A compound has the vertices, edges and facets of all its convex parts, also where they lie within another
+part, which changes no contact; its 'volume' and 'I/m' are those of the sharp union.
 exaDEM admits 8 vertices a particle unless it is compiled for more: these shapes need {most}
 (cmake -DEXADEM_MAX_VERTICES={most} or as your version calls it).
 Rounding takes {least:.3g} to {worst:.3g} % of the volume. Neither program was run on these files; they are
@@ -20,7 +22,7 @@ read back by an independent reader of the published syntax."""
 def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
     blocks, lost, most = [], [], 0
     for key, one in zip(shape_names(dataset), dataset.representatives, strict=True):
-        text, volume, vertices = _block(key, one.convex, options.rounding)
+        text, volume, vertices = _block(key, one.shape, options.rounding)
         blocks.append(text)
         lost.append(100 * (1 - volume))
         most = max(most, vertices)
@@ -32,16 +34,27 @@ def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
     }
 
 
-def _block(key: str, shape: ConvexPolyhedron, rounding: float) -> tuple[str, float, int]:
-    """Text of one shape, its volume, and the number of its vertices."""
-    body = rounded(shape, rounding)
-    core, radius = body.core, body.radius
-    low, high = core.vertices.min(axis=0), core.vertices.max(axis=0)
+def _block(key: str, shape: Polyhedron, rounding: float) -> tuple[str, float, int]:
+    """Text of a shape, its volume (of a compound that of the sharp union), and the number of its vertices."""
+    bodies = rounded_parts(shape, rounding)
+    first = np.cumsum([0, *(body.core.n_vertices for body, _ in bodies)]).tolist()
+    corners = np.concatenate([body.core.vertices + place for body, place in bodies])
+    edges = [
+        (a + start, b + start) for (body, _), start in zip(bodies, first, strict=False) for a, b in body.edges
+    ]
+    facets = [
+        [corner + start for corner in facet]
+        for (body, _), start in zip(bodies, first, strict=False)
+        for facet in body.core.facets
+    ]
+    radius = bodies[0][0].radius
+    volume = bodies[0][0].volume if len(bodies) == 1 else shape.volume
+    low, high = corners.min(axis=0), corners.max(axis=0)
     lines = ["<", f"name {key}", f"radius {radius!r}", "preCompDone y"]
-    lines += [f"nv {core.n_vertices}", *(_row(corner) for corner in core.vertices)]
-    lines += [f"ne {len(body.edges)}", *(f"{first} {second}" for first, second in body.edges)]
-    lines += [f"nf {core.n_facets}"]
-    lines += [" ".join(map(str, (len(facet), *facet))) for facet in core.facets]
+    lines += [f"nv {len(corners)}", *(_row(corner) for corner in corners)]
+    lines += [f"ne {len(edges)}", *(f"{a} {b}" for a, b in edges)]
+    lines += [f"nf {len(facets)}"]
+    lines += [" ".join(map(str, (len(facet), *facet))) for facet in facets]
     lines += [
         f"obb.extent {_row((high - low) / 2 + radius)}",
         "obb.e1 1 0 0",
@@ -50,12 +63,12 @@ def _block(key: str, shape: ConvexPolyhedron, rounding: float) -> tuple[str, flo
         f"obb.center {_row((high + low) / 2)}",
         "position 0 0 0",
         "orientation 1 0 0 0",
-        f"volume {body.volume!r}",
+        f"volume {volume!r}",
         f"I/m {_row(shape.mesh.inertia.diagonal())}",
         ">",
         "",
     ]
-    return "\n".join(lines), body.volume, core.n_vertices
+    return "\n".join(lines), volume, len(corners)
 
 
 def _row(values: np.ndarray) -> str:
@@ -77,5 +90,6 @@ EXPORTER = Exporter(
     ),
     load_command="shapeFile {folder}/shapes.shp",
     files=_files,
+    convex_only="",
     alters=N_("both programs need rounded edges; facets stay in their planes, corners are lost."),
 )

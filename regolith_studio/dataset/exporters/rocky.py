@@ -13,6 +13,7 @@ from regolith_studio.dataset.export import (
 )
 from regolith_studio.dataset.lifting_cylinder import MICROMETRE, box_mesh, particle_count, tube_mesh
 from regolith_studio.dataset.size_distributions import size_classes
+from regolith_studio.geometry.convex_compound import ConvexCompound
 from regolith_studio.io.json_text import canonical_json
 from regolith_studio.io.stl import stl_bytes
 from regolith_studio.messages import N_
@@ -23,7 +24,8 @@ Mindlin-Deresiewicz contacts, JKR, coarse graining, one particle input a shape, 
 that is lifted off a plate. About {count:,.0f} particles of {mass:.4g} g in all, coarse graining {factor:g}.
 Rocky counts sizes by mass: the percentages in case.json are cumulative mass percentages, converted
 from the dataset's, and each shape is filled in with its share of the mass. Sizes are equivalent diameters,
-so that the STL files need no unit. Restitution, wall friction and lifting speed are not given in the paper.
+so that the STL files need no unit. Of compounds the surface of the union is imported as a concave particle.
+Restitution, wall friction and lifting speed are not given in the paper.
 When it has been simulated, rocky_positions.py writes the particles' positions for the measurement of the
 angle of repose.
 Method names are those of the interface's public reference for 2024 R2 to 2026 R1; the script is tested
@@ -34,7 +36,7 @@ GetExportToolkit().ExportParticleToStl before you trust a long run."""
 def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
     keys = shape_names(dataset)
     meshes = {
-        f"meshes/{key}.stl": stl_bytes(one.convex.mesh.triangles, f"regolith-studio unit-volume {key}")
+        f"meshes/{key}.stl": stl_bytes(one.shape.mesh.triangles, f"regolith-studio unit-volume {key}")
         for key, one in zip(keys, dataset.representatives, strict=True)
     }
     test, factor = options.test, options.coarse_graining_factor
@@ -67,6 +69,7 @@ def _case(dataset: Dataset, options: ExportOptions, keys: list[str]) -> dict[str
                 "key": key,
                 "name": one.name,
                 "mesh": f"meshes/{key}.stl",
+                "concave": isinstance(one.shape, ConvexCompound),
                 "mass": float(share * test.mass),
                 "sizes": rows.tolist(),
             }
@@ -108,4 +111,5 @@ EXPORTER = Exporter(
     loses=(N_("continuous size distributions: at most 16 sizes a shape"), N_("rolling resistance")),
     load_command="python {shell}/rocky_case.py",
     files=_files,
+    convex_only="",
 )

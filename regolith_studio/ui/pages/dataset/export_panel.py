@@ -95,7 +95,7 @@ class ExportPanel(QWidget):
             getattr(self, part).valueChanged.connect(self.optionsChanged)
         self.lossy.toggled.connect(lambda _: self._show())
         self.export.clicked.connect(self.exportRequested)
-        self._ready = False
+        self._ready = self._compounds = False
         self.setValue({"targets": FIRST})
 
     def chosen(self) -> tuple[str, ...]:
@@ -116,9 +116,9 @@ class ExportPanel(QWidget):
         """Whether the user allows formats that change shapes."""
         return self.lossy.isChecked()
 
-    def set_ready(self, ready: bool) -> None:
-        """Set whether there is a dataset to export."""
-        self._ready = ready
+    def set_ready(self, ready: bool, compounds: bool = False) -> None:
+        """Set whether there is a dataset to export, and whether it holds compounds."""
+        self._ready, self._compounds = ready, compounds
         self._show()
 
     def value(self) -> dict[str, Any]:
@@ -175,6 +175,8 @@ class ExportPanel(QWidget):
             tr("Does not contain: {what}", what="; ".join(map(tr, exporter.loses))),
         ]
         lines += [tr("Shapes are changed: {how}", how=tr(exporter.alters))] if exporter.alters else []
+        if exporter.convex_only:
+            lines.append(tr("Not for compounds: {why}", why=tr(exporter.convex_only)))
         box.setToolTip("\n".join([*lines, tr("Units: {units}", units=tr(exporter.units))]))
         box.toggled.connect(lambda _: self._show())
         return box
@@ -186,12 +188,23 @@ class ExportPanel(QWidget):
     def _show(self) -> None:
         altering = [key for key in self.chosen() if EXPORTERS[key].alters]
         self.lossy.setEnabled(bool(altering))
-        allowed = self._allowed()
-        self.export.setEnabled(getattr(self, "_ready", False) and bool(self.chosen()) and allowed)
-        self.export.setToolTip(
-            "" if allowed else f"{EXPORTERS[altering[0]].label}: {tr(EXPORTERS[altering[0]].alters)}"
-        )
+        problem = ""
+        if not self._allowed():
+            problem = f"{EXPORTERS[altering[0]].label}: {tr(EXPORTERS[altering[0]].alters)}"
+        elif refusing := self.refusing():
+            problem = tr(
+                "{label} cannot hold the compounds of this dataset: {why}",
+                label=EXPORTERS[refusing[0]].label,
+                why=tr(EXPORTERS[refusing[0]].convex_only),
+            )
+        self.export.setEnabled(getattr(self, "_ready", False) and bool(self.chosen()) and not problem)
+        self.export.setToolTip(problem)
         self.chosenChanged.emit()
+
+    def refusing(self) -> list[str]:
+        """Keys of the selected formats that cannot hold the dataset's compounds."""
+        compounds = getattr(self, "_compounds", False)
+        return [key for key in self.chosen() if compounds and EXPORTERS[key].convex_only]
 
 
 def _column(parts: Sequence[QWidget]) -> QWidget:
@@ -222,14 +235,16 @@ class LossesLabel(QScrollArea):
         for ground in (self.viewport(), self.label):
             ground.setAutoFillBackground(False)  # that of the tab is seen
 
-    def show_formats(self, keys: Sequence[str]) -> None:
-        """Describe other formats."""
+    def show_formats(self, keys: Sequence[str], refusing: Sequence[str] = ()) -> None:
+        """Describe other formats; those `refusing` cannot hold the dataset."""
         lines = []
         for key in keys:
             each = EXPORTERS[key]
             changed = (
                 "<br>" + tr("<b>Shapes are changed:</b> {how}", how=tr(each.alters)) if each.alters else ""
             )
+            if key in refusing:
+                changed += "<br>" + tr("<b>Not for compounds:</b> {why}", why=tr(each.convex_only))
             lost = "; ".join(map(tr, each.loses))
             lines.append(
                 "<p>"

@@ -14,6 +14,7 @@ from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.export import ExportResult
 from regolith_studio.dataset.quality import QualityPoint
 from regolith_studio.errors import RegolithError
+from regolith_studio.geometry.convex_compound import ConvexCompound
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.jobs.dataset_jobs import (
     DatasetBuildResult,
@@ -354,7 +355,8 @@ class DatasetPage(PageWidget):
         self._exports = []
         self._show_result()
         self.distribution.show_classes(self._classes())
-        self.targets.set_ready(True)
+        compounds = any(isinstance(one.shape, ConvexCompound) for one in dataset.representatives)
+        self.targets.set_ready(True, compounds)
 
     def _show_result(self) -> None:
         """What has been written, and where."""
@@ -412,7 +414,7 @@ class DatasetPage(PageWidget):
         self._context.session.dataset_request = self._controls.request() if is_complete else None
 
     def _show_losses(self) -> None:
-        self.losses.show_formats(self.targets.chosen())
+        self.losses.show_formats(self.targets.chosen(), self.targets.refusing())
 
     def _connect(self) -> None:
         self.representatives.findRequested.connect(self.find_representatives)
