@@ -173,6 +173,19 @@ def test_that_errors_bounds_and_reasons_are_shown(command, grains: Path, tmp_pat
     assert shown.out.splitlines()[-1] == f"1 of 1 particles coarsened in {tmp_path}"
 
 
+def test_that_the_particle_itself_is_imitated_and_compared_with_where_no_target_is_named(
+    command, grains: Path, tmp_path: Path
+) -> None:
+    """Its spherical-harmonics surface at l_max = 10 is rounder than the particle that was given."""
+    told = ("coarsen", grains / "grain-b.stl", "--facets", 20, "--method", "quadric", "--json")
+    (entry,) = command(*told, "-o", tmp_path / "c").json["particles"]
+    (other,) = command(*told, "-o", tmp_path / "f", "--target", "fit").json["particles"]
+    meshes = [trimesh.load_mesh(path) for path in (grains / "grain-b.stl", tmp_path / "c" / "grain-b.stl")]
+    given, written = (np.cbrt(36 * np.pi * mesh.volume**2) / mesh.area for mesh in meshes)
+    assert abs(entry["errors"]["sphericity"]) == pytest.approx(abs(written / given - 1), abs=1e-4)
+    assert abs(other["errors"]["sphericity"]) != pytest.approx(abs(written / given - 1), abs=1e-4)
+
+
 def test_that_a_particle_that_fails_does_not_stop_the_others(command, grains: Path, tmp_path: Path) -> None:
     corners = [[0, 0, 0], [9, 0, 0], [0, 9, 0], [0, 0, 9]]
     faces = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]]
