@@ -1,12 +1,14 @@
 """Draws against the particles themselves: fit to one half, draw, compare with the other half at all degrees.
 
     python -m benchmarks.draws_against_particles [SAMPLE] [--seed 11] [--particles 1200] [--splits 3]
-        [--models recombined,hull_field,sample_matched] [--odd] [--l-max L] [--name NAME] [-o RESULT.json]
+        [--models recombined,hull_field,sample_matched] [--odd] [--l-max L]
+        [--level 4] [--name NAME] [-o RESULT.json]
 
 Wasserstein distances in percent of the mean, by number, of as many draws as the half fitted to has
 particles; means over the splits, and processor seconds of a fit and of 2,000 draws. SAMPLE is a fit, or
 tables of complex coefficients. With ``--l-max`` its particles are cut at that degree first, with ``--odd``
-only every second one is taken, from the second on. Set OPENBLAS_NUM_THREADS=1 for seconds that compare.
+only every second one is taken, from the second on; ``--level`` is that of the meshes. Set
+OPENBLAS_NUM_THREADS=1 for seconds that compare.
 """
 
 import argparse
@@ -22,7 +24,7 @@ from regolith_studio.geometry.arrays import FloatArray, IntArray
 from regolith_studio.shape_models.goodness_of_fit import relative_wasserstein
 from regolith_studio.shape_models.models import MODELS
 from regolith_studio.shape_models.sample import Sample
-from regolith_studio.studies.population import KEYS, N_FLOOR_SPLITS
+from regolith_studio.studies.population import KEYS, MESH_LEVEL, N_FLOOR_SPLITS
 
 CUTS = (10, 20)
 N_DRAWS = 2000
@@ -37,7 +39,7 @@ def far(one: FloatArray, two: FloatArray) -> FloatArray:
 
 
 def judged(
-    key: str, sample: Sample, table: FloatArray, halves: list[tuple[IntArray, IntArray]]
+    key: str, sample: Sample, table: FloatArray, halves: list[tuple[IntArray, IntArray]], level: int
 ) -> FloatArray:
     """Distances of a model's draws from the halves that it has not seen, and processor seconds."""
     found = []
@@ -46,14 +48,14 @@ def judged(
         model = MODELS[key]
         draws = model.fit(sample.chosen(train), model.Settings(l_max=sample.l_max)).draw(N_DRAWS, number)
         spent = time.process_time() - begin
-        found.append([*far(table[test], measured(draws.chosen(range(len(train))), KEYS)), spent])
+        found.append([*far(table[test], measured(draws.chosen(range(len(train))), KEYS, level)), spent])
     return np.mean(found, axis=0)
 
 
-def table_of(sample: Sample, seed: int, n_splits: int, keys: Sequence[str]) -> Rows:
+def table_of(sample: Sample, seed: int, n_splits: int, keys: Sequence[str], level: int) -> Rows:
     """All rows of the table of one sample."""
     rows: Rows = {}
-    table = measured(realized(sample), KEYS)
+    table = measured(realized(sample), KEYS, level)
     halves = [sample.halves(seed + split) for split in range(N_FLOOR_SPLITS)]
     floor = [far(table[a], table[b]) for a, b in halves]
     show_row(rows, "floor", np.mean(floor, axis=0))
@@ -62,10 +64,10 @@ def table_of(sample: Sample, seed: int, n_splits: int, keys: Sequence[str]) -> R
         rows, "the half fitted to", np.mean([far(table[b], table[a]) for a, b in halves[:n_splits]], axis=0)
     )
     for degree in (degree for degree in CUTS if degree < sample.l_max):
-        cut = measured(realized(sample.truncated(degree)), KEYS)
+        cut = measured(realized(sample.truncated(degree)), KEYS, level)
         show_row(rows, f"cut at l = {degree}", far(table, cut))
     for key in keys:
-        show_row(rows, key, judged(key, sample, table, halves[:n_splits]))
+        show_row(rows, key, judged(key, sample, table, halves[:n_splits], level))
     return rows
 
 
@@ -73,7 +75,13 @@ def main() -> None:
     """Print the table of one sample, and add it to a result file."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("sample", nargs="?", default="")
-    for name, number in (("seed", 11), ("particles", 1200), ("splits", 3), ("l-max", 0)):
+    for name, number in (
+        ("seed", 11),
+        ("particles", 1200),
+        ("splits", 3),
+        ("l-max", 0),
+        ("level", MESH_LEVEL),
+    ):
         parser.add_argument(f"--{name}", type=int, default=number)
     parser.add_argument("--models", default=",".join(MODEL_KEYS))
     parser.add_argument("--odd", action="store_true")
@@ -85,7 +93,7 @@ def main() -> None:
     whole = whole.truncated(options.l_max) if options.l_max else whole
     rng = np.random.default_rng(np.random.SeedSequence(options.seed))
     sample = whole.chosen(rng.permutation(len(whole))[: options.particles])
-    rows = table_of(sample, options.seed, options.splits, options.models.split(","))
+    rows = table_of(sample, options.seed, options.splits, options.models.split(","), options.level)
     made_with = {"seed": options.seed, "particles": len(sample), "splits": options.splits}
     name = options.name or Path(options.sample).stem or CARD
     add_result(options.output, name, rows, **made_with)
