@@ -146,8 +146,8 @@ def coarsening_errors(
 def coarsened_rows(target: Target, rows: Sequence[LossVariant], seed: int) -> list[CoarseningResult]:
     """The particle coarsened by each row.
 
-    A row that differs from earlier ones by more facets alone has one more start, from the result with the
-    next smaller number, so that the loss falls with the number of facets.
+    A row that differs from earlier ones by more facets alone has one more start, from the best of their
+    results, so that the loss falls with the number of facets.
     """
     results: list[CoarseningResult] = []
     for row in rows:
@@ -159,7 +159,7 @@ def coarsened_rows(target: Target, rows: Sequence[LossVariant], seed: int) -> li
             if earlier.n_facets < row.n_facets
             and row.relabelled(earlier.label, n_facets=earlier.n_facets) == earlier
         ]
-        fewer = max(alike, key=lambda found: found.n_facets_asked, default=None)
+        fewer = min(alike, key=lambda found: (found.reason is not None, found.loss), default=None)
         start = None if fewer is None else fewer.half_spaces
         results.append(coarsen(target, row.n_facets, method, row.weights, seed, settings, start))
     return results

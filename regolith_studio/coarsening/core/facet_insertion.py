@@ -4,16 +4,21 @@ import numpy as np
 
 from regolith_studio.coarsening.core.intersection import FINE
 from regolith_studio.coarsening.core.polyhedron_measures import measure_polyhedron
-from regolith_studio.geometry.arrays import FloatArray, IntArray
+from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray
 from regolith_studio.geometry.kernels import kernel_noalloc
 from regolith_studio.geometry.vectors import Vector, along, length, mixed, row
 
 MIN_CUT = 3e-3
 """Least depth of a cut that is worth it, at unit volume."""
+DEEPEST = 0.3
+"""Share of the way to the nearest neighbouring corner that a cut of this least depth may take."""
 ROOMY = 0.6
 """Corners with less than this share of the largest room are left alone: cuts there would be slivers."""
 MIN_FACET = 1e-6
 """Facets of less area, at unit volume, count as lost."""
+TOUCHING = 1e-6
+"""Corners as near as this to a side of a box touch it."""
+NO_AXES = np.empty((0, 3))
 
 
 def insert_lost_facets(
@@ -23,16 +28,20 @@ def insert_lost_facets(
     first: IntArray,
     distance: FloatArray,
     depth: float,
+    axes: FloatArray = NO_AXES,
 ) -> tuple[int, FloatArray, FloatArray]:
     """Replace each half-space without a facet by a cut across the corner that hangs out farthest.
 
-    A cut takes at most the share `depth` of the way to the nearest neighbouring corner, so no other facet
-    is lost.
+    A cut takes the share `depth` of the way to the nearest neighbouring corner, so no other facet is lost;
+    one of less than :data:`MIN_CUT` takes up to the share :data:`DEEPEST` instead.
 
     Parameters
     ----------
     directions, first, distance
         Rays, and the particle's crossings as from :func:`regolith_studio.coarsening.core.rays.cast`.
+    axes
+        Of boxes, shape (k, 3): corners that touch these boxes are left alone, where there are others, since
+        a cut there would change the boxes to first order.
 
     Returns
     -------
@@ -51,12 +60,21 @@ def insert_lost_facets(
             break
         vertices, triples = polyhedron.vertices, polyhedron.triples
         rooms = np.empty(len(vertices))
-        at = _best_corner(normals, vertices, triples, directions, first, distance, depth, rooms)
+        free = _not_touching(vertices, axes)
+        at = _best_corner(normals, vertices, triples, directions, first, distance, depth, free, rooms)
         cut = normals[triples[at]].sum(axis=0)
         cut /= np.linalg.norm(cut)
-        normals[lost[0]], offsets[lost[0]] = cut, cut @ vertices[at] - depth * rooms[at]
+        below = max(depth * rooms[at], min(MIN_CUT, DEEPEST * rooms[at]))
+        normals[lost[0]], offsets[lost[0]] = cut, cut @ vertices[at] - below
         n_cuts += 1
     return n_cuts, normals, offsets
+
+
+def _not_touching(vertices: FloatArray, axes: FloatArray) -> BoolArray:
+    """Which corners touch no side of the boxes; all where every one does."""
+    heights = vertices @ np.vstack([axes, -axes]).T
+    free = np.all(heights < heights.max(axis=0) - TOUCHING, axis=1)
+    return free if free.any() else np.ones(len(vertices), dtype=bool)
 
 
 @kernel_noalloc
@@ -68,17 +86,21 @@ def _best_corner(
     first: IntArray,
     distance: FloatArray,
     depth: float,
+    free: BoolArray,
     rooms: FloatArray,
 ) -> int:
-    """Index of the corner that hangs out farthest of those with room for a cut.
+    """Index of the corner that hangs out farthest of the free ones with room for a cut.
 
-    Fills `rooms`: for each corner the way along its cut's normal to the nearest neighbouring corner, (v,).
+    Fills `rooms`: for each corner the way along its cut's normal to the nearest neighbouring corner, (v,);
+    none where it is not free.
     """
     for v in range(len(vertices)):
         normal = _corner_normal(normals, triples, v)
         rooms[v] = np.inf
         for u in range(len(vertices)):
-            if _share_edge(triples, u, v):
+            if not free[v]:
+                rooms[v] = 0.0
+            elif _share_edge(triples, u, v):
                 rooms[v] = min(rooms[v], along(vertices, v, normal) - along(vertices, u, normal))
     at, max_overhang = int(rooms.argmax()), -np.inf
     enough = max(MIN_CUT / depth, ROOMY * rooms[at])

@@ -3,6 +3,7 @@
 from collections.abc import Generator, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import product
 
 import numpy as np
 
@@ -34,7 +35,7 @@ from regolith_studio.coarsening.exact.single_start import (
 )
 from regolith_studio.coarsening.exact.sliver_removal import COST, has_small_facets, remove_slivers
 from regolith_studio.coarsening.exact.start_from_box import FEW_FACETS, solve_from_box
-from regolith_studio.coarsening.exact.start_from_fewer import solve_from_fewer
+from regolith_studio.coarsening.exact.start_from_fewer import DEPTHS, grown_from_fewer, relaxed_from_fewer
 from regolith_studio.coarsening.loss import LossFunction
 from regolith_studio.coarsening.lower_bounds import sphericity_reason
 from regolith_studio.coarsening.progress import MethodStep
@@ -76,6 +77,8 @@ OUT_OF_REACH = 4e-3
 """Where all polyhedra miss a constraint by more (in logarithms), no further start is tried."""
 COSTLY_SURPLUS = 0.12
 """Where a particle has so much more surface than its hull (in logarithms), keeping it may cost overlap."""
+RISE = 9e-4
+"""By how much the Jaccard distance may lie above that of a result with fewer facets."""
 STARTS_FOR_FACETS = 3
 """Further starts where all constraints are met, but a half-space bounds no facet."""
 
@@ -152,7 +155,7 @@ class Search:
                 yield from self._record.record_candidates(self._tried, further)
             yield from self._from_starts(most)
             yield from self._relaxations()
-        if self._fewer is not None:
+        if self._fewer is not None and not self._as_good_as_fewer():
             yield from self._from_fewer(self._fewer)
 
     def _from_starts(self, most: int) -> Iterator[MethodStep]:
@@ -178,11 +181,21 @@ class Search:
 
     def _from_fewer(self, fewer: HalfSpaces) -> Iterator[MethodStep]:
         """A step for each better polyhedron that is cut out of one with fewer facets."""
-        steps = self._level.bound_steps
-        found = solve_from_fewer(self._target, self._full, self._rest, fewer, self._n_facets, steps)
-        yield from self._record.record_candidates(self._total, found)
-        if self._record.met:
-            self._confirm(self._found())
+        sizes = self._n_facets, self._level.bound_steps
+        for problem, depths in product(self._checks, DEPTHS):
+            found = grown_from_fewer(self._target, problem, fewer, *sizes, depths)
+            yield from self._record.record_candidates(self._total, found)
+            if self._record.met:
+                self._confirm()
+            if self._as_good_as_fewer():
+                return
+        if not self._record.met:
+            relaxed = relaxed_from_fewer(self._target, self._full, self._rest, fewer, *sizes)
+            yield from self._record.record_candidates(self._total, relaxed)
+
+    def _as_good_as_fewer(self) -> bool:
+        """Whether the best polyhedron needs no start from that with fewer facets, which leaves slivers."""
+        return self._whole and self._room(self._without_slivers() or self._found()) >= 0.0
 
     def _relaxations(self) -> Iterator[MethodStep]:
         """A step for each polyhedron with less loss, where no start could meet all constraints together."""
@@ -249,17 +262,17 @@ class Search:
         best = self._record.best
         if best is None or not best.exact or not has_small_facets(best.normals, best.offsets):
             return None
-        even = remove_slivers(self._full, best, self._level.sliver_steps)
+        even = remove_slivers(self._full, best, self._level.sliver_steps, min(COST, self._room(best)))
         even = confirmed(self._request, self._checks, even)
-        dear = even.jaccard_distance > best.jaccard_distance + COST or self._worse_than_fewer(even)
+        dear = even.jaccard_distance > best.jaccard_distance + COST or self._room(even) < 0.0
         return even if even.exact and even.n_facets >= best.n_facets and not dear else None
 
-    def _worse_than_fewer(self, found: Candidate) -> bool:
-        """Whether it overlaps less than the result with fewer facets from which a start was made."""
+    def _room(self, found: Candidate) -> float:
+        """By how much its Jaccard distance may rise until the result with fewer facets is clearly better."""
         if self._fewer is None:
-            return False
-        overlap = self._target.jaccard_distance
-        return overlap(found.solid.half_spaces) > overlap(self._fewer) + COST
+            return np.inf
+        distance = self._target.jaccard_distance
+        return distance(self._fewer) + RISE - distance(found.solid.half_spaces)
 
     def _kept(self, outcome: Candidate) -> Candidate:
         """One that misses a constraint, the others confirmed by public descriptors, where that can be."""
@@ -328,17 +341,27 @@ class Search:
         best, tried = self._record.best, self._tried - self._tried_before
         if tried < self._level.starts or best is None or not best.exact:
             return False
-        best = self._confirm(best)
+        best = self._confirm()
         has_all_facets = best.n_facets == self._n_facets
         return best.exact and (has_all_facets or tried >= self._level.starts + STARTS_FOR_FACETS)
 
-    def _confirm(self, best: Candidate) -> Candidate:
-        """The best so far that the public descriptors confirm, if any, else the nearest."""
-        best = confirmed(self._request, self._checks, best)
-        if self._confirmed is not None and not best.better_than(self._confirmed):
-            best = self._confirmed  # what a finer search took back may have been better before
-        self._confirmed = self._record.best = best
-        return best
+    def _confirm(self) -> Candidate:
+        """The best so far that the public descriptors confirm, if any, else the nearest.
+
+        A finer search for boxes may take facets or constraints from the best: then another is better.
+        """
+        best = self._confirmed
+        left = sorted(
+            self._record.exact, key=lambda each: (each.n_facets < len(each.offsets), each.jaccard_distance)
+        )
+        for found in left:
+            if not found.better_than(best):
+                break
+            checked = confirmed(self._request, self._checks, found)
+            best = checked if checked.better_than(best) else best
+        self._record.exact.clear()
+        self._confirmed = self._record.best = best or self._found()
+        return self._confirmed
 
     def _out_of_reach(self) -> bool:
         """Whether the sphericity is missed by so much that other starts would miss it too."""

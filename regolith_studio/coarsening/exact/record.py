@@ -18,6 +18,8 @@ SAME = 1e-6
 class Record:
     """The best polyhedron, and the one with the smallest loss of those that miss a constraint.
 
+    `exact` lists those that meet all constraints and were not confirmed yet.
+
     Parameters
     ----------
     judge
@@ -29,6 +31,7 @@ class Record:
     def __init__(self, judge: LossFunction, steps: int) -> None:
         self.best: Candidate | None = None
         self.history: list[float] = []
+        self.exact: list[Candidate] = []
         self._nearest: Candidate | None = None
         self._min_loss = np.inf
         self._judge = judge
@@ -57,6 +60,8 @@ class Record:
         for found in candidates:
             value = self._value(found)
             worth = found.better_than(self.best)
+            if found.exact:
+                self.exact.append(found)
             if worth:
                 self.best = found
             if not found.exact and not self.met and value < self._min_loss:

@@ -14,7 +14,13 @@ from regolith_studio.coarsening.exact.constraint_projection import (
     project,
     project_and_verify,
 )
-from regolith_studio.coarsening.exact.constraints import ConstrainedPoint, Problem, constrained, measure
+from regolith_studio.coarsening.exact.constraints import (
+    CLOSE,
+    ConstrainedPoint,
+    Problem,
+    constrained,
+    measure,
+)
 from regolith_studio.coarsening.exact.projected_bfgs import (
     DescentState,
     begin_descent,
@@ -241,4 +247,8 @@ def candidate_of(problem: Problem, point: ConstrainedPoint) -> Candidate:
 
 def _with_cuts(target: Target, point: ConstrainedPoint, depth: float) -> tuple[int, FloatArray, FloatArray]:
     rays = target.rays
-    return insert_lost_facets(point.normals, point.offsets, rays.directions, rays.first, rays.distance, depth)
+    near = point.boxes.volumes <= (1.0 + CLOSE) * point.boxes.volumes.min(initial=np.inf)
+    axes = point.boxes.frames[near].reshape(-1, 3)
+    return insert_lost_facets(
+        point.normals, point.offsets, rays.directions, rays.first, rays.distance, depth, axes
+    )

@@ -60,11 +60,11 @@ def has_small_facets(normals: FloatArray, offsets: FloatArray) -> bool:
     return bool(areas.min() < SMALL * areas.mean())
 
 
-def remove_slivers(problem: Problem, begun: Candidate, steps: int) -> Candidate:
+def remove_slivers(problem: Problem, begun: Candidate, steps: int, cost: float = COST) -> Candidate:
     """A polyhedron that meets the same constraints with larger small facets; `begun` where there is none.
 
     A projected quasi-Newton descent of the Jaccard distance plus a penalty of small facets; it has the
-    facets of `begun` and at most :data:`COST` more Jaccard distance.
+    facets of `begun` and at most `cost` more Jaccard distance.
 
     Parameters
     ----------
@@ -78,7 +78,7 @@ def remove_slivers(problem: Problem, begun: Candidate, steps: int) -> Candidate:
         return begun
     min_area = MIN_SHARE * point.polyhedron.surface_area / len(point.offsets)
     now = verified = _evaluated(problem, point, min_area)
-    limit, count = now.jaccard + COST, count_facets(point)
+    limit, count = now.jaccard + cost, count_facets(point)
 
     def allowed(then: _Evaluation, before: _Evaluation) -> bool:
         return then.value < before.value and then.jaccard <= limit and count_facets(then.point) >= count

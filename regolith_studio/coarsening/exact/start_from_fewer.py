@@ -1,6 +1,6 @@
 """Polyhedra with further facets cut out of a result with fewer: so that more facets are never worse."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -13,36 +13,56 @@ from regolith_studio.coarsening.exact.single_start import (
     candidate_of,
     search_and_project,
 )
+from regolith_studio.coarsening.exact.sliver_removal import SMALL
+from regolith_studio.coarsening.polyhedra import facet_areas
 from regolith_studio.coarsening.target import Target
 from regolith_studio.geometry.half_spaces import HalfSpaces
 
-SHALLOW_DEPTHS = (0.05, 0.02, 0.01)
-"""Of cuts that cost next to no overlap."""
+DEPTHS = (CUT_DEPTHS, (0.05, 0.02, 0.01), (0.01, 0.005, 0.002))
+"""Of cuts: large ones lead farther, small ones cost next to no overlap."""
 
 
-def solve_from_fewer(
+def grown_from_fewer(
+    target: Target,
+    problem: Problem,
+    fewer: HalfSpaces,
+    n_facets: int,
+    steps: int,
+    depths: Sequence[float],
+) -> Iterator[Candidate]:
+    """Polyhedra with `n_facets` half-spaces, cut out of one with fewer that meets all constraints.
+
+    Parameters
+    ----------
+    fewer
+        Half-spaces of the polyhedron at unit volume.
+    steps
+        Of the descent after each stage of cuts.
+    depths
+        Of the cuts, one of :data:`DEPTHS`.
+    """
+    areas = facet_areas(fewer)
+    for kept in (areas >= SMALL * areas.mean(), np.ones(len(areas), dtype=bool)):
+        few = candidate_of(problem, measure(problem, fewer.normals[kept], fewer.offsets[kept]))
+        few = search_and_project(problem, few)
+        if few.exact:
+            yield from with_more_facets(target, problem, few, n_facets, steps, depths)
+            return
+
+
+def relaxed_from_fewer(
     target: Target, full: Problem, rest: Problem, fewer: HalfSpaces, n_facets: int, steps: int
 ) -> Iterator[Candidate]:
-    """Polyhedra with `n_facets` half-spaces, from one with fewer.
+    """As :func:`grown_from_fewer` where that one misses a constraint.
 
-    Small cuts cost next to no overlap, larger ones lead farther; both are tried. Where that one misses a
-    constraint, the further facets are first cut at the descriptors that it has.
+    Further facets are first cut at the descriptors that it has, then the sphericity is sought.
 
     Parameters
     ----------
     full, rest
         The problem with and without the sphericity.
-    fewer
-        Half-spaces of the polyhedron at unit volume.
-    steps
-        Of the descent after each stage of cuts.
     """
     normals, offsets = np.array(fewer.normals), np.array(fewer.offsets)
-    few = search_and_project(full, candidate_of(full, measure(full, normals, offsets)))
-    if few.exact:
-        for depths in (SHALLOW_DEPTHS, CUT_DEPTHS):
-            yield from with_more_facets(target, full, few, n_facets, steps, depths)
-        return
     held, point = as_it_is(full, normals, offsets)
     if not np.isfinite(point.worst):
         return
