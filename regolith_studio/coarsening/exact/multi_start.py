@@ -67,6 +67,8 @@ CHECK_ANGLES = (FINE_ANGLE, DENSE_ANGLE)
 """Of the searches for boxes that confirm a result."""
 RELAXATION_FACETS = (12, 20)
 """Facets to start from, besides all, where constraints cannot be met together."""
+RELAXATION_STARTS = 4
+"""Starts with all facets there, so that what is reached hangs little on one of them."""
 ROUND_STARTS = 2
 """Starts from which polyhedra as round as can be are sought where the particle is rounder than the first."""
 TOO_ROUND = 1e-2
@@ -202,12 +204,15 @@ class Search:
         best = self._found()
         if not self._round_asked or self._record.met or self._misses or self._itself is not None:
             return
+        all_planes = [
+            start_planes(self._target, self._n_facets, self._rng) for _ in range(RELAXATION_STARTS - 1)
+        ]
         few_planes = [
             with_waiting(*start_planes(self._target, few, self._rng), self._n_facets)
             for few in RELAXATION_FACETS
             if few < self._n_facets
         ]
-        for planes in (self._planes, (best.normals, best.offsets), *few_planes):
+        for planes in (self._planes, (best.normals, best.offsets), *all_planes, *few_planes):
             yield from self._record.record_candidates(self._total, self._relax(planes))
 
     def finish(self) -> Generator[MethodStep, None, MethodResult]:
