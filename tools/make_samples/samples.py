@@ -15,6 +15,7 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.imaging.volume import Volume
 from regolith_studio.io.stl import stl_bytes
 from tools.make_samples.grains import AgglutinateRecipe, Recipe, StarRecipe
+from tools.make_samples.strokes import N_STROKES, painted_volume
 from tools.make_samples.synthetic_ct import ScanRecipe, synthetic_scan
 
 SEED = 2026
@@ -143,8 +144,24 @@ GRAINS = (
 )
 
 
-SCANS = {"synthetic": ScanRecipe()}
-"""Shipped synthetic scans by name."""
+SCANS = {
+    "synthetic": ScanRecipe(),
+    "gradient": ScanRecipe(
+        shape=(128, 128, 128),
+        n_grains=30,
+        diameter=(27.0, 18.0, 36.0),
+        anywhere=0.4,
+        attempts=4000,
+        resin=92.0,
+        minerals=(140.0, 152.0),
+        cupping=0.15,
+        rings=4.0,
+        gradient=55.0,
+    ),
+}
+"""Shipped synthetic scans by name; the second one is beyond any threshold."""
+PAINTED = ("gradient",)
+"""Scans that ship with strokes of a brush."""
 
 
 def write_samples(
@@ -165,28 +182,25 @@ def write_samples(
 
 def _write_scan(folder: Path, name: str, recipe: ScanRecipe) -> list[dict[str, Any]]:
     scan = synthetic_scan(recipe, SEED)
+    labelled = f"True labels of {recipe.n_grains} angular grains: 0 between them, 1 to {recipe.n_grains}."
+    seen = "Grey values of the same grains with partial volumes, blur, cupping, rings and noise."
+    volumes = [("labels", scan.labels, labelled), ("grey", scan.grey, seen)]
+    if name in PAINTED:
+        painted = f"Voxels of {N_STROKES} strokes of a brush: 1 between grains, 2 in grains, 0 elsewhere."
+        volumes.append(("strokes", painted_volume(scan.labels), painted))
     return [
-        _write_volume(folder, name, volume, description)
+        _write_volume(folder, f"{name}-{what}", volume, description)
         | {"recipe": {"type": "ScanRecipe", **asdict(recipe)}}
-        for volume, description in (
-            (
-                scan.labels,
-                f"True labels of {recipe.n_grains} angular grains: 0 between them, 1 to {recipe.n_grains}.",
-            ),
-            (
-                scan.grey,
-                "Grey values of the same grains with partial volumes, blur, cupping, rings and noise.",
-            ),
-        )
+        for what, volume, description in volumes
     ]
 
 
 def _write_volume(folder: Path, scan: str, volume: Volume, description: str) -> dict[str, Any]:
     content = tiff_bytes(volume)
-    name = f"ct/{scan}-{volume.kind}.tif"
+    name = f"ct/{scan}.tif"
     (folder / name).write_bytes(content)
     return {
-        "name": f"{scan}-{volume.kind}",
+        "name": scan,
         "kind": volume.kind,
         "description": description,
         "file": name,

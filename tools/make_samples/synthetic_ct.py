@@ -52,6 +52,8 @@ class ScanRecipe:
         Standard deviation of the rings' brightness.
     noise
         Standard deviation of the noise of one voxel.
+    gradient
+        Brightness that is taken away in the first slice along z and added in the last, linear in between.
     """
 
     shape: tuple[int, int, int] = (144, 144, 144)
@@ -67,6 +69,7 @@ class ScanRecipe:
     cupping: float = 0.1
     rings: float = 1.2
     noise: float = 9.0
+    gradient: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -221,8 +224,9 @@ def _scan(
     brightness: NDArray[np.float32], recipe: ScanRecipe, generator: np.random.Generator
 ) -> NDArray[np.uint8]:
     """What the scanner makes of the true brightness; the axis of rotation is z."""
-    blurred = ndimage.gaussian_filter(brightness, recipe.blur)
-    nx, ny, _ = recipe.shape
+    nx, ny, nz = recipe.shape
+    slope = recipe.gradient * np.linspace(-1.0, 1.0, nz, dtype=np.float32)
+    blurred = ndimage.gaussian_filter(brightness + slope, recipe.blur)
     x, y = np.arange(nx)[:, None] - (nx - 1) / 2, np.arange(ny)[None, :] - (ny - 1) / 2
     distance = np.hypot(x, y)
     cup = 1.0 - recipe.cupping * (1.0 - (distance / distance.max()) ** 2)
