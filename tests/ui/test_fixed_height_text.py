@@ -19,6 +19,7 @@ from regolith_studio.session.choices import Choices, Kind
 from regolith_studio.session.session import Session
 from regolith_studio.ui.main_window import MainWindow
 from regolith_studio.ui.widgets.fixed_height_text import FixedHeightText
+from regolith_studio.ui.widgets.labels import remark
 
 KINDS = (QAbstractButton, QAbstractSpinBox, QComboBox, QLineEdit, QSlider)
 SECONDS = 170.0
@@ -33,6 +34,18 @@ def window(request, shown, preferences, settled):
     session.open_sample()
     settled(made, SECONDS)
     return made
+
+
+@pytest.mark.parametrize("width", [240, 320, 410])
+def test_that_no_word_of_a_long_text_is_below_the_button(shown, wait, width):
+    label = remark("Surfaces of measured particles on the forms of others: new particles, " * 3)
+    text = FixedHeightText((label,))
+    text.resize(width, 40)
+    shown(text)
+    assert text.more.isVisible()
+    wait(lambda: label.width() <= text.viewport().width(), 5.0)
+    label.setText("Short.")
+    wait(lambda: not text.more.isVisible() and label.width() >= width - 4, 5.0)
 
 
 def places(page):

@@ -89,6 +89,23 @@ def test_that_larger_letters_leave_nearly_half_of_explore_to_its_views(shown, pr
     wait(lambda: columns.sizes() == pytest.approx(before, abs=3), 5.0)
 
 
+@pytest.mark.usefixtures("usual_letters")
+def test_that_the_buttons_of_studies_are_whole_in_large_letters(shown, preferences, app):
+    window = shown(MainWindow(Session(InlineRunner()), preferences, "image"))
+    window.resize(1280, 800)
+    page = window.go("studies")
+    frames = (page.lmax_study.frame, page.coarsening_study.frame, page.gallery.frame)
+    for frame in frames:
+        frame.set_count(12)
+    for letters in (150, 200):
+        window.appearance.choose(**{LETTERS: letters})
+        for _ in range(5):
+            app.processEvents()
+        for button in (frame.start for frame in frames):
+            assert button.visibleRegion().boundingRect() == button.rect(), letters
+            assert button.width() >= button.fontMetrics().horizontalAdvance(button.text()) + 8
+
+
 def test_that_the_sidebar_gives_up_room_before_words(shown):
     place = shown(QWidget())
     bar = Sidebar({page.key: page for page in PAGES.values()})

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from PySide6.QtCore import QEvent, QPoint, QSize, Qt
+from PySide6.QtCore import QEvent, QPoint, QSize, Qt, QTimer
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QLabel, QScrollArea, QSizePolicy, QToolButton, QVBoxLayout, QWhatsThis, QWidget
 
@@ -81,10 +81,20 @@ class FixedHeightText(QScrollArea):
         """Show the button only if a part of the text cannot be seen."""
         needed = self.verticalScrollBar().maximum() > 0
         size = QSize(self.more.sizeHint().width(), min(self.line + 4, self.height()))
-        self.setViewportMargins(0, 0, size.width() if needed else 0, 0)
+        before, right = self.viewportMargins().right(), size.width() if needed else 0
+        self.setViewportMargins(0, 0, right, 0)
+        if right != before:  # Qt ignores a change of width while the texts are being laid out
+            QTimer.singleShot(0, self, self._lay_out)
         self.more.resize(size)
         self.more.move(self.width() - size.width(), 0)
         self.more.setVisible(needed)
+
+    def _lay_out(self) -> None:
+        """Place the texts within the present width."""
+        column = self._inside.layout()
+        if column is not None:
+            column.invalidate()
+            column.activate()
 
     def _show_all(self) -> None:
         QWhatsThis.showText(self.mapToGlobal(QPoint(0, self.height())), self.whole_text(), self)

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QTabWidget, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QSizePolicy, QTabWidget, QVBoxLayout, QWidget
 
 from regolith_studio.errors import RegolithError
 from regolith_studio.io.atomic import staged_folder
@@ -211,6 +211,7 @@ class StudiesPage(PageWidget):
             stretch=1,
         )
         above.setObjectName("studies_figures")
+        self.tabs.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Ignored)  # keeps its buttons
         below = _titled(tr("Polyhedra by loss function (Fig. 7)"), _framed(self.gallery))
         rows = stacked([above, below], [370, 500], stretch=1)
         rows.setObjectName("studies_rows")
