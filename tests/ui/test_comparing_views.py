@@ -206,7 +206,7 @@ def test_that_another_theme_measures_no_distances_again(window, wait, settled, m
         asked.append(arguments)
         return signed_distances(*arguments)
 
-    monkeypatch.setattr("regolith_studio.ui.views.distance_worker.signed_distances", counted)
+    monkeypatch.setattr("regolith_studio.ui.views.three_views.signed_distances", counted)
     switch(window, "heat")
     wait(lambda: len(asked) == 1)
     settled(window)

@@ -1,11 +1,12 @@
 """Particle, fit and polyhedron side by side in three views."""
 
 import html
+from collections.abc import Callable
 from functools import partial
 from typing import Any
 
 import numpy as np
-from PySide6.QtCore import Qt, Signal
+from PySide6.QtCore import QObject, Qt, Signal
 from PySide6.QtGui import QImage
 from PySide6.QtWidgets import QSplitter, QWidget
 
@@ -14,7 +15,10 @@ from regolith_studio.geometry.arrays import BoolArray, FloatArray
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.oriented_box import minimum_volume_box
 from regolith_studio.harmonics.visibility import hidden_faces
+from regolith_studio.jobs.events import Job, Started, Steps
+from regolith_studio.messages import N_
 from regolith_studio.scene import overlays, surfaces
+from regolith_studio.scene.distance import signed_distances
 from regolith_studio.scene.projection import Projection
 from regolith_studio.scene.shapes import FIT, NAMES, PARTICLE, POLYHEDRON, SceneShape
 from regolith_studio.session.results import ParticleEntry, Results
@@ -23,12 +27,14 @@ from regolith_studio.ui.translation import tr
 from regolith_studio.ui.translation.numbers import number_text
 from regolith_studio.ui.views.camera_link import CameraLink
 from regolith_studio.ui.views.comparison import COMPARE, Comparison, partners_of
-from regolith_studio.ui.views.distance_worker import Distances, Follow
 from regolith_studio.ui.views.facet_hover import FacetHover
 from regolith_studio.ui.views.factory import make_view
 from regolith_studio.ui.views.sections import Sections
 from regolith_studio.ui.views.snapshot import snapshot
 from regolith_studio.ui.views.view_frame import ViewFrame
+
+Follow = Callable[[Job, Callable[[Any], None], Callable[[str], None]], None]
+"""Submits a job with functions that show its result, or the sentence of its failure."""
 
 
 class ThreeViews(QSplitter):
@@ -298,3 +304,44 @@ def _missing_facets_text(results: Results) -> str:
     if done is None or done.n_facets == done.n_facets_asked:
         return ""
     return tr("; {count} facets were asked for", count=done.n_facets_asked)
+
+
+class Distances(QObject):
+    """Distances between fit and particle, kept while both are shown.
+
+    ``measured`` is emitted for new ones, ``refused`` with the reason for none.
+
+    Parameters
+    ----------
+    follow
+        Does the work.
+    """
+
+    measured = Signal()
+    refused = Signal(str)
+
+    def __init__(self, follow: Follow, parent: QObject) -> None:
+        super().__init__(parent)
+        self._follow = follow
+        self._known: tuple[Mesh, Mesh, FloatArray] | None = None
+        self._wanted: tuple[Mesh, Mesh] | None = None
+
+    def between(self, fit: Mesh, particle: Mesh) -> FloatArray | None:
+        """Of each vertex of the fit, shape (n,), positive outside; nothing while they are being measured."""
+        if self._known is not None and self._known[0] is fit and self._known[1] is particle:
+            return self._known[2]
+        if self._wanted is None or self._wanted[0] is not fit or self._wanted[1] is not particle:
+            self._wanted = fit, particle
+            job = Job(measure_distances, (fit, particle))
+            self._follow(job, lambda found: self._take(fit, particle, found), self.refused.emit)
+        return None
+
+    def _take(self, fit: Mesh, particle: Mesh, found: FloatArray) -> None:
+        self._known = fit, particle, found
+        self.measured.emit()
+
+
+def measure_distances(fit: Mesh, particle: Mesh) -> Steps:
+    """A job: :func:`~regolith_studio.scene.distance.signed_distances` of a fit's vertices."""
+    yield Started(N_("Measuring distances"))
+    return signed_distances(fit.vertices, particle)
