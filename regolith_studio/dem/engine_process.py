@@ -13,6 +13,7 @@ import queue
 import signal
 import subprocess
 import sys
+import tempfile
 import threading
 import time
 from collections.abc import Generator
@@ -21,7 +22,7 @@ from pathlib import Path
 from typing import Any, BinaryIO
 
 from regolith_studio.dem.case import PreparedCase
-from regolith_studio.dem.engine import ResumableEngine, SimulationResult
+from regolith_studio.dem.engine import Engine, ResumableEngine, SimulationResult
 from regolith_studio.dem.engines import engine_named
 from regolith_studio.dem.run_io import (
     STATE,
@@ -72,10 +73,18 @@ def run_engine(
     engine = engine_named(key)
     if problem := engine.find().problem:
         raise MissingRequirement(problem)
-    child = _start((key, prepared, settings, folder), threads)
+    with tempfile.TemporaryDirectory(prefix=".engine-", dir=folder) as scratch:  # the child may be killed
+        child = _start((key, prepared, settings, folder), threads, scratch)
+        return (yield from _followed(child, engine))
+
+
+def _followed(
+    child: subprocess.Popen[bytes], engine: Engine
+) -> Generator[Snapshot | None, None, SimulationResult]:
+    """The child's messages; at the end, however it comes, the child is ended."""
     messages: queue.SimpleQueue[Any] = queue.SimpleQueue()
     reader = threading.Thread(
-        target=_listen, args=(child.stdout, messages), name=f"engine {key}", daemon=True
+        target=_listen, args=(child.stdout, messages), name=f"engine {engine.key}", daemon=True
     )
     reader.start()
     last = "none"
@@ -103,9 +112,13 @@ def run_engine(
             child.stdout.close()
 
 
-def _start(task: tuple[Any, ...], threads: int) -> subprocess.Popen[bytes]:
-    """The child with its task; it leads a process group, so that everything in it can be ended together."""
+def _start(task: tuple[Any, ...], threads: int, scratch: str) -> subprocess.Popen[bytes]:
+    """The child with its task and a folder for its temporary files.
+
+    It leads a process group, so that everything in it can be ended together.
+    """
     limits = dict.fromkeys(_THREAD_LIMITS, "1") | {ENGINE_THREADS: str(threads)}
+    limits |= dict.fromkeys(("TMPDIR", "TEMP", "TMP"), scratch)
     child = subprocess.Popen(
         [sys.executable, "-P", "-m", "regolith_studio.dem.engine_process"],
         stdin=subprocess.PIPE,

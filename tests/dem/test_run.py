@@ -243,9 +243,15 @@ def test_that_a_crash_of_the_engine_is_one_sentence_and_keeps_the_last_snapshot(
 def test_that_a_cancelled_run_ends_its_process_and_says_so(boxes_folder: Path, tmp_path: Path) -> None:
     steps = simulate_repose(boxes_folder, tmp_path / "run", ORDER)
     _until_moment(steps)
+    (child,) = _workers()
+    (stage,) = tmp_path.glob(".run.*.regolith-new")
+    scratch = Path(child.environ()["TMPDIR"])
+    assert scratch.parent == stage
+    (scratch / "states").mkdir()  # as LAMMPS and YADE write theirs, and cannot remove when they are killed
     steps.close()
     assert not _workers()
     assert read_run(tmp_path / "run").document["state"] == "stopped"
+    assert not list(tmp_path.rglob(".*"))
     assert [summary.angle for summary in find_runs(tmp_path)] == [None]
 
 
