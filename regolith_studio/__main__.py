@@ -11,9 +11,9 @@ def main() -> None:
     A signal ends a command as :class:`StopSignals` says. The window is left to Qt.
     """
     signals = StopSignals()
-    if sys.argv[1:2] not in ([], ["open"]):
-        signals.install()
     try:
+        if sys.argv[1:2] not in ([], ["open"]):
+            signals.install()
         from regolith_studio.cli.entry import run
 
         code = run(sys.argv[1:])

@@ -4,7 +4,8 @@ import hashlib
 import os
 import shlex
 import subprocess
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import asdict, dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any
@@ -16,7 +17,7 @@ from regolith_studio.dataset.parameters import ContactParameters, LiftingCylinde
 from regolith_studio.dataset.size_distributions import size_classes
 from regolith_studio.errors import DatasetError, FileError, InputError, os_error_reason
 from regolith_studio.geometry.convex_compound import ConvexCompound
-from regolith_studio.io.atomic import recover_folder, replace_folder
+from regolith_studio.io.atomic import exchange, filled_folder, recover_folder
 from regolith_studio.io.json_text import canonical_json, parse_strict_json
 from regolith_studio.io.tables import csv_bytes
 from regolith_studio.messages import N_
@@ -180,17 +181,47 @@ def write_export(
         If the format changes shapes and that was not accepted, cannot hold the dataset's compounds, the
         folder holds anything else, or something cannot be written.
     """
+    with prepared_export(
+        dataset, exporter, folder, options, dataset_hash=dataset_hash, accept_loss=accept_loss
+    ) as finish:
+        return finish()
+
+
+@contextmanager
+def prepared_export(
+    dataset: Dataset,
+    exporter: Exporter,
+    folder: Path | str,
+    options: ExportOptions | None = None,
+    *,
+    dataset_hash: str | None = None,
+    accept_loss: bool = False,
+) -> Iterator[Callable[[], ExportResult]]:
+    """As :func:`write_export`, complete under a hidden name; what it yields lets it take its place."""
     chosen, target = options or ExportOptions(), Path(folder).resolve()
     check_loss_accepted(exporter, accept_loss)
     check_compounds(dataset, [exporter])
-    try:
+    with _reported(target):
         recover_folder(target)
         _check_replaceable(target)
         content = _with_readme(dataset, exporter, chosen, dataset_hash)
-        replace_folder(target, content)
+        with filled_folder(target, content) as stage:
+
+            def finish() -> ExportResult:
+                with _reported(target):
+                    exchange(stage, target)
+                command = load_command(exporter, target)
+                return ExportResult(exporter.key, target, tuple(sorted(content)), command)
+
+            yield finish
+
+
+@contextmanager
+def _reported(target: Path) -> Iterator[None]:
+    try:
+        yield
     except OSError as error:
         raise DatasetError(f"The export {target} cannot be written ({os_error_reason(error)}).") from error
-    return ExportResult(exporter.key, target, tuple(sorted(content)), load_command(exporter, target))
 
 
 def load_command(exporter: Exporter, folder: Path) -> str:

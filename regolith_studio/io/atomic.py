@@ -178,11 +178,26 @@ def replace_folder(target: Path, files: Mapping[str, Content] | Iterable[tuple[s
     FileError
         If another process is writing to it.
     """
-    with hidden_folder(target) as stage:
-        _fill(stage, files)
+    with filled_folder(target, files) as stage:
         exchange(stage, target)
     with contextlib.suppress(OSError):
         sync_folder(target.parent)
+
+
+@contextmanager
+def filled_folder(
+    target: Path, files: Mapping[str, Content] | Iterable[tuple[str, Content]]
+) -> Iterator[Path]:
+    """A hidden folder beside `target` with these files, flushed to the disk, for :func:`exchange`.
+
+    Raises
+    ------
+    OSError, FileError
+        As :func:`replace_folder`.
+    """
+    with hidden_folder(target) as stage:
+        _fill(stage, files)
+        yield stage
 
 
 def recover_folder(target: Path) -> Path:

@@ -1,6 +1,7 @@
 """Jobs that write, export, read, check and list dataset folders (section 2.5)."""
 
-from collections.abc import Generator, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterator, Sequence
+from contextlib import ExitStack
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
@@ -13,7 +14,7 @@ from regolith_studio.dataset.export import (
     ExportResult,
     check_compounds,
     check_loss_accepted,
-    write_export,
+    prepared_export,
 )
 from regolith_studio.dataset.exporters import EXPORTERS
 from regolith_studio.dataset.folder_io import dataset_hash, read_dataset, write_dataset
@@ -271,7 +272,7 @@ def export_dataset_folder(
 ) -> Steps:
     """Export the dataset in `source` to ``target/<key>`` for each key; returns the exports.
 
-    Between two formats the work can be stopped; each format's folder is written as a whole.
+    All formats are complete before the first takes its place, so that a stop leaves the earlier ones.
 
     Raises
     ------
@@ -287,16 +288,21 @@ def export_dataset_folder(
         check_loss_accepted(exporter, accept_loss)
     dataset, digest = read_dataset(source), dataset_hash(source)
     check_compounds(dataset, exporters)
-    done: list[ExportResult] = []
-    for number, exporter in enumerate(exporters):
-        yield Progress(number, len(exporters), exporter.label)
-        place = target / exporter.key
-        done.append(
-            write_export(dataset, exporter, place, options, dataset_hash=digest, accept_loss=accept_loss)
-        )
-        yield Partial(done[-1])
+    with ExitStack() as stack:
+        finishes: list[Callable[[], ExportResult]] = []
+        for number, exporter in enumerate(exporters):
+            yield Progress(number, len(exporters), exporter.label)
+            prepared = prepared_export(
+                *(dataset, exporter, target / exporter.key, options),
+                dataset_hash=digest,
+                accept_loss=accept_loss,
+            )
+            finishes.append(stack.enter_context(prepared))
+        done = tuple(finish() for finish in finishes)
+    for result in done:
+        yield Partial(result)
     yield Progress(len(exporters), len(exporters), str(target))
-    return tuple(done)
+    return done
 
 
 def chosen_exporters(keys: Sequence[str]) -> tuple[Exporter, ...]:

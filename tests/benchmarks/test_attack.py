@@ -22,7 +22,7 @@ def test_that_an_attack_leaves_an_earlier_result_or_a_new_one(tmp_path: Path) ->
     """A sample of all commands, of which less is done in the time on a machine that is busy."""
     rows: Rows = {}
     names = random.Random(1).sample(list(COMMANDS), len(COMMANDS))
-    commands = list(attack(tmp_path, names, 0.06, 1, rows, seconds=400.0))
+    commands = list(attack(tmp_path, names, 0.06, 1, rows, seconds=300.0))
     assert sum(row.runs for row in rows.values()) >= 5
     bad = {key for key, row in rows.items() if row.lost or row.mixed or row.left or row.unclear}
     assert not bad, [line for name in commands for line in lines(rows, name)]

@@ -4,12 +4,16 @@ import csv
 import io
 import json
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
+from regolith_studio.dataset.dataset import Dataset
+from regolith_studio.dataset.export import Exporter
 from regolith_studio.dataset.exporters import EXPORTERS
 from regolith_studio.dataset.folder_io import dataset_hash, read_dataset
+from regolith_studio.jobs import dataset_jobs
 
 
 @pytest.fixture
@@ -62,6 +66,26 @@ def test_that_all_formats_are_written_when_changed_shapes_are_allowed(
     assert not (tmp_path / "out").exists()
     assert command(*asked, "--lossy").code == 0
     assert {path.name for path in (tmp_path / "out").iterdir()} == set(EXPORTERS)
+
+
+def test_that_a_stop_between_two_formats_leaves_all_formats_as_they_were(
+    command, folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A signal between two formats had left one of the new dataset beside one of the earlier."""
+    asked = ("dataset", "export", folder, "--to", "rocky,gltf", "-o", tmp_path / "out", "--particles")
+    assert command(*asked, 9).code == 0
+    before = {path: path.read_bytes() for path in files(tmp_path / "out")}
+
+    prepare = dataset_jobs.prepared_export
+
+    def prepare_one(dataset: Dataset, exporter: Exporter, *rest: Any, **options: Any) -> Any:
+        if exporter.key == "gltf":
+            raise KeyboardInterrupt
+        return prepare(dataset, exporter, *rest, **options)
+
+    monkeypatch.setattr(dataset_jobs, "prepared_export", prepare_one)
+    assert command(*asked, 8).code == 130
+    assert {path: path.read_bytes() for path in files(tmp_path / "out")} == before
 
 
 def test_that_settings_reach_the_files(command, folder: Path, tmp_path: Path) -> None:
