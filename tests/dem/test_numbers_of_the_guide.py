@@ -1,4 +1,4 @@
-"""Numbers in docs/repose.md and docs/exporters.md against the code and the results of the benchmarks."""
+"""Numbers in docs/repose*.md and docs/exporters.md against the code and the results of the benchmarks."""
 
 import json
 import re
@@ -22,7 +22,8 @@ from regolith_studio.dem.evaluation.settings import MAX_CURVATURE, EvaluationSet
 from regolith_studio.dem.run_checks import MAX_OVERLAP
 
 ROOT = Path(__file__).parents[2]
-REPOSE, EXPORTERS = ((ROOT / "docs" / name).read_text("utf-8") for name in ("repose.md", "exporters.md"))
+REPOSE = "\n".join(path.read_text("utf-8") for path in sorted((ROOT / "docs").glob("repose*.md")))
+EXPORTERS = (ROOT / "docs" / "exporters.md").read_text("utf-8")
 
 
 def rows_of(text: str, header: str) -> list[list[str]]:
@@ -107,6 +108,29 @@ def test_that_the_table_of_engines_has_the_results_of_its_runs(engine: str) -> N
         assert row[0] == str(run["seed"])
         assert row[column] == f"{run['fill_height_cm']:.2f} cm, {run['solid_fraction']:.2f}"
         assert row[column + 1] == f"{run['angle_deg']:.1f} ({low:.1f} to {high:.1f})"
+
+
+def test_that_the_table_of_mujoco_and_rapier_has_the_results_of_its_runs() -> None:
+    columns = "seed|MuJoCo: filled to, packed|angle|s|Rapier: filled to, packed|angle|deepest overlap|s"
+    header = f"| {' | '.join(columns.split('|'))} |"
+    said = {row[0]: row for row in rows_of(REPOSE, header)}
+    found = results("repose_rapier.json")
+    for run in found:
+        low, high = run["interval_deg"]
+        cells = [
+            f"{run['fill_height_cm']:.2f} cm, {run['solid_fraction']:.2f}",
+            f"{run['angle_deg']:.1f} ({low:.1f} to {high:.1f})",
+            f"{100 * run['max_overlap']:.1f} %",
+            f"{run['processor_s']:.0f}",
+        ]
+        row = said[str(run["seed"])]
+        if run["engine"] == "mujoco":
+            assert row[1:4] == [*cells[:2], cells[3]]
+        else:
+            assert row[4:8] == cells
+    angles = {(run["engine"], run["seed"]): run["angle_deg"] for run in found}
+    steeper = [angles["rapier", seed] - angles["mujoco", seed] for seed in (1, 2, 3)]
+    assert f"steeper by {min(steeper):.1f} to {max(steeper):.1f} degrees in three pairs" in one_line(REPOSE)
 
 
 def test_that_the_table_of_spheres_has_the_results_of_its_benchmark() -> None:
