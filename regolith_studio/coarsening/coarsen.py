@@ -23,6 +23,7 @@ from regolith_studio.geometry.convex_compound import ConvexCompound, Polyhedron
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.half_spaces import HalfSpaces
 from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.topology import genus
 
 DEFAULT_METHOD = "exact"
 DEFAULT_PRESET = "all"
@@ -202,7 +203,14 @@ def _measured(
         steps=result.steps,
         variants=result.variants,
         sphericity_free=_sphericity_free(target, result.without_sphericity),
+        genus=_genus(target.mesh, solid.mesh) if isinstance(solid, ConvexCompound) else None,
     )
+
+
+def _genus(particle: Mesh, union: Mesh) -> tuple[int, int] | None:
+    """Tunnels of both; ``None`` where the particle has none."""
+    found = genus(particle.faces, len(particle.vertices))
+    return (found, genus(union.faces, len(union.vertices))) if found else None
 
 
 def _sphericity_free(target: Target, half_spaces: HalfSpaces | None) -> SphericityFree | None:

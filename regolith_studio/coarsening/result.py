@@ -100,6 +100,8 @@ class CoarseningResult:
         Relative errors of other readings of the result (the quadric baseline has three).
     sphericity_free
         What leaving the sphericity free would give, where keeping it may cost overlap; else ``None``.
+    genus
+        Tunnels of the particle and of the union that stands for it, of a compound whose particle has any.
     """
 
     polyhedron: Polyhedron
@@ -117,10 +119,21 @@ class CoarseningResult:
     steps: Mapping[str, float] = field(default_factory=dict)
     variants: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     sphericity_free: SphericityFree | None = None
+    genus: tuple[int, int] | None = None
 
     @property
     def warning(self) -> str | None:
-        """What an exact sphericity costs, in one sentence, where that is much overlap."""
+        """That tunnels are lost, or what an exact sphericity costs where that is much overlap; a sentence."""
+        if self.genus is not None and self.genus[1] < self.genus[0]:
+            return Message(
+                N_(
+                    "The particle has tunnels (genus {particle}), the union of the convex parts has genus"
+                    " {union}: no condition keeps tunnels, so what they let through is closed or moved. More parts may"
+                    " keep them."
+                ),
+                particle=self.genus[0],
+                union=self.genus[1],
+            )
         free = self.sphericity_free
         if free is None or self.jaccard_distance <= COSTLY_OVERLAP * free.jaccard_distance:
             return None

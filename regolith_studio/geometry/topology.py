@@ -191,6 +191,15 @@ class Connectivity:
         return bool(len(paired)) and not (forward[paired] == forward[self.across[paired]]).any()
 
 
+def genus(faces: IntArray, n_vertices: int) -> int:
+    """Tunnels (handles) of closed bodies, by Euler's formula; 0 where the surface is open."""
+    found = Connectivity.of(faces, n_vertices)
+    if not found.closed:
+        return 0
+    euler = found.vertices_used - len(found.table.ends) + len(faces) + pinched_corners(faces, found.table)
+    return max(0, found.parts.count - euler // 2)
+
+
 @lru_cache(maxsize=2)
 def _cached(content: bytes, n_vertices: int) -> Connectivity:
     return _compute(np.frombuffer(content, dtype=np.int64).reshape(-1, 3), n_vertices)

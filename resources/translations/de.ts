@@ -5308,6 +5308,10 @@
         <translation>Das Partikel</translation>
     </message>
     <message>
+        <source>The particle has tunnels (genus {particle}), the union of the convex parts has genus {union}: no condition keeps tunnels, so what they let through is closed or moved. More parts may keep them.</source>
+        <translation>Das Partikel hat Tunnel (Geschlecht {particle}), die Vereinigung der konvexen Teile hat das Geschlecht {union}: keine Bedingung erhält Tunnel, sie werden geschlossen oder verlegt. Mehr Teile können sie erhalten.</translation>
+    </message>
+    <message>
         <source>The particle is annealed …</source>
         <translation>Das Partikel wird abgekühlt …</translation>
     </message>

@@ -4,12 +4,13 @@ import json
 
 import numpy as np
 import pytest
+import trimesh
 
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.mesh_health import MeshHealth, inspect
 from regolith_studio.geometry.self_intersection import count_self_intersections
 from regolith_studio.geometry.sphere_points import icosphere
-from regolith_studio.geometry.topology import edge_table, find_bodies, label_bodies, neighbours
+from regolith_studio.geometry.topology import edge_table, find_bodies, genus, label_bodies, neighbours
 from tests.filling import filled
 
 CORNERS = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], dtype=float)
@@ -272,3 +273,13 @@ def test_that_one_body_may_touch_itself_in_a_corner() -> None:
     found = inspect(Mesh(ball.vertices, np.where(ball.faces == far, 0, ball.faces)))
     assert (found.euler_number, found.pinched_corners, found.handles, found.bodies) == (1, 1, 0, 1)
     assert not any("tunnel" in problem for problem in found.problems)
+
+
+def test_that_the_genus_of_a_ball_is_0_and_of_two_rings_2() -> None:
+    ball = trimesh.creation.icosphere(1)
+    ring = trimesh.creation.torus(3.0, 1.0, major_sections=12, minor_sections=8)
+    assert genus(ball.faces, len(ball.vertices)) == 0
+    assert genus(ring.faces, len(ring.vertices)) == 1
+    pair = trimesh.util.concatenate([ring, ring.copy().apply_translation((20.0, 0.0, 0.0))])
+    assert genus(pair.faces, len(pair.vertices)) == 2
+    assert genus(ring.faces[1:], len(ring.vertices)) == 0

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import trimesh
 
 from regolith_studio.coarsening.coarsen import coarsen
 from regolith_studio.coarsening.compound.line_overlap import compound_distance
@@ -85,3 +86,14 @@ def test_that_facets_are_shared_out_by_area() -> None:
 
 def test_that_the_first_starts_have_different_numbers_of_parts() -> None:
     assert [numbers_of_parts(most) for most in (2, 3, 4, 8)] == [(2,), (3, 2), (4, 3, 2), (8, 6, 4, 2)]
+
+
+@pytest.mark.slow
+def test_that_a_ring_whose_tunnel_is_lost_says_so() -> None:
+    """Two convex parts cannot surround a tunnel."""
+    ring = trimesh.creation.torus(30.0, 10.0, major_sections=24, minor_sections=12)
+    found = coarsen(Mesh(ring.vertices, ring.faces), 24, "compound", settings={"parts": 2})
+    assert found.genus == (1, 0)
+    assert found.warning is not None
+    assert "genus 1" in found.warning
+    assert "genus 0" in found.warning
