@@ -25,6 +25,7 @@ from regolith_studio.dem.case import PreparedCase
 from regolith_studio.dem.engine import Engine, ResumableEngine, SimulationResult
 from regolith_studio.dem.engines import engine_named
 from regolith_studio.dem.run_io import (
+    ENGINE_FILES,
     STATE,
     remove_snapshots,
     run_key,
@@ -73,7 +74,7 @@ def run_engine(
     engine = engine_named(key)
     if problem := engine.find().problem:
         raise MissingRequirement(problem)
-    with tempfile.TemporaryDirectory(prefix=".engine-", dir=folder) as scratch:  # the child may be killed
+    with tempfile.TemporaryDirectory(prefix=ENGINE_FILES, dir=folder) as scratch:  # the child may be killed
         child = _start((key, prepared, settings, folder), threads, scratch)
         return (yield from _followed(child, engine))
 

@@ -34,6 +34,8 @@ TIMES = "times.json"
 STATE = "state.zip"
 """State of the engine in an unfinished run."""
 OWN = {DOCUMENT, FINAL, SHAPES, SNAPSHOTS, TIMES, STATE, "sections.png", "sections.svg"}
+ENGINE_FILES = ".engine-"
+"""Beginning of the name of a folder with an engine's temporary files."""
 UNFINISHED = f".unfinished{NEW}"
 """End of the hidden name of a run on its way."""
 
@@ -90,6 +92,9 @@ def _fill_stage(stage: Path, target: Path) -> None:
         if (target / STATE).is_file() and not _is_finished(target):
             shutil.copy(target / STATE, stage / STATE)
             shutil.copytree(target / SNAPSHOTS, stage / SNAPSHOTS)
+    for path in stage.iterdir():
+        if path.name.startswith(ENGINE_FILES):
+            remove_quietly(path)
     (stage / SNAPSHOTS).mkdir(exist_ok=True)
     (stage / DOCUMENT).unlink(missing_ok=True)
 
