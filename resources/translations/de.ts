@@ -1480,6 +1480,10 @@
         <translation>Ziehen</translation>
     </message>
     <message>
+        <source>Draw a box in a slice; what is outside of it is left out.</source>
+        <translation>Zeichnen Sie ein Rechteck in einen Schnitt; was außerhalb liegt, wird weggelassen.</translation>
+    </message>
+    <message>
         <source>Draw a line across a grain.</source>
         <translation>Ziehen Sie eine Linie durch ein Korn.</translation>
     </message>
@@ -1502,6 +1506,10 @@
     <message>
         <source>Draw the polyhedra of {count} particles</source>
         <translation>Die Polyeder von {count} Partikeln zeichnen</translation>
+    </message>
+    <message>
+        <source>Draw the region</source>
+        <translation>Bereich zeichnen</translation>
     </message>
     <message>
         <source>Draw virtual particles with the shapes and sizes of a sample</source>

@@ -11,7 +11,7 @@ from regolith_studio.imaging.segmentation.denoising import DenoiseSettings
 from regolith_studio.imaging.segmentation.segment import SegmentationSettings, segment
 from regolith_studio.imaging.volume import Volume
 from regolith_studio.imaging.volume_region import VolumeRegion
-from regolith_studio.readers.volumes.region import RegionSettings
+from regolith_studio.readers.volumes.region import RegionSettings, crop_of_rectangle
 
 RNG = np.random.default_rng(4)
 EDGES = np.array([2.0, 2.0, 5.0])
@@ -135,3 +135,16 @@ def test_that_a_region_that_is_none_is_one_sentence(crop: str, edge: int, senten
 def test_that_labels_are_not_averaged() -> None:
     with pytest.raises(InputError, match="labels, which have no mean"):
         RegionSettings(bin=2).of(volume_of(np.ones((8, 8, 8), dtype=np.uint8), "labels"))
+
+
+@pytest.mark.parametrize("bin_", [1, 2, 3])
+@pytest.mark.parametrize("crop", ["", "3:27,2:20,:"])
+def test_that_a_rectangle_in_a_slice_of_a_region_is_cut_out_of_the_whole_volume(crop: str, bin_: int) -> None:
+    array = np.random.default_rng(1).integers(0, 255, (30, 24, 18)).astype(np.uint8)
+    source = Volume(array, np.ones(3), "grey", "scan")
+    settings = RegionSettings(crop, bin=bin_)
+    region = settings.of(source)
+    drawn = crop_of_rectangle(settings, region.origin, 1, (2, 1), (6, 4))
+    found = RegionSettings(drawn, bin=bin_).of(source)
+    assert np.array_equal(found.read(0, 3), region.read(1, 4)[2:6])
+    assert found.origin[0] == pytest.approx(region.origin[0] + 2)

@@ -209,6 +209,23 @@ def test_that_a_region_is_read_again_and_a_wrong_one_is_explained(page, part, wa
     wait(lambda: page.preview is not None, SECONDS)
 
 
+def test_that_a_box_drawn_in_a_slice_is_the_region_and_another_one_in_it_a_smaller_one(page, part, wait):
+    page.read(VolumeInput(part, 2.3, kind="grey"))
+    wait(lambda: page.preview is not None, SECONDS)
+    along_z, along_y, _ = page.slices.views
+    press(page.controls.draw_box)
+    paint(along_z, [(20, 60), (40, 30), (69, 19)])
+    wait(lambda: page.scan.volume.shape == (50, 42, 70), SECONDS)
+    assert page.state()["region"]["crop"] == "20:70,19:61,:"
+    assert not page.controls.draw_box.isChecked()
+    wait(lambda: page.preview is not None, SECONDS)
+    press(page.controls.draw_box)
+    paint(along_y, [(10, 5), (29, 34)])
+    wait(lambda: page.scan.volume.shape == (20, 42, 30), SECONDS)
+    assert page.state()["region"]["crop"] == "30:50,19:61,5:35"
+    wait(lambda: page.preview is not None, SECONDS)
+
+
 def test_that_a_level_of_an_ome_zarr_is_chosen_before_it_is_read(page, tmp_path, wait):
     write = (
         "import sys, pathlib, tests.readers.test_ome_zarr as t; t.ome_zarr(pathlib.Path(sys.argv[1]), '0.5')"

@@ -84,6 +84,34 @@ class RegionSettings:
         return VolumeRegion(source, box_between(low, high), self.bin)
 
 
+def crop_of_rectangle(
+    region: RegionSettings,
+    origin: tuple[float, float, float],
+    axis: int,
+    low: tuple[int, int],
+    high: tuple[int, int],
+) -> str:
+    """The crop of a rectangle in a slice of a region, in voxels of the whole volume; along `axis` it stays.
+
+    Parameters
+    ----------
+    region
+        What the slice belongs to.
+    origin
+        Of the region, as in a ``Volume``.
+    axis
+        Direction across the slice.
+    low, high
+        First voxels of the region along the two other axes, and those after the last.
+    """
+    parts = region.crop.split(",") if region.crop else [":"] * 3
+    across = [each for each in range(3) if each != axis]
+    for each, first, stop in zip(across, low, high, strict=True):
+        start = round(origin[each] * region.bin - (region.bin - 1) / 2)
+        parts[each] = f"{start + first * region.bin}:{start + stop * region.bin}"
+    return ",".join(part.strip() for part in parts)
+
+
 def _ranges(text: str) -> tuple[tuple[_Bound, _Bound], ...]:
     """Both bounds along x, y and z, each a number or None and the key of a unit or nothing for voxels."""
     if not text:

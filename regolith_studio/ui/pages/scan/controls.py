@@ -6,7 +6,7 @@ from typing import Any, cast
 
 from PySide6.QtCore import QEvent, QSignalBlocker, Signal
 from PySide6.QtGui import QStandardItemModel
-from PySide6.QtWidgets import QCheckBox, QComboBox, QFormLayout, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QCheckBox, QComboBox, QFormLayout, QPushButton, QVBoxLayout, QWidget
 
 from regolith_studio.errors import InputError
 from regolith_studio.imaging.extraction import voxel_diameter
@@ -98,6 +98,10 @@ class SegmentationControls(QWidget):
             )
         )
         self.region = SettingsForm(RegionSettings)
+        self.draw_box = QPushButton(tr("Draw the region"))
+        self.draw_box.setObjectName("draw_region")
+        self.draw_box.setCheckable(True)
+        self.draw_box.setToolTip(tr("Draw a box in a slice; what is outside of it is left out."))
         self.diameter, self.region_error = remark(), remark()
         self._arrange()
         self._connect()
@@ -181,6 +185,12 @@ class SegmentationControls(QWidget):
         self._set_classifier(training)
         if used:
             self._changed()
+
+    def set_crop(self, crop: str) -> None:
+        """Take another region of interest, as if it had been entered."""
+        changes = dataclasses.asdict(self._recipe.region) | {"crop": crop}
+        self.region.setValue(changes)
+        self._region_changed(changes)
 
     def use_classifier(self) -> None:
         """Choose the classifier as the threshold."""
@@ -275,6 +285,7 @@ class SegmentationControls(QWidget):
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(heading(tr("Region of interest")))
         layout.addWidget(self.region)
+        layout.addWidget(self.draw_box)
         layout.addWidget(self.region_error)
         layout.addSpacing(10)
         layout.addWidget(heading(tr("Segmentation")))

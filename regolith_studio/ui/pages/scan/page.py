@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any, cast
 
 import numpy as np
+from numpy.typing import NDArray
 from PySide6.QtCore import QEvent, QTimer
 from PySide6.QtGui import QDragEnterEvent, QDropEvent, QKeyEvent, QKeySequence
 from PySide6.QtWidgets import QFileDialog, QHBoxLayout, QSizePolicy
@@ -16,6 +17,7 @@ from regolith_studio.imaging.extraction import Extraction
 from regolith_studio.imaging.label_files import LABEL_SUFFIXES
 from regolith_studio.imaging.sample_volumes import sample_file
 from regolith_studio.imaging.segmentation.segment import Segmentation, SegmentationSettings
+from regolith_studio.imaging.segmentation.strokes import ERASER
 from regolith_studio.imaging.volume import Volume
 from regolith_studio.io.atomic import write_bytes
 from regolith_studio.io.json_text import json_bytes
@@ -42,14 +44,14 @@ from regolith_studio.jobs.volume_jobs import (
 from regolith_studio.messages import N_
 from regolith_studio.readers.volume_formats import volume_suffixes
 from regolith_studio.readers.volumes.header import VolumeHeader, layout_from_name
-from regolith_studio.readers.volumes.region import RegionSettings
+from regolith_studio.readers.volumes.region import RegionSettings, crop_of_rectangle
 from regolith_studio.readers.voxels.scanner_headers import header_beside
 from regolith_studio.session.batch.preprocessing import entry_of
 from regolith_studio.session.provenance import VolumeSource
 from regolith_studio.session.recipe import VolumeEntry
 from regolith_studio.ui.layout import CONTROLS_WIDTH, padded, scrolled_column, side_by_side, tabs
 from regolith_studio.ui.page import PageContext, PageWidget
-from regolith_studio.ui.pages.scan.brush_panel import BrushPanel
+from regolith_studio.ui.pages.scan.brush_panel import Brush, BrushPanel
 from regolith_studio.ui.pages.scan.controls import SegmentationControls
 from regolith_studio.ui.pages.scan.corrections import Corrections
 from regolith_studio.ui.pages.scan.edits_panel import EditsPanel
@@ -64,6 +66,7 @@ from regolith_studio.ui.translation import tr, translate
 VOLUMES = N_("Volumes ({suffixes});;All files (*)")
 CLASSIFIERS = N_("Classifiers (*.json);;All files (*)")
 RECIPES = N_("Settings (*.json);;All files (*)")
+BOX = Brush(ERASER, 1.0, "box")
 PREVIEW_DELAY = 120
 """Milliseconds from the last change to the preview."""
 
@@ -365,6 +368,19 @@ class ScanPage(PageWidget):
             self._hide_probabilities(self._found_with)
         self._show_state()
 
+    def _crop_to_box(self, axis: int, _number: int, points: NDArray[np.float64]) -> None:
+        """Read the region that was drawn in a slice."""
+        if self.scan is None or not self.controls.draw_box.isChecked():
+            return
+        self.controls.draw_box.setChecked(False)
+        shape = [edge for each, edge in enumerate(self.scan.volume.shape) if each != axis]
+        ends = points[[0, -1]]
+        low, high = np.floor(ends.min(axis=0)), np.ceil(ends.max(axis=0))
+        (x0, y0), (x1, y1) = (np.clip(each, 0, shape).astype(int).tolist() for each in (low, high))
+        if x0 < x1 and y0 < y1:
+            origin = self.scan.volume.origin
+            self.controls.set_crop(crop_of_rectangle(self._region, origin, axis, (x0, y0), (x1, y1)))
+
     def _make_surface(self, labels: Volume) -> None:
         """Contour labels in the background for the view of all grains."""
         show = self.slices.show_surface
@@ -480,6 +496,8 @@ class ScanPage(PageWidget):
         self.brush.saveRequested.connect(self.save_classifier)
         self.slices.boxMoved.connect(self._schedule_preview)
         self.slices.surfaceWanted.connect(self._make_surface)
+        self.controls.draw_box.toggled.connect(lambda on: self.slices.set_line_tool(BOX if on else None))
+        self.slices.strokeDrawn.connect(self._crop_to_box)
         self.slices.histogram.levelDragged.connect(self._on_level_dragged)
         self.workflow.openRequested.connect(self.ask_for_file)
         self.workflow.sampleRequested.connect(self.open_sample)
@@ -520,6 +538,7 @@ class ScanPage(PageWidget):
 
     def _stop_tools(self) -> None:
         """Let clicks show slices again when another tab is chosen."""
+        self.controls.draw_box.setChecked(False)
         self.brush.paint.setChecked(False)
         self.corrections.stop_tools()
 
