@@ -114,7 +114,9 @@ def test_that_the_table_of_mujoco_and_rapier_has_the_results_of_its_runs() -> No
     columns = "seed|MuJoCo: filled to, packed|angle|s|Rapier: filled to, packed|angle|deepest overlap|s"
     header = f"| {' | '.join(columns.split('|'))} |"
     said = {row[0]: row for row in rows_of(REPOSE, header)}
-    found = results("repose_rapier.json")
+    found, (larger,) = (
+        [run for run in results("repose_rapier.json") if run["particles"] == n] for n in (1000, 3000)
+    )
     for run in found:
         low, high = run["interval_deg"]
         cells = [
@@ -133,6 +135,9 @@ def test_that_the_table_of_mujoco_and_rapier_has_the_results_of_its_runs() -> No
     assert f"steeper by {min(steeper):.1f} to {max(steeper):.1f} degrees in four pairs" in one_line(REPOSE)
     means = [np.mean([angles[engine, seed] for seed in (1, 2, 3, 4)]) for engine in ("mujoco", "rapier")]
     assert f"({means[0]:.1f} on MuJoCo, {means[1]:.1f} on Rapier)" in one_line(REPOSE)
+    small = np.mean([run["processor_s"] for run in found if run["engine"] == "rapier"])
+    power = np.log(larger["processor_s"] / small) / np.log(3)
+    assert f"as much as 1,000: N to the power {power:.2f}" in one_line(REPOSE)
 
 
 def test_that_the_table_of_spheres_has_the_results_of_its_benchmark() -> None:
