@@ -134,9 +134,15 @@ def objects_from(document: Mapping[str, Any], name: str) -> ObjectTraining:
         )
         n = len(examples)
         return ObjectTraining(
-            positions.reshape(n, 3), kinds, vectors.reshape(n, len(OBJECT_FEATURES)), centre, spread, edges,
-            actions,            str(document["scan_sha256"]),
-        )  # fmt: skip
+            positions.reshape(n, 3),
+            kinds,
+            vectors.reshape(n, len(OBJECT_FEATURES)),
+            centre,
+            spread,
+            edges,
+            actions,
+            str(document["scan_sha256"]),
+        )
     except InputError:
         raise
     except (KeyError, TypeError, ValueError, AttributeError, OverflowError):
