@@ -92,7 +92,8 @@ def test_that_a_command_that_waits_for_something_ends_two_seconds_after_a_signal
     family = psutil.Process(child.pid).children(recursive=True)
     assert len(family) >= 2
     begun = time.monotonic()
-    os.killpg(child.pid, getattr(signal, name))  # as a terminal does
+    number = getattr(signal, name)
+    (os.kill if name == "SIGTERM" else os.killpg)(child.pid, number)  # a terminal signals all processes
     _, said = child.communicate(timeout=PATIENCE)
     _, alive = psutil.wait_procs(family, timeout=PATIENCE)
     seconds = time.monotonic() - begun
