@@ -32,6 +32,8 @@ def grown_from_fewer(
 ) -> Iterator[Candidate]:
     """Polyhedra with `n_facets` half-spaces, cut out of one with fewer that meets all constraints.
 
+    They are cut without its slivers first, and with them where that leads to none with all facets.
+
     Parameters
     ----------
     fewer
@@ -42,11 +44,14 @@ def grown_from_fewer(
         Of the cuts, one of :data:`DEPTHS`.
     """
     areas = facet_areas(fewer)
-    for kept in (areas >= SMALL * areas.mean(), np.ones(len(areas), dtype=bool)):
+    for kept in (areas >= SMALL * areas.mean(), areas >= 0.0):
         few = candidate_of(problem, measure(problem, fewer.normals[kept], fewer.offsets[kept]))
-        few = search_and_project(problem, few)
+        few, whole = search_and_project(problem, few), False
         if few.exact:
-            yield from with_more_facets(target, problem, few, n_facets, steps, depths)
+            for found in with_more_facets(target, problem, few, n_facets, steps, depths):
+                whole = whole or (found.exact and found.n_facets == n_facets)
+                yield found
+        if whole:
             return
 
 
