@@ -156,7 +156,7 @@ def test_that_a_recipe_survives_being_written_and_read(tmp_path: Path) -> None:
     ("text", "sentence"),
     [
         ("nothing", "no JSON"),
-        ("[1]", "names neither"),
+        ("[1]", "holds no group of settings"),
         ("{}", "names neither"),
         ('{"extraction": 3}', "group of settings"),
         ('{"extraction": {"min_voxels": "many"}}', "of the kind of 268"),
