@@ -23,7 +23,7 @@ from regolith_studio.ui.widgets.table import FontRowHeight
 _MAX_HEADER_SHARE, _MIN_HEADER_SHARE = 0.33, 0.2
 """Limits of the vertical header's width as a share of the width of the table."""
 MIN_COLUMN, MARGINS = 24, 6
-"""Minimum width of a column, and the free pixels around its text."""
+"""Minimum width of a column, and the free pixels around its name."""
 SPARE = 11
 """Pixels of a row in addition to its lines of text."""
 Bands = tuple[Sequence[Sequence[float]], Sequence[Sequence[float]]]
@@ -165,20 +165,20 @@ def set_head_tips(table: QTableWidget, tips: Sequence[str]) -> None:
 
 
 def keep_legible(table: QTableWidget, width: int) -> None:
-    """Set the minimum width of columns to that of their texts; a table that is too narrow is scrolled.
+    """Set the minimum width of columns to that of their names and cells; a table that is too narrow is scrolled.
+
+    The width of a cell is what its delegate asks for: with less, the longest text is elided.
 
     Parameters
     ----------
     width
         Of the table. The vertical header shrinks first and elides its names.
     """
-    names, cells = table.horizontalHeader().fontMetrics(), table.fontMetrics()
+    names, model = table.horizontalHeader().fontMetrics(), table.model()
     heads = [table.horizontalHeaderItem(column) for column in range(table.columnCount())]
-    widths = [names.horizontalAdvance(head.text()) for head in heads if head is not None]
-    items = (table.item(row, at) for row in range(table.rowCount()) for at in range(table.columnCount()))
-    lines = {line for item in items if item is not None for line in item.text().splitlines()}
-    widest = max([*widths, *map(cells.horizontalAdvance, lines)], default=0)
-    least = max(MIN_COLUMN, widest + MARGINS)
+    widths = [names.horizontalAdvance(head.text()) + MARGINS for head in heads if head is not None]
+    cells = (model.index(row, at) for row in range(table.rowCount()) for at in range(table.columnCount()))
+    least = max([MIN_COLUMN, *widths, *(table.sizeHintForIndex(cell).width() for cell in cells)])
     table.horizontalHeader().setMinimumSectionSize(least)
     left: float = width - least * table.columnCount() - MARGINS
     left = min(max(left, _MIN_HEADER_SHARE * width), _MAX_HEADER_SHARE * width)
