@@ -78,6 +78,13 @@ def slide(panel, value):
     QTest.qWait(80)
 
 
+def test_that_the_button_of_the_export_is_seen_on_a_small_screen_without_scrolling(page, shown):
+    page.resize(1160, 700)
+    shown(page)
+    button = page.targets.export
+    assert button.visibleRegion().boundingRect() == button.rect()
+
+
 def test_that_a_new_user_gets_to_a_rocky_script_and_a_yade_run(chosen, wait, tmp_path, monkeypatch) -> None:
     monkeypatch.setattr(FolderDialog, "ask", lambda *_: str(tmp_path))
     chosen.folder.name.setText("my regolith/1")

@@ -83,10 +83,12 @@ class ExportPanel(QWidget):
                 _column((self.contact, self.test, self.times, remark(f"* {tr(NOT_GIVEN)}"))),
             )
         )
-        last = QHBoxLayout()
+        self.foot = QWidget()
+        """Belongs below the scrolled column: the button stays in sight however many formats there are."""
+        last = QHBoxLayout(self.foot)
+        last.setContentsMargins(4, 6, 12, 10)
         last.addWidget(self.lossy)
         last.addWidget(self.export, 1)
-        layout.addLayout(last)
         self.coarse_graining.setValue(1)
         self.particles.setValue(200)
         for slider in (self.coarse_graining, self.particles):

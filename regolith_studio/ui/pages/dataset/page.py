@@ -434,7 +434,12 @@ class DatasetPage(PageWidget):
         self.folder.name.textChanged.connect(lambda _: self._update_request())
 
     def _place(self) -> None:
-        controls = scrolled_column((self.representatives, self.sizes, self.folder, self.targets))
+        controls = QWidget()
+        steps = QVBoxLayout(controls)
+        steps.setContentsMargins(0, 0, 0, 0)
+        steps.setSpacing(0)
+        steps.addWidget(scrolled_column((self.representatives, self.sizes, self.folder, self.targets)), 1)
+        steps.addWidget(self.targets.foot)
         upper = equal_parts(Qt.Orientation.Horizontal, (self.quality, self.distribution))
         upper.setObjectName("dataset_upper")
         lower = [(self.losses, tr("Limits of the formats")), (self.exports, tr("Exported"))]
