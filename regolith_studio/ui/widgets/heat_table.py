@@ -165,7 +165,7 @@ def set_head_tips(table: QTableWidget, tips: Sequence[str]) -> None:
 
 
 def keep_legible(table: QTableWidget, width: int) -> None:
-    """Set the minimum width of columns to that of their names and cells; a table that is too narrow is scrolled.
+    """Make columns at least as wide as their names and cells; a table that is too narrow is scrolled.
 
     The width of a cell is what its delegate asks for: with less, the longest text is elided.
 
