@@ -45,8 +45,9 @@ def display():
 
 @pytest.fixture(scope="session")
 def app(display, tmp_path_factory):  # noqa: ARG001
-    """The one application object; never the user's preferences."""
+    """The one application object; never the user's preferences, nor the runs in the user's folder."""
     os.environ["REGOLITH_STUDIO_CONFIG"] = str(tmp_path_factory.mktemp("config"))
+    os.environ["XDG_DATA_HOME"] = str(tmp_path_factory.mktemp("data"))
     QCoreApplication.setAttribute(Qt.ApplicationAttribute.AA_DontUseNativeDialogs)
     made = QApplication.instance() or make_application(["tests"])
     made.setQuitOnLastWindowClosed(False)
