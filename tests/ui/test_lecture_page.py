@@ -80,6 +80,27 @@ def test_that_every_step_of_the_annealing_is_shown_said_and_set(page):
     assert page.annealing.loss.curves[-1].y[0] == lesson.exact.loss
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["annealing", "exact"])
+def test_that_the_polyhedra_of_both_methods_are_whole_in_their_views(page, name, wait):
+    session = page._session
+    session.choose(n_facets=20, l_max=10)
+    session.open_sample()  # the first particle is so rough that its polyhedra stand out far
+    wait(lambda: session.choices.selected == "agglutinate-1")
+    wait(lambda: page.annealing._lesson.imitated is session.results.surface)
+    wait(lambda: page.annealing._lesson.exact is not None)
+    lesson, view = page.annealing._lesson, page.annealing.frames[name].view
+    pose, focus = view.pose, np.array(view.pose.focal_point)
+    towards = pose.position - focus
+    side = np.cross(pose.view_up, towards)
+    up = np.cross(towards, side)
+    seen = {"annealing": lesson.steps[0].polyhedron, "exact": lesson.exact.polyhedron}[name]
+    places = seen.mesh.vertices + lesson.centre - focus
+    aspect = view.widget.width() / view.widget.height()
+    assert np.abs(places @ up / np.linalg.norm(up)).max() < pose.parallel_scale
+    assert np.abs(places @ side / np.linalg.norm(side)).max() < pose.parallel_scale * aspect
+
+
 def test_that_the_numbers_of_the_loss_add_up_to_the_loss(page):
     lesson = page.annealing._lesson
     for step in lesson.steps:

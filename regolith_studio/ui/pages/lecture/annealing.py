@@ -6,6 +6,8 @@ from typing import Any
 import numpy as np
 from PySide6.QtWidgets import QLabel, QSplitter, QVBoxLayout, QWidget
 
+from regolith_studio.coarsening.progress import placed
+from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.jobs.lecture_jobs import AnnealingLesson, AnnealingStep
 from regolith_studio.messages import N_
 from regolith_studio.scene import surfaces
@@ -73,11 +75,13 @@ class AnnealingView(QWidget):
     def show_lesson(self, lesson: AnnealingLesson) -> None:
         """Show a lesson; if it is the present one, show the result of the exact method."""
         fresh = self._lesson is None or self._lesson.steps is not lesson.steps
+        complete = lesson.exact is not None and (self._lesson is None or self._lesson.exact is not lesson.exact)
         self._lesson = lesson
         if fresh:
             self.playback.pause()
             self.playback.set_count(len(lesson.steps))
-            self.link.frame(lesson.imitated.vertices)
+        if fresh or complete:
+            self.link.frame(_outline(lesson))
         self._show_exact()
         self._show_step(self.playback.step)
 
@@ -281,3 +285,11 @@ class AnnealingView(QWidget):
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(rows, 1)
         layout.addWidget(self.playback)
+
+
+def _outline(lesson: AnnealingLesson) -> FloatArray:
+    """Points of all that the views show before a move and beside it, shape (n, 3): all stay whole in them."""
+    solids = [(lesson.steps[0].polyhedron, lesson.centre)]
+    if lesson.exact is not None:
+        solids.append((lesson.exact.polyhedron, lesson.exact.centre))
+    return np.vstack([lesson.imitated.vertices, *(placed(*each).vertices for each in solids)])
