@@ -74,8 +74,9 @@ class AnnealingView(QWidget):
 
     def show_lesson(self, lesson: AnnealingLesson) -> None:
         """Show a lesson; if it is the present one, show the result of the exact method."""
-        fresh = self._lesson is None or self._lesson.steps is not lesson.steps
-        complete = lesson.exact is not None and (self._lesson is None or self._lesson.exact is not lesson.exact)
+        before = self._lesson
+        fresh = before is None or before.steps is not lesson.steps
+        complete = lesson.exact is not None and (before is None or before.exact is not lesson.exact)
         self._lesson = lesson
         if fresh:
             self.playback.pause()
