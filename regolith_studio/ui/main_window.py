@@ -94,7 +94,7 @@ class MainWindow(QMainWindow):
 
     def show_tour(self) -> None:
         """Begin the guided tour."""
-        start_tour(self, self.go, self.preferences)
+        self.pages.changed.connect(start_tour(self, self.go, self.preferences).follow)
 
     def _context(self, key: str) -> PageContext:
         bindings = Bindings(self.session, self.toast.problem, self)

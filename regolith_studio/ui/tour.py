@@ -53,6 +53,7 @@ class Tour(QWidget):
         self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
         self._window, self._go, self._preferences = window, go, preferences
         self._steps, self._at = steps(), 0
+        self._elsewhere = False
         self._spot = QRect()
         self._bubble = QFrame(window)
         self._bubble.setObjectName("tour_bubble")
@@ -92,6 +93,11 @@ class Tour(QWidget):
         self.back.setEnabled(self._at > 0)
         self.next.setText(tr("Done") if self._at == len(self._steps) - 1 else tr("Next"))
         self._bubble.setAccessibleName(f"{step.title}. {step.text}")
+        self._place()
+
+    def follow(self, page: str) -> None:
+        """Hide the frame while another page than that of this stop is shown."""
+        self._elsewhere = page != self._steps[self._at].page
         self._place()
 
     def finish(self) -> None:
@@ -138,7 +144,7 @@ class Tour(QWidget):
         width = max(_WIDTH, self._bubble.minimumSizeHint().width())
         self._bubble.setFixedSize(width, max(90, self._bubble.heightForWidth(width)))
         self._bubble.move(_beside(self._spot, self._bubble.rect(), self.rect()))
-        for widget in (self, self._bubble):
+        for widget in (self._bubble,) if self._elsewhere else (self, self._bubble):
             widget.show()
             widget.raise_()
 

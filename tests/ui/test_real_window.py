@@ -29,7 +29,7 @@ from regolith_studio.ui.app import open_window
 from regolith_studio.ui.dialogs.export import ExportDialog
 from regolith_studio.ui.dialogs.unit import UnitDialog
 from regolith_studio.ui.theme import current_theme
-from regolith_studio.ui.tour import start_tour
+from regolith_studio.ui.tour import Tour, start_tour
 
 pytestmark = pytest.mark.window
 
@@ -246,6 +246,20 @@ def test_that_the_tour_goes_on_with_return_and_leaves_no_frame_behind(window, wa
     wait(lambda: accented(on_screen(window, middle_of_the_left_edge)) > 0.3)
     tour.finish()
     wait(lambda: accented(on_screen(window, middle_of_the_left_edge)) == 0)
+    settled(window)
+
+
+@pytest.mark.slow
+def test_that_the_frame_of_the_tour_is_hidden_on_another_page(window, settled):
+    window.show_tour()
+    tour = window.findChild(Tour)
+    assert tour.isVisible()
+    window.go("dataset")
+    window.resize(window.width() - 10, window.height())
+    assert not tour.isVisible()
+    window.go("explore")
+    assert tour.isVisible()
+    QTest.mouseClick(tour.end, Qt.MouseButton.LeftButton)
     settled(window)
 
 
