@@ -261,10 +261,10 @@ def export(
             "--coarse-graining",
             min=1e-6,
             max=1e6,
-            help="Coarse-graining factor on all diameters; 10 in the paper.",
+            help="Coarse-graining factor on all diameters; 1 keeps the particles' sizes, the paper takes 10.",
             metavar="F",
         ),
-    ] = 10.0,
+    ] = 1.0,
     particles: Annotated[
         int,
         typer.Option(

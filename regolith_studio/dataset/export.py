@@ -36,7 +36,7 @@ class ExportOptions:
     contact, test, times
         Of the simulated test: Tables 1 and 2, and the waiting times of scripts.
     coarse_graining_factor
-        Factor on all diameters (section 2.6); 10 in the paper.
+        Factor on all diameters (section 2.6); 1 keeps the particles' sizes, the paper takes 10.
     n_particles
         Particles drawn for formats that list individual particles.
     seed
@@ -54,7 +54,7 @@ class ExportOptions:
     contact: ContactParameters = field(default_factory=ContactParameters)
     test: LiftingCylinderTest = field(default_factory=LiftingCylinderTest)
     times: ScriptTimes = field(default_factory=ScriptTimes)
-    coarse_graining_factor: float = 10.0
+    coarse_graining_factor: float = 1.0
     n_particles: int = 200
     seed: int = 0
     rounding: float = 0.02

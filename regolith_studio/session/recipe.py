@@ -187,7 +187,7 @@ class Exports(Strict):
     """
 
     targets: list[str] = Field(min_length=1)
-    coarse_graining: float = 10.0
+    coarse_graining: float = 1.0
     particles: int = 200
     seed: int | None = Field(default=None, ge=0, lt=2**63)
     settings: dict[str, int | float] = Field(default_factory=dict)

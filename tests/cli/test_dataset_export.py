@@ -14,6 +14,7 @@ from regolith_studio.dataset.export import Exporter
 from regolith_studio.dataset.exporters import EXPORTERS
 from regolith_studio.dataset.folder_io import dataset_hash, read_dataset
 from regolith_studio.jobs import dataset_jobs
+from regolith_studio.session.recipe import Exports
 
 
 @pytest.fixture
@@ -86,6 +87,15 @@ def test_that_a_stop_between_two_formats_leaves_all_formats_as_they_were(
     monkeypatch.setattr(dataset_jobs, "prepared_export", prepare_one)
     assert command(*asked, 8).code == 130
     assert {path: path.read_bytes() for path in files(tmp_path / "out")} == before
+
+
+def test_that_particles_keep_their_sizes_where_no_coarse_graining_is_named(
+    command, folder: Path, tmp_path: Path
+) -> None:
+    """The command line and recipes had enlarged them tenfold, the window had not."""
+    assert command("dataset", "export", folder, "--to", "rocky", "-o", tmp_path / "out").code == 0
+    case = json.loads((tmp_path / "out" / "rocky" / "case.json").read_text())
+    assert case["coarse_graining_factor"] == Exports(targets=["rocky"]).coarse_graining == 1.0
 
 
 def test_that_settings_reach_the_files(command, folder: Path, tmp_path: Path) -> None:

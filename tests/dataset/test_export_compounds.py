@@ -24,7 +24,7 @@ from .example import elbow_entry, elbow_moments, entry
 from .programs import needs_yade, run_yade
 from .test_export_shapes import read_shp
 
-OPTIONS = ExportOptions(n_particles=10, n_spheres=12)
+OPTIONS = ExportOptions(coarse_graining_factor=10.0, n_particles=10, n_spheres=12)
 DENSITY = 3075.0
 PART = 12 / 20
 """Volume of a bar over that of the elbow: together they have 1.2."""

@@ -34,7 +34,10 @@ def paper_dataset(count: int = 10) -> Dataset:
     return build_dataset([entry(seed) for seed in range(count)], sizes=sizes, name="Table 1")
 
 
-def recorded(dataset: Dataset, folder: Path, options: ExportOptions | None = None) -> Recorder:
+PAPER = ExportOptions(coarse_graining_factor=10.0)
+
+
+def recorded(dataset: Dataset, folder: Path, options: ExportOptions = PAPER) -> Recorder:
     """What the script of an export tells Rocky."""
     exported = write_export(dataset, EXPORTERS["rocky"], folder, options)
     application = Recorder("app")
@@ -225,7 +228,7 @@ class SimulatedApp:
 @pytest.mark.parametrize("told", [1.0, 10.0])
 def test_that_positions_come_back_from_rocky_enlarged_once(tmp_path: Path, told: float) -> None:
     """Whether Rocky tells sizes with the coarse graining or without, the largest asked for decides."""
-    folder = write_export(paper_dataset(1), EXPORTERS["rocky"], tmp_path / "x").folder
+    folder = write_export(paper_dataset(1), EXPORTERS["rocky"], tmp_path / "x", PAPER).folder
     places = np.random.default_rng(0).uniform(-0.01, 0.01, (50, 3))
     diameters = 1e-6 * np.resize(PAPER_CLASSES_UM, 50)
     application = SimulatedApp(np.column_stack([places, told * diameters]))

@@ -39,7 +39,7 @@ from regolith_studio.geometry.half_spaces import HalfSpaces
 
 from .example import entry
 
-OPTIONS = ExportOptions(n_particles=30, n_spheres=12)
+OPTIONS = ExportOptions(coarse_graining_factor=10.0, n_particles=30, n_spheres=12)
 
 
 @pytest.fixture(scope="module")

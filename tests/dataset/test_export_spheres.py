@@ -16,7 +16,7 @@ from regolith_studio.errors import DatasetError
 
 from .example import entry
 
-OPTIONS = ExportOptions(n_spheres=6)
+OPTIONS = ExportOptions(coarse_graining_factor=10.0, n_spheres=6)
 DENSITY, COARSE = OPTIONS.contact.density, OPTIONS.coarse_graining_factor
 
 
