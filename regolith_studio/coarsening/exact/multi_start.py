@@ -81,8 +81,11 @@ COSTLY_SURPLUS = 0.12
 """Where a particle has so much more surface than its hull (in logarithms), keeping it may cost overlap."""
 RISE = 9e-4
 """By how much the Jaccard distance may lie above that of a result with fewer facets."""
-STARTS_FOR_FACETS = 3
-"""Further starts where all constraints are met, but a half-space bounds no facet."""
+FURTHER_STARTS = 3
+"""Where all constraints are met, but a half-space bounds no facet, or the overlap is poor."""
+POOR = 1.3
+"""A Jaccard distance so many times that of a polyhedron that misses constraints is poor: the start ended far
+from the particle, and another one may not."""
 
 
 class Search:
@@ -347,8 +350,13 @@ class Search:
         if tried < self._level.starts or best is None or not best.exact:
             return False
         best = self._confirm()
-        has_all_facets = best.n_facets == self._n_facets
-        return best.exact and (has_all_facets or tried >= self._level.starts + STARTS_FOR_FACETS)
+        satisfactory = best.n_facets == self._n_facets and not self._overlaps_poorly(best)
+        return best.exact and (satisfactory or tried >= self._level.starts + FURTHER_STARTS)
+
+    def _overlaps_poorly(self, best: Candidate) -> bool:
+        """Whether other starts may overlap much better; on rough particles the sphericity costs overlap."""
+        is_rough = self._round_asked and more_surface_than_hull(self._target) > COSTLY_SURPLUS
+        return not is_rough and best.jaccard_distance > POOR * self._record.min_distance
 
     def _confirm(self) -> Candidate:
         """The best so far that the public descriptors confirm, if any, else the nearest.

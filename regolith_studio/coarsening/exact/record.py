@@ -18,7 +18,8 @@ SAME = 1e-6
 class Record:
     """The best polyhedron, and the one with the smallest loss of those that miss a constraint.
 
-    `exact` lists those that meet all constraints and were not confirmed yet.
+    `exact` lists those that meet all constraints and were not confirmed yet; `min_distance` is the smallest
+    Jaccard distance of all, whether or not they meet the constraints.
 
     Parameters
     ----------
@@ -32,6 +33,7 @@ class Record:
         self.best: Candidate | None = None
         self.history: list[float] = []
         self.exact: list[Candidate] = []
+        self.min_distance = np.inf
         self._nearest: Candidate | None = None
         self._min_loss = np.inf
         self._judge = judge
@@ -60,6 +62,7 @@ class Record:
         for found in candidates:
             value = self._value(found)
             worth = found.better_than(self.best)
+            self.min_distance = min(self.min_distance, found.jaccard_distance)
             if found.exact:
                 self.exact.append(found)
             if worth:

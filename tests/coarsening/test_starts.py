@@ -1,0 +1,18 @@
+"""Starts of the exact method: one that ends far from the particle is followed by others."""
+
+import pytest
+
+from regolith_studio.coarsening.coarsen import coarsen
+from regolith_studio.coarsening.target import Target
+from regolith_studio.readers.particles import sample_particles
+
+
+@pytest.mark.parametrize(("name", "n_facets"), [("angular-1", 14), ("angular-3", 12)])
+def test_that_no_seed_overlaps_much_worse_than_the_others(name: str, n_facets: int) -> None:
+    """One of four had 2.3 to 7 times the distance of the best; which one depended on the processor."""
+    (mesh,) = (each.mesh for each in sample_particles() if each.name == name)
+    target = Target.of(mesh)
+    found = [coarsen(target, n_facets, seed=seed) for seed in range(4)]
+    assert all(each.reason is None for each in found)
+    distances = [each.jaccard_distance for each in found]
+    assert max(distances) < 1.5 * min(distances)
