@@ -70,12 +70,12 @@ class StopSignals:
         while (number := self._reading.recv(1)[0]) not in self._handled:
             pass
         time.sleep(STOP_SECONDS)
-        if "multiprocessing" in sys.modules:
-            for child in sys.modules["multiprocessing"].active_children():
-                child.kill()
         remove_unfinished()
         if not self.ended:
             os.write(2, f"{STOPPED}\n".encode())
+        if "multiprocessing" in sys.modules:
+            for child in sys.modules["multiprocessing"].active_children():
+                child.kill()  # last, since a pool replaces a process that has died
         os._exit(128 + number)
 
 

@@ -4,12 +4,14 @@ import ctypes
 import gc
 import os
 import platform
+import signal
+import socket
 import sys
 import threading
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from PySide6.QtCore import QCoreApplication, QLocale, Qt, QTimer
+from PySide6.QtCore import QCoreApplication, QLocale, QSocketNotifier, Qt, QTimer
 from PySide6.QtGui import QColor, QFont, QIcon, QPainter, QPixmap, QSurfaceFormat
 from PySide6.QtWidgets import QApplication, QLabel
 
@@ -70,6 +72,7 @@ def run(paths: Sequence[str | Path] = (), unit: str | None = None) -> int:
     QTimer.singleShot(0, window, lambda: show_recovery_and_tour(window))
     timer = exit_timer()
     window.closing.connect(timer.start)
+    notice_signals(app)
     code = app.exec()
     timer.cancel()
     sys.excepthook = sys.__excepthook__
@@ -113,6 +116,20 @@ def make_application(arguments: Sequence[str]) -> QApplication:
     app.setDesktopFileName("regolith-studio")
     app.setWindowIcon(QIcon(str(resource("icons", "app.svg"))))
     return app
+
+
+def notice_signals(app: QApplication) -> None:
+    """Let Ctrl+C close the window at once, also while it is idle.
+
+    Python acts on a signal when it runs next in the main thread, and nothing runs there while Qt waits for
+    events. So the signal writes to a socket, and Qt calls Python to read it.
+    """
+    reading, writing = socket.socketpair()
+    for end in (reading, writing):
+        end.setblocking(False)
+    signal.set_wakeup_fd(writing.fileno(), warn_on_full_buffer=False)
+    notifier = QSocketNotifier(reading.fileno(), QSocketNotifier.Type.Read, app)
+    notifier.activated.connect(lambda *_, ends=(reading, writing): ends[0].recv(1))
 
 
 def map_large_blocks() -> None:

@@ -290,7 +290,7 @@ class AnnealingView(QWidget):
 
 def _outline(lesson: AnnealingLesson) -> FloatArray:
     """Points of all that the views show before a move and beside it, shape (n, 3): all stay whole in them."""
-    solids = [(lesson.steps[0].polyhedron, lesson.centre)]
+    solids = [placed(lesson.steps[0].polyhedron, lesson.centre)]
     if lesson.exact is not None:
-        solids.append((lesson.exact.polyhedron, lesson.exact.centre))
-    return np.vstack([lesson.imitated.vertices, *(placed(*each).vertices for each in solids)])
+        solids.append(placed(lesson.exact.polyhedron, lesson.exact.centre))
+    return np.vstack([lesson.imitated.vertices, *(each.vertices for each in solids)])
