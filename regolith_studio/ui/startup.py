@@ -21,7 +21,7 @@ from regolith_studio.resources import resource
 from regolith_studio.ui.icons import pixmap
 from regolith_studio.ui.views.factory import surface_format
 
-EXIT_TIMEOUT = 2.0
+EXIT_TIMEOUT = 1.5
 """Seconds that the process may outlive its window."""
 SWITCH_INTERVAL = 0.001
 """Seconds after which a computing thread hands the interpreter to the thread of the window.
