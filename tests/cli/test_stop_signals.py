@@ -146,14 +146,11 @@ def test_that_the_processes_of_a_killed_command_end_in_the_middle_of_a_step(tmp_
         (["warm-up"], "SIGINT"),
         (["warm-up"], "SIGTERM"),
         (["describe", "sample:all"], "SIGINT"),
-        ([], "SIGINT"),
     ],
 )
-def test_that_nothing_goes_on_compiling_after_a_command_or_the_window_was_interrupted(
+def test_that_nothing_goes_on_compiling_after_a_command_was_interrupted(
     tmp_path: Path, words: list[str], name: str
 ) -> None:
-    if not words and not os.environ.get("DISPLAY"):
-        pytest.skip("The window needs a display.")
     places = {"NUMBA_CACHE_DIR": str(tmp_path / "code"), "REGOLITH_STUDIO_CONFIG": str(tmp_path / "config")}
     with (tmp_path / "said").open("w") as said:
         child = subprocess.Popen(
