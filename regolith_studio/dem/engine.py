@@ -7,6 +7,9 @@ from typing import Any, Protocol, runtime_checkable
 from regolith_studio.dem.case import PreparedCase
 from regolith_studio.dem.snapshot import EngineState, ParticleState, Snapshot
 
+ENGINE_THREADS = "RAYON_NUM_THREADS"
+"""Environment variable with the number of threads of an engine that uses several."""
+
 
 @dataclass(frozen=True)
 class EngineCapabilities:

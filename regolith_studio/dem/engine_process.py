@@ -22,7 +22,7 @@ from pathlib import Path
 from typing import Any, BinaryIO
 
 from regolith_studio.dem.case import PreparedCase
-from regolith_studio.dem.engine import Engine, ResumableEngine, SimulationResult
+from regolith_studio.dem.engine import ENGINE_THREADS, Engine, ResumableEngine, SimulationResult
 from regolith_studio.dem.engines import engine_named
 from regolith_studio.dem.run_io import (
     ENGINE_FILES,
@@ -39,8 +39,6 @@ POLL_INTERVAL = 0.2
 """Seconds without a message after which ``None`` is yielded, so that the caller can cancel."""
 STATE_INTERVAL = 60.0
 """Seconds between two states that are saved, and at least 20 times as long as saving one takes."""
-ENGINE_THREADS = "RAYON_NUM_THREADS"
-"""Environment variable with the number of threads of an engine that uses several."""
 _THREAD_LIMITS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
 
 

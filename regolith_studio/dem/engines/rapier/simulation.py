@@ -7,6 +7,7 @@ import rapier3d as rapier
 from scipy.spatial import ConvexHull, HalfspaceIntersection
 
 from regolith_studio.dem.case import PreparedCase
+from regolith_studio.dem.engine import ENGINE_THREADS
 from regolith_studio.dem.engines.rapier.settings import RapierSettings
 from regolith_studio.dem.initial_packing import enclosing_radii, loose_column
 from regolith_studio.dem.lifting_cylinder import PHASES, Units, lift_speed
@@ -20,8 +21,6 @@ PLATE_WIDTH = 12.0
 ROUNDING = 0.02
 """Radius of the edges in equivalent diameters. With sharp ones the solver finds overlaps that are none (0.6
 diameters deep at rest), and heaps never come to rest."""
-THREADS = "RAYON_NUM_THREADS"
-"""Environment variable with the number of threads."""
 REPEATABLE = "Equal seeds give equal bytes on one machine, with any number of threads."
 MAX_SPEED = 400.0
 """Limit of the solver where none is set."""
@@ -46,7 +45,7 @@ class RapierSolver:
         handles = [rapier.RigidBodyHandle.from_raw_parts(k, 0) for k in range(self.n + 1)]
         self.particles = [bodies[handle] for handle in handles[:-1]]
         self.cylinder = bodies[handles[-1]]
-        self.world.set_num_threads(int(os.environ.get(THREADS, "1")))
+        self.world.set_num_threads(int(os.environ.get(ENGINE_THREADS, "1")))
         numerics = self.world.integration_parameters
         numerics.num_solver_iterations = self.settings.iterations
         # heaps are calmer and overlap less with both; sharp columns walk and fall with recycled contacts
