@@ -225,6 +225,9 @@ class Running:
         os.chdir(temporary.parent)
         os.environ.update({_MARK: self._mark, "TMPDIR": str(temporary), "PYTHONPATH": str(ROOT)})
         tempfile.tempdir = None
+        warnings.resetwarnings()  # as Python starts, whatever a test has turned into an error
+        for category in (DeprecationWarning, PendingDeprecationWarning, ImportWarning, ResourceWarning):
+            warnings.simplefilter("ignore", category)
         for number, path in ((1, os.devnull), (2, self._stderr)):
             os.dup2(os.open(path, os.O_WRONLY | os.O_CREAT, 0o600), number)
         sys.stdout, sys.stderr = (os.fdopen(number, "w", 1, closefd=False) for number in (1, 2))
