@@ -72,6 +72,13 @@ Losses = Annotated[
         metavar="NAME",
     ),
 ]
+WithCompound = Annotated[
+    bool,
+    typer.Option(
+        "--compound",
+        help="Add a row: unions of convex parts that keep all descriptors (--loss compound alone).",
+    ),
+]
 SampleSources = Annotated[
     list[str],
     typer.Argument(metavar="FIT|MESH...", help="The fit of a sample, or its meshes."),
@@ -212,6 +219,7 @@ def coarsening(
     output: Folder,
     facets: Facets = FACETS,
     loss: Losses = None,
+    compound: WithCompound = False,
     how: CoarseningOptions,
     box: BoxMetric = "exact",
     run: RunOptions,
@@ -221,7 +229,7 @@ def coarsening(
 
     check_box(box)
     choices = how.choices(n_facets=facets, seed=run.seed)
-    options = {"rows": _rows(loss, choices, bool(how.weight)), "box_metric": box}
+    options = {"rows": _rows(loss, choices, bool(how.weight), compound), "box_metric": box}
     _, code = run.study(
         "coarsening_study", study_coarsening, meshes, output, request=choices.coarsening_request, **options
     )
@@ -236,6 +244,7 @@ def solids(
     output: Folder,
     facets: Facets = FACETS,
     loss: Losses = None,
+    compound: WithCompound = False,
     how: CoarseningOptions,
     run: RunOptions,
 ) -> None:
@@ -243,7 +252,7 @@ def solids(
     from regolith_studio.jobs.study_jobs import study_gallery
 
     choices = how.choices(n_facets=facets, seed=run.seed)
-    rows = _rows(loss, choices, bool(how.weight))
+    rows = _rows(loss, choices, bool(how.weight), compound)
     _, code = run.study(
         "solids_study", study_gallery, meshes, output, request=choices.coarsening_request, rows=rows
     )
@@ -298,13 +307,17 @@ def population(
         print_table(target_table(study))
 
 
-def _rows(names: Sequence[str] | None, choices: "Choices", weighted: bool) -> "tuple[LossVariant, ...]":
+def _rows(
+    names: Sequence[str] | None, choices: "Choices", weighted: bool, compound: bool
+) -> "tuple[LossVariant, ...]":
     """The rows of a study by name; without names Fig. 8's, and those that the options weight."""
-    from regolith_studio.session.study_requests import CHOSEN, chosen_rows
+    from regolith_studio.session.study_requests import CHOSEN, COMPOUND, chosen_rows
     from regolith_studio.studies.loss_variants import PAPER_LOSSES
 
+    chosen = tuple(names or (*PAPER_LOSSES, *((CHOSEN,) if weighted else ())))
+    added = (COMPOUND,) if compound and COMPOUND not in chosen else ()
     with usage_errors():
-        return chosen_rows(tuple(names or (*PAPER_LOSSES, *((CHOSEN,) if weighted else ()))), choices)
+        return chosen_rows((*chosen, *added), choices)
 
 
 def _words(text: str) -> tuple[str, ...]:
@@ -321,7 +334,13 @@ class VariedOptions:
     run: RunOptions
 
     def study(
-        self, key: str, values: str, meshes: Sequence[Path], output: Path, n_facets: int = FACETS
+        self,
+        key: str,
+        values: str,
+        meshes: Sequence[Path],
+        output: Path,
+        n_facets: int = FACETS,
+        compound: bool = False,
     ) -> None:
         """Run the study of this key and end the program with its exit code."""
         from regolith_studio.jobs.study_jobs import study_coarsening
@@ -330,7 +349,7 @@ class VariedOptions:
         check_box(self.box)
         choices = self.how.choices(self.preset, n_facets=n_facets, seed=self.run.seed)
         with usage_errors():
-            rows = varied_rows(key, choices, values)
+            rows = varied_rows(key, choices, values, compound)
         options = {"request": choices.coarsening_request, "rows": rows, "box_metric": self.box}
         _, code = self.run.study(f"{key}_study", study_coarsening, meshes, output, **options)
         raise typer.Exit(code)
@@ -353,10 +372,11 @@ def tradeoff(
     output: Folder,
     facets: Facets = FACETS,
     factors: OverlapFactors = "0,0.1,0.3,1,3,10,30",
+    compound: WithCompound = False,
     varied: VariedOptions,
 ) -> None:
     """Trade-off between overlap and descriptor errors."""
-    varied.study("tradeoff", factors, meshes, output, facets)
+    varied.study("tradeoff", factors, meshes, output, facets, compound)
 
 
 @app.command("sensitivity")

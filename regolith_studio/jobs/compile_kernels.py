@@ -35,11 +35,11 @@ def is_compiled(task: str) -> bool:
     return task not in TASKS or mark is None or mark.exists()
 
 
-def compile_first_for(method: str) -> Steps:
-    """:func:`compile_first` for reading, fitting, measuring and a coarsening method."""
+def compile_first_for(*methods: str) -> Steps:
+    """:func:`compile_first` for reading, fitting, measuring and coarsening methods."""
     names = list(TASKS)
-    last = method if method in TASKS else "describe"
-    yield from compile_first(*names[: names.index(last) + 1])
+    last = max(names.index(method) if method in TASKS else names.index("describe") for method in methods)
+    yield from compile_first(*names[: last + 1])
 
 
 def compile_first(*tasks: str) -> Steps:

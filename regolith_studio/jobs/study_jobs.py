@@ -112,7 +112,7 @@ def study_coarsening(
     options
         Further ones of :func:`~regolith_studio.studies.coarsening.coarsening_study`: rows, box_metric.
     """
-    yield from compile_first_for(request.method)
+    yield from compile_first_for(request.method, *(row.method for row in options.get("rows") or ()))
     yield Started(title, len(particles))
     if answers is not None:
         answers.open("coarsening", (request, sorted(options.items())), hash_of_particles(particles))
@@ -171,11 +171,11 @@ def coarsen_gallery(
     Parameters
     ----------
     request
-        Method, number of facets, settings, seed and target of all.
+        Number of facets, seed and target of all.
     rows
-        Whose weights are taken; those of Fig. 8 by default.
+        Whose weights, method and settings are taken; by default those of Fig. 8 by the request's method.
     """
-    variants = paper_variants() if rows is None else tuple(rows)
+    variants = _variants(rows, request)
     total = len(particles) * len(variants)
     yield Started(N_("Coarsening for the gallery"), total)
     cells: list[GalleryCell] = []
@@ -206,7 +206,7 @@ def study_gallery(
     answers
         Keeps the polyhedra of each particle, so that the study can be resumed.
     """
-    variants = paper_variants() if rows is None else tuple(rows)
+    variants = _variants(rows, request)
     yield Started(N_("Coarsening for the gallery"), len(particles))
     if answers is not None:
         answers.open("solids", (request, variants), hash_of_particles(particles))
@@ -239,6 +239,11 @@ def coarsen_column(
     return {"rows": cells}
 
 
+def _variants(rows: Sequence[LossVariant] | None, request: CoarseningRequest) -> tuple[LossVariant, ...]:
+    settings: dict[str, Any] = dict(request.settings)
+    return paper_variants(request.method, **settings) if rows is None else tuple(rows)
+
+
 def study_of_cells(cells: Sequence[GalleryCell], labels: Sequence[str], names: Sequence[str]) -> GalleryStudy:
     """The result of :func:`coarsen_gallery` as a study that can be written."""
     polyhedra: dict[tuple[int, int], GalleryPolyhedron | str] = {}
@@ -261,10 +266,11 @@ def _fit_of(particle: Particle, request: CoarseningRequest) -> HarmonicFit | str
 
 
 def _with_loss(request: CoarseningRequest, row: LossVariant) -> CoarseningRequest:
-    weighted = dataclasses.replace(request, weights=row.weights, largest_error=None)
-    if row.weights.all_zero:  # the quadric start itself
-        return dataclasses.replace(weighted, method="quadric", settings=())
-    return weighted
+    baseline = row.weights.all_zero  # the quadric start itself
+    method, settings = ("quadric", ()) if baseline else (row.method, row.settings)
+    return dataclasses.replace(
+        request, weights=row.weights, method=method, settings=settings, largest_error=None
+    )
 
 
 def _outcome(

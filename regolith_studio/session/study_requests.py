@@ -4,6 +4,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from regolith_studio.coarsening.methods import METHODS
+from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.jobs.events import Job
@@ -15,6 +17,8 @@ from regolith_studio.studies.sweeps import SWEEPS, parse_values
 
 CHOSEN = "chosen"
 """Name of the loss whose weights are the present ones."""
+COMPOUND = "compound"
+"""Name of the row of unions of convex parts that keep all descriptors."""
 
 
 def present_row(choices: Choices) -> LossVariant:
@@ -24,9 +28,18 @@ def present_row(choices: Choices) -> LossVariant:
     )
 
 
+def compound_row(choices: Choices) -> LossVariant:
+    """A union of convex parts with all descriptors as conditions, beside rows of convex polyhedra."""
+    settings = choices.settings if choices.method == COMPOUND else ()
+    return LossVariant(
+        METHODS[COMPOUND].label, LossWeights.from_preset("all"), COMPOUND, choices.facet_count, settings
+    )
+
+
 def loss_names() -> dict[str, str]:
-    """Every loss that can be a row, with its label; the chosen weights last."""
-    return {name: loss.label for name, loss in losses().items()} | {CHOSEN: N_("Chosen weights")}
+    """Everything that can be a row, with its label: losses, the compound and the chosen weights."""
+    names = {name: loss.label for name, loss in losses().items()}
+    return names | {COMPOUND: METHODS[COMPOUND].label, CHOSEN: N_("Chosen weights")}
 
 
 def chosen_rows(names: Sequence[str], choices: Choices) -> tuple[LossVariant, ...]:
@@ -38,11 +51,19 @@ def chosen_rows(names: Sequence[str], choices: Choices) -> tuple[LossVariant, ..
         If there is no such loss.
     """
     like = present_row(choices)
-    return tuple(like if name == CHOSEN else loss_variants((name,), like)[0] for name in names)
+    own = {CHOSEN: like, COMPOUND: compound_row(choices)}
+    return tuple(own[name] if name in own else loss_variants((name,), like)[0] for name in names)
 
 
-def varied_rows(key: str, choices: Choices, values: str) -> tuple[LossVariant, ...]:
+def varied_rows(
+    key: str, choices: Choices, values: str, with_compound: bool = False
+) -> tuple[LossVariant, ...]:
     """The rows of a variation of the present choices, from values with commas between them.
+
+    Parameters
+    ----------
+    with_compound
+        Whether a union of convex parts is compared with the rows of a trade-off.
 
     Raises
     ------
@@ -50,6 +71,8 @@ def varied_rows(key: str, choices: Choices, values: str) -> tuple[LossVariant, .
         If a value is wrong, or the choices leave nothing to vary.
     """
     rows = SWEEPS[key].rows(present_row(choices), parse_values(values))
+    if key == "tradeoff" and with_compound:
+        rows = (*rows, compound_row(choices))
     for row in rows:
         Choices(n_facets=row.n_facets)
     return rows

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, Self
+from typing import Any
 
 import numpy as np
 
@@ -10,7 +10,7 @@ from regolith_studio.coarsening.lower_bounds import bounds_in_force
 from regolith_studio.coarsening.result import CoarseningResult
 from regolith_studio.coarsening.weights import JACCARD
 from regolith_studio.descriptors.catalogue import LOSS_KEYS
-from regolith_studio.geometry.convex_compound import ConvexCompound
+from regolith_studio.geometry.convex_compound import ConvexCompound, Polyhedron
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.half_spaces import HalfSpaces
 from regolith_studio.io.tables import Cell, Column, Table
@@ -27,7 +27,7 @@ class GalleryPolyhedron:
     """
 
     method: str
-    polyhedron: ConvexPolyhedron
+    polyhedron: Polyhedron
     errors: Mapping[str, float]
     jaccard_distance: float
     loss: float
@@ -35,14 +35,11 @@ class GalleryPolyhedron:
     reason: str | None
 
     @classmethod
-    def of(cls, found: CoarseningResult) -> Self | str:
-        """Of a particle just coarsened; a sentence for a union of several parts, which is not drawn."""
-        solid = found.polyhedron
-        if isinstance(solid, ConvexCompound):
-            return f"A compound of {solid.n_parts} parts is not drawn in this figure."
+    def of(cls, found: CoarseningResult) -> "GalleryPolyhedron":
+        """Of a particle just coarsened."""
         return cls(
             found.method,
-            solid,
+            found.polyhedron,
             found.errors,
             found.jaccard_distance,
             found.loss,
@@ -51,29 +48,47 @@ class GalleryPolyhedron:
         )
 
     @classmethod
-    def from_document(cls, document: Mapping[str, Any]) -> Self:
+    def from_document(cls, document: Mapping[str, Any]) -> "GalleryPolyhedron":
         """The inverse of :meth:`document`."""
-        planes = HalfSpaces(np.array(document["normals"]), np.array(document["offsets"]))
-        facets = tuple(tuple(facet) for facet in document["facets"])
-        polyhedron = ConvexPolyhedron(planes, np.array(document["vertices"]), facets)
+        parts = tuple(map(_part_from, document["parts"]))
+        places = np.array([part["place"] for part in document["parts"]])
+        compound = len(parts) > 1 or places.any()
+        solid = ConvexCompound(parts, places) if compound else parts[0]
         kept = ("errors", "jaccard_distance", "loss", "bounds", "reason")
-        return cls(document["method"], polyhedron, *(document[key] for key in kept))
+        return cls(document["method"], solid, *(document[key] for key in kept))
 
     def document(self) -> dict[str, Any]:
         """As JSON takes it, to the last bit."""
         solid = self.polyhedron
+        if isinstance(solid, ConvexCompound):
+            pairs = list(zip(solid.parts, solid.places.tolist(), strict=True))
+        else:
+            pairs = [(solid, [0.0, 0.0, 0.0])]
         return {
             "method": self.method,
-            "normals": solid.half_spaces.normals.tolist(),
-            "offsets": solid.half_spaces.offsets.tolist(),
-            "vertices": solid.vertices.tolist(),
-            "facets": [[int(corner) for corner in facet] for facet in solid.facets],
+            "parts": [_part_document(part, place) for part, place in pairs],
             "errors": {key: float(error) for key, error in self.errors.items()},
             "jaccard_distance": float(self.jaccard_distance),
             "loss": float(self.loss),
             "bounds": {key: float(bound) for key, bound in self.bounds.items()},
             "reason": self.reason,
         }
+
+
+def _part_document(part: ConvexPolyhedron, place: list[float]) -> dict[str, Any]:
+    return {
+        "place": place,
+        "normals": part.half_spaces.normals.tolist(),
+        "offsets": part.half_spaces.offsets.tolist(),
+        "vertices": part.vertices.tolist(),
+        "facets": [[int(corner) for corner in facet] for facet in part.facets],
+    }
+
+
+def _part_from(document: Mapping[str, Any]) -> ConvexPolyhedron:
+    planes = HalfSpaces(np.array(document["normals"]), np.array(document["offsets"]))
+    facets = tuple(tuple(facet) for facet in document["facets"])
+    return ConvexPolyhedron(planes, np.array(document["vertices"]), facets)
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,6 +5,9 @@ from pathlib import Path
 
 import pytest
 
+from regolith_studio.io.stl import stl_bytes
+from tests.coarsening.compound.unions import dumbbell
+
 ONE = ("--target", "particle", "--json")
 
 
@@ -69,6 +72,26 @@ def test_that_any_losses_can_be_the_rows_of_figure_8(command, grains: Path, tmp_
     assert met[("Volume only", "volume")]
     assert not met[("Volume only", "sphericity")]
     assert met[("Chosen weights", "sphericity")]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("study", ["coarsening", "tradeoff", "solids"])
+def test_that_a_compound_is_a_row_of_its_own(command, study: str, tmp_path: Path) -> None:
+    """Beside convex polyhedra, which cannot keep the hull of a particle with a waist."""
+    (tmp_path / "waist.stl").write_bytes(stl_bytes(dumbbell().triangles, "test"))
+    loss = () if study == "tradeoff" else ("--loss", "all")
+    options = ("--facets", 24, "--compound", "--target", "particle")
+    result = command("study", study, tmp_path / "waist.stl", "-o", tmp_path / "s", *loss, *options)
+    assert result.code == 0, result.err
+    table = {"coarsening": "coarsening_rmsre.csv"}.get(study, f"{study}.csv")
+    rows = rows_of(tmp_path / "s" / table)
+    if study == "coarsening":
+        rows = [row for row in rows if row["descriptor"] == "convex_hull_volume"]
+    column = "rmsre [%]" if study == "coarsening" else "convex_hull_volume [%]"
+    errors = {row["row"]: float(row[column]) for row in rows}
+    assert errors.pop("Compound of convex parts") < 1e-4
+    assert min(errors.values()) > 1.0
+    assert len(errors) == (8 if study == "tradeoff" else 1)
 
 
 @pytest.mark.parametrize(

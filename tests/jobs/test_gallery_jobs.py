@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from regolith_studio.geometry.convex_compound import ConvexCompound
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
@@ -12,8 +13,10 @@ from regolith_studio.jobs.coarsening_jobs import CoarseningRequest
 from regolith_studio.jobs.events import Partial, Progress, Steps
 from regolith_studio.jobs.study_jobs import coarsen_gallery, study_gallery, study_of_cells
 from regolith_studio.session.choices import Choices
+from regolith_studio.session.study_requests import COMPOUND, chosen_rows
 from regolith_studio.studies.loss_variants import paper_variants
 from regolith_studio.studies.polyhedron_gallery import gallery_table
+from tests.coarsening.compound.unions import dumbbell
 
 
 @pytest.fixture(scope="module")
@@ -70,7 +73,7 @@ def test_that_the_study_has_the_polyhedra_of_the_gallery(
 ) -> None:
     sphere = icosphere(2)
     eggs = [Particle(f"egg-{n}", Mesh(sphere.vertices * [n, 2, 3], sphere.faces)) for n in (1, 2, 0)]
-    rows, names = paper_variants()[:3], [egg.name for egg in eggs]
+    rows, names = paper_variants("quadric")[:3], [egg.name for egg in eggs]
     drawn = study_of_cells(
         result_of(coarsen_gallery(eggs, coarsening_request, rows)), [row.label for row in rows], names
     )
@@ -78,6 +81,19 @@ def test_that_the_study_has_the_polyhedra_of_the_gallery(
     assert (study.rows, study.names) == (drawn.rows, drawn.names)
     assert gallery_table(study) == gallery_table(drawn)
     assert [isinstance(study.cells[0, column], str) for column in range(3)] == [False, False, True]
+
+
+@pytest.mark.slow
+def test_that_a_row_compound_stands_beside_rows_of_convex_polyhedra() -> None:
+    choices = Choices(n_facets=24, target="particle", method="quadric")
+    rows = chosen_rows(("quadric", "all", COMPOUND), choices)
+    assert [row.method for row in rows] == ["quadric", "quadric", "compound"]
+    cells = result_of(study_gallery([Particle("waist", dumbbell())], choices.coarsening_request, rows)).cells
+    assert [cells[row, 0].method for row in range(3)] == ["quadric", "quadric", "compound"]
+    assert isinstance(cells[2, 0].polyhedron, ConvexCompound)
+    errors = [cells[row, 0].errors["convex_hull_volume"] for row in range(3)]
+    assert errors[2] < 1e-6 < errors[1]
+    assert cells[2, 0].reason is None
 
 
 def test_that_a_particle_without_a_fit_is_reported_in_each_row() -> None:

@@ -177,6 +177,7 @@ def test_that_trade_and_sensitivity_follow_the_method(window, wait, settled):
     settled(window)
     trade, change = page.variations["tradeoff"], page.variations["sensitivity"]
     assert trade.values.isVisibleTo(trade)
+    page.bar.set_names(["all", "compound"])
     trade.values.setText("0, 2")
     change.values.setText("3")
     page.sweeps.start("tradeoff")
@@ -185,7 +186,8 @@ def test_that_trade_and_sensitivity_follow_the_method(window, wait, settled):
         lambda: set(page.sweeps.results) == {"tradeoff", "sensitivity"} and not window.session.tasks, SECONDS
     )
     settled(window)
-    assert [series.label for series in trade.part.series] == ["Overlap × 0", "Overlap × 2", "Overlap only"]
+    labels = ["Overlap × 0", "Overlap × 2", "Overlap only", "Compound of convex parts"]
+    assert [series.label for series in trade.part.series] == labels
     table = change.part.table
     assert (table.rowCount(), table.columnCount()) == (7, 7)
     assert "percentage points" in table.item(0, 0).toolTip()

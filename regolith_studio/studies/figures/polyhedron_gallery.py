@@ -7,7 +7,8 @@ from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 
-from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.geometry.arrays import FloatArray, IntArray
+from regolith_studio.geometry.convex_compound import ConvexCompound, Polyhedron
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.io.tables import write_table
 from regolith_studio.studies.figures.files import write_figure
@@ -19,6 +20,8 @@ LIGHT = np.array([0.35, 0.25, 0.9])
 COLOUR, EDGE = np.array([0.902, 0.624, 0.0]), "0.15"
 CELL = 1.7
 """Inches."""
+PIXELS, SAMPLES = 240, 3
+"""Of the picture of a union along each side, and of a pixel along each of its own."""
 
 
 def gallery_figure(study: GalleryStudy) -> Figure:
@@ -62,14 +65,59 @@ def visible_facets(polyhedron: ConvexPolyhedron) -> tuple[list[FloatArray], Floa
     return [flat[list(polyhedron.facets[facet])] for facet in seen], 0.35 + 0.65 * light
 
 
-def _draw(axis: Axes, polyhedron: ConvexPolyhedron, reach: float) -> None:
-    outlines, brightness = visible_facets(polyhedron)
-    colours = np.clip(brightness[:, None] * COLOUR, 0.0, 1.0)
-    axis.add_collection(PolyCollection(outlines, facecolors=colours, edgecolors=EDGE, linewidths=0.5))
+def union_picture(compound: ConvexCompound, reach: float) -> FloatArray:
+    """What is seen of a union of convex parts: red, green, blue and cover, shape (PIXELS, PIXELS, 4).
+
+    A line towards the eye leaves each part through one plane, so that the facet that is seen is that of the
+    part that it leaves last. Lines between facets are drawn where neighbouring samples see different ones.
+
+    Parameters
+    ----------
+    reach
+        Half the width of the picture, upper row first.
+    """
+    n = PIXELS * SAMPLES
+    at = reach * (2.0 * (np.arange(n) + 0.5) / n - 1.0)
+    flat = np.stack(np.meshgrid(at, -at), axis=-1).reshape(-1, 2) @ VIEW[:2]
+    nearest, seen, first = np.full(n * n, -np.inf), np.full(n * n, -1), 0
+    for normals, offsets in compound.part_planes:
+        gap, speed = offsets - flat @ normals.T, normals @ VIEW[2]
+        along = gap / np.where(speed == 0.0, 1e-300, speed)
+        leaves = np.where(speed > 0.0, along, np.inf)
+        far, near = leaves.min(axis=1), np.where(speed > 0.0, -np.inf, along).max(axis=1)
+        better = (near < far) & (far > nearest)
+        nearest[better], seen[better] = far[better], first + leaves.argmin(axis=1)[better]
+        first += len(offsets)
+    return _shaded(compound, seen.reshape(n, n))
+
+
+def _shaded(compound: ConvexCompound, seen: IntArray) -> FloatArray:
+    """Colours of the facets that samples see, -1 for none, with lines between them; pixels are means."""
+    light = np.clip(compound.facet_normals @ VIEW.T @ LIGHT / np.linalg.norm(LIGHT), 0.0, 1.0)
+    colours = np.clip((0.35 + 0.65 * light)[:, None] * COLOUR, 0.0, 1.0)
+    samples = np.zeros((*seen.shape, 4))
+    samples[..., 3] = seen >= 0
+    samples[..., :3] = np.where(seen[..., None] >= 0, colours[seen], 0.0)
+    for axis in (0, 1):
+        for shift in (-1, 1):
+            samples[(seen >= 0) & (np.roll(seen, shift, axis) != seen), :3] = float(EDGE)
+    pixels = samples.reshape(PIXELS, SAMPLES, PIXELS, SAMPLES, 4)
+    cover = pixels[..., 3].mean(axis=(1, 3))
+    colour = pixels[..., :3].sum(axis=(1, 3)) / np.maximum(pixels[..., 3].sum(axis=(1, 3)), 1.0)[..., None]
+    return np.concatenate([colour, cover[..., None]], axis=2)
+
+
+def _draw(axis: Axes, polyhedron: Polyhedron, reach: float) -> None:
+    if isinstance(polyhedron, ConvexCompound):
+        axis.imshow(union_picture(polyhedron, reach), extent=(-reach, reach, -reach, reach))
+    else:
+        outlines, brightness = visible_facets(polyhedron)
+        colours = np.clip(brightness[:, None] * COLOUR, 0.0, 1.0)
+        axis.add_collection(PolyCollection(outlines, facecolors=colours, edgecolors=EDGE, linewidths=0.5))
     axis.set_xlim(-reach, reach)
     axis.set_ylim(-reach, reach)
     axis.set_aspect("equal")
 
 
-def _reach(polyhedron: ConvexPolyhedron) -> float:
+def _reach(polyhedron: Polyhedron) -> float:
     return float(np.abs(polyhedron.vertices @ VIEW[:2].T).max())

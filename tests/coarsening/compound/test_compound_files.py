@@ -13,7 +13,6 @@ from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.jobs.coarsening_jobs import CoarsenedParticle, CoarseningRequest
 from regolith_studio.session.outputs.coarsening import write_coarsening
-from regolith_studio.studies.polyhedron_gallery import GalleryPolyhedron
 from tests.coarsening.compound.unions import dumbbell
 
 
@@ -46,7 +45,3 @@ def test_that_the_union_and_its_parts_are_files_that_trimesh_measures_alike(
         assert gap.max() < 1e-4
         assert len(part["offsets"]) == part["n_facets"]
     assert sum(part["n_facets"] for part in entry["parts"]) == entry["n_facets"] <= 10
-
-
-def test_that_the_gallery_says_that_it_does_not_draw_a_union(found: CoarseningResult) -> None:
-    assert GalleryPolyhedron.of(found) == "A compound of 2 parts is not drawn in this figure."

@@ -7,7 +7,7 @@ from regolith_studio.errors import RegolithError
 from regolith_studio.jobs.events import Job
 from regolith_studio.jobs.study_jobs import study_coarsening
 from regolith_studio.session.choices import Choices, Kind, depends
-from regolith_studio.session.study_requests import varied_rows
+from regolith_studio.session.study_requests import COMPOUND, varied_rows
 from regolith_studio.studies.coarsening import CoarseningStudy
 from regolith_studio.studies.sweeps import SWEEPS
 from regolith_studio.ui.page import PageContext
@@ -54,7 +54,8 @@ class SweepController:
         """
         choices, particles = self._session.choices, tuple(e.particle for e in self._session.particles)
         try:
-            rows = varied_rows(key, choices, self._panels[key].values.value())
+            with_compound = COMPOUND in self._bar.names()
+            rows = varied_rows(key, choices, self._panels[key].values.value(), with_compound)
         except RegolithError as error:
             if not quietly:
                 self._context.toast.problem(str(error))
