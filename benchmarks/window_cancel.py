@@ -156,7 +156,7 @@ def _judge(window: Any, _folder: Path) -> None:
 
 def _open_scan(window: Any) -> None:
     page = window.go("scan")
-    page.open_sample()
+    page.opening.open_sample()
     until(lambda: page.scan is not None)
 
 

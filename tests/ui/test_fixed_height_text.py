@@ -133,7 +133,7 @@ def test_that_no_control_of_dataset_moves_while_one_is_made(window, watched, tmp
 @pytest.mark.slow
 def test_that_no_control_of_scan_moves_from_volume_to_particles(watched):
     page = watched.go("scan")
-    watched.does("sample scan", page.open_sample)
+    watched.does("sample scan", page.opening.open_sample)
     watched.does("another level", lambda: page.controls.level.setValue(60.0))
     watched.does("dark grains", page.controls.dark.click)
     watched.does("bright grains", page.controls.dark.click)

@@ -105,8 +105,8 @@ def scanned(opened, wait):
 
     def run():
         page = opened().go("scan")
-        page.open_sample()
-        wait(lambda: page.preview is not None, SECONDS)
+        page.opening.open_sample()
+        wait(lambda: page.preview.found is not None, SECONDS)
         return page
 
     return run

@@ -112,9 +112,12 @@ class BrushPanel(QWidget):
         self.overlay.currentIndexChanged.connect(lambda: self.overlayChanged.emit(self.overlay.currentData()))
         self.kind.currentIndexChanged.connect(lambda: self.eraser.setChecked(False))
         for part, signal in (
-            (self.undo, self.undoRequested), (self.clear, self.clearRequested), (self.use, self.useRequested),
-            (self.browse, self.openRequested), (self.save, self.saveRequested),
-        ):  # fmt: skip
+            (self.undo, self.undoRequested),
+            (self.clear, self.clearRequested),
+            (self.use, self.useRequested),
+            (self.browse, self.openRequested),
+            (self.save, self.saveRequested),
+        ):
             part.clicked.connect(signal)
 
     def _arrange(self) -> None:
@@ -122,9 +125,14 @@ class BrushPanel(QWidget):
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(heading(tr("Classifier")))
         rows: tuple[tuple[QWidget, ...], ...] = (
-            (self.paint, self.eraser), (self.kind,), (self.diameter,), (self.overlay,),
-            (self.undo, self.clear), (self.use,), (self.browse, self.save),
-        )  # fmt: skip
+            (self.paint, self.eraser),
+            (self.kind,),
+            (self.diameter,),
+            (self.overlay,),
+            (self.undo, self.clear),
+            (self.use,),
+            (self.browse, self.save),
+        )
         for parts in rows:
             row = QHBoxLayout()
             for part in parts:

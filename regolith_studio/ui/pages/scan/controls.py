@@ -37,20 +37,30 @@ THRESHOLD = (
 )
 SURFACE = (("grey", N_("Grey values")), ("mask", N_("Mask")))
 H_MAXIMA = NumberSpec(
-    "h", N_("Bump that is a grain of its own, in voxels"), 0.0, 6.0, 0.1, limit=50.0,
+    "h",
+    N_("Bump that is a grain of its own, in voxels"),
+    0.0,
+    6.0,
+    0.1,
+    limit=50.0,
     tip=N_(
         "How far a bump must stand out to be a grain of its own. Grains cut in two: larger. "
         "Grains that stick together: smaller."
     ),
-)  # fmt: skip
+)
 OPENING = NumberSpec(
     N_("Opening"), N_("Opening"), 0, 5, tip=N_("Removes specks and thin bridges, in voxels.")
 )
 CLOSING = NumberSpec(N_("Closing"), N_("Closing"), 0, 5, tip=N_("Closes cracks and thin gaps, in voxels."))
 MIN_VOXELS = NumberSpec(
-    N_("Smallest"), N_("Minimum number of voxels of a grain"), 0, 2000, 1, limit=10_000_000,
+    N_("Smallest"),
+    N_("Minimum number of voxels of a grain"),
+    0,
+    2000,
+    1,
+    limit=10_000_000,
     tip=N_("Grains of fewer voxels are left out; below 12 voxels in diameter shapes are coarse."),
-)  # fmt: skip
+)
 
 _PROBABLE = ("probability", "classifier")
 """Thresholds that are probabilities."""
@@ -122,14 +132,16 @@ class SegmentationControls(QWidget):
                 dark=self.dark.isChecked(),
             ),
             CleaningSettings(
-                int(self.opening.value()), int(self.closing.value()), self.pores.isChecked(),
+                int(self.opening.value()),
+                int(self.closing.value()),
+                self.pores.isChecked(),
                 min(CleaningSettings.min_voxels, int(self.least.value())),
             ),
             dataclasses.replace(
                 before.splitting, enabled=self.split.isChecked(), h_maxima=float(self.h_maxima.value())
             ),
             classifier=self._classifier if chosen == "classifier" else None,
-        )  # fmt: skip
+        )
         extraction = dataclasses.replace(
             self._recipe.extraction,
             exclude_border=self.border.isChecked(),
@@ -212,8 +224,18 @@ class SegmentationControls(QWidget):
 
     def set_kind(self, kind: str) -> None:
         """Disable the settings of the segmentation for a volume of labels."""
-        for part in (self.denoise, self.threshold, self.level, self.boundary, self.dark, self.split,
-                     self.opening, self.closing, self.h_maxima, self.surface):  # fmt: skip
+        for part in (
+            self.denoise,
+            self.threshold,
+            self.level,
+            self.boundary,
+            self.dark,
+            self.split,
+            self.opening,
+            self.closing,
+            self.h_maxima,
+            self.surface,
+        ):
             part.setEnabled(kind == "grey")
         if kind == "grey":
             self._show_which()

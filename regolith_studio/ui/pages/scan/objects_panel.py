@@ -100,9 +100,11 @@ class ObjectsPanel(QWidget):
         for box in self.action_boxes:
             box.currentIndexChanged.connect(self.actionsChanged)
         for part, signal in (
-            (self.undo, self.undoRequested), (self.clear, self.clearRequested),
-            (self.browse, self.openRequested), (self.save, self.saveRequested),
-        ):  # fmt: skip
+            (self.undo, self.undoRequested),
+            (self.clear, self.clearRequested),
+            (self.browse, self.openRequested),
+            (self.save, self.saveRequested),
+        ):
             part.clicked.connect(signal)
 
     def _arrange(self) -> None:

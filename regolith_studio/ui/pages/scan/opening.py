@@ -1,0 +1,146 @@
+"""Opening a volume: ask for it and for what its file does not state, and read its region of interest."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from PySide6.QtCore import QObject, Signal
+from PySide6.QtWidgets import QFileDialog, QWidget
+
+from regolith_studio.errors import RegolithError
+from regolith_studio.imaging.sample_volumes import sample_file
+from regolith_studio.jobs.events import Job
+from regolith_studio.jobs.extraction_settings import VolumeInput
+from regolith_studio.jobs.volume_jobs import Scan, read_header, read_sample_scan, read_scan
+from regolith_studio.readers.volume_formats import volume_suffixes
+from regolith_studio.readers.volumes.header import VolumeHeader, layout_from_name
+from regolith_studio.readers.volumes.region import RegionSettings, crop_of_rectangle
+from regolith_studio.readers.voxels.scanner_headers import header_beside
+from regolith_studio.ui.page import PageContext
+from regolith_studio.ui.pages.scan.controls import SegmentationControls
+from regolith_studio.ui.pages.scan.file_dialogs import VOLUMES, ask_to_open, last_folder
+from regolith_studio.ui.pages.scan.volume_dialog import RAW_SUFFIXES, VolumeDialog, needs_asking
+from regolith_studio.ui.translation import tr
+
+
+class VolumeOpening(QObject):
+    """Reads the volume that the user names, in the region that the controls say.
+
+    `scan` is what is shown, `given` its file and `region` its region; `wanted` and `wanted_region` are those
+    of what is being read.
+    """
+
+    opened = Signal()
+    """Another scan is there; the one before has been closed."""
+    leaving = Signal()
+    """The scan is about to be closed."""
+
+    def __init__(self, context: PageContext, controls: SegmentationControls, page: QWidget) -> None:
+        super().__init__(page)
+        self._context, self._controls, self._page = context, controls, page
+        self.scan: Scan | None = None
+        self.given = self.wanted = VolumeInput(Path())
+        self.region = self.wanted_region = RegionSettings()
+
+    def ask_for_file(self) -> None:
+        """Ask for a volume and open it."""
+        kinds = tr(VOLUMES, suffixes=" ".join(f"*{suffix}" for suffix in sorted(volume_suffixes())))
+        path = ask_to_open(self._page, self._context, tr("Open a volume"), kinds)
+        if path is not None:
+            self.open(path)
+
+    def ask_for_folder(self) -> None:
+        """Ask for a folder of slices and open it."""
+        start = str(last_folder(self._context))
+        name = QFileDialog.getExistingDirectory(self._page, tr("Open a folder of slices"), start)
+        if name:
+            self.open(Path(name))
+
+    def open(self, path: Path) -> None:
+        """Open a file or a folder of slices whole, and ask for missing properties."""
+        settings = self._controls.value()
+        self._controls.setValue(replace(settings, region=replace(settings.region, crop="")))
+        self._context.remember("folder", str(path.parent))
+        if path.suffix.lower() in RAW_SUFFIXES and header_beside(path) is None:
+            self._ask_layout(path)
+            return
+        job = Job(read_header, (VolumeInput(path),))
+        self._context.start(
+            tr("Looking at the volume"), job, lambda header: self._on_header(path, header), lane="read"
+        )
+
+    def open_sample(self) -> None:
+        """Open the shipped scan."""
+        self.read(VolumeInput(sample_file("grey")))
+
+    def read(self, volume: VolumeInput) -> None:
+        """Read the region of interest of a volume."""
+        region = self._controls.value().region
+        self.wanted, self.wanted_region = volume, region
+        job = Job(read_scan, (volume, region))
+        title = tr("Reading the volume")
+        if volume.path == sample_file("grey"):
+            job, title = Job(read_sample_scan, ("grey", region)), tr("Reading the sample scan")
+        self._context.start(title, job, lambda scan: self._take(scan, volume, region), lane="read")
+
+    def follow_region(self) -> bool:
+        """Read again if the controls want another region; returns whether they do."""
+        other = self._controls.value().region != self.wanted_region and self.wanted.path != Path()
+        if other:
+            self.read(self.wanted)
+        return other
+
+    def crop_to_box(self, axis: int, _number: int, points: NDArray[np.float64]) -> None:
+        """Read the region that was drawn in a slice."""
+        if self.scan is None or not self._controls.draw_box.isChecked():
+            return
+        self._controls.draw_box.setChecked(False)
+        shape = [edge for each, edge in enumerate(self.scan.volume.shape) if each != axis]
+        ends = points[[0, -1]]
+        low, high = np.floor(ends.min(axis=0)), np.ceil(ends.max(axis=0))
+        (x0, y0), (x1, y1) = (np.clip(each, 0, shape).astype(int).tolist() for each in (low, high))
+        if x0 < x1 and y0 < y1:
+            origin = self.scan.volume.origin
+            self._controls.set_crop(crop_of_rectangle(self.region, origin, axis, (x0, y0), (x1, y1)))
+
+    def close(self) -> None:
+        """Remove the temporary files of the scan."""
+        if self.scan is not None:
+            self.scan.scratch.close()
+
+    def _on_header(self, path: Path, header: VolumeHeader) -> None:
+        if needs_asking(header):
+            self._show_dialog(VolumeDialog(path, header, last=self._last_size(), parent=self._page))
+        else:
+            self.read(VolumeInput(path))
+
+    def _ask_layout(self, path: Path) -> None:
+        try:
+            layout = layout_from_name(path)
+        except RegolithError as error:
+            self._context.toast.problem(str(error))
+            return
+        self._show_dialog(VolumeDialog(path, None, layout, self._last_size(), self._page))
+
+    def _show_dialog(self, dialog: VolumeDialog) -> None:
+        dialog.accepted.connect(lambda: self._read_described(dialog.value()))
+        dialog.finished.connect(dialog.deleteLater)
+        dialog.open()
+
+    def _read_described(self, volume: VolumeInput) -> None:
+        size = np.ravel(np.asarray(volume.voxel_size))[0]
+        self._context.remember("voxel_size", [float(size), volume.unit])
+        self.read(volume)
+
+    def _last_size(self) -> tuple[float, str]:
+        """Voxel size and unit of the previous volume, proposed for the next one."""
+        size, unit = self._context.recall("voxel_size", [1.0, "um"])
+        return float(size), str(unit)
+
+    def _take(self, scan: Scan, volume: VolumeInput, region: RegionSettings) -> None:
+        if self.scan is not None:
+            self.leaving.emit()
+        self.close()
+        self.scan, self.given, self.region = scan, volume, region
+        self.opened.emit()

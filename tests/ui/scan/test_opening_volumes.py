@@ -1,0 +1,211 @@
+"""Opening volumes on the page "Scan": dialogs, regions, raw files, volumes larger than the memory."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+import tifffile
+from PySide6.QtWidgets import QDialogButtonBox, QWidget
+
+from regolith_studio.imaging import slice_images
+from regolith_studio.imaging.sample_volumes import sample_volume
+from regolith_studio.imaging.segmentation.segment import segment
+from regolith_studio.imaging.volume import Volume
+from regolith_studio.jobs import volume_jobs
+from regolith_studio.jobs.extraction_settings import (
+    VolumeInput,
+)
+from regolith_studio.readers.volumes.header import RawLayout
+from regolith_studio.ui.pages.scan.volume_dialog import VolumeDialog
+from tests.ui.scan.mouse import grains_seen, paint, press
+
+SECONDS = 120.0
+
+
+def test_that_a_region_is_read_again_and_a_wrong_one_is_explained(page, part, wait, monkeypatch):
+    page.opening.read(VolumeInput(part, 2.3, kind="grey"))
+    wait(lambda: page.preview.found is not None, SECONDS)
+    crop, edge = (page.controls.region.findChild(QWidget, f"setting_{name}") for name in ("crop", "bin"))
+    crop.setText("10:70,:,92:161um")
+    crop.editingFinished.emit()
+    wait(lambda: page.scan.volume.shape == (60, 80, 30), SECONDS)
+    edge.setValue(2)
+    wait(lambda: page.scan.volume.shape == (30, 40, 15), SECONDS)
+    assert page.scan.volume.origin == (5.25, 0.25, 20.25)
+    assert page.scan.volume.voxel_size.tolist() == [4.6, 4.6, 4.6]
+    assert page.state()["region"] == {"crop": "10:70,:,92:161um", "bin": 2}
+    entries = []
+    monkeypatch.setattr(page.making, "_adopt", lambda _made, entry: entries.append(entry))
+    page.find_grains()
+    wait(lambda: page.grains is not None, SECONDS)
+    with monkeypatch.context() as patch:
+        patch.setattr(page.opening, "read", lambda _volume: None)  # the other region has not been read yet
+        edge.setValue(1)
+        page.make_particles()
+        wait(lambda: bool(entries), SECONDS)
+    assert entries[0].region == {"crop": "10:70,:,92:161um", "bin": 2}
+    edge.setValue(2)
+    crop.setText("10-70")
+    crop.editingFinished.emit()
+    assert page.controls.region_error.isVisible()
+    assert "X0:X1,Y0:Y1,Z0:Z1" in page.controls.region_error.text()
+    assert page.state()["region"]["crop"] == "10:70,:,92:161um"
+
+
+def test_that_a_box_drawn_in_a_slice_is_the_region_and_another_one_in_it_a_smaller_one(page, part, wait):
+    page.opening.read(VolumeInput(part, 2.3, kind="grey"))
+    wait(lambda: page.preview.found is not None, SECONDS)
+    along_z, along_y, _ = page.slices.views
+    press(page.controls.draw_box)
+    paint(along_z, [(20, 60), (40, 30), (69, 19)])
+    wait(lambda: page.scan.volume.shape == (50, 42, 70), SECONDS)
+    assert page.state()["region"]["crop"] == "20:70,19:61,:"
+    assert not page.controls.draw_box.isChecked()
+    wait(lambda: page.preview.found is not None, SECONDS)
+    press(page.controls.draw_box)
+    paint(along_y, [(10, 5), (29, 34)])
+    wait(lambda: page.scan.volume.shape == (20, 42, 30), SECONDS)
+    assert page.state()["region"]["crop"] == "30:50,19:61,5:35"
+    wait(lambda: page.preview.found is not None, SECONDS)
+
+
+def test_that_a_level_of_an_ome_zarr_is_chosen_before_it_is_read(page, tmp_path, wait):
+    write = (
+        "import sys, pathlib, tests.readers.test_ome_zarr as t; t.ome_zarr(pathlib.Path(sys.argv[1]), '0.5')"
+    )
+    root = Path(__file__).parents[2]  # a process of its own, since zarr leaves threads behind
+    subprocess.run([sys.executable, "-c", write, str(tmp_path / "scan.zarr")], cwd=root, check=True)
+    page.opening.open(tmp_path / "scan.zarr")
+    wait(lambda: page.findChild(VolumeDialog) is not None, SECONDS)
+    dialog = page.findChild(VolumeDialog)
+    assert [field.value() for field in dialog.edges] == [1.5, 2.0, 5.0]
+    assert [dialog.dataset.itemData(row) for row in range(dialog.dataset.count())] == ["s0", "s1"]
+    dialog.dataset.setCurrentIndex(1)
+    assert [field.value() for field in dialog.edges] == [3.0, 4.0, 10.0]
+    dialog.accept()
+    wait(lambda: page.scan is not None, SECONDS)
+    assert page.scan.volume.shape == (6, 5, 5)
+    assert page.scan.volume.voxel_size.tolist() == [3.0, 4.0, 10.0]
+
+
+def test_that_a_file_that_is_no_volume_costs_one_sentence(page, tmp_path, wait):
+    (tmp_path / "broken.tif").write_bytes(b"II*\0nothing")
+    page.opening.open(tmp_path / "broken.tif")
+    wait(lambda: page.context.toast.isVisible(), SECONDS)
+    assert page.scan is None
+
+
+def test_that_a_raw_file_is_asked_for_its_layout(page, tmp_path, wait):
+    array = np.ascontiguousarray(sample_volume("grey").array[:60, :50, :40].T)
+    (tmp_path / "scan.raw").write_bytes(array.tobytes())
+    page.opening.open(tmp_path / "scan.raw")
+    dialog = page.findChild(VolumeDialog)
+    for field, edge in zip(dialog.shape, (60, 50, 40), strict=True):
+        field.setValue(edge)
+    dialog.kind.setCurrentIndex(1)
+    dialog.accept()
+    wait(lambda: page.scan is not None, SECONDS)
+    assert np.array_equal(page.scan.volume.array, array.T)
+    wait(lambda: page.preview.found is not None, SECONDS)
+
+
+def test_that_raw_voxels_with_the_header_of_a_scanner_beside_them_are_read_without_a_question(
+    page, tmp_path, wait
+):
+    array = np.ascontiguousarray(sample_volume("grey").array[:60, :50, :40].T, np.dtype("<f4"))
+    (tmp_path / "scan.vol").write_bytes(array.tobytes())
+    (tmp_path / "scan.vol.info").write_text(
+        "NUM_X = 60\nNUM_Y = 50\nNUM_Z = 40\nvoxelSize = 2.5\nBYTEORDER = LOWBYTEFIRST\n"
+    )
+    page.opening.open(tmp_path / "scan.vol")
+    wait(lambda: page.scan is not None or page.findChild(VolumeDialog), SECONDS)
+    assert page.findChild(VolumeDialog) is None
+    assert np.array_equal(page.scan.volume.array, array.T)
+    assert page.scan.volume.voxel_size == pytest.approx([2.5] * 3)
+    wait(lambda: page.preview.found is not None, SECONDS)
+
+
+def test_that_the_file_dialog_shows_every_format_of_volumes(page, monkeypatch):
+    asked = []
+    monkeypatch.setattr(
+        "regolith_studio.ui.pages.scan.file_dialogs.QFileDialog.getOpenFileName",
+        lambda *given: asked.append(given[-1]) or ("", ""),
+    )
+    page.opening.ask_for_file()
+    assert all(f"*{suffix}" in asked[0] for suffix in (".tif", ".txm", ".vgi", ".am", ".nii.gz", ".raw"))
+
+
+def test_that_the_name_of_a_raw_file_fills_the_form_in_and_its_size_is_checked(page, tmp_path):
+    path = tmp_path / "scan_30x20x10_uint16_be.raw"
+    path.write_bytes(bytes(30 * 20 * 10 * 2 + 64))
+    page.opening.open(path)
+    dialog = page.findChild(VolumeDialog)
+    opens = dialog.findChild(QDialogButtonBox).button(QDialogButtonBox.StandardButton.Open)
+    assert dialog.value().raw == RawLayout((30, 20, 10), "uint16", "big", 64)
+    assert "its size agrees" in dialog.facts.text()
+    assert "all of the file" in dialog.verdict.text()
+    dialog.shape[2].setValue(9)
+    assert "1,200 bytes more" in dialog.verdict.text()
+    assert opens.isEnabled()
+    dialog.shape[2].setValue(11)
+    assert "1,200 bytes too short" in dialog.verdict.text()
+    assert not opens.isEnabled()
+    dialog.reject()
+
+
+def test_that_a_raw_file_that_is_gone_costs_one_sentence(page, tmp_path, wait):
+    page.opening.open(tmp_path / "gone.raw")
+    wait(lambda: page.context.toast.isVisible(), SECONDS)
+    assert page.findChild(VolumeDialog) is None
+
+
+@pytest.mark.parametrize("suffix", ["npy", "tif"])
+@pytest.mark.slow
+def test_that_a_large_volume_stays_on_the_disk_and_gives_the_same_grains(
+    suffix, page, tmp_path, monkeypatch, wait
+):
+    monkeypatch.setattr(volume_jobs, "IN_MEMORY", 100_000)
+    monkeypatch.setattr(volume_jobs, "scratch_folder", lambda: tmp_path)
+    monkeypatch.setattr(slice_images, "COARSE_BYTES", 100_000)
+    array = sample_volume("grey").array[:90, :80, :70]
+    if suffix == "npy":
+        np.save(tmp_path / "big.npy", np.ascontiguousarray(array.T))
+    else:
+        tifffile.imwrite(tmp_path / "big.tif", array.T, compression="zlib")
+    page.opening.read(VolumeInput(tmp_path / f"big.{suffix}", 2.3, kind="grey"))
+    wait(lambda: page.preview.found is not None, SECONDS)
+    assert isinstance(page.scan.volume.array.base, np.memmap)
+    assert bool(list(tmp_path.glob("regolith-*"))) == (suffix == "tif")
+    along_x = page.scan.sections.picture(0, 45)
+    assert np.array_equal(along_x, array[44, ::2, ::2])
+    assert np.array_equal(page.scan.sections.picture(2, 35), array[:, :, 35])
+    page.find_grains()
+    wait(lambda: page.grains is not None, SECONDS)
+    expected = segment(Volume(array, (2.3,) * 3, "grey", "big"), page.controls.value().segmentation)
+    assert np.array_equal(page.grains.labels.array, expected.labels.array)
+    assert grains_seen(page.slices.views[2]) > 0.03
+    press(page.workflow.convert)
+    wait(lambda: page.workflow.show_them.isVisible(), SECONDS)
+    page.controls.split.click()
+    page.opening.open_sample()
+    wait(lambda: page.scan.volume.name.startswith("sample"), SECONDS)
+    assert not list(tmp_path.glob("regolith-*"))
+
+
+def test_that_the_voxel_size_of_one_volume_is_offered_for_the_next(page, part, wait):
+    page.opening.open(part)
+    wait(lambda: page.findChild(VolumeDialog) is not None, SECONDS)
+    dialog = page.findChild(VolumeDialog)
+    assert (dialog.edges[0].value(), dialog.unit.currentData()) == (1.0, "um")
+    dialog.edges[0].setValue(0.4)
+    dialog.unit.setCurrentIndex(dialog.unit.findData("mm"))
+    dialog.accept()
+    wait(lambda: page.preview.found is not None, SECONDS)
+    assert page.scan.volume.voxel_size.tolist() == [400.0, 400.0, 400.0]
+    page.opening.open(part)
+    wait(lambda: any(each.isVisible() for each in page.findChildren(VolumeDialog)), SECONDS)
+    dialog = next(each for each in page.findChildren(VolumeDialog) if each.isVisible())
+    assert (dialog.edges[2].value(), dialog.unit.currentData()) == (0.4, "mm")
+    dialog.reject()
