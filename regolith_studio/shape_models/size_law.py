@@ -62,22 +62,26 @@ class LogNormalSizes:
     ----------
     weights, means, deviations
         Of the components, shape (k,); means and standard deviations of ln r, r in the sample's unit.
+    limits
+        Radii to which the law is cut where no other range is asked for.
     """
 
     weights: FloatArray
     means: FloatArray
     deviations: FloatArray
+    limits: Bounds = None
 
     def __post_init__(self) -> None:
         for name in ("weights", "means", "deviations"):
             object.__setattr__(self, name, locked_floats(getattr(self, name), (None,), name))
         if not len(self.weights) == len(self.means) == len(self.deviations) or not len(self.weights):
             raise ValueError("weights, means and deviations must have one length")
+        checked_bounds(self.limits)
         if not (self.deviations > 0).all() or not (self.weights >= 0).all() or not self.weights.sum() > 0:
             raise ValueError("deviations must be positive, weights not negative and not all zero")
 
     def __reduce__(self) -> tuple[Callable[..., "LogNormalSizes"], tuple[Any, ...]]:
-        return LogNormalSizes, (self.weights, self.means, self.deviations)
+        return LogNormalSizes, (self.weights, self.means, self.deviations, self.limits)
 
     @classmethod
     def log_normal(cls, radii: FloatArray) -> "LogNormalSizes":
@@ -120,7 +124,7 @@ class LogNormalSizes:
         the bounds, radii are even in ln r and components those nearest to the range.
         """
         picks, shares = rng.permutation((np.arange(n) + rng.random(n)) / max(n, 1)), rng.random(n)
-        limits = checked_bounds(bounds)
+        limits = checked_bounds(bounds) or self.limits
         if limits is None:
             component = self._picked(self.weights, picks)
             return np.exp(self.means[component] + self.deviations[component] * ndtri(shares)), component
@@ -150,7 +154,14 @@ class LogNormalSizes:
             "weights": self.weights.tolist(),
             "means": self.means.tolist(),
             "deviations": self.deviations.tolist(),
+            "limits": None if self.limits is None else list(self.limits),
         }
+
+    @classmethod
+    def restored(cls, values: Mapping[str, Any]) -> "LogNormalSizes":
+        """A law from what it stored."""
+        limits = values["limits"] and (float(values["limits"][0]), float(values["limits"][1]))
+        return cls(values["weights"], values["means"], values["deviations"], limits)
 
 
 @dataclass(frozen=True)
@@ -242,7 +253,7 @@ def size_law_from(values: Mapping[str, Any]) -> SizeLaw:
     """
     try:
         if values["type"] == "log_normal_mixture":
-            return LogNormalSizes(values["weights"], values["means"], values["deviations"])
+            return LogNormalSizes.restored(values)
         if values["type"] == "rosin_rammler":
             return RosinRammlerSizes(
                 *(float(values[name]) for name in ("scale", "spread", "smallest", "largest"))

@@ -2772,6 +2772,10 @@
         <translation>Niedrigster Kegel, in mittleren d</translation>
     </message>
     <message>
+        <source>Lunar soil (published ratios and sizes)</source>
+        <translation>Mondboden (veröffentlichte Verhältnisse und Größen)</translation>
+    </message>
+    <message>
         <source>Make particles</source>
         <translation>Partikel erzeugen</translation>
     </message>
@@ -5018,6 +5022,10 @@
     <message>
         <source>Synthesised by Regolith Studio from the angular power spectrum and size spread of 6,261 particles of the published micro-CT set ma165, rounded to two digits; the length unit is taken as micrometres and no measured particle is contained.</source>
         <translation>Von Regolith Studio synthetisiert aus dem Leistungsspektrum und der Größenstreuung von 6,261 Partikeln des veröffentlichten Mikro-CT-Satzes ma165, auf zwei Stellen gerundet; als Längeneinheit gelten Mikrometer, und kein gemessenes Partikel ist enthalten.</translation>
+    </message>
+    <message>
+        <source>Synthesised by Regolith Studio: mean axial ratios S/I = 0.770 and I/L = 0.758 of ten Apollo and Luna soils (doi:10.1186/s40623-022-01737-9), sizes of soil 10084 between 10 and 1,000 um (Basu et al. 2001, by mass 4.28 +/- 2.23 phi); the roughness is that of the set MA165, as none is published, the spread of the ratios is that of a random field, shape does not depend on size, and no measured particle is contained.</source>
+        <translation>Von Regolith Studio synthetisiert: mittlere Achsenverhältnisse S/I = 0.770 und I/L = 0.758 von zehn Böden von Apollo und Luna (doi:10.1186/s40623-022-01737-9), Größen von Boden 10084 zwischen 10 und 1,000 um (Basu et al. 2001, nach Masse 4.28 +/- 2.23 phi); die Rauheit ist die des Satzes MA165, da keine veröffentlicht ist, die Streuung der Verhältnisse die eines Zufallsfelds, die Form hängt nicht von der Größe ab, und kein gemessenes Partikel ist enthalten.</translation>
     </message>
     <message>
         <source>Table 1</source>

@@ -1,8 +1,11 @@
 from collections.abc import Callable
+from functools import partial
+from multiprocessing.pool import ThreadPool
 from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.stats import norm
 
 from regolith_studio.errors import FileError, InputError
 from regolith_studio.harmonics.sphere_grid import sphere_grid
@@ -12,6 +15,9 @@ from regolith_studio.shape_models.materials import MaterialCard, materials, read
 from regolith_studio.shape_models.models.log_field import MODEL, LogFieldSettings
 from regolith_studio.shape_models.realizations import Realizations
 from regolith_studio.shape_models.sample import Sample
+from regolith_studio.shape_models.size_law import size_law_from
+from regolith_studio.studies.population import descriptors_of
+from tools.make_lunar_card import lunar_card, size_law
 
 
 def test_that_at_least_five_materials_ship_and_say_that_they_are_synthesised() -> None:
@@ -30,10 +36,44 @@ def test_that_a_material_draws_particles_with_its_sizes_and_amplitudes(name: str
     assert np.exp(logs.mean()) == pytest.approx(card.median_radius, rel=0.03)
     assert logs.std() == pytest.approx(card.log_deviation, rel=0.06)
     assert draws.rejected == 0
-    radii = np.stack([draws.particle(i).values for i in range(300)])
+    field = card.field(10).draw(300, 0)
+    radii = np.stack([field.particle(i).values for i in range(300)])
     relative = radii / radii[:, :1]
     amplitude = np.sqrt((relative[:, 4:9] ** 2).mean())
     assert amplitude == pytest.approx(card.relative_amplitudes[1], rel=0.15)
+
+
+@pytest.mark.slow
+def test_that_drawn_lunar_particles_have_the_published_axial_ratios() -> None:
+    """Ten Apollo and Luna soils (Earth, Planets and Space 74, 2022), within the errors given there."""
+    draws = materials()["lunar_soil"].model(10).draw(10_000, 2)
+    parts = [draws.chosen(range(i, i + 100)) for i in range(0, 10_000, 100)]
+    with ThreadPool() as pool:
+        tables = pool.map(partial(descriptors_of, keys=("flatness", "elongation"), level=3), parts)
+    flatness, elongation = np.concatenate(tables).T
+    assert flatness.mean() == pytest.approx(0.770, abs=0.008)
+    assert elongation.mean() == pytest.approx(0.758, abs=0.010)
+    assert (flatness * elongation).mean() == pytest.approx(0.581, abs=0.011)
+
+
+def test_that_lunar_sizes_are_the_sieved_ones() -> None:
+    """Soil 10084 (Basu et al. 2001): by mass 4.28 +/- 2.23 phi, here between diameters of 10 and 1,000 um."""
+    law = size_law_from((materials()["lunar_soil"].hull_field or {})["sizes"])
+    radii, _ = law.draw(100_000, np.random.default_rng(0))
+    assert 5 <= radii.min() < radii.max() <= 500
+    fine, _ = law.draw(100_000, np.random.default_rng(0), (5, 50))  # the rest is few and heavy
+    phi = -np.log2([0.1, 0.05, 0.02, 0.01])  # of the diameter in mm
+    below = norm.cdf(phi, 4.28, 2.23)
+    found = [(fine[2 * fine > size] ** 3).sum() / (fine**3).sum() for size in (50, 20)]
+    np.testing.assert_allclose(found, (below[1:3] - below[0]) / (below[3] - below[0]), atol=0.01)
+
+
+@pytest.mark.slow
+def test_that_the_tool_makes_a_card_with_the_ratios_that_it_aims_at() -> None:
+    card = lunar_card(n_particles=60, rounds=1)
+    assert card.hull_field is not None
+    assert card.hull_field["sizes"] == size_law().stored()
+    assert card.judgement is None
 
 
 @pytest.mark.slow

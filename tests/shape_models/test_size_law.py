@@ -41,6 +41,14 @@ def test_that_a_range_far_from_the_sample_is_filled_all_the_same(
     assert bounds[0] <= values.min() < values.max() <= bounds[1]
 
 
+def test_that_the_limits_of_a_law_hold_where_no_other_range_is_asked_for() -> None:
+    law = size_law_from(LogNormalSizes(np.ones(1), np.zeros(1), np.ones(1), (0.5, 2.0)).stored())
+    uncut = LogNormalSizes(np.ones(1), np.zeros(1), np.ones(1))
+    for bounds in (None, (0.5, 2.0)):
+        np.testing.assert_array_equal(law.draw(99, RNG(0), bounds)[0], uncut.draw(99, RNG(0), (0.5, 2.0))[0])
+    assert law.draw(99, RNG(0), (3.0, 4.0))[0].min() >= 3.0
+
+
 def test_that_rosin_and_rammlers_law_holds_by_volume() -> None:
     law = RosinRammlerSizes(10.0, 3.5, 0.5, 40.0)
     values, _ = law.draw(200000, RNG(0))

@@ -75,8 +75,7 @@ class MixtureField(NamedComponents, SizedSampler):
     def stored(self) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
         """Plain values for JSON; the labels of the measured particles."""
         values, arrays = self.stored_components()
-        sizes = {name: getattr(self.sizes, name).tolist() for name in self.sizes.__dataclass_fields__}
-        return {"sizes": sizes, **values}, arrays
+        return {"sizes": self.sizes.stored(), **values}, arrays
 
 
 class MixtureFieldModel:
@@ -106,7 +105,7 @@ class MixtureFieldModel:
 
     def restored(self, values: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> MixtureField:
         """The mixture from its stored values."""
-        return MixtureField(LogNormalSizes(**values["sizes"]), *restored_components(values, arrays))
+        return MixtureField(LogNormalSizes.restored(values["sizes"]), *restored_components(values, arrays))
 
 
 MODEL = MixtureFieldModel()
