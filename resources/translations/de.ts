@@ -1204,6 +1204,10 @@
         <translation>Volumen der konvexen Hülle</translation>
     </message>
     <message>
+        <source>Convex parts</source>
+        <translation>Konvexe Teile</translation>
+    </message>
+    <message>
         <source>Convexity</source>
         <translation>Konvexität</translation>
     </message>
@@ -3682,6 +3686,10 @@
     <message>
         <source>Parts</source>
         <translation>Komponenten</translation>
+    </message>
+    <message>
+        <source>Parts overlap or touch</source>
+        <translation>Teile überlappen oder berühren sich</translation>
     </message>
     <message>
         <source>Pause</source>
@@ -6684,6 +6692,10 @@
         <translation>oder</translation>
     </message>
     <message>
+        <source>overlap</source>
+        <translation>überlappen</translation>
+    </message>
+    <message>
         <source>overlapping spheres stand for each polyhedron; facets become bumpy, corners round.</source>
         <translation>überlappende Kugeln stehen für jedes Polyeder; Facetten werden höckerig, Ecken rund.</translation>
     </message>
@@ -7010,6 +7022,10 @@
     <message>
         <source>to</source>
         <translation>bis</translation>
+    </message>
+    <message>
+        <source>touch</source>
+        <translation>berühren sich</translation>
     </message>
     <message>
         <source>towards the viewer</source>

@@ -6,7 +6,12 @@ import numpy as np
 
 from regolith_studio.coarsening.compound.exposed_edges import add_exposed_surface_charges
 from regolith_studio.coarsening.compound.hull import HullOfParts, add_hull_charges, hull_of, hull_solid
-from regolith_studio.coarsening.compound.measures import MeasuredCompound, Planes, measure_compound
+from regolith_studio.coarsening.compound.measures import (
+    MeasuredCompound,
+    Planes,
+    measure_compound,
+    parts_overlap,
+)
 from regolith_studio.coarsening.compound.scan_lines import ScanLines
 from regolith_studio.coarsening.core.box_gradient import (
     GradientWorkspace,
@@ -130,7 +135,7 @@ def point_of(
     """
     compound = measure_compound(planes)
     hull = None if compound is None else hull_of(compound.vertices)
-    if compound is None or hull is None or not compound.volume > 0.0:
+    if compound is None or hull is None or not compound.volume > 0.0 or parts_overlap(compound):
         return None
     boxes = _boxes(problem, compound, hull, near)
     if boxes is None:
@@ -233,10 +238,19 @@ def _with_conditions(
     if problem.needs_box:
         tracked = select_boxes(boxes, np.arange(len(boxes.volumes)), compound.triples)
         slack, rival_rows = _fill_box(compound, tangents, scales, boxes, logs, rows)
-    asked = problem.asked
+    asked, free = problem.asked, compound.planes.free
     residual = (logs - problem.wanted)[asked]
     return CompoundPoint(
-        compound, hull, tangents, scales, logs, residual, rows[asked], slack, rival_rows, tracked
+        compound,
+        hull,
+        tangents,
+        scales,
+        logs,
+        residual,
+        rows[asked] * free,
+        slack,
+        rival_rows * free,
+        tracked,
     )
 
 
@@ -283,7 +297,7 @@ def _extent_gradients(
 
 def _as_polyhedron(compound: MeasuredCompound) -> MeasuredPolyhedron:
     """Corners of all parts as those of one polyhedron, for the derivatives of boxes."""
-    normals, offsets, _, _ = compound.planes
+    normals, offsets = compound.planes[:2]
     return MeasuredPolyhedron(
         FINE,
         normals,

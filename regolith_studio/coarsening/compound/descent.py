@@ -54,7 +54,9 @@ def overlap_of(problem: CompoundProblem, point: CompoundPoint) -> Overlap:
     metric = np.zeros((n, 3, n, 3))
     blocks = np.arange(n)
     metric[blocks, :, blocks, :] = np.linalg.inv(curvature / union + SOFTNESS * np.eye(3))
-    return Overlap(jaccard(shared, 1.0, compound.volume), gradient, metric.reshape(3 * n, 3 * n))
+    free = compound.planes.free
+    metric_of_free = metric.reshape(3 * n, 3 * n) * free * free[:, None]
+    return Overlap(jaccard(shared, 1.0, compound.volume), gradient * free, metric_of_free)
 
 
 def project(

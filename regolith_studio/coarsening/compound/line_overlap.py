@@ -35,7 +35,7 @@ def shared_with_lines(
 def _shared(
     planes: Planes, pivots: FloatArray, lines: ScanLines, tangents: FloatArray, scales: FloatArray
 ) -> tuple[float, FloatArray, FloatArray]:
-    normals, offsets, first, _ = planes
+    normals, offsets, first = planes[:3]
     n, k = len(offsets), len(first) - 1
     gradient, curvature = np.zeros(3 * n), np.zeros((n, 3, 3))
     shared = _fill_overlap(

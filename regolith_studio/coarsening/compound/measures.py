@@ -23,12 +23,23 @@ class Planes(NamedTuple):
         Those of part j are ``first[j]:first[j + 1]``, shape (k + 1,).
     inner
         A point inside each part, shape (k, 3).
+    partner
+        Of parts that touch: the part on the other side of a plane that separates two and never moves, -1 of
+        the other planes, shape (n,); ``None`` of parts that may overlap.
     """
 
     normals: FloatArray
     offsets: FloatArray
     first: IntArray
     inner: FloatArray
+    partner: IntArray | None = None
+
+    @property
+    def free(self) -> FloatArray:
+        """1 for each coordinate of a plane that may move, 0 for the others, shape (3 n,)."""
+        if self.partner is None:
+            return np.ones(3 * len(self.offsets))
+        return np.repeat(np.where(self.partner < 0, 1.0, 0.0), 3)
 
 
 class MeasuredCompound(NamedTuple):
@@ -61,7 +72,7 @@ class MeasuredCompound(NamedTuple):
 
 def measure_compound(planes: Planes) -> MeasuredCompound | None:
     """The union, or ``None`` where a part is unbounded or empty, or does not hold its inner point."""
-    normals, offsets, first, inner = planes
+    normals, offsets, first, inner, _ = planes
     k = len(first) - 1
     vertices, triples, edges, middles, own = [], [], [], np.empty((k, 3)), np.empty((len(offsets), 3))
     count = 0
@@ -86,10 +97,23 @@ def measure_compound(planes: Planes) -> MeasuredCompound | None:
     volume, surface = fill_exposed_areas(normals, offsets, ends, edge_planes, areas, centroids)
     hidden = areas < HIDDEN
     centroids[hidden] = own[hidden]
-    moved = Planes(normals, offsets, first, middles)
+    moved = planes._replace(inner=middles)
     return MeasuredCompound(
         moved, points, np.concatenate(triples), ends, edge_planes, areas, centroids, volume, surface
     )
+
+
+def parts_overlap(compound: MeasuredCompound) -> bool:
+    """Whether parts that are to touch overlap: the surfaces of two meet that no plane separates."""
+    planes, partner = compound.planes, compound.planes.partner
+    if partner is None:
+        return False
+    k = len(planes.inner)
+    part = np.repeat(np.arange(k), np.diff(planes.first))
+    separated = np.zeros((k, k), dtype=np.bool_)
+    separated[part[partner >= 0], partner[partner >= 0]] = True
+    meeting = part[compound.edge_planes[compound.edge_planes[:, 2] < 0, :2]]
+    return not separated[meeting[:, 0], meeting[:, 1]].all()
 
 
 HIDDEN = 1e-9

@@ -77,8 +77,14 @@ def search_compound(
     n_facets: int,
     effort: Effort,
     seed: np.random.SeedSequence,
+    touching: bool = False,
 ) -> Generator[CompoundCandidate, None, CompoundCandidate]:
     """A candidate for each start and each better one of the last descents; returns the best.
+
+    Parameters
+    ----------
+    touching
+        Whether parts touch in planes between them, instead of overlapping.
 
     Raises
     ------
@@ -96,8 +102,8 @@ def search_compound(
         best = min(found, key=_rank, default=None)
         chosen = parts if best is None else len(best.point.planes.inner)
         number = numbers[tried] if tried < len(numbers) else chosen
-        planes = initial_planes(lines, number, n_facets, np.random.default_rng(child))
-        begun = _from_start(full, planes)
+        planes = initial_planes(lines, number, n_facets, np.random.default_rng(child), touching)
+        begun = None if planes is None else _from_start(full, planes)
         if begun is not None:
             found.append(begun)
             yield begun

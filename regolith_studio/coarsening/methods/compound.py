@@ -24,6 +24,7 @@ PARTS_LIMITS = (2, 8)
 CONVEX = 1e-6
 """Particles whose volume is less below that of their hull, as a share, are convex."""
 RETRIES = 8
+JOINTS = ("overlap", "touch")
 EFFORTS = {"fast": Effort(5, 2), "best": Effort(16, 5)}
 """By level."""
 
@@ -36,6 +37,9 @@ class CompoundSettings:
     ----------
     parts
         At most so many convex parts, 2 to 8.
+    joint
+        Parts ``overlap``, so that a solver sees a welded body, or ``touch`` in planes between them, so that
+        their volumes and masses add up.
     level
         ``fast`` (5 starts, the best 2 of which descend further) or ``best`` (16 and 5: better overlap).
 
@@ -46,8 +50,10 @@ class CompoundSettings:
     """
 
     parts: int = field(
-        default=4, metadata={"label": N_("Parts"), "minimum": PARTS_LIMITS[0], "maximum": PARTS_LIMITS[1]}
+        default=4,
+        metadata={"label": N_("Convex parts"), "minimum": PARTS_LIMITS[0], "maximum": PARTS_LIMITS[1]},
     )
+    joint: str = field(default="overlap", metadata={"label": N_("Parts overlap or touch"), "choices": JOINTS})
     level: str = field(default="fast", metadata={"label": N_("Level"), "choices": tuple(EFFORTS)})
 
     def __post_init__(self) -> None:
@@ -56,6 +62,8 @@ class CompoundSettings:
             raise InputError(
                 f"The number of parts must be a whole number from {low} to {high}, got {self.parts}."
             )
+        if self.joint not in JOINTS:
+            raise InputError(f"The parts either overlap or touch, got {self.joint!r}.")
         if self.level not in EFFORTS:
             raise InputError(f"The level must be one of {', '.join(EFFORTS)}, got {self.level!r}.")
 
@@ -65,8 +73,9 @@ class CompoundMethod:
 
     Weights above 0 make conditions on the union: volume, sphericity, shortest and longest edge of its exact
     minimum-volume box, aspect ratio, convex hull volume. On the surface where all hold, the Jaccard distance
-    goes down. There are at most `parts` parts with 5 facets or more each. A convex particle needs no parts,
-    and fewer than 10 facets do not suffice for two: then the result is the polyhedron of the exact method.
+    goes down. There are at most `parts` parts with 5 facets or more each, which overlap or touch. A convex
+    particle needs no parts, and fewer than 10 facets do not suffice for two: then the result is the
+    polyhedron of the exact method.
     """
 
     key = "compound"
@@ -87,18 +96,19 @@ class CompoundMethod:
             search = Search(target, weights, n_facets, [LEVELS[settings.level]], RETRIES, seed)
             yield from search.steps()
             return (yield from search.finish())
-        return (yield from _compound(target, n_facets, weights, seed, parts, EFFORTS[settings.level]))
+        effort, touching = EFFORTS[settings.level], settings.joint == "touch"
+        run = search_compound(target, weights, parts, n_facets, effort, seed, touching)
+        return (yield from _compound(target, n_facets, weights, parts, effort, run))
 
 
 def _compound(
     target: Target,
     n_facets: int,
     weights: LossWeights,
-    seed: np.random.SeedSequence,
     parts: int,
     effort: Effort,
+    run: Generator[CompoundCandidate, None, CompoundCandidate],
 ) -> Generator[MethodStep, None, MethodResult]:
-    run = search_compound(target, weights, parts, n_facets, effort, seed)
     history: list[float] = []
     while True:
         try:

@@ -1,11 +1,14 @@
 """The compound method as a user meets it, judged by manifold3d and the exact box."""
 
+import itertools
+
 import numpy as np
 import pytest
 import trimesh
 
 from regolith_studio.coarsening.coarsen import coarsen
 from regolith_studio.coarsening.compound.line_overlap import compound_distance
+from regolith_studio.coarsening.compound.measures import measure_compound, parts_overlap
 from regolith_studio.coarsening.compound.search import numbers_of_parts
 from regolith_studio.coarsening.compound.start import shared_out
 from regolith_studio.coarsening.weights import LossWeights
@@ -16,7 +19,8 @@ from regolith_studio.errors import InputError
 from regolith_studio.geometry.convex_compound import ConvexCompound
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.mesh import Mesh
-from tests.coarsening.compound.unions import dumbbell, manifold_of
+from regolith_studio.readers.particles import sample_particles
+from tests.coarsening.compound.unions import dumbbell, manifold_of, random_planes
 from tests.geometry.solids import cuboid
 
 
@@ -48,6 +52,44 @@ def test_that_the_distance_is_that_of_a_boolean_and_parts_lie_where_the_particle
     assert compound_distance(moved, solid) == pytest.approx(boolean, abs=1e-3)
 
 
+def test_that_parts_touch_on_demand_so_that_their_volumes_add_up(mesh: Mesh) -> None:
+    found = coarsen(mesh, 24, "compound", settings={"parts": 2, "joint": "touch"})
+    errors = relative_errors(describe(mesh), describe(found.mesh), LOSS_KEYS)
+    assert max(errors.values()) < 1e-6
+    solid = found.polyhedron
+    assert isinstance(solid, ConvexCompound)
+    one, two = map(manifold_of, solid.part_meshes)
+    assert one.volume() + two.volume() == pytest.approx((one + two).volume(), rel=1e-6)
+    assert len((one + two).decompose()) == 1
+
+
+def test_that_parts_which_no_plane_separates_must_not_meet() -> None:
+    apart = random_planes(0, 2)._replace(partner=np.full(20, -1))
+    overlapping = measure_compound(apart)
+    assert overlapping is not None
+    assert parts_overlap(overlapping)
+    far = apart._replace(
+        inner=apart.inner + np.array([[0.0], [9.0]]),
+        offsets=apart.offsets + 9.0 * apart.normals.sum(axis=1) * np.repeat([0, 1], 10),
+    )
+    separate = measure_compound(far)
+    assert separate is not None
+    assert not parts_overlap(separate)
+
+
+@pytest.mark.slow
+def test_that_four_parts_of_an_agglutinate_touch_and_keep_six_descriptors() -> None:
+    mesh = next(each.mesh for each in sample_particles() if each.name == "agglutinate-1")
+    found = coarsen(mesh, 40, "compound", settings={"joint": "touch"})
+    assert found.reason is None
+    assert max(found.errors.values()) < 1e-6
+    assert found.jaccard_distance < 0.5 * coarsen(mesh, 40).jaccard_distance
+    solids = [manifold_of(part) for part in found.polyhedron.part_meshes]
+    assert len(solids) > 2
+    shared = [(a ^ b).volume() for a, b in itertools.combinations(solids, 2)]
+    assert max(shared) < 1e-6 * found.target["volume"]
+
+
 def test_that_the_same_seed_gives_the_same_compound(mesh: Mesh) -> None:
     one, two = (coarsen(mesh, 16, "compound", settings={"parts": 2}, seed=3) for _ in range(2))
     assert one.mesh.content_hash == two.mesh.content_hash
@@ -73,6 +115,11 @@ def test_that_too_few_facets_for_two_parts_make_one(mesh: Mesh) -> None:
     assert coarsen(mesh, 10, "compound").n_parts == 2
 
 
+def test_that_parts_neither_overlap_nor_touch_is_one_sentence(mesh: Mesh) -> None:
+    with pytest.raises(InputError, match="either overlap or touch, got 'weld'"):
+        coarsen(mesh, 20, "compound", settings={"joint": "weld"})
+
+
 @pytest.mark.parametrize("parts", [1, 9, 2.5, True])
 def test_that_a_number_of_parts_out_of_range_is_one_sentence(mesh: Mesh, parts: float) -> None:
     with pytest.raises(InputError, match="must be a whole number from 2 to 8"):
@@ -80,8 +127,8 @@ def test_that_a_number_of_parts_out_of_range_is_one_sentence(mesh: Mesh, parts: 
 
 
 def test_that_facets_are_shared_out_by_area() -> None:
-    assert shared_out(np.array([1.0, 1.0, 6.0]), 40).tolist() == [5, 5, 30]
-    assert shared_out(np.array([1.0, 1.0]), 10).tolist() == [5, 5]
+    assert shared_out(np.array([1.0, 1.0, 6.0]), np.full(3, 5), 40).tolist() == [5, 5, 30]
+    assert shared_out(np.array([1.0, 1.0]), np.array([7, 5]), 12).tolist() == [7, 5]
 
 
 def test_that_the_first_starts_have_different_numbers_of_parts() -> None:
