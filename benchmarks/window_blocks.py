@@ -108,7 +108,7 @@ def _each_particle(window: Any) -> None:
 
 def _open_scan(window: Any) -> None:
     page = window.page
-    page.open_sample()
+    page.opening.open_sample()
     until(lambda: page.scan is not None)
 
 

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from regolith_studio.errors import InputError, RegolithError
+from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.particle import Source
 from regolith_studio.imaging.bounding_boxes import Box
 from regolith_studio.imaging.extraction import (
@@ -36,9 +37,10 @@ from regolith_studio.imaging.segmentation.segment import (
 )
 from regolith_studio.imaging.segmentation.thresholding import Histogram, histogram, level_of
 from regolith_studio.imaging.slice_images import SliceImages, coarse_copy
+from regolith_studio.imaging.sparse_slices import sparse_slices
 from regolith_studio.imaging.volume import Volume, VolumeKind
 from regolith_studio.imaging.volume_slabs import ScratchArrays, SliceSource, slab_ranges
-from regolith_studio.jobs.events import Job, Progress, Started, Step, Steps
+from regolith_studio.jobs.events import Job, Partial, Progress, Started, Step, Steps
 from regolith_studio.jobs.executor import Executor, open_executor, value_of
 from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput
 from regolith_studio.jobs.label_jobs import write_labels
@@ -51,6 +53,9 @@ from regolith_studio.readers.volumes.region import RegionSettings
 
 IN_MEMORY = 2**30
 """Bytes of a volume, or of what is computed from it, beyond which it stays on the disk."""
+LOOK_BYTES = 2**26
+"""Bytes of a volume beyond which a few slices are shown before all are read."""
+LOOK_VOXELS, LOOK_SECONDS = 2**24, 0.6
 _LABEL_BYTES = 4
 _SAMPLED = 4_000_000
 _CONTRAST = (0.002, 0.998)
@@ -119,13 +124,47 @@ def read_header(given: VolumeInput) -> Steps:
     return describe_volume(given.path, dataset=given.dataset, axes=given.axes, raw=given.raw)
 
 
+@dataclass(frozen=True, eq=False)
+class FirstLook:
+    """A coarse picture of a large volume, and what its file states, before it is read.
+
+    Parameters
+    ----------
+    scan
+        A few slices, or a coarser level of the file, with a histogram of their values.
+    shape, voxel_size, kind, dtype
+        Of the whole volume; micrometres.
+    """
+
+    scan: Scan
+    shape: tuple[int, int, int]
+    voxel_size: FloatArray
+    kind: VolumeKind
+    dtype: np.dtype[Any]
+
+
+def first_look(source: SliceSource, seconds: float = LOOK_SECONDS) -> FirstLook:
+    """A coarser level of a volume if its file has one, else the slices that can be read within `seconds`."""
+    level = source.coarser(LOOK_VOXELS) if isinstance(source, VolumeFile) else None
+    if level is not None:
+        size = np.array(level.voxel_size)
+        coarse = Volume(level.read(0, level.shape[2]), size, level.kind, source.name)
+    else:
+        coarse = sparse_slices(source, seconds, in_order=isinstance(source, VolumeFile) and source.in_order)
+    edges = np.asarray(source.voxel_size, dtype=np.float64)
+    return FirstLook(scan_of(coarse), source.shape, edges, source.kind, source.dtype)
+
+
 def read_scan(given: VolumeInput, region: RegionSettings | None = None) -> Steps:
     """Read a region of a volume into memory, or map it beyond :data:`IN_MEMORY`; returns a :class:`Scan`.
 
-    What lies in the file as it is, is mapped there; packed voxels are unpacked into a temporary file.
+    What lies in the file as it is, is mapped there; packed voxels are unpacked into a temporary file. Of a
+    volume beyond :data:`LOOK_BYTES` a :class:`FirstLook` comes first.
     """
     yield Started(Message(N_("Reading {name}"), name=given.path.name))
     source = (region or RegionSettings()).of(given.opened())
+    if _n_bytes(source) > LOOK_BYTES:
+        yield Partial(first_look(source))
     if _n_bytes(source) > IN_MEMORY:
         return (yield from _map_volume(source))
     array = source.read(0, source.shape[2])

@@ -5344,6 +5344,10 @@
         <translation>Das Partikel wird angepasst …</translation>
     </message>
     <message>
+        <source>The picture is coarse until all of the volume has been read.</source>
+        <translation>Das Bild ist grob, bis das ganze Volumen gelesen ist.</translation>
+    </message>
+    <message>
         <source>The picture is in {path}.</source>
         <translation>Das Bild ist in {path}.</translation>
     </message>

@@ -266,3 +266,18 @@ def test_that_a_missing_library_is_named_with_its_command(
     path = ome_zarr(tmp_path / "scan.zarr")
     monkeypatch.setitem(__import__("sys").modules, "zarr", None)
     assert answer_of(path) == 'is Zarr, which needs zarr, an extra: pip install "regolith-studio[zarr]".'
+
+
+@pytest.mark.parametrize("version", ["0.4", "0.5"])
+def test_that_the_coarser_level_of_a_volume_is_found_and_lies_where_it_does(
+    tmp_path: Path, version: str
+) -> None:
+    volume = open_slabs(ome_zarr(tmp_path / "scan.zarr", version))
+    level = volume.coarser(most_voxels=10**6)
+    assert level is not None
+    assert level.shape == (6, 5, 5)
+    assert np.array(level.voxel_size) * level.shape == pytest.approx(
+        np.array(volume.voxel_size) * volume.shape
+    )
+    assert volume.coarser(most_voxels=10) is None
+    assert level.coarser(most_voxels=10**6) is None

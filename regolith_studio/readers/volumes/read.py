@@ -1,5 +1,7 @@
 """Read volumes of voxels: their header, all voxels, a box, or slab by slab."""
 
+import math
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -21,7 +23,7 @@ from regolith_studio.readers.volumes.header import (
     voxel_size_in_micrometres,
 )
 from regolith_studio.readers.volumes.slabs import SlabReader, SliceListener, open_slab_reader
-from regolith_studio.readers.voxels.header import Shape, Sizes
+from regolith_studio.readers.voxels.header import DatasetEntry, Shape, Sizes
 
 Bounds = tuple[tuple[int, int], tuple[int, int], tuple[int, int]]
 """First voxel and the one after the last, along x, y and z."""
@@ -79,6 +81,35 @@ class VolumeFile:
         """Centre of the first voxel: the origin."""
         return 0.0, 0.0, 0.0
 
+    @property
+    def in_order(self) -> bool:
+        """Whether the file must be unpacked from its beginning."""
+        return self._file.in_order
+
+    def coarser(self, most_voxels: int) -> "VolumeFile | None":
+        """The finest level of the same volume with at most so many voxels, if the file has one.
+
+        A level belongs to the same volume if it has fewer voxels along every axis and fills the same space
+        within two of its own voxels.
+        """
+        here = self._file.header
+        if here.voxel_size is None:
+            return None
+        channel = re.search(r"\[\d+\]$", here.dataset or "")
+        fitting = [
+            level
+            for level in here.datasets
+            if math.prod(level.shape) <= most_voxels
+            and level.name.endswith(channel[0] if channel else "")
+            and _is_coarser(level, here.shape[::-1], here.voxel_size)
+        ]
+        if not fitting:
+            return None
+        best = max(fitting, key=lambda level: math.prod(level.shape))
+        factors = np.array(self.shape) / np.array(best.shape)
+        size = (np.array(self.voxel_size) * factors).tolist()
+        return open_slabs(self._file.path, dataset=best.name, voxel_size=size, kind=self.kind)
+
     def mapped(self) -> NDArray[Any] | None:
         """The voxels where they lie in the file, shape (nx, ny, nz), or ``None`` where they are packed."""
         plain = self._file.plain
@@ -94,6 +125,14 @@ class VolumeFile:
         """
         for z0 in range(0, self.shape[2], depth):
             yield z0, self.read(z0, min(z0 + depth + overlap, self.shape[2]))
+
+
+def _is_coarser(level: DatasetEntry, shape: Shape, voxel_size: Sizes) -> bool:
+    """Whether a level is another picture of a volume of `shape` with larger voxels."""
+    if level.voxel_size is None or len(level.shape) != 3 or not all(np.less(level.shape, shape)):
+        return False
+    own = np.array(level.voxel_size)
+    return bool((np.abs(own * level.shape - np.array(voxel_size) * shape) <= 2 * own).all())
 
 
 def describe_volume(
@@ -221,7 +260,8 @@ def _guess_kind(file: SlabReader) -> VolumeKind:
     depth, slice_bytes = file.header.shape[0], file.header.slice_bytes
     if file.in_order:
         depth = min(depth, max(1, 4 * _SAMPLE_BYTES // slice_bytes))
-    n_samples = max(1, min(len(_SAMPLES), _SAMPLE_BYTES // slice_bytes))
+    unpacked = slice_bytes * min(file.layer, depth)  # a slice is unpacked with the layer of chunks it lies in
+    n_samples = max(1, min(len(_SAMPLES), _SAMPLE_BYTES // unpacked))
     places = sorted({int(share * depth) for share in _SAMPLES[:n_samples]})
     return guess_kind(np.concatenate([file.read(place, place + 1) for place in places]))
 

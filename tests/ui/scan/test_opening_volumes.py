@@ -161,6 +161,37 @@ def test_that_a_raw_file_that_is_gone_costs_one_sentence(page, tmp_path, wait):
     assert page.findChild(VolumeDialog) is None
 
 
+def test_that_a_large_volume_is_seen_coarsely_with_its_size_before_it_has_been_read(
+    page, part, wait, monkeypatch
+):
+    page.opening.read(VolumeInput(part, 1.0, kind="grey"))
+    wait(lambda: page.preview.found is not None, SECONDS)
+    seen = []
+
+    def look():
+        shown = page.slices.views[0]._volume  # along z
+        words = page.workflow.volume.text() + page.workflow.found.text()
+        seen.append((page.scan, words, shown.shape[:2], shown.voxel_size * shown.shape))
+        assert page.slices.grains.frame.detail.text() == "207 × 184 × 161 µm"
+        assert page.slices.histogram.numbers()[1]
+        assert not page.workflow.search.isEnabled()
+        assert not page.brush.isEnabled()
+
+    monkeypatch.setattr(volume_jobs, "LOOK_BYTES", 1000)
+    page.opening.looked.connect(look)
+    page.opening.read(VolumeInput(part, 2.3, kind="grey"))
+    wait(lambda: page.scan is not None and page.scan.volume.voxel_size[0] == 2.3, SECONDS)
+    ((scan, words, shape, extent),) = seen
+    assert scan is None
+    assert "90 × 80 × 70 voxels of 2.3 µm" in words
+    assert "coarse" in words
+    assert shape == (90, 80)
+    assert extent == pytest.approx([207.0, 184.0, 161.0])
+    assert "coarse" not in page.workflow.found.text()
+    wait(lambda: page.preview.found is not None, SECONDS)
+    assert page.brush.isEnabled()
+
+
 @pytest.mark.parametrize("suffix", ["npy", "tif"])
 @pytest.mark.slow
 def test_that_a_large_volume_stays_on_the_disk_and_gives_the_same_grains(

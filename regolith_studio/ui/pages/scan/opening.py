@@ -12,7 +12,7 @@ from regolith_studio.errors import RegolithError
 from regolith_studio.imaging.sample_volumes import sample_file
 from regolith_studio.jobs.events import Job
 from regolith_studio.jobs.extraction_settings import VolumeInput
-from regolith_studio.jobs.volume_jobs import Scan, read_header, read_sample_scan, read_scan
+from regolith_studio.jobs.volume_jobs import FirstLook, Scan, read_header, read_sample_scan, read_scan
 from regolith_studio.readers.volume_formats import volume_suffixes
 from regolith_studio.readers.volumes.header import VolumeHeader, layout_from_name
 from regolith_studio.readers.volumes.region import RegionSettings, crop_of_rectangle
@@ -28,11 +28,13 @@ class VolumeOpening(QObject):
     """Reads the volume that the user names, in the region that the controls say.
 
     `scan` is what is shown, `given` its file and `region` its region; `wanted` and `wanted_region` are those
-    of what is being read.
+    of what is being read, and `first` is a coarse picture of it until it has been read.
     """
 
     opened = Signal()
     """Another scan is there; the one before has been closed."""
+    looked = Signal()
+    """A first look at a large volume is there; the scan before it has been closed."""
     leaving = Signal()
     """The scan is about to be closed."""
 
@@ -40,6 +42,7 @@ class VolumeOpening(QObject):
         super().__init__(page)
         self._context, self._controls, self._page = context, controls, page
         self.scan: Scan | None = None
+        self.first: FirstLook | None = None
         self.given = self.wanted = VolumeInput(Path())
         self.region = self.wanted_region = RegionSettings()
 
@@ -82,7 +85,9 @@ class VolumeOpening(QObject):
         title = tr("Reading the volume")
         if volume.path == sample_file("grey"):
             job, title = Job(read_sample_scan, ("grey", region)), tr("Reading the sample scan")
-        self._context.start(title, job, lambda scan: self._take(scan, volume, region), lane="read")
+        self._context.start(
+            title, job, lambda scan: self._take(scan, volume, region), partial=self._look, lane="read"
+        )
 
     def follow_region(self) -> bool:
         """Read again if the controls want another region; returns whether they do."""
@@ -138,9 +143,18 @@ class VolumeOpening(QObject):
         size, unit = self._context.recall("voxel_size", [1.0, "um"])
         return float(size), str(unit)
 
+    def _look(self, first: FirstLook) -> None:
+        self._leave()
+        self.first = first
+        self.looked.emit()
+
     def _take(self, scan: Scan, volume: VolumeInput, region: RegionSettings) -> None:
+        self._leave()
+        self.scan, self.given, self.region = scan, volume, region
+        self.opened.emit()
+
+    def _leave(self) -> None:
         if self.scan is not None:
             self.leaving.emit()
         self.close()
-        self.scan, self.given, self.region = scan, volume, region
-        self.opened.emit()
+        self.scan = self.first = None

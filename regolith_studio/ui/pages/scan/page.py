@@ -163,6 +163,15 @@ class ScanPage(PageWidget):
         self._schedule_preview()
         self._show_state()
 
+    def _on_looked(self) -> None:
+        self._stop_work()
+        self.preview.forget()
+        self.painting.stop()
+        self.painting.set_volume(None)
+        if self.opening.first is not None:
+            self.slices.show_first(self.opening.first.scan)
+        self._show_state()
+
     def _on_settings(self, recipe: GrainSettings) -> None:
         """Read another region; discard grains of other settings and start a preview."""
         if self.opening.follow_region():
@@ -208,6 +217,8 @@ class ScanPage(PageWidget):
     def _show_state(self) -> None:
         least = self.controls.value().extraction.min_voxels
         self.workflow.show_state(self.scan, self.preview.found, self.grains, least)
+        if self.opening.first is not None:
+            self.workflow.show_first(self.opening.first)
 
     def _stop_work(self) -> None:
         self.preview.stop()
@@ -266,6 +277,7 @@ class ScanPage(PageWidget):
 
     def _connect(self) -> None:
         self.opening.leaving.connect(self._on_leaving)
+        self.opening.looked.connect(self._on_looked)
         self.opening.opened.connect(self._on_opened)
         self.preview.changed.connect(self._on_preview)
         self.controls.valueChanged.connect(self._on_settings)

@@ -61,10 +61,10 @@ class Painting(QObject):
         """Whether there is a stroke to draw again."""
         return self._history.can_redo
 
-    def set_volume(self, volume: Volume) -> None:
-        """Begin again on another volume of grey values, or with nothing on labels."""
+    def set_volume(self, volume: Volume | None) -> None:
+        """Begin again on another volume of grey values, or with nothing on labels or without a volume."""
         self._history.restart(())
-        self._volume = volume if volume.kind == "grey" else None
+        self._volume = volume if volume is not None and volume.kind == "grey" else None
         self._vectors, self.training = {}, None
         self._panel.setEnabled(self._volume is not None)
         self._panel.paint.setChecked(False)

@@ -78,7 +78,7 @@ class SlicesView(QWidget):
         self._scan, self._labels = scan, None
         for view in self.views:
             view.set_volume(scan.volume, scan.sections, scan.contrast)
-            view.set_box_shown(scan.volume.kind == "grey")
+        self._show_boxes(scan.volume.kind == "grey")
         self.histogram.set_scanned(scan.histogram)
         self._stack.setCurrentIndex(1)
         self._class_colours, self._surface = None, None
@@ -88,6 +88,12 @@ class SlicesView(QWidget):
         self.box = box_between((0, 0, 0), (0, 0, 0))
         x, y, z = (edge // 2 for edge in scan.volume.shape)
         self.go_to((x, y, z))
+
+    def show_first(self, scan: Scan) -> None:
+        """Show a coarse picture of a volume, in which no frame can be segmented."""
+        self.set_scan(scan)
+        self.histogram.set_level(None)
+        self._show_boxes(False)
 
     def go_to(self, position: tuple[int, int, int]) -> None:
         """Show the slices through a voxel."""
@@ -112,8 +118,7 @@ class SlicesView(QWidget):
         self.grains.clear()
         self._surface, self._part = None, box
         self.histogram.set_denoised(None if found is None else found.seen)
-        for view in self.views:
-            view.set_box_shown(True)
+        self._show_boxes(True)
         self._lay_over()
 
     def show_segmentation(
@@ -130,8 +135,7 @@ class SlicesView(QWidget):
         self._labels, self._part = labels, box_between((0, 0, 0), found.labels.shape)
         self.histogram.set_denoised(found.seen)
         self.histogram.set_level(found.level)
-        for view in self.views:
-            view.set_box_shown(False)
+        self._show_boxes(False)
         self._lay_over()
 
     def show_surface(self, labels: Volume, surface: LabelSurface) -> None:
@@ -175,6 +179,10 @@ class SlicesView(QWidget):
         """Forget all probabilities."""
         self._predicted.clear()
         self._show_painting()
+
+    def _show_boxes(self, shown: bool) -> None:
+        for view in self.views:
+            view.set_box_shown(shown)
 
     def _show_painting(self) -> None:
         positions, labels = self._painted

@@ -4,7 +4,8 @@ from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
 
 from regolith_studio.imaging.segmentation.segment import Segmentation
-from regolith_studio.jobs.volume_jobs import Scan
+from regolith_studio.imaging.volume import Volume
+from regolith_studio.jobs.volume_jobs import FirstLook, Scan
 from regolith_studio.messages import N_
 from regolith_studio.ui.pages.scan.brush_panel import button
 from regolith_studio.ui.translation import tr, tr_count, translate
@@ -80,7 +81,7 @@ class WorkflowPanel(QWidget):
         self.save.setEnabled(grains is not None)
         self.convert.setEnabled(grains is not None or (scan is not None and not is_grey))
         self.show_them.hide()
-        self.volume.setText(_about(scan))
+        self.volume.setText(_about(scan.volume.name, scan.volume) if scan else tr("No volume is open."))
         self.made.setText("")
         if scan is None:
             self.found.setText("")
@@ -100,6 +101,11 @@ class WorkflowPanel(QWidget):
             self.found.setText(
                 tr("No grain in the frame so far. Move the level, or click into a slice to move the frame.")
             )
+
+    def show_first(self, first: FirstLook) -> None:
+        """Describe a volume of which a coarse picture is shown until it has been read."""
+        self.volume.setText(_about(first.scan.volume.name, first))
+        self.found.setText(tr("The picture is coarse until all of the volume has been read."))
 
     def set_particles(self, summary: str) -> None:
         """Show the result of the extraction."""
@@ -138,16 +144,13 @@ def _too_large(found: Segmentation) -> str:
     )
 
 
-def _about(scan: Scan | None) -> str:
-    if scan is None:
-        return tr("No volume is open.")
-    volume = scan.volume
+def _about(name: str, volume: Volume | FirstLook) -> str:
     edges = " × ".join(map(str, volume.shape))
     size = volume.voxel_size
     voxel = " × ".join(number_text(edge, "g") for edge in (size[:1] if (size == size[0]).all() else size))
     return tr(
         "{name}: {edges} voxels of {voxel}, {what} ({dtype}).",
-        name=volume.name,
+        name=name,
         edges=edges,
         voxel=f"{voxel} µm",
         what=tr("labels") if volume.kind == "labels" else tr("grey values"),
