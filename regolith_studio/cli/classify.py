@@ -109,7 +109,7 @@ def map_scan(
         typer.Option(
             "--output",
             "-o",
-            help="File for the probability of grain, 0 to 255, as TIFF, NRRD or HDF5.",
+            help="File for the probability of grain, 0 to 255, as TIFF, NRRD, HDF5 or OME-Zarr.",
             metavar="FILE",
             parser=output_path,
             callback=claim_labels,

@@ -67,7 +67,7 @@ def map_probabilities(scan: VolumeInput, training: TrainingSet, path: Path, scra
     Parameters
     ----------
     path
-        TIFF, NRRD or HDF5 by its suffix.
+        TIFF, NRRD, HDF5 or OME-Zarr by its suffix.
     scratch
         Folder for temporary files where the volume is too large for the memory.
 
