@@ -1,5 +1,6 @@
 """``python -m regolith_studio`` and the installed command ``regolith-studio``."""
 
+import signal
 import sys
 
 from regolith_studio.cli.stop_signals import STOPPED, StopSignals, remove_unfinished
@@ -8,12 +9,16 @@ from regolith_studio.cli.stop_signals import STOPPED, StopSignals, remove_unfini
 def main() -> None:
     """Run the command line with the arguments of this process, and end it with its exit code.
 
-    A signal ends a command as :class:`StopSignals` says. The window is left to Qt.
+    A signal ends a command as :class:`StopSignals` says. Until the window can be closed, Ctrl+C ends the
+    process as the system does: nothing is written yet, and an exception might be raised in a slot of Qt,
+    which drops it.
     """
     signals = StopSignals()
     try:
         if sys.argv[1:2] not in ([], ["open"]):
             signals.install()
+        elif signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+            signal.signal(signal.SIGINT, signal.SIG_DFL)
         from regolith_studio.cli.entry import run
 
         code = run(sys.argv[1:])

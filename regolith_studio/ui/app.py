@@ -10,7 +10,6 @@ from typing import Any
 
 from psygnal import EmitLoopError
 from PySide6.QtCore import QObject, Qt, QTimer, Signal
-from PySide6.QtWidgets import QApplication
 
 from regolith_studio.errors import RegolithError
 from regolith_studio.jobs.compile_kernels import TASKS, compile_first
@@ -90,9 +89,6 @@ def make_excepthook(report: Callable[[str, str], None]) -> Hook:
     """An excepthook that reports one sentence and keeps the program alive."""
 
     def hook(kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:
-        if issubclass(kind, KeyboardInterrupt):
-            QApplication.quit()
-            return
         details = "".join(traceback.format_exception(kind, error, trace))
         print(details, file=sys.stderr)  # noqa: T201
         cause = error.__cause__ if isinstance(error, EmitLoopError) else None

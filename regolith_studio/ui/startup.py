@@ -72,7 +72,7 @@ def run(paths: Sequence[str | Path] = (), unit: str | None = None) -> int:
     QTimer.singleShot(0, window, lambda: show_recovery_and_tour(window))
     timer = exit_timer()
     window.closing.connect(timer.start)
-    notice_signals(app)
+    close_on_interrupt(app)
     code = app.exec()
     timer.cancel()
     sys.excepthook = sys.__excepthook__
@@ -118,18 +118,22 @@ def make_application(arguments: Sequence[str]) -> QApplication:
     return app
 
 
-def notice_signals(app: QApplication) -> None:
-    """Let Ctrl+C close the window at once, also while it is idle.
+def close_on_interrupt(app: QApplication) -> None:
+    """Let Ctrl+C close the window, also while it is idle.
 
     Python acts on a signal when it runs next in the main thread, and nothing runs there while Qt waits for
-    events. So the signal writes to a socket, and Qt calls Python to read it.
+    events. So the signal writes to a socket, and Qt calls Python to read it. Closing is an event, which also
+    waits for a loop that has not begun.
     """
+    if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+        return
     reading, writing = socket.socketpair()
     for end in (reading, writing):
         end.setblocking(False)
     signal.set_wakeup_fd(writing.fileno(), warn_on_full_buffer=False)
     notifier = QSocketNotifier(reading.fileno(), QSocketNotifier.Type.Read, app)
     notifier.activated.connect(lambda *_, ends=(reading, writing): ends[0].recv(1))
+    signal.signal(signal.SIGINT, lambda *_: QTimer.singleShot(0, app.quit))
 
 
 def map_large_blocks() -> None:

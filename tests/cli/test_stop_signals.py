@@ -146,11 +146,14 @@ def test_that_the_processes_of_a_killed_command_end_in_the_middle_of_a_step(tmp_
         (["warm-up"], "SIGINT"),
         (["warm-up"], "SIGTERM"),
         (["describe", "sample:all"], "SIGINT"),
+        ([], "SIGINT"),
     ],
 )
-def test_that_nothing_goes_on_compiling_after_a_command_was_interrupted(
+def test_that_nothing_goes_on_compiling_after_a_command_or_the_window_was_interrupted(
     tmp_path: Path, words: list[str], name: str
 ) -> None:
+    if not words and not os.environ.get("DISPLAY"):
+        pytest.skip("The window needs a display.")
     places = {"NUMBA_CACHE_DIR": str(tmp_path / "code"), "REGOLITH_STUDIO_CONFIG": str(tmp_path / "config")}
     with (tmp_path / "said").open("w") as said:
         child = subprocess.Popen(
@@ -177,6 +180,42 @@ def test_that_nothing_goes_on_compiling_after_a_command_was_interrupted(
     assert not alive
     assert time.monotonic() - begun < max(2.0, os.getloadavg()[0]) + STOP_SECONDS
     assert "Traceback" not in (tmp_path / "said").read_text()
+
+
+INTERRUPT = "os.kill(os.getpid(), signal.SIGINT)"
+
+
+@pytest.mark.skipif(os.name == "nt", reason="signals are a matter of POSIX")
+@pytest.mark.parametrize(
+    ("moment", "code"),
+    [
+        (f"QTimer.singleShot(0, lambda: {INTERRUPT}); app.processEvents()", -signal.SIGINT),
+        (f"close_on_interrupt(app); {INTERRUPT}", 0),
+        (f"close_on_interrupt(app); threading.Timer(0.3, lambda: {INTERRUPT}).start()", 0),
+    ],
+    ids=["in a slot before it is built", "before its loop", "while it is idle"],
+)
+def test_that_an_interruption_ends_the_window_whenever_it_comes(moment: str, code: int) -> None:
+    """Qt drops exceptions of slots, and a request to quit before its loop has begun."""
+    program = (
+        "import os, signal, sys, threading\n"
+        "from PySide6.QtCore import QTimer\n"
+        "from PySide6.QtWidgets import QApplication\n"
+        "from regolith_studio import __main__ as program\n"
+        "from regolith_studio.cli import entry\n"
+        "from regolith_studio.ui.startup import close_on_interrupt\n"
+        "def run(words):\n"
+        "    app = QApplication([])\n"
+        f"    {moment}\n"
+        "    return app.exec()\n"
+        "entry.run, sys.argv = run, ['regolith-studio']\n"
+        "program.main()\n"
+    )
+    environment = {**os.environ, "QT_QPA_PLATFORM": "offscreen"}
+    done = subprocess.run(
+        [sys.executable, "-c", program], cwd=ROOT, env=environment, capture_output=True, timeout=PATIENCE
+    )
+    assert (done.returncode, done.stderr) == (code, b"")
 
 
 @pytest.mark.skipif(os.name == "nt", reason="signals are a matter of POSIX")
