@@ -36,7 +36,7 @@ def draw_three_views(
     if coarse is None:
         raise ValueError("there is no polyhedron to draw")
     fit = reconstruct(choices.fit_options.fit(particle.mesh, choices.l_max), choices.l_max, choices.level)
-    draw_in_process(_draw, (particle.mesh, fit, coarse, choices.l_max), path)
+    draw_in_process(_draw, (particle, fit, coarse, choices.l_max), path)
 
 
 def draw_in_process(draw: Callable[..., None], arguments: tuple[Any, ...], path: Path) -> None:
@@ -85,7 +85,7 @@ def _draw_and_report(sending: "Connection", draw: Callable[..., None], arguments
         raise SystemExit(1) from None
 
 
-def _draw(particle: "Mesh", fit: "Mesh", coarse: "CoarseningResult", l_max: int, path: Path) -> None:
+def _draw(particle: "Particle", fit: "Mesh", coarse: "CoarseningResult", l_max: int, path: Path) -> None:
     from regolith_studio.scene.figure import three_views, view_titles
 
-    three_views(particle, fit, coarse, view_titles(l_max, coarse), path)
+    three_views(particle.mesh, fit, coarse, view_titles(particle.title, l_max, coarse), path)

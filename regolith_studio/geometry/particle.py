@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.mesh_health import locate_defects
+from regolith_studio.messages import N_
 
 if TYPE_CHECKING:
     from regolith_studio.geometry.repair import Repair
@@ -63,6 +64,16 @@ class Particle:
     notes: tuple[str, ...] = field(default=())
     weight: float = 1.0
     repair: "Repair | None" = field(default=None, compare=False, repr=False)
+
+    @property
+    def is_synthetic(self) -> bool:
+        """Whether it is a shipped one, which no scan has measured."""
+        return self.source is not None and self.source.path.startswith("sample:")
+
+    @property
+    def title(self) -> str:
+        """What it is called above a picture of it."""
+        return N_("Synthetic particle") if self.is_synthetic else N_("Particle")
 
 
 def defect_triangles(particle: Particle) -> dict[str, FloatArray]:

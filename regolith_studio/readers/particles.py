@@ -369,4 +369,4 @@ def _read() -> tuple[Particle, ...]:
 def _named(particle: Particle) -> Particle:
     assert particle.source is not None
     source = Source(f"sample:{particle.name}", particle.source.sha256, "um")
-    return replace(particle, group="sample", source=source)
+    return replace(particle, group="synthetic", source=source)

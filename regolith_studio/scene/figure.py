@@ -13,7 +13,6 @@ from regolith_studio.dem.snapshot import ParticleState
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.mesh import Mesh
-from regolith_studio.messages import N_
 from regolith_studio.scene import annotations, cameras, instancing, palette, plotter_setup, surfaces
 from regolith_studio.scene.cameras import CameraPose
 
@@ -130,10 +129,12 @@ def _fill(
         surfaces.show_polyhedron(plotter, polyhedron, surroundings=palette.PAPER)
 
 
-def view_titles(l_max: int, polyhedron: ConvexPolyhedron | CoarseningResult) -> tuple[str, str, str]:
+def view_titles(
+    particle: str, l_max: int, polyhedron: ConvexPolyhedron | CoarseningResult
+) -> tuple[str, str, str]:
     """The titles that the window and the figures share; facets are not triangles, so both are named."""
     return (
-        N_("Particle"),
+        particle,
         f"Spherical-harmonics fit, l_max = {l_max}",
         f"Polyhedron, {polyhedron.n_facets} facets "
         f"({polyhedron.n_vertices} vertices, {polyhedron.n_triangles} triangles)",

@@ -147,10 +147,12 @@ class ThreeViewPage:
     def _titles(self) -> list[str]:
         results, body = self._session.results, self._session.results.polyhedron
         degree = results.surface_l_max if results.surface else self._session.choices.l_max
+        entry = self._session.selected
+        title = entry.particle.title if entry else "Particle"
         if isinstance(body, ConvexPolyhedron):
-            return list(map(str, view_titles(degree, body)))
+            return list(map(str, view_titles(title, degree, body)))
         parts = f"Compound of {body.n_parts} convex parts" if body else "Polyhedron"
-        return ["Particle", f"Spherical-harmonics fit, l_max = {degree}", parts]
+        return [title, f"Spherical-harmonics fit, l_max = {degree}", parts]
 
     def _rows(self) -> list[list[str]]:
         """Symbol with unit, then the value of particle, fit and polyhedron, of each descriptor."""

@@ -3640,10 +3640,6 @@
         <translation>Partikel, Fit und Polyeder</translation>
     </message>
     <message>
-        <source>Particle, {name}</source>
-        <translation>Partikel, {name}</translation>
-    </message>
-    <message>
         <source>Particles</source>
         <translation>Partikel</translation>
     </message>
@@ -5034,6 +5030,14 @@
     <message>
         <source>Synthesised by Regolith Studio: mean axial ratios S/I = 0.770 and I/L = 0.758 of ten Apollo and Luna soils (doi:10.1186/s40623-022-01737-9), sizes of soil 10084 between 10 and 1,000 um (Basu et al. 2001, by mass 4.28 +/- 2.23 phi); the roughness is that of the set MA165, as none is published, the spread of the ratios is that of a random field, shape does not depend on size, and no measured particle is contained.</source>
         <translation>Von Regolith Studio synthetisiert: mittlere Achsenverhältnisse S/I = 0.770 und I/L = 0.758 von zehn Böden von Apollo und Luna (doi:10.1186/s40623-022-01737-9), Größen von Boden 10084 zwischen 10 und 1,000 um (Basu et al. 2001, nach Masse 4.28 +/- 2.23 phi); die Rauheit ist die des Satzes MA165, da keine veröffentlicht ist, die Streuung der Verhältnisse die eines Zufallsfelds, die Form hängt nicht von der Größe ab, und kein gemessenes Partikel ist enthalten.</translation>
+    </message>
+    <message>
+        <source>Synthetic particle</source>
+        <translation>Synthetisches Partikel</translation>
+    </message>
+    <message>
+        <source>Synthetic particles ({count})</source>
+        <translation>Synthetische Partikel ({count})</translation>
     </message>
     <message>
         <source>Table 1</source>

@@ -6,6 +6,8 @@ from pathlib import Path
 import pytest
 
 from regolith_studio.cli.entry import run
+from regolith_studio.session.outputs.summary import Summary, summary_page
+from regolith_studio.session.recipe import recipe_of
 
 
 def recipe(folder: Path, grains: Path, **entries: object) -> Path:
@@ -172,3 +174,17 @@ def test_that_a_wish_for_the_dataset_that_cannot_be_met_is_refused_before_the_wo
         assert sentence in result.err
         assert not (tmp_path / "out" / "dataset").exists()
         assert not (tmp_path / "out" / "journal").exists()
+
+
+@pytest.mark.parametrize(
+    ("inputs", "said"),
+    [
+        ({"inputs": ["sample:all"]}, ["sample:all"]),
+        ({"inputs": [], "volumes": [{"file": "sample:grey"}]}, ["sample:grey"]),
+        ({"inputs": ["grains"]}, []),
+    ],
+)
+def test_that_the_summary_calls_what_ships_synthetic(inputs: dict[str, object], said: list[str]) -> None:
+    page = summary_page(recipe_of(**inputs), Summary(), (), ())
+    assert [each for each in said if f"Synthetic, not measured on a material: {each}." in page] == said
+    assert ("ynthetic" in page) == bool(said)

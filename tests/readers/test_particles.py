@@ -191,6 +191,8 @@ def test_that_the_shipped_particles_are_sound_and_named():
         assert particle.mesh.volume > 0.0
         assert particle.source.path == f"sample:{particle.name}"
         assert particle.source.unit == "um"
+        assert particle.group == "synthetic"
+        assert particle.title == "Synthetic particle"
 
 
 @pytest.fixture

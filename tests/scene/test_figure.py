@@ -9,7 +9,7 @@ from regolith_studio.scene.figure import VIEW_SIZE, three_views, view_titles
 
 
 def test_that_the_picture_shows_three_different_things(ball, cube, tmp_path):
-    titles = view_titles(10, cube)
+    titles = view_titles("Particle", 10, cube)
     picture = three_views(ball, ball, cube, titles, tmp_path / "views.png")
     width, height = VIEW_SIZE
     assert picture.shape == (height, 3 * width, 3)
@@ -20,4 +20,4 @@ def test_that_the_picture_shows_three_different_things(ball, cube, tmp_path):
 
 
 def test_that_titles_name_facets_vertices_and_triangles(cube):
-    assert view_titles(10, cube)[2] == "Polyhedron, 6 facets (8 vertices, 12 triangles)"
+    assert view_titles("Particle", 10, cube)[2] == "Polyhedron, 6 facets (8 vertices, 12 triangles)"

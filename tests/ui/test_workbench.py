@@ -18,6 +18,8 @@ from regolith_studio.ui.activity import TaskListPanel, time_left
 from regolith_studio.ui.app import open_window
 from regolith_studio.ui.dialogs.closing import worth_asking
 from regolith_studio.ui.dialogs.command_palette import CommandPalette
+from regolith_studio.ui.pages.lecture.page import LESSONS
+from regolith_studio.ui.panels.particle_list import ParticleListPanel
 from regolith_studio.ui.project_files import autosave_path, stale_autosaves
 from regolith_studio.ui.shortcuts import plain
 from regolith_studio.ui.theme import choose_letters
@@ -205,6 +207,19 @@ def test_that_every_stop_of_the_tour_shows_something_that_is_there(window):
     assert {step.page for step in steps()} == {"explore", "sample", "lecture"}
     assert len(steps()) == 11
     assert "the shipped ones are synthetic" in steps()[0].text
+
+
+def test_that_the_shipped_particles_are_called_synthetic_where_they_are_shown(window, settled):
+    name = window.session.selected.id
+    assert window.findChild(ParticleListPanel).title.text() == "Synthetic particles (12)"
+    assert window.page.three_views.frames["particle"].title == f"Synthetic particle, {name}"
+    sample = window.go("sample")
+    settled(window)
+    assert sample.frame.title == f"Synthetic particle, {name}"
+    lecture = window.go("lecture")
+    lecture.tabs.setCurrentIndex(LESSONS.index("degrees"))
+    settled(window)
+    assert lecture.degrees.frames["particle"].title == f"Synthetic particle, {name}"
 
 
 def test_that_escape_ends_the_tour(window):

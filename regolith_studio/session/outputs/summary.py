@@ -115,8 +115,17 @@ def _lead(recipe: Recipe, summary: Summary) -> str:
     return (
         f"<p>{summary.n_particles:,} particles; {summary.n_coarse:,} convex polyhedra "
         f"with {criterion} (method {escape(recipe.method)}, weights {escape(_weights(recipe))}, "
-        f"seed {recipe.seed}) that imitate the {target}. Lengths are in micrometres.</p>"
+        f"seed {recipe.seed}) that imitate the {target}. Lengths are in micrometres.{_synthetic(recipe)}</p>"
     )
+
+
+def _synthetic(recipe: Recipe) -> str:
+    """What ships with the program looks measured and is not."""
+    names = [*recipe.named_inputs, *(volume.file for volume in recipe.volumes)]
+    shipped = [name for name in names if name.startswith("sample:")]
+    if not shipped:
+        return ""
+    return f" Synthetic, not measured on a material: {escape(', '.join(shipped))}."
 
 
 def _weights(recipe: Recipe) -> str:

@@ -116,6 +116,14 @@ class _Model(ParticleTableModel):
         return None
 
 
+def _title(entries: Sequence[ParticleEntry]) -> str:
+    if not entries:
+        return tr("Particles")
+    if all(entry.particle.is_synthetic for entry in entries):
+        return tr("Synthetic particles ({count})", count=len(entries))
+    return tr("Particles ({count})", count=len(entries))
+
+
 class ParticleListPanel(QWidget):
     """Selects the current particle."""
 
@@ -165,8 +173,7 @@ class ParticleListPanel(QWidget):
         self._quiet = False
         self._mark()
         self.table.fit_columns()
-        count = len(entries)
-        self.title.setText(tr("Particles ({count})", count=count) if count else tr("Particles"))
+        self.title.setText(_title(entries))
 
     def set_theme(self, theme: Theme) -> None:
         """Take the colours of a theme."""

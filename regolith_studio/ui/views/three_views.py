@@ -102,7 +102,7 @@ class ThreeViews(QSplitter):
         self.views[PARTICLE].draw(lambda plotter: surfaces.show_particle(plotter, mesh))
         self.comparison.set_shapes(self._shapes, *NAMES)
         self.frames[PARTICLE].set_texts(
-            tr("Particle, {name}", name=html.escape(entry.id)),
+            f"{tr(entry.particle.title)}, {html.escape(entry.id)}",
             tr("{size}, {count:,} triangles", size=_lengths(mesh.bounds), count=len(mesh.faces)),
             html.escape(entry.id),
         )

@@ -56,12 +56,12 @@ class DegreesView(QWidget):
         self.playback.stepChanged.connect(self._show_step)
         self._arrange()
 
-    def show_particle(self, mesh: Mesh, name: str) -> None:
-        """Show a particle; its steps follow."""
+    def show_particle(self, mesh: Mesh, title: str) -> None:
+        """Show a particle under this title; its steps follow."""
         self._particle, self._steps = mesh, ()
         self.playback.pause()
         self.playback.set_count(0)
-        self.frames["particle"].set_texts(tr("Particle, {name}", name=name))
+        self.frames["particle"].set_texts(title)
         self.frames["fit"].set_texts(tr("Spherical-harmonics fit"))
         self.frames["particle"].view.draw(lambda plotter: surfaces.show_particle(plotter, mesh))
         self.frames["fit"].view.draw(surfaces.clear)

@@ -204,7 +204,7 @@ class LecturePage(PageWidget):
         if fit is None or self._made_for.get("degrees") == (fit,):
             return
         self._made_for["degrees"] = (fit,)
-        self.degrees.show_particle(entry.particle.mesh, entry.id)
+        self.degrees.show_particle(entry.particle.mesh, f"{tr(entry.particle.title)}, {entry.id}")
         show = self.degrees.show_steps
         job = Job(trace_degrees, (entry.particle.mesh, fit))
         self._context.start(tr("Fitting degree by degree"), job, show, partial=show, lane="degrees")

@@ -190,7 +190,8 @@ class SamplePage(PageWidget):
             self.table.choose([entry.id], entry.id)
             self._show_pictures()
         mesh = entry.particle.mesh
-        self.frame.set_texts(tr("Particle, {name}", name=entry.id), " ".join(translated_health(entry)))
+        title = f"{tr(entry.particle.title)}, {entry.id}"
+        self.frame.set_texts(title, " ".join(translated_health(entry)))
         if mesh is not self._shown:
             self._shown = mesh
             self._faults = {}
