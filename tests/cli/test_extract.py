@@ -3,6 +3,8 @@
 import csv
 import hashlib
 import json
+import re
+import shutil
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +14,7 @@ import trimesh
 
 from regolith_studio.imaging.sample_volumes import sample_volume
 from regolith_studio.resources import resource
+from regolith_studio.session.outputs.particles import ExtractionFolder
 
 GREY = resource("samples", "ct", "synthetic-grey.tif")
 PART = (slice(0, 80), slice(0, 80), slice(0, 80))
@@ -267,3 +270,27 @@ def test_that_extract_wants_a_folder_or_values_of_h(command, tmp_path: Path) -> 
     labels = command("extract", GREY.with_name("synthetic-labels.tif"), "--preview-h", "0.8")
     assert labels.code == 1
     assert "holds labels" in labels.err
+
+
+@pytest.mark.parametrize("moment", ["the first particle", "the last particle", "the tables"])
+def test_that_a_folder_that_is_removed_while_it_is_written_to_is_not_made_again(
+    command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, moment: str
+) -> None:
+    parent = tmp_path / "parent"
+    parent.mkdir()
+    np.save(tmp_path / "balls.npy", two_balls())
+    step = "finish" if moment == "the tables" else "add"
+    complete, left = getattr(ExtractionFolder, step), ["the first particle", "the last particle"]
+
+    def remove(*arguments: object) -> object:
+        if moment not in left[1:]:
+            shutil.rmtree(parent, ignore_errors=True)
+        left.pop(0)
+        return complete(*arguments)
+
+    monkeypatch.setattr(ExtractionFolder, step, remove)
+    result = command("extract", tmp_path / "balls.npy", "-o", parent / "x", "--voxel-size", 1)
+    assert (result.code, result.out) == (1, "")
+    sentence = r"The file .*/parent/x/[^/]+ cannot be written \(there is no such file\)\.\n"
+    assert re.fullmatch(sentence, result.err)
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["balls.npy"]

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 from regolith_studio.session.batch.scan_groups import compare_groups
+from regolith_studio.session.outputs.particles import ExtractionFolder
 
 RADII = {"fine": (5, 6), "coarse": (8, 9)}
 
@@ -154,3 +155,20 @@ def test_that_weights_count_in_the_comparison_of_groups() -> None:
     assert row["quantile_10"] == 0.5
     assert row["ks_distance"] == pytest.approx(0.75)
     assert row["wasserstein_1"] == pytest.approx(0.25 * 0.2 + 0.75 * 0.2)
+
+
+@pytest.mark.parametrize("step", ["add", "finish"])
+def test_that_groups_are_not_written_to_a_folder_that_was_removed(
+    command, scans: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, step: str
+) -> None:
+    complete = getattr(ExtractionFolder, step)
+
+    def remove(*arguments: object) -> object:
+        shutil.rmtree(tmp_path / "all", ignore_errors=True)
+        return complete(*arguments)
+
+    monkeypatch.setattr(ExtractionFolder, step, remove)
+    result = command("extract", scans, "-o", tmp_path / "all", *ASKED)
+    assert (result.code, result.out) == (1, "")
+    assert result.err == f"The folder {tmp_path / 'all'} was removed while it was written to.\n"
+    assert not (tmp_path / "all").exists()

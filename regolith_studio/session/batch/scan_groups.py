@@ -95,17 +95,19 @@ def extract_groups(
     scans
         Each with the name of its group.
     output
-        Folder of the groups and of the tables.
+        Folder of the groups and of the tables; exists already.
 
     Raises
     ------
     FileError
-        If the folder holds the particles of a single scan, or cannot be written.
+        If the folder holds the particles of a single scan, cannot be written, or is removed meanwhile.
     """
     if (output / LISTED).exists():
         raise FileError(f"The folder {output} holds the particles of one scan; name another for several.")
     extracted, kept, problems = [], [], []
     for number, given in enumerate(scans, start=1):
+        if not output.is_dir():
+            raise FileError(f"The folder {output} was removed while it was written to.")
         try:
             if _is_extracted(output / given.group, given, settings):
                 kept.append(given.group)
