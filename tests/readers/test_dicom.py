@@ -199,9 +199,10 @@ def bad_series() -> Iterator[tuple[Callable[[Path], object], str]]:
     yield lambda folder: series(folder, syntax=JPEG), "pixels are packed"
     for name, value in (
         ("Rows", 0), ("Columns", 0), ("BitsAllocated", 12), ("BitsAllocated", 64), ("SamplesPerPixel", 3),
-        ("NumberOfFrames", 2),
     ):  # fmt: skip
         yield lambda folder, n=name, v=value: series(folder, **{n: v}), "not one grey image"
+    yield lambda folder: series(folder, NumberOfFrames=2), "two slices at one place"
+    yield lambda folder: series(folder, NumberOfFrames=900), "shorter than the 900 frames"
     for name in ("Rows", "Columns", "BitsAllocated"):
         yield lambda folder, n=name: series(folder, **{n: None}), "lacks the size"
     for name, value in (("Rows", 60), ("Columns", 6000), ("BitsAllocated", 32), ("BitsAllocated", 8)):
