@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 from vtkmodules.vtkRenderingCore import vtkTextActor
 
 from regolith_studio.geometry.arrays import FloatArray
-from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
+from regolith_studio.geometry.convex_compound import ConvexCompound, Polyhedron
 from regolith_studio.scene import palette
 from regolith_studio.scene.overlays import hide_named, show_named
 from regolith_studio.scene.palette import ThemeColors
@@ -26,17 +26,21 @@ class Facet:
     Parameters
     ----------
     index
-        From 0, in the order of the polyhedron's half-spaces.
+        From 0, in the order of the half-spaces; those of a compound are numbered through.
     count
-        Facets of the polyhedron.
+        Facets of the polyhedron, or of all parts.
     area, share
-        In the unit of the polyhedron squared, and of its surface.
+        In the unit of the polyhedron squared, and of its surface; of a compound what is exposed.
     normal
         Outward unit normal, shape (3,).
     offset
         Distance of the plane from the polyhedron's origin.
-    corners
-        Shape (k, 3), about the polyhedron's origin.
+    outline
+        Ends of the edges of what is exposed, shape (m, 2, 3), about the polyhedron's origin.
+    middle
+        A point of what is exposed, shape (3,).
+    part
+        Of a compound, from 0.
     """
 
     index: int
@@ -45,12 +49,16 @@ class Facet:
     share: float
     normal: FloatArray
     offset: float
-    corners: FloatArray
+    outline: FloatArray
+    middle: FloatArray
+    part: int | None = None
 
 
-def facet_of(polyhedron: ConvexPolyhedron, index: int) -> Facet:
+def facet_of(polyhedron: Polyhedron, index: int) -> Facet:
     """The facet number `index` of a polyhedron."""
-    areas = polyhedron.facet_areas
+    if isinstance(polyhedron, ConvexCompound):
+        return _exposed_facet(polyhedron, index)
+    areas, corners = polyhedron.facet_areas, polyhedron.vertices[list(polyhedron.facets[index])]
     return Facet(
         index,
         polyhedron.n_facets,
@@ -58,21 +66,60 @@ def facet_of(polyhedron: ConvexPolyhedron, index: int) -> Facet:
         float(areas[index] / areas.sum()),
         np.asarray(polyhedron.half_spaces.normals[index]),
         float(polyhedron.half_spaces.offsets[index]),
-        np.asarray(polyhedron.vertices[list(polyhedron.facets[index])]),
+        np.stack([corners, np.roll(corners, -1, axis=0)], axis=1),
+        corners.mean(axis=0),
     )
 
 
-def facet_met(
-    polyhedron: ConvexPolyhedron, start: ArrayLike, direction: ArrayLike
-) -> tuple[int, float] | None:
+def _exposed_facet(compound: ConvexCompound, index: int) -> Facet:
+    """What the union shows of a facet; its edges are those of one of its triangles alone."""
+    mesh, areas = compound.mesh, compound.exposed_areas
+    faces = mesh.faces[compound.triangle_facets == index]
+    ends = np.stack([faces, np.roll(faces, -1, axis=1)], axis=2).reshape(-1, 2)
+    _, found, uses = np.unique(np.sort(ends, axis=1), axis=0, return_index=True, return_counts=True)
+    corners = mesh.vertices[faces]
+    sizes = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+    normals, offsets = (np.concatenate(each) for each in zip(*compound.part_planes, strict=True))
+    return Facet(
+        index,
+        compound.n_facets,
+        float(areas[index]),
+        float(areas[index] / areas.sum()),
+        normals[index],
+        float(offsets[index]),
+        mesh.vertices[ends[found[uses == 1]]],
+        corners[sizes.argmax()].mean(axis=0),
+        int(compound.facet_parts[index]),
+    )
+
+
+def facet_met(polyhedron: Polyhedron, start: ArrayLike, direction: ArrayLike) -> tuple[int, float] | None:
     """The facet through which a ray enters a polyhedron from outside, and how far away; about its own origin.
+
+    A union of convex parts is entered where the first of them is.
+    """
+    if not isinstance(polyhedron, ConvexCompound):
+        planes = polyhedron.half_spaces
+        return _plane_met(planes.normals, planes.offsets, start, direction)
+    hits, first = [], 0
+    for normals, offsets in polyhedron.part_planes:
+        hit = _plane_met(normals, offsets, start, direction)
+        if hit is not None:
+            hits.append((first + hit[0], hit[1]))
+        first += len(offsets)
+    return min(hits, key=lambda hit: hit[1], default=None)
+
+
+def _plane_met(
+    normals: FloatArray, offsets: FloatArray, start: ArrayLike, direction: ArrayLike
+) -> tuple[int, float] | None:
+    """The plane through which a ray enters a convex body, and how far away.
 
     The last plane that is passed on the way in, if that is before the first on the way out (Cyrus and
     Beck).
     """
-    planes = polyhedron.half_spaces
-    speed = planes.normals @ np.asarray(direction, dtype=np.float64)
-    room = planes.offsets - planes.normals @ np.asarray(start, dtype=np.float64)
+    speed = normals @ np.asarray(direction, dtype=np.float64)
+    room = offsets - normals @ np.asarray(start, dtype=np.float64)
     if (room[speed == 0.0] < 0.0).any():
         return None
     reach = np.divide(room, speed, out=np.zeros_like(room), where=speed != 0.0)
@@ -100,12 +147,12 @@ def show_facet(
         hide_named(plotter, FACET)
         hide_named(plotter, NUMBER)
         return
-    corners = facet.corners + np.asarray(centre, dtype=np.float64)
-    size = float(np.ptp(corners, axis=0).max())
-    loop = np.array([len(corners) + 1, *range(len(corners)), 0])
-    outline = pv.PolyData(corners + LIFT * size * facet.normal, lines=loop)
+    origin, ends = np.asarray(centre, dtype=np.float64), facet.outline.reshape(-1, 3)
+    size = float(np.ptp(ends, axis=0).max())
+    lines = np.insert(np.arange(len(ends)), np.arange(0, len(ends), 2), 2)
+    outline = pv.PolyData(ends + origin + LIFT * size * facet.normal, lines=lines)
     show_named(plotter, FACET, outline, colour, line_width=4.0).prop.lighting = False
-    _show_number(plotter, str(facet.index + 1), corners.mean(axis=0), surroundings)
+    _show_number(plotter, str(facet.index + 1), facet.middle + origin, surroundings)
 
 
 def _show_number(plotter: Any, text: str, place: FloatArray, surroundings: ThemeColors) -> None:

@@ -42,9 +42,9 @@ class SceneShape:
     centre: FloatArray | None = None
 
     @property
-    def polyhedron(self) -> ConvexPolyhedron | None:
-        """The polyhedron, if it is a convex one."""
-        return self.surface if isinstance(self.surface, ConvexPolyhedron) else None
+    def polyhedron(self) -> Polyhedron | None:
+        """The polyhedron or the union of several, if it is one."""
+        return None if isinstance(self.surface, Mesh) else self.surface
 
     @property
     def origin(self) -> FloatArray:

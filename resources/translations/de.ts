@@ -1124,6 +1124,10 @@
         <translation>Verbund konvexer Teile</translation>
     </message>
     <message>
+        <source>Compound, {parts} parts, {count} facets</source>
+        <translation>Verbund, {parts} Teile, {count} Facetten</translation>
+    </message>
+    <message>
         <source>Compounds</source>
         <translation>Verbünde</translation>
     </message>
@@ -6710,6 +6714,10 @@
     <message>
         <source>pairs of r_eq, A, AR: the largest energy distance [%]</source>
         <translation>Paare aus r_eq, A, AR: die größte Energiedistanz [%]</translation>
+    </message>
+    <message>
+        <source>part {part}, facet {number} of {count}: {area:,.4g} µm² exposed ({share:.1%}), normal ({x:.2f}, {y:.2f}, {z:.2f}), {offset:.4g} µm from the centre</source>
+        <translation>Teil {part}, Facette {number} von {count}: {area:,.4g} µm² frei liegend ({share:.1%}), Normale ({x:.2f}, {y:.2f}, {z:.2f}), {offset:.4g} µm vom Mittelpunkt</translation>
     </message>
     <message>
         <source>parts left out</source>

@@ -14,6 +14,7 @@ from regolith_studio.scene.comparison import OTHER, Divider, arrange, show_cuts,
 from regolith_studio.scene.palette import PAPER
 from regolith_studio.scene.projection import Projection
 from regolith_studio.scene.shapes import FIT, PARTICLE, POLYHEDRON, SceneShape
+from tests.dataset.example import elbow
 
 SIZE = 160
 
@@ -132,6 +133,38 @@ def test_that_the_facet_under_the_mouse_is_the_one_that_a_ray_meets_first(cube):
             assert found[0] == solid.triangle_facets[entering[0]]
             assert found[1] == pytest.approx(hits.distance[0])
     assert met > 100
+
+
+def test_that_the_facet_below_the_mouse_of_a_union_is_that_of_its_surface():
+    """Along rays from everywhere; what lies behind another part is not met."""
+    union, rng, met = elbow().moved(shift=-elbow().centroid), np.random.default_rng(4), set()
+    for direction in rng.normal(size=(300, 3)):
+        towards = direction / np.linalg.norm(direction)
+        start = -60 * towards + np.cross(towards, rng.normal(size=3)) * 2
+        hits = radial_hits(union.mesh, start, towards[None, :])
+        entering = hits.face[hits.sign < 0]
+        found = facets.facet_met(union, start, towards)
+        assert (found is None) == (not len(entering))
+        if found is not None:
+            assert found[1] == pytest.approx(hits.distance[0])
+            a, b, c = union.mesh.vertices[union.mesh.faces[entering[0]]]
+            across = np.cross(b - a, c - a)
+            normal = facets.facet_of(union, found[0]).normal
+            assert normal == pytest.approx(across / np.linalg.norm(across), abs=1e-9)
+            met.add(found[0])
+    assert len(met) >= 10
+
+
+def test_that_a_facet_of_a_union_tells_what_is_exposed_of_it(plotter):
+    """Of a side of 6 x 1 of the second bar of an elbow the first bar covers 2 x 1."""
+    facet = facets.facet_of(elbow(), 6)
+    assert (facet.part, facet.count) == (1, 12)
+    assert facet.area == pytest.approx(4.0)
+    assert facet.share == pytest.approx(4 / 64)
+    edges = np.linalg.norm(facet.outline[:, 1] - facet.outline[:, 0], axis=1)
+    assert edges.sum() == pytest.approx(2 * (4 + 1))
+    facets.show_facet(plotter, facet)
+    assert plotter.actors[facets.NUMBER].GetInput() == "7"
 
 
 def test_that_a_facet_tells_its_numbers_and_is_outlined(plotter, cube):

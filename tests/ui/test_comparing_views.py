@@ -169,6 +169,24 @@ def test_that_the_facet_under_the_mouse_is_outlined_numbered_and_told(window):
 
 
 @pytest.mark.slow
+def test_that_the_facet_under_the_mouse_of_a_compound_is_told_with_its_part(window, settled):
+    window.session.choose(method="compound", n_facets=40)
+    settled(window)
+    views = window.page.three_views
+    solid = window.session.results.coarsened.polyhedron
+    assert views.frames["polyhedron"].title.startswith(f"Compound, {solid.n_parts} parts, ")
+    widget = views.views["polyhedron"].widget
+    hover(widget, widget.width() // 2, widget.height() // 2)
+    number = int(actor(window, "polyhedron", facets.NUMBER).GetInput())
+    part = solid.facet_parts[number - 1] + 1
+    area = solid.exposed_areas[number - 1]
+    words = window.statusBar().currentMessage()
+    assert words.startswith(f"part {part}, facet {number} of {solid.n_facets}: {area:,.4g} µm² exposed")
+    towards = -Projection(views.views["polyhedron"].pose, 1, 1).axes[2]
+    assert solid.facet_normals[number - 1] @ towards > 0.0
+
+
+@pytest.mark.slow
 def test_that_one_view_after_the_other_gets_all_the_room(window):
     frames = window.page.three_views.frames
     for seen in (["particle"], ["fit"], ["polyhedron"], ["particle", "fit", "polyhedron"]):

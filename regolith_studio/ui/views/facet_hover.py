@@ -5,6 +5,7 @@ from collections.abc import Callable
 import numpy as np
 
 from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.messages import N_
 from regolith_studio.scene import facets
 from regolith_studio.scene.palette import ThemeColors
 from regolith_studio.scene.projection import Projection
@@ -69,17 +70,25 @@ class FacetHover:
 
 
 def words_of(facet: facets.Facet) -> str:
-    """One line; lengths in micrometres, facets counted from 1."""
-    return tr(
-        "facet {number} of {count}: {area:,.4g} µm² ({share:.1%}), normal ({x:.2f}, {y:.2f}, {z:.2f}),"
-        " {offset:.4g} µm from the centre, {corners} corners",
-        number=facet.index + 1,
-        count=facet.count,
-        area=facet.area,
-        share=facet.share,
-        x=facet.normal[0],
-        y=facet.normal[1],
-        z=facet.normal[2],
-        offset=facet.offset,
-        corners=len(facet.corners),
+    """One line; lengths in micrometres, facets and parts counted from 1."""
+    numbers = {
+        "number": facet.index + 1,
+        "count": facet.count,
+        "area": facet.area,
+        "share": facet.share,
+        "x": facet.normal[0],
+        "y": facet.normal[1],
+        "z": facet.normal[2],
+        "offset": facet.offset,
+    }
+    if facet.part is None:
+        text = N_(
+            "facet {number} of {count}: {area:,.4g} µm² ({share:.1%}), normal ({x:.2f}, {y:.2f}, {z:.2f}),"
+            " {offset:.4g} µm from the centre, {corners} corners"
+        )
+        return tr(text, corners=len(facet.outline), **numbers)
+    text = N_(
+        "part {part}, facet {number} of {count}: {area:,.4g} µm² exposed ({share:.1%}), normal"
+        " ({x:.2f}, {y:.2f}, {z:.2f}), {offset:.4g} µm from the centre"
     )
+    return tr(text, part=facet.part + 1, **numbers)

@@ -12,6 +12,7 @@ from PySide6.QtWidgets import QSplitter, QWidget
 
 from regolith_studio.coarsening.progress import CoarseningProgress
 from regolith_studio.geometry.arrays import BoolArray, FloatArray
+from regolith_studio.geometry.convex_compound import ConvexCompound
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.oriented_box import minimum_volume_box
 from regolith_studio.harmonics.visibility import hidden_faces
@@ -136,8 +137,10 @@ class ThreeViews(QSplitter):
         self._shapes[POLYHEDRON] = SceneShape(POLYHEDRON, solid, centre)
         self.pointer.clear()
         self._draw_polyhedron()
+        parts = solid.n_parts if isinstance(solid, ConvexCompound) else 1
+        several = tr("Compound, {parts} parts, {count} facets", parts=parts, count=solid.n_facets)
         self.frames[POLYHEDRON].set_texts(
-            tr("Polyhedron, {count} facets", count=solid.n_facets),
+            several if parts > 1 else tr("Polyhedron, {count} facets", count=solid.n_facets),
             tr("{count} vertices, {triangles} triangles", count=solid.n_vertices, triangles=solid.n_triangles)
             + _missing_facets_text(results),
             tr("{count} facets", count=solid.n_facets),
