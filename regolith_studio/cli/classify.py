@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from regolith_studio.cli.dataclass_options import with_dataclass_options
-from regolith_studio.cli.extract import GrainOptions, VolumeOptions
 from regolith_studio.cli.options import Json, Seed, claim_json, claim_labels, output_path, usage_errors
 from regolith_studio.cli.terminal import CommandGroup, print_json, run_with_progress
+from regolith_studio.cli.volume_options import GrainOptions, VolumeOptions
 
 if TYPE_CHECKING:
     from regolith_studio.imaging.segmentation.pixel_classifier import PixelClass, TrainingSet

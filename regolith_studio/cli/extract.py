@@ -1,6 +1,7 @@
-"""``extract``: particle meshes from a volume of grey values or labels, and the options of volumes."""
+"""``extract``: particle meshes from volumes of grey values or labels."""
 
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -9,281 +10,10 @@ import typer
 from regolith_studio.cli.dataclass_options import with_dataclass_options
 from regolith_studio.cli.options import Jobs, Json, OptionalFolder, Seed, claim_labels, usage_errors
 from regolith_studio.cli.terminal import print_errors, print_json, print_table, run_with_progress
-from regolith_studio.readers.volumes.region import RegionSettings
-
-MAX_H = 1e6
+from regolith_studio.cli.volume_options import MAX_H, GrainOptions, VolumeOptions
 
 if TYPE_CHECKING:
-    from regolith_studio.imaging.segmentation.thresholding import ThresholdSettings
-    from regolith_studio.imaging.volume import VolumeKind
     from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput
-    from regolith_studio.readers.volumes.header import RawLayout
-
-
-@dataclass(frozen=True)
-class VolumeOptions:
-    """What a volume file does not say of itself."""
-
-    kind: Annotated[
-        str,
-        typer.Option("--kind", help="Kind of volume: labels or grey; detected if omitted.", metavar="KIND"),
-    ] = ""
-    voxel_size: Annotated[
-        str,
-        typer.Option(
-            "--voxel-size",
-            help="Edge of a voxel, or X,Y,Z, in the unit of --unit; read from the file if omitted.",
-            metavar="SIZE",
-        ),
-    ] = ""
-    unit: Annotated[
-        str, typer.Option("--unit", help="Unit of the voxel size: um, mm, m, nm or cm.", metavar="U")
-    ] = ""
-    dataset: Annotated[
-        str,
-        typer.Option(
-            "--dataset",
-            help="Dataset of an HDF5 file, level of an OME-Zarr, or series of a DICOM folder.",
-            metavar="NAME",
-        ),
-    ] = ""
-    axes: Annotated[
-        str,
-        typer.Option(
-            "--axes",
-            help="Order of the axes of NPY and HDF5 arrays; zyx (slices first) if omitted.",
-            metavar="AXES",
-        ),
-    ] = ""
-    shape: Annotated[
-        str,
-        typer.Option("--shape", help="Number of voxels of a raw file along x, y and z.", metavar="NX,NY,NZ"),
-    ] = ""
-    dtype: Annotated[
-        str,
-        typer.Option("--dtype", help="Data type of a raw file: uint8, uint16, float32, ...", metavar="TYPE"),
-    ] = "uint8"
-    byte_order: Annotated[
-        str, typer.Option("--byte-order", help="Byte order of a raw file: little or big.", metavar="ORDER")
-    ] = "little"
-    offset: Annotated[
-        int,
-        typer.Option(
-            "--offset",
-            min=0,
-            max=2**63 - 1,
-            help="Number of bytes before the first voxel of a raw file.",
-            metavar="N",
-        ),
-    ] = 0
-
-    def of(self, volume: Path) -> "VolumeInput":
-        """The volume with what the options say of it; a wrong one is bad use."""
-        from regolith_studio.jobs.extraction_settings import VolumeInput
-        from regolith_studio.readers.units import unit_factor
-
-        if self.unit:
-            unit_factor(self.unit)
-        return VolumeInput(
-            volume,
-            _edges(self.voxel_size),
-            self.unit or None,
-            volume_kind(self.kind),
-            self.dataset or None,
-            _raw_layout(self.shape, self.dtype, self.byte_order, self.offset),
-            self.axes or None,
-        )
-
-
-@dataclass(frozen=True)
-class GrainOptions:
-    """Where grains are looked for, how they are found and their surfaces taken."""
-
-    region: RegionSettings
-    denoise: Annotated[
-        str,
-        typer.Option(
-            "--denoise",
-            help="Denoising of grey volumes: none, gaussian, median or non-local-means.",
-            metavar="METHOD",
-        ),
-    ] = "median"
-    threshold: Annotated[
-        str,
-        typer.Option(
-            "--threshold",
-            help="Threshold of grey volumes: otsu, multi-otsu, multi-otsu:CLASSES:BOUNDARY, a grey value, or "
-            "probability[:P] for a probability map.",
-            metavar="HOW",
-        ),
-    ] = "otsu"
-    classifier: Annotated[
-        Path | None,
-        typer.Option(
-            "--classifier",
-            help="Classifier that makes a probability map of a grey volume, as `classify train` or the "
-            "window writes it; the threshold is then probability:0.5 if omitted.",
-            metavar="FILE",
-        ),
-    ] = None
-    objects: Annotated[
-        Path | None,
-        typer.Option(
-            "--objects",
-            help="Object classifier that keeps, splits again or drops the grains that were found, as "
-            "`classify objects` or the window writes it.",
-            metavar="FILE",
-        ),
-    ] = None
-    dark: Annotated[bool, typer.Option("--dark", help="Grains are darker than the matrix.")] = False
-    opening: Annotated[
-        int,
-        typer.Option(
-            "--opening",
-            min=0,
-            max=10,
-            help="Radius in voxels of the opening, which removes specks and bridges.",
-            metavar="N",
-        ),
-    ] = 0
-    closing: Annotated[
-        int,
-        typer.Option(
-            "--closing",
-            min=0,
-            max=10,
-            help="Radius in voxels of the closing, which fills cracks.",
-            metavar="N",
-        ),
-    ] = 0
-    h_maxima: Annotated[
-        float,
-        typer.Option(
-            "--h-maxima",
-            min=0.0,
-            max=MAX_H,
-            help="Height in voxels of the maxima of the distance map that count as separate grains; "
-            "larger values give fewer grains.",
-            metavar="H",
-        ),
-    ] = 0.8
-    split: Annotated[bool, typer.Option("--split/--no-split", help="Separate touching grains.")] = True
-    min_voxels: Annotated[
-        int,
-        typer.Option(
-            "--min-voxels", min=0, max=2**63 - 1, help="Minimum number of voxels of a grain.", metavar="N"
-        ),
-    ] = 268
-    border: Annotated[
-        str,
-        typer.Option(
-            "--border",
-            help="Grains cut by the border: exclude (and weight the others) or keep.",
-            metavar="HOW",
-        ),
-    ] = "exclude"
-    surface: Annotated[
-        str,
-        typer.Option(
-            "--surface",
-            help="Source of the surfaces of grey volumes: grey (values) or mask.",
-            metavar="FROM",
-        ),
-    ] = "grey"
-
-    @property
-    def recipe(self) -> "GrainSettings":
-        """The settings that the options define; a wrong one is a usage error."""
-        from regolith_studio.imaging.extraction import ExtractionSettings
-        from regolith_studio.imaging.segmentation.denoising import DenoiseSettings
-        from regolith_studio.imaging.segmentation.morphology import CleaningSettings
-        from regolith_studio.imaging.segmentation.segment import SegmentationSettings
-        from regolith_studio.imaging.segmentation.splitting import SplittingSettings
-        from regolith_studio.jobs.extraction_settings import GrainSettings, read_classifier, read_objects
-
-        if self.border not in ("exclude", "keep"):
-            raise typer.BadParameter(f"Grains at the border are to exclude or to keep, not {self.border!r}.")
-        least = min(self.min_voxels, CleaningSettings.min_voxels)
-        trained = read_classifier(self.classifier) if self.classifier else None
-        how = "probability" if trained and self.threshold == "otsu" else self.threshold
-        return GrainSettings(
-            SegmentationSettings(
-                DenoiseSettings(self.denoise),  # type: ignore[arg-type]  # checked by the settings
-                threshold_from(how, self.dark),
-                CleaningSettings(self.opening, self.closing, min_voxels=least),
-                SplittingSettings(self.split, self.h_maxima),
-                classifier=trained,
-                objects=read_objects(self.objects) if self.objects else None,
-            ),
-            ExtractionSettings(
-                exclude_border=self.border == "exclude",
-                min_voxels=self.min_voxels,
-                surface=self.surface,  # type: ignore[arg-type]  # checked by the settings
-            ),
-            self.region,
-        )
-
-
-def volume_kind(text: str) -> "VolumeKind | None":
-    """``labels``, ``grey`` or nothing, for guessing."""
-    match text:
-        case "":
-            return None
-        case "labels" | "grey":
-            return text
-        case _:
-            raise typer.BadParameter(f"A volume holds labels or grey values, not {text!r}.")
-
-
-def threshold_from(text: str, dark: bool) -> "ThresholdSettings":
-    """The threshold that ``otsu``, ``multi-otsu:4:2``, ``probability:0.6`` or ``87.5`` denotes."""
-    from regolith_studio.imaging.segmentation.thresholding import ThresholdSettings
-
-    name, _, rest = text.partition(":")
-    try:
-        match name:
-            case "otsu" if not rest:
-                return ThresholdSettings("otsu", dark=dark)
-            case "multi-otsu":
-                classes, boundary = map(int, rest.split(":")) if rest else (3, 1)
-                return ThresholdSettings("multi-otsu", classes=classes, boundary=boundary, dark=dark)
-            case "probability":
-                return ThresholdSettings("probability", float(rest or 0.5), dark=dark)
-            case _:
-                return ThresholdSettings("manual", float(text), dark=dark)
-    except ValueError:
-        raise typer.BadParameter(
-            f"A threshold is otsu, multi-otsu[:CLASSES:BOUNDARY], probability[:P] or a number, got {text!r}."
-        ) from None
-
-
-def _edges(text: str) -> tuple[float, ...] | None:
-    """One edge or three, written as ``2.3`` or ``2.3,2.3,5``."""
-    from regolith_studio.readers.units import MAX_VOXEL, MIN_VOXEL
-
-    if not text:
-        return None
-    try:
-        edges = tuple(float(part) for part in text.split(","))
-    except ValueError:
-        edges = ()
-    if len(edges) not in (1, 3) or not all(MIN_VOXEL <= edge <= MAX_VOXEL for edge in edges):
-        raise typer.BadParameter(
-            f"A voxel size is a number from {MIN_VOXEL:g} to {MAX_VOXEL:g} or three as X,Y,Z, got {text!r}."
-        )
-    return edges * 3 if len(edges) == 1 else edges
-
-
-def _raw_layout(shape: str, dtype: str, byte_order: str, offset: int) -> "RawLayout | None":
-    from regolith_studio.readers.volumes.header import RawLayout
-
-    if not shape:
-        return None
-    try:
-        nx, ny, nz = (int(part) for part in shape.split(","))
-    except ValueError:
-        raise typer.BadParameter(f"Write the shape of a raw file as NX,NY,NZ, got {shape!r}.") from None
-    return RawLayout((nx, ny, nz), dtype, byte_order, offset)
 
 
 def _heights(text: str) -> tuple[float, ...]:
@@ -314,8 +44,38 @@ def _print_counts(
         print_table(table)
 
 
+def _settings_of_scans(
+    scans: Sequence[Path],
+    contents: VolumeOptions,
+    grains: GrainOptions,
+    recipe: Path | None,
+    table: Path | None,
+) -> "list[tuple[VolumeInput, GrainSettings]]":
+    """Each scan with the name of its group and its settings: those of all, and of its row in the table."""
+    from regolith_studio.cli.scan_table import read_scan_table, rows_of_scans
+    from regolith_studio.session.batch.scan_groups import group_names
+
+    with usage_errors():
+        names = group_names(scans)
+    rows = rows_of_scans(table, read_scan_table(table), scans, names) if table else {}
+    found = []
+    for scan, name in zip(scans, names, strict=True):
+        row = rows.get(scan)
+        with row.errors_named() if row else usage_errors():
+            here, how = (row.applied_to(contents), row.applied_to(grains)) if row else (contents, grains)
+            settings = _settings(how, (row.recipe if row else None) or recipe)
+            found.append((replace(here.of(scan), group=name), settings))
+    return found
+
+
+def _settings(grains: GrainOptions, recipe: Path | None) -> "GrainSettings":
+    from regolith_studio.jobs.extraction_settings import read_grain_settings
+
+    return read_grain_settings(recipe) if recipe else grains.recipe
+
+
 def _extract_groups(
-    scans: "list[VolumeInput]", settings: "GrainSettings", output: Path, jobs: int, as_json: bool
+    scans: "Sequence[tuple[VolumeInput, GrainSettings]]", output: Path, jobs: int, as_json: bool
 ) -> None:
     """Extract several volumes, each into a folder of its own, and print what became of them.
 
@@ -325,13 +85,10 @@ def _extract_groups(
         If a volume could not be used.
     """
     from regolith_studio.io.tables import json_text
-    from regolith_studio.session.batch.scan_groups import extract_groups, group_names
+    from regolith_studio.session.batch.scan_groups import extract_groups
 
-    with usage_errors():
-        names = group_names([scan.path for scan in scans])
-    named = [replace(scan, group=name) for scan, name in zip(scans, names, strict=True)]
     output.mkdir(parents=True, exist_ok=True)
-    done = run_with_progress(extract_groups(named, settings, output, jobs), logged=True)
+    done = run_with_progress(extract_groups(scans, output, jobs), logged=True)
     print_errors(sentence for _, sentence in done.problems)
     if done.comparison is not None and as_json:
         typer.echo(json_text(done.comparison), nl=False)
@@ -379,6 +136,15 @@ def extract(
         Path | None,
         typer.Option("--recipe", help="Take all settings from an extraction.json instead.", metavar="FILE"),
     ] = None,
+    settings: Annotated[
+        Path | None,
+        typer.Option(
+            "--settings",
+            help="CSV table of settings that differ between several volumes: a column scan and columns named "
+            "as options, such as voxel-size and h-maxima; an empty cell keeps what holds for all.",
+            metavar="TABLE",
+        ),
+    ] = None,
     json: Json = False,
     jobs: Jobs = 1,
     seed: Seed = 0,
@@ -391,7 +157,6 @@ def extract(
     Volumes that an earlier run has finished are not extracted again.
     """
     from regolith_studio.io.atomic import staged_folder
-    from regolith_studio.jobs.extraction_settings import read_grain_settings
     from regolith_studio.jobs.volume_jobs import extract_measured
     from regolith_studio.session.batch.scan_groups import find_scans
     from regolith_studio.session.outputs.particles import ExtractionFolder
@@ -399,25 +164,25 @@ def extract(
     del seed  # taken by every command; nothing here is random
     with usage_errors():
         given = contents.of(volumes[0])
-        settings = read_grain_settings(recipe) if recipe else grains.recipe
+        chosen = _settings(grains, recipe)
         heights = _heights(preview_h)
     scans = find_scans(volumes)
     given = replace(given, path=scans[0])
-    several = list(scans) != volumes or len(scans) > 1
+    several = list(scans) != volumes or len(scans) > 1 or settings is not None
     if several and (heights or labels is not None):
-        raise typer.BadParameter("--preview-h and --labels take one volume at a time.")
+        raise typer.BadParameter("--preview-h and --labels take one volume at a time, without a table.")
     if heights:
-        _print_counts(given, settings, heights, json)
+        _print_counts(given, chosen, heights, json)
         return
     if output is None:
         raise typer.BadParameter("Name a folder to write with -o, or values for --preview-h.")
     if several:
-        _extract_groups([replace(given, path=scan) for scan in scans], settings, output, jobs, json)
+        _extract_groups(_settings_of_scans(scans, contents, grains, recipe, settings), output, jobs, json)
         return
     with staged_folder(output, "extract") as stage:
         folder = ExtractionFolder(stage)
-        done = run_with_progress(extract_measured(given, settings, output.parent, folder.add, jobs, labels))
-        document = folder.finish(given, settings, done)
+        done = run_with_progress(extract_measured(given, chosen, output.parent, folder.add, jobs, labels))
+        document = folder.finish(given, chosen, done)
     if done.facts is not None and done.facts.n_not_finite:
         print_errors(
             [

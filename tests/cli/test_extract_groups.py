@@ -2,6 +2,7 @@
 
 import csv
 import json
+import re
 import shutil
 import signal
 import subprocess
@@ -171,4 +172,69 @@ def test_that_groups_are_not_written_to_a_folder_that_was_removed(
     result = command("extract", scans, "-o", tmp_path / "all", *ASKED)
     assert (result.code, result.out) == (1, "")
     assert result.err == f"The folder {tmp_path / 'all'} was removed while it was written to.\n"
+    assert not (tmp_path / "all").exists()
+
+
+def with_table(scans: Path, *lines: str) -> Path:
+    (scans.parent / "settings.csv").write_text("\n".join((*lines, "")), encoding="utf-8")
+    return scans.parent / "settings.csv"
+
+
+def test_that_a_table_gives_single_scans_settings_of_their_own(command, scans: Path, tmp_path: Path) -> None:
+    table = with_table(scans, "scan,voxel-size,Crop,border", "fine.npy,3,,", "scans/coarse.npy,,:26%,keep")
+    table.write_text(table.read_text().replace(":26%", '":26,:,:"'))
+    output = tmp_path / "all"
+    call = ("extract", scans, "-o", output, *ASKED, "--settings", table)
+    assert command(*call).code == 0
+    radii = {row["group"]: float(row["equivalent_radius [um]"]) for row in rows_of(output / "particles.csv")}
+    assert radii == pytest.approx({"fine": 3 * 6, "coarse": 2 * 8}, rel=0.03)
+    chosen = json.loads((output / "coarse" / "extraction.json").read_text())
+    assert chosen["region"]["crop"] == ":26,:,:"
+    assert chosen["extraction"]["exclude_border"] is False
+    assert "kept from an earlier run: 2" in command(*call).out
+    with_table(scans, "scan,voxel-size", "fine,3", "coarse,2.5")
+    assert "extracted: 1, kept from an earlier run: 1" in command(*call).out
+
+
+def test_that_a_row_may_name_the_recipe_of_a_scan_beside_the_table(
+    command, scans: Path, tmp_path: Path
+) -> None:
+    assert command("extract", scans / "fine.npy", "-o", tmp_path / "a", *ASKED, "--min-voxels", 700).code == 0
+    shutil.copy(tmp_path / "a" / "extraction.json", tmp_path / "strict.json")
+    table = with_table(scans, "scan,recipe", "fine,strict.json")
+    assert command("extract", scans, "-o", tmp_path / "all", *ASKED, "--settings", table).code == 0
+    rows = rows_of(tmp_path / "all" / "particles.csv")
+    assert [row["group"] for row in rows] == ["coarse", "coarse", "fine"]
+
+
+@pytest.mark.parametrize(
+    ("lines", "sentence"),
+    [
+        (("name,unit", "fine,um"), "it has no column “scan”"),
+        (("scan,colour", "fine,red"), "“colour” is no option"),
+        (("scan,jobs", "fine,2"), "“jobs” is no option"),
+        (("scan,unit,unit", "fine,um,um"), "two columns “unit”"),
+        (("scan,unit", "fine,um,3"), "line 2 has more cells"),
+        (("scan,unit", ",um"), "line 2 names no scan"),
+        (("scan,unit", "other,um"), "line 2: “other” names none of the scans"),
+        (("scan,unit", "fine,um", "fine.npy,mm"), "line 3: fine.npy has a row already, line 2"),
+        (("scan,h-maxima", "fine,high"), "line 2: Invalid value for '--h-maxima'"),
+        (("scan,opening", "fine,11"), "line 2: Invalid value for '--opening'"),
+        (("scan,dark", "fine,perhaps"), "line 2: .*“dark” is yes or no, got 'perhaps'"),
+        (("scan,crop", "fine,10-20"), "line 2: .*X0:X1,Y0:Y1,Z0:Z1"),
+        (("scan,threshold", "fine,much"), "line 2: .*A threshold is otsu"),
+        (("scan,recipe,dark", "fine,r.json,yes"), "line 2 has a recipe, which holds all settings"),
+        (("scan,recipe", "fine,none.json"), "none.json"),
+        (("scan,unit", '"fine,um'), "is no table of settings"),
+    ],
+)
+def test_that_a_wrong_table_costs_one_sentence_and_nothing_is_written(
+    lines: tuple[str, ...], sentence: str, command, scans: Path, tmp_path: Path
+) -> None:
+    table = with_table(scans, *lines)
+    result = command("extract", scans, "-o", tmp_path / "all", *ASKED, "--settings", table)
+    assert result.code == 1
+    assert re.search(sentence, result.err), result.err
+    assert len(result.err.splitlines()) == 1
+    assert "made a mistake" not in result.err
     assert not (tmp_path / "all").exists()

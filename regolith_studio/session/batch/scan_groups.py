@@ -86,14 +86,14 @@ def group_names(scans: Sequence[Path]) -> tuple[str, ...]:
 
 
 def extract_groups(
-    scans: Sequence[VolumeInput], settings: GrainSettings, output: Path, workers: int | Executor = 1
+    scans: Sequence[tuple[VolumeInput, GrainSettings]], output: Path, workers: int | Executor = 1
 ) -> Steps:
     """Extract the particles of each scan into a folder of its own; returns :class:`ScanGroups`.
 
     Parameters
     ----------
     scans
-        Each with the name of its group.
+        Each with the name of its group and its settings.
     output
         Folder of the groups and of the tables; exists already.
 
@@ -105,7 +105,7 @@ def extract_groups(
     if (output / LISTED).exists():
         raise FileError(f"The folder {output} holds the particles of one scan; name another for several.")
     extracted, kept, problems = [], [], []
-    for number, given in enumerate(scans, start=1):
+    for number, (given, settings) in enumerate(scans, start=1):
         if not output.is_dir():
             raise FileError(f"The folder {output} was removed while it was written to.")
         try:
@@ -123,7 +123,7 @@ def extract_groups(
     comparison = None
     if extracted or kept:
         comparison = _write_tables(
-            output, [each.group for each in scans if each.group in {*extracted, *kept}]
+            output, [given.group for given, _ in scans if given.group in {*extracted, *kept}]
         )
     return ScanGroups(tuple(extracted), tuple(kept), tuple(problems), comparison)
 
