@@ -4,6 +4,7 @@ import signal
 import sys
 
 from regolith_studio.cli.stop_signals import STOPPED, StopSignals, remove_unfinished
+from regolith_studio.errors import stop_requests
 
 
 def main() -> None:
@@ -26,9 +27,9 @@ def main() -> None:
         print(STOPPED, file=sys.stderr)  # noqa: T201
         code = 130
     signals.ended = True
-    if signals.received:
+    if stop_requests:
         remove_unfinished()
-    sys.exit(128 + signals.received[0] if signals.received else code)
+    sys.exit(128 + stop_requests[0] if stop_requests else code)
 
 
 if __name__ == "__main__":

@@ -15,6 +15,7 @@ A message says what is wrong, with which value, and what was expected. Wrong use
 import errno
 import json
 import re
+import sys
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -45,6 +46,25 @@ class MissingRequirement(RegolithError):
 
 class JobCancelled(RegolithError):
     """The user stopped the work."""
+
+
+stop_requests: list[int] = []
+"""Numbers of the signals that have asked this process to end."""
+
+
+def check_not_stopped() -> None:
+    """Raise a signal's interruption again before a result is kept.
+
+    A library may have swallowed it, or made an ordinary error of it, which then looks like a fault of one
+    particle (matplotlib's ValueError, a callback of Qhull). What tidies up after an interruption may write.
+
+    Raises
+    ------
+    KeyboardInterrupt
+        If a signal has asked this process to end.
+    """
+    if stop_requests and not isinstance(sys.exc_info()[1], KeyboardInterrupt | GeneratorExit):
+        raise KeyboardInterrupt
 
 
 def format_os_error(error: OSError) -> str:

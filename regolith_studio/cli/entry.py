@@ -6,8 +6,8 @@ import sys
 import traceback
 from collections.abc import Sequence
 
-from regolith_studio.cli.stop_signals import STOPPED, StopSignals
-from regolith_studio.errors import JobCancelled, RegolithError, format_os_error
+from regolith_studio.cli.stop_signals import STOPPED
+from regolith_studio.errors import JobCancelled, RegolithError, format_os_error, stop_requests
 from regolith_studio.readers.error_messages import printable
 
 DONE, BAD_INPUT, BAD_USE, INTERRUPTED = 0, 1, 2, 130
@@ -49,7 +49,7 @@ def run(arguments: Sequence[str]) -> int:
 
 def _report(sentence: str, code: int) -> int:
     """Print why a command ended; libraries make other errors (matplotlib's ValueError) of an interruption."""
-    if StopSignals.received:
+    if stop_requests:
         sentence, code = STOPPED, INTERRUPTED
     if os.environ.get("REGOLITH_STUDIO_DEBUG"):
         traceback.print_exc()

@@ -6,7 +6,9 @@ import socket
 import sys
 import threading
 import time
-from typing import Any, ClassVar
+from typing import Any
+
+from regolith_studio.errors import stop_requests
 
 STOP_SECONDS = 1.5
 """Seconds after a signal in which a command may tidy up; then the process ends wherever it is.
@@ -25,13 +27,9 @@ class StopSignals:
 
     Attributes
     ----------
-    received
-        Numbers of the signals of this process.
     ended
         Set by the caller once it has said how the command ended.
     """
-
-    received: ClassVar[list[int]] = []
 
     def __init__(self) -> None:
         self.ended, self._raised = False, False
@@ -51,7 +49,7 @@ class StopSignals:
         signal.set_wakeup_fd(self._writing.fileno(), warn_on_full_buffer=False)
 
     def _stop(self, number: int, _frame: Any) -> None:
-        self.received.append(number)
+        stop_requests.append(number)
         if not (self._raised or self.ended):
             self._raised = True
             raise KeyboardInterrupt
@@ -61,7 +59,7 @@ class StopSignals:
         if isinstance(ignored.exc_value, KeyboardInterrupt) and hasattr(signal, "pthread_kill"):
             self._raised = False
             main = threading.main_thread().ident
-            threading.Timer(0.05, signal.pthread_kill, (main, [*self.received, signal.SIGINT][0])).start()
+            threading.Timer(0.05, signal.pthread_kill, (main, [*stop_requests, signal.SIGINT][0])).start()
         else:
             sys.__unraisablehook__(ignored)
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import typer
 from typer.core import TyperGroup
 
+from regolith_studio.errors import check_not_stopped
 from regolith_studio.readers.error_messages import printable
 
 if TYPE_CHECKING:
@@ -98,6 +99,7 @@ def print_table(table: "Table") -> None:
 def print_errors(sentences: Iterable[str]) -> None:
     """One line each on stderr."""
     for sentence in sentences:
+        check_not_stopped()
         typer.echo(printable(sentence), err=True)
 
 

@@ -21,7 +21,7 @@ from functools import cache
 from pathlib import Path
 from typing import IO
 
-from regolith_studio.errors import FileError, RegolithError, os_error_reason
+from regolith_studio.errors import FileError, RegolithError, check_not_stopped, os_error_reason
 from regolith_studio.io.output_lock import LOCK, NEW, hidden_beside, output_lock, release_all, remove_hidden
 
 CONCURRENT_SYNCS = 16
@@ -54,6 +54,7 @@ def staged_file(path: Path) -> Iterator[IO[bytes]]:
             try:
                 with hidden.open("xb") as stream:
                     yield stream
+                check_not_stopped()
                 hidden.replace(path)
             except BaseException:
                 hidden.unlink(missing_ok=True)
@@ -285,6 +286,7 @@ def _files_in(folder: Path) -> set[str]:
 
 def _replace_listed(stage: Path, folder: Path, listed: str) -> None:
     """Let the files of `stage` take the place of those in `folder` that its list names."""
+    check_not_stopped()
     there = {name for name in _files_in(folder) if not name.startswith(f"{JOURNAL}/")}
     names = [line[66:] for line in os.fsdecode(_read_if_there(folder / listed)).splitlines()]
     earlier = there & {*names, listed}
@@ -376,6 +378,7 @@ def _sync_and_close(handle: int) -> None:
 
 def exchange(fresh: Path, target: Path) -> None:
     """Move a folder to `target` in one step; afterwards `fresh` holds the old content, if there was any."""
+    check_not_stopped()
     if not target.exists():
         os.rename(fresh, target)  # noqa: PTH104
         return

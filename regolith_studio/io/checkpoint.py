@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Self
 
-from regolith_studio.errors import FileError
+from regolith_studio.errors import FileError, check_not_stopped
 
 _APPLICATION_ID = 0x5265676F  # "Rego"; SQLite keeps it in the header of the file
 _SCHEMA = """
@@ -116,6 +116,7 @@ class Checkpoint:
         ValueError
             If a value is not finite.
         """
+        check_not_stopped()
         records = list(records)
         rows = []
         for each in records:

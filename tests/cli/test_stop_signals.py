@@ -1,5 +1,6 @@
 """A command that is told to stop ends within two seconds, whatever it waits for."""
 
+import json
 import os
 import signal
 import subprocess
@@ -216,6 +217,44 @@ def test_that_an_interruption_ends_the_window_whenever_it_comes(moment: str, cod
         [sys.executable, "-c", program], cwd=ROOT, env=environment, capture_output=True, timeout=PATIENCE
     )
     assert (done.returncode, done.stderr) == (code, b"")
+
+
+SWALLOWED = """
+import os, signal, sys
+from regolith_studio import __main__ as program
+from regolith_studio.errors import GeometryError
+from regolith_studio.harmonics import fit_options
+complete = fit_options.FitOptions.fit
+
+def fit(*arguments, **options):
+    try:
+        os.kill(os.getpid(), signal.SIGTERM)
+    except KeyboardInterrupt:
+        raise GeometryError("The surface is flat.") from None
+    return complete(*arguments, **options)
+
+fit_options.FitOptions.fit = fit
+sys.argv = ["regolith-studio", *sys.argv[1:]]
+program.main()
+"""
+
+
+@pytest.mark.skipif(os.name == "nt", reason="signals are a matter of POSIX")
+def test_that_an_interruption_that_a_library_swallows_is_no_failed_particle(
+    grains: Path, tmp_path: Path
+) -> None:
+    recipe = {"inputs": [str(grains)], "method": "quadric", "level": 2, "l_max": 4, "n_facets": 12}
+    (tmp_path / "recipe.json").write_text(json.dumps(recipe | {"outputs": {"fits": True}}))
+    run = [str(tmp_path / "recipe.json"), "-o", str(tmp_path / "out"), "--jobs", "1"]
+    for words in (["fit", str(grains), "-o", str(tmp_path / "fit.json")], ["run", *run]):
+        done = subprocess.run(
+            [sys.executable, "-c", SWALLOWED, *words], cwd=ROOT, capture_output=True, text=True
+        )
+        assert (done.returncode, done.stderr) == (143, "Stopped.\n"), words
+    assert not (tmp_path / "fit.json").exists()
+    again = [sys.executable, "-m", "regolith_studio", "run", *run, "--resume"]
+    assert subprocess.run(again, cwd=ROOT, capture_output=True, text=True).returncode == 0
+    assert not (tmp_path / "out" / "failed.csv").exists()
 
 
 @pytest.mark.skipif(os.name == "nt", reason="signals are a matter of POSIX")
