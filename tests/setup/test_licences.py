@@ -14,7 +14,7 @@ ROOT = Path(__file__).resolve().parents[2]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
 DIRECT = {Requirement(line).name for line in PROJECT["dependencies"]}
 PERMISSIVE = re.compile(r"BSD|MIT|ISC|Apache|PSF|Python Software Foundation|LicenseRef-MPICH")
-SECTION = (ROOT / "docs" / "installing.md").read_text(encoding="utf-8").partition("## Licences")[2]
+PAGE = (ROOT / "docs" / "licences.md").read_text(encoding="utf-8")
 
 
 def closure(names: set[str]) -> set[str]:
@@ -37,7 +37,7 @@ def closure(names: set[str]) -> set[str]:
 
 def table() -> Iterator[tuple[str, str]]:
     """Package and licence of every row of the guide."""
-    for line in SECTION.partition("\n## ")[0].splitlines():
+    for line in PAGE.splitlines():
         if line.startswith("| ") and "---" not in line and "| packages |" not in line:
             licence, packages = (cell.strip() for cell in line.strip("| ").split(" | "))
             yield from ((name, licence) for name in packages.split(", "))
@@ -64,8 +64,8 @@ def test_that_the_guide_names_everything_that_is_brought_along_without_a_permiss
     strict = {name for name, licence in licences.items() if re.search("GPL|MPL|EPL|CDDL", licence)}
     assert strict == {name.lower() for name in COPYLEFT} | {"shiboken6", "certifi", "tqdm"}
     assert licences["shiboken6"] == licence_of("PySide6-Essentials")
-    assert f"certifi is under {licences['certifi']}" in SECTION
-    assert licences["tqdm"] in SECTION
+    assert f"certifi is under {licences['certifi']}" in PAGE
+    assert licences["tqdm"] in PAGE
     assert all(PERMISSIVE.search(licences[name]) for name in licences.keys() - strict)
 
 
