@@ -74,7 +74,7 @@ def judged(mesh: Mesh, seed: int) -> dict[str, Any]:
     body = manifold_of(mesh.moved(shift=-found.centre))
     return {
         "solidity": round(wanted["volume"] / wanted["convex_hull_volume"], 4),
-        "worst_error": max(abs(measured[key] / wanted[key] - 1.0) for key in KEYS),
+        "worst_error": float(max(abs(measured[key] / wanted[key] - 1.0) for key in KEYS)),
         "reason": found.reason,
         "jaccard": round(distance(union, body), 4),
         "jaccard_stated": round(found.jaccard_distance, 4),

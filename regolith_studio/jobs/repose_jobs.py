@@ -10,7 +10,7 @@ from regolith_studio.dem.angle_of_repose import ReposeMeasurement, check_number,
 from regolith_studio.dem.case import PreparedCase, ReposeCase, prepare
 from regolith_studio.dem.engine import Engine, SimulationResult
 from regolith_studio.dem.engine_process import EngineError, run_engine
-from regolith_studio.dem.engines import DEFAULT_ENGINE, engine_named
+from regolith_studio.dem.engines import DEFAULT_ENGINE, ENGINES, engine_named
 from regolith_studio.dem.evaluation.settings import EvaluationSettings, NotAPileError
 from regolith_studio.dem.initial_packing import loose_column
 from regolith_studio.dem.run_io import (
@@ -120,9 +120,10 @@ def check_shapes(prepared: PreparedCase, engine: Engine) -> None:
         If they are compounds and it takes convex particles only.
     """
     if prepared.parts and prepared.case.shapes == "polyhedra" and not engine.capabilities.compounds:
+        others = [each.label for each in ENGINES.values() if each.capabilities.compounds]
         raise InputError(
             f"{engine.label} simulates convex particles, and {prepared.dataset_name} holds compounds of "
-            "convex parts; take the engine MuJoCo, or coarsen by another method."
+            f"convex parts; take the engine {' or '.join(others)}, or coarsen by another method."
         )
 
 

@@ -6820,6 +6820,10 @@
         <translation>starre Gruppen überlappender Kugeln (sonst 12) mit Volumen, Masse und Trägheit der Polyeder</translation>
     </message>
     <message>
+        <source>rigid clumps of spheres that fill the union of the parts, with its mass and inertia</source>
+        <translation>starre Verbünde von Kugeln, die die Vereinigung der Teile füllen, mit deren Masse und Trägheit</translation>
+    </message>
+    <message>
         <source>rims of holes</source>
         <translation>Ränder von Löchern</translation>
     </message>

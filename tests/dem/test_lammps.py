@@ -39,14 +39,14 @@ SMALL = ReposeCase(LiftingCylinderTest(mass=0.003, lift_speed=0.3), n_particles=
 
 
 def test_that_a_clump_has_the_polyhedron_s_volume_and_carries_its_inertia(boxes: Dataset) -> None:
-    brick = clump_shape(boxes.representatives[1].shape.vertices, 8)
+    brick = clump_shape((boxes.representatives[1].shape.vertices,), 8)
     half = np.array([3, 2, 1.5]) / 9 ** (1 / 3) / 2
     assert ((np.abs(brick.spheres[:, :3]) + brick.spheres[:, 3:]) <= half + 0.2).all()
     squares = (2 * half) ** 2
     assert brick.inertia == pytest.approx(np.diag((squares.sum() - squares) / 12), abs=1e-9)
     assert brick.errors.volume == pytest.approx(0.0, abs=1e-3)
     assert brick.errors.jaccard < 0.25
-    cube = clump_shape(boxes.representatives[0].shape.vertices, 1)
+    cube = clump_shape((boxes.representatives[0].shape.vertices,), 1)
     assert cube.spheres[0] == pytest.approx([0, 0, 0, (3 / (4 * np.pi)) ** (1 / 3)], abs=5e-3)
 
 

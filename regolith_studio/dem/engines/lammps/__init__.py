@@ -20,6 +20,7 @@ REPRESENTS = EngineCapabilities(
     cohesion=N_("Johnson, Kendall and Roberts between spheres"),
     rolling=N_("spring, dashpot and slider (where resistance is above 0)"),
     coarse_graining=N_("by size; scaling the surface energy keeps cohesion over weight"),
+    compounds=N_("rigid clumps of spheres that fill the union of the parts, with its mass and inertia"),
     missing=N_("edges, corners and flat faces; friction of rest apart from friction of motion"),
 )
 

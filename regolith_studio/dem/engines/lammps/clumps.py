@@ -1,5 +1,6 @@
 """Rigid clumps of spheres with the mass and inertia of the polyhedra."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,6 +16,7 @@ from regolith_studio.dataset.multisphere import (
 from regolith_studio.dem.case import PreparedCase
 from regolith_studio.dem.initial_packing import loose_column
 from regolith_studio.geometry.arrays import FloatArray, IntArray
+from regolith_studio.geometry.convex_compound import ConvexCompound, Polyhedron
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.half_spaces import HalfSpaces
 
@@ -34,9 +36,9 @@ class ClumpShape:
     spheres
         Rows x, y, z, r about the centroid, shape (k, 4).
     inertia
-        Of the polyhedron at density 1 about its centroid, shape (3, 3).
+        Of the shape at density 1 about its centroid, shape (3, 3).
     errors
-        Of the union of the spheres; mass, centre and inertia are the polyhedron's all the same.
+        Of the union of the spheres; mass, centre and inertia are the shape's all the same.
     """
 
     spheres: FloatArray
@@ -102,7 +104,7 @@ def clumps_of(prepared: PreparedCase, count: int, max_error: float = 0.0) -> Clu
     column = loose_column(prepared)
     ball = prepared.case.shapes == "spheres"
     shapes = tuple(
-        _ball() if ball else clump_shape(vertices, count, max_error) for vertices in prepared.shapes
+        _ball() if ball else clump_shape(parts, count, max_error) for parts in prepared.part_vertices
     )
     return Clumps(
         shapes,
@@ -113,13 +115,24 @@ def clumps_of(prepared: PreparedCase, count: int, max_error: float = 0.0) -> Clu
     )
 
 
-def clump_shape(vertices: FloatArray, count: int, max_error: float = 0.0) -> ClumpShape:
-    """A convex unit-volume shape as spheres: `count`, or as many as a Jaccard distance above 0 needs."""
-    hull = ConvexHull(vertices)
-    planes = np.unique(np.round(hull.equations, 10), axis=0)
-    solid = ConvexPolyhedron.from_half_spaces(HalfSpaces(planes[:, :3], -planes[:, 3]))
+def clump_shape(parts: Sequence[FloatArray], count: int, max_error: float = 0.0) -> ClumpShape:
+    """A unit-volume shape as spheres: `count`, or as many as a Jaccard distance above 0 needs.
+
+    Parameters
+    ----------
+    parts
+        Vertices of its convex parts, each of shape (k, 3); spheres fill their union.
+    """
+    places = np.array([part.mean(axis=0) if len(parts) > 1 else np.zeros(3) for part in parts])
+    solids = tuple(_solid(part - place) for part, place in zip(parts, places, strict=True))
+    solid: Polyhedron = ConvexCompound(solids, places) if len(parts) > 1 else solids[0]
     spheres = fit_spheres_within(solid, max_error) if max_error else fit_spheres(solid, count)
     return ClumpShape(spheres, np.asarray(solid.mesh.inertia), sphere_fit_errors(solid, spheres))
+
+
+def _solid(vertices: FloatArray) -> ConvexPolyhedron:
+    planes = np.unique(np.round(ConvexHull(vertices).equations, 10), axis=0)
+    return ConvexPolyhedron.from_half_spaces(HalfSpaces(planes[:, :3], -planes[:, 3]))
 
 
 def _ball() -> ClumpShape:
