@@ -7,9 +7,10 @@ import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QGuiApplication
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QFileDialog, QMessageBox, QPushButton, QWidget
+from PySide6.QtWidgets import QApplication, QFileDialog, QMessageBox, QPushButton, QWidget
 
 from regolith_studio.dataset.build import build_dataset
+from regolith_studio.dataset.export import ExportResult
 from regolith_studio.dataset.exporters import EXPORTERS
 from regolith_studio.dataset.folder_io import dataset_hash, read_dataset, write_dataset
 from regolith_studio.dataset.validation import validate_dataset
@@ -159,6 +160,14 @@ def test_that_a_format_of_convex_particles_says_why_it_does_not_take_compounds(p
     convex = build_dataset([entry(1)], name="convex")
     page._take_dataset(write_dataset(tmp_path / "other", convex), convex)
     assert page.targets.export.isEnabled()
+
+
+def test_that_the_rows_of_many_exports_are_as_high_as_their_buttons(page, tmp_path) -> None:
+    page.exports.show_exports([ExportResult(key, tmp_path, (), "load it") for key in EXPORTERS])
+    page._lower.setCurrentIndex(1)
+    QApplication.processEvents()
+    button = page.findChild(QPushButton, f"dataset_copy_{list(EXPORTERS)[-1]}")
+    assert button.height() >= button.minimumSizeHint().height()
 
 
 def test_that_settings_reach_the_exports(chosen, tmp_path, wait) -> None:

@@ -34,7 +34,7 @@ from regolith_studio.jobs.representatives_jobs import (
 from regolith_studio.messages import N_
 from regolith_studio.session.recipe import DatasetRequest
 from regolith_studio.ui.dialogs.folder import FolderDialog
-from regolith_studio.ui.layout import equal_parts, scrolled_column, side_by_side, stacked, tabs
+from regolith_studio.ui.layout import equal_parts, scrolled, scrolled_column, side_by_side, stacked, tabs
 from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.pages.dataset.controls import (
     DatasetControls,
@@ -385,7 +385,7 @@ class DatasetPage(PageWidget):
         self._exports.append(one)
         self.exports.show_exports(self._exports)
         self._show_result()
-        self._lower.setCurrentWidget(self.exports)
+        self._lower.setCurrentIndex(1)
 
     def _take_exports(self, done: Sequence[ExportResult]) -> None:
         self._exports = list(done)
@@ -442,7 +442,7 @@ class DatasetPage(PageWidget):
         steps.addWidget(self.targets.foot)
         upper = equal_parts(Qt.Orientation.Horizontal, (self.quality, self.distribution))
         upper.setObjectName("dataset_upper")
-        lower = [(self.losses, tr("Limits of the formats")), (self.exports, tr("Exported"))]
+        lower = [(self.losses, tr("Limits of the formats")), (scrolled(self.exports), tr("Exported"))]
         shapes = [(self.gallery, tr("Representatives")), (self.library, tr("Library"))]
         self._lower, self._shapes = tabs("dataset_lower", lower), tabs("dataset_shapes", shapes)
         self._shapes.setMinimumHeight(CELL.height() + 4 * self.fontMetrics().height())
