@@ -140,7 +140,7 @@ def settings_of(method: str, settings: Any = None) -> Any:
     Raises
     ------
     InputError
-        If a name is no setting of the method or a value is out of its range.
+        If a name is no setting of the method, or a value is of another kind or out of its range.
     """
     kind = _method(method).Settings
     if isinstance(settings, kind):
@@ -148,10 +148,13 @@ def settings_of(method: str, settings: Any = None) -> Any:
     changes = dict(settings) if isinstance(settings, Mapping) else {}
     if settings is not None and not isinstance(settings, Mapping):
         raise InputError(f"The settings of {method} must be {kind.__name__}, got {type(settings).__name__}.")
-    known = [each.name for each in dataclasses.fields(kind)]
-    for name in changes:
+    known = {each.name: each.default for each in dataclasses.fields(kind)}
+    for name, value in changes.items():
         if name not in known:
             raise InputError(f"The method {method} has no setting {name!r}; it has {', '.join(known)}.")
+        if isinstance(value, str) != isinstance(known[name], str):
+            wanted = "a word" if isinstance(known[name], str) else "a number"
+            raise InputError(f"The setting {name} of the method {method} must be {wanted}, got {value!r}.")
     return kind(**changes)
 
 

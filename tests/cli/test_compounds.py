@@ -1,0 +1,78 @@
+"""Requests for compounds that cannot be met, each answered in one sentence."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.io.stl import stl_bytes
+from tests.coarsening.compound.unions import dumbbell
+
+COMPOUND = ("--method", "compound", "--target", "particle")
+
+
+@pytest.fixture(scope="module")
+def waist(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("meshes") / "waist.stl"
+    path.write_bytes(stl_bytes(dumbbell().triangles, "test"))
+    return path
+
+
+@pytest.mark.parametrize(
+    ("wrong", "sentence"),
+    [
+        (("--set", "parts=1"), "The number of parts must be a whole number from 2 to 8, got 1."),
+        (("--set", "parts=9"), "The number of parts must be a whole number from 2 to 8, got 9."),
+        (("--set", "parts=2.5"), "The number of parts must be a whole number from 2 to 8, got 2.5."),
+        (("--set", "parts=many"), "parts of the method compound must be a number, got 'many'."),
+        (("--set", "joint=glue"), "The parts either overlap or touch, got 'glue'."),
+        (("--set", "joint=1"), "joint of the method compound must be a word, got 1."),
+        (("--set", "level=slow"), "The level must be one of fast, best, got 'slow'."),
+        (("--facets", "4"), "greater than or equal to 5"),
+        (("--facets", "201"), "less than or equal to 200"),
+    ],
+)
+def test_that_a_number_of_parts_or_facets_out_of_range_is_one_sentence(
+    command, waist: Path, tmp_path: Path, wrong: tuple[str, ...], sentence: str
+) -> None:
+    result = command("coarsen", waist, "-o", tmp_path / "out", *COMPOUND, *wrong)
+    assert result.code == 2
+    assert sentence in result.err
+    assert "Traceback" not in result.err
+    assert not (tmp_path / "out").exists()
+
+
+def test_that_open_and_self_crossing_meshes_are_refused_in_one_sentence_each(command, tmp_path: Path) -> None:
+    mesh = dumbbell()
+    (tmp_path / "open.stl").write_bytes(stl_bytes(mesh.triangles[40:], "test"))
+    twice = np.vstack([mesh.vertices, mesh.moved(shift=(20.0, 0.0, 0.0)).vertices])
+    crossing = Mesh(twice, np.vstack([mesh.faces, mesh.faces + len(mesh.vertices)]))
+    (tmp_path / "crossing.stl").write_bytes(stl_bytes(crossing.triangles, "test"))
+    result = command(
+        "coarsen",
+        tmp_path / "open.stl",
+        tmp_path / "crossing.stl",
+        "-o",
+        tmp_path / "out",
+        "--no-repair",
+        *COMPOUND,
+    )
+    assert result.code == 1
+    lines = {line.split(":")[0]: line for line in result.err.splitlines()}
+    assert "The mesh is not closed" in lines["open"]
+    assert "The mesh intersects itself" in lines["crossing"]
+    assert not list((tmp_path / "out").glob("*.stl"))
+
+
+@pytest.mark.slow
+def test_that_a_request_that_needs_more_says_what_is_missed_and_what_may_help(
+    command, waist: Path, tmp_path: Path
+) -> None:
+    result = command("coarsen", waist, "-o", tmp_path / "out", *COMPOUND, "--facets", 10)
+    assert result.code == 0
+    (line,) = [each for each in result.err.splitlines() if each.startswith("waist:")]
+    assert (
+        "No compound of 2 parts with 10 facets was found that meets all descriptors; this one misses" in line
+    )
+    assert line.endswith("More parts or facets, or a weight of 0 for a descriptor, may help.")
