@@ -5,10 +5,15 @@ import pytest
 from scipy.special import sph_harm_y
 
 from regolith_studio.coarsening.coarsen import coarsen
+from regolith_studio.coarsening.core.box_search import FINE_ANGLE
+from regolith_studio.coarsening.exact.constraint_selection import ConstraintRequest
+from regolith_studio.coarsening.exact.constraints import measure
 from regolith_studio.coarsening.exact.initial_planes import round_planes
+from regolith_studio.coarsening.exact.roundest import turned_to_particle
 from regolith_studio.coarsening.lower_bounds import max_sphericity
 from regolith_studio.coarsening.polyhedra import polyhedron_of
 from regolith_studio.coarsening.target import Target
+from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.descriptors.describe import describe
 from regolith_studio.geometry.half_spaces import HalfSpaces
 from regolith_studio.geometry.mesh import Mesh
@@ -61,3 +66,28 @@ def test_that_a_sphericity_of_98_per_cent_of_the_bound_is_met_from_every_seed() 
         found = coarsen(target, 20, seed=seed)
         assert found.reason is None
         assert found.n_facets == 20
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("share_of_bound", [1.005, 1.04])
+def test_that_the_least_miss_of_a_sphericity_out_of_reach_does_not_hang_on_the_seed(
+    share_of_bound: float,
+) -> None:
+    target = Target.of(potato(4007, share_of_bound * max_sphericity(20)))
+    missed = [coarsen(target, 20, seed=seed).errors["sphericity"] for seed in range(5)]
+    assert max(missed) - min(missed) < 1e-3
+    assert min(missed) >= 1.0 - 1.0 / share_of_bound - 1e-6
+
+
+def test_that_a_polyhedron_is_turned_to_the_particle_and_keeps_its_descriptors() -> None:
+    ball = icosphere(3)
+    target = Target.of(Mesh(ball.vertices * (1.4, 1.2, 1.0), ball.faces))
+    turn = np.linalg.qr(np.random.default_rng(6).normal(size=(3, 3)))[0]
+    normals, offsets = round_planes(target, 14, np.random.default_rng(1), around_hull=True)
+    moved = normals @ turn, offsets + normals @ turn @ (0.1, -0.05, 0.02)
+    problem = ConstraintRequest.of(target, LossWeights.from_preset("all")).problem(target.rays, FINE_ANGLE)
+    turned = HalfSpaces(*turned_to_particle(target, measure(problem, *moved)))
+    before, after = (describe(polyhedron_of(each)) for each in (HalfSpaces(*moved), turned))
+    assert dict(after) == pytest.approx(dict(before), rel=1e-6)
+    back, aside_too = (target.jaccard_distance(HalfSpaces(*each)) for each in ((normals, offsets), moved))
+    assert target.jaccard_distance(turned) <= back + 0.02 < aside_too

@@ -89,10 +89,10 @@ class ConstraintRequest:
         """Descriptors that are constraints."""
         return tuple(key for key, asked in zip(CONSTRAINT_KEYS, self.asked, strict=True) if asked)
 
-    def nearly_met_by(self, found: Mapping[str, float]) -> "ConstraintRequest":
-        """The same constraints, but at the value of `found` where that is more than :data:`NEARLY` away."""
+    def nearly_met_by(self, found: Mapping[str, float], nearly: float) -> "ConstraintRequest":
+        """The same constraints, but at the value of `found` where its relative error is above `nearly`."""
         values = tuple(
-            value if abs(found[key] / value - 1.0) <= NEARLY else found[key]
+            value if abs(found[key] / value - 1.0) <= nearly else found[key]
             for key, value in zip(CONSTRAINT_KEYS, self.values, strict=True)
         )
         return replace(self, values=values)

@@ -11,6 +11,7 @@ from regolith_studio.coarsening.core.box_search import DENSE_ANGLE, FINE_ANGLE, 
 from regolith_studio.coarsening.exact.constraint_selection import (
     CONSTRAINT_KEYS,
     EXACT,
+    NEARLY,
     ConstraintRequest,
     missed_constraints,
     own_planes,
@@ -24,9 +25,10 @@ from regolith_studio.coarsening.exact.facet_growth import (
     numbers_to_grow_from,
     with_waiting,
 )
-from regolith_studio.coarsening.exact.initial_planes import round_planes, start_planes
+from regolith_studio.coarsening.exact.initial_planes import start_planes
 from regolith_studio.coarsening.exact.record import Record
-from regolith_studio.coarsening.exact.relaxation import relax, relax_round, with_facets_back
+from regolith_studio.coarsening.exact.relaxation import relax, with_facets_back
+from regolith_studio.coarsening.exact.roundest import solve_round
 from regolith_studio.coarsening.exact.single_start import (
     Candidate,
     descend_further,
@@ -69,10 +71,8 @@ RELAXATION_FACETS = (12, 20)
 """Facets to start from, besides all, where constraints cannot be met together."""
 RELAXATION_STARTS = 4
 """Starts with all facets there, so that what is reached hangs little on one of them."""
-ROUND_STARTS = 2
-"""Starts from which polyhedra as round as can be are sought where the particle is rounder than the first."""
-TOO_ROUND = 1e-2
-"""Where more is missed after as many starts, no further round start is tried either."""
+ROUNDER_STARTS = 2
+"""Starts that are made rounder where the particle is rounder than what they lead to."""
 SIZED = np.arange(5) == VOLUME
 """The volume is held while the sphericity is sought, asked for or not: less surface would shrink the body."""
 OUT_OF_REACH = 4e-3
@@ -127,7 +127,7 @@ class Search:
         self._round_asked = bool(request.asked[SPHERICITY])
         wanted = target.descriptors["sphericity"]
         self._hopeless = self._round_asked and sphericity_reason(wanted, n_facets) is not None
-        self._most = [ROUND_STARTS if self._hopeless else each.starts + retries for each in levels]
+        self._most = [1 if self._hopeless else each.starts + retries for each in levels]
         self._total = sum(self._most)
         self._numbers = (
             (n_facets,) if self._hopeless else numbers_to_grow_from(target, n_facets, self._round_asked)
@@ -136,6 +136,7 @@ class Search:
         self._planes: tuple[FloatArray, FloatArray]
         self._misses: list[float] = []
         self._confirmed: Candidate | None = None
+        self._roundest: tuple[tuple[float, float], Candidate | None] = (np.inf, np.inf), None
         self._tried = self._tried_before = 0
         self._in_box = False
 
@@ -175,14 +176,14 @@ class Search:
             if self._in_box or not self._whole:
                 yield from self._record.record_candidates(self._tried, self._from_box())
                 self._in_box = self._record.met
-            if self._round_asked and not self._record.met and self._tried <= ROUND_STARTS:
-                yield from self._as_round_as_can_be()
-            if self._misses and not self._record.met and not self._too_round():
-                yield from self._from_round_starts()
+            if self._round_asked and not self._record.met and self._tried <= ROUNDER_STARTS:
+                yield from self._made_rounder()
             if self._record.best is None:
                 yield from self._record.record_candidates(self._tried, self._all_at_once())
             if self._good_enough() or self._out_of_reach():
                 break
+        if (self._misses or self._hopeless) and not self._record.met:
+            yield from self._as_round_as_can_be()
 
     def _from_fewer(self, fewer: HalfSpaces) -> Iterator[MethodStep]:
         """A step for each better polyhedron that is cut out of one with fewer facets."""
@@ -233,7 +234,7 @@ class Search:
             solid, found = self._itself, describe(self._itself)
             reason: str | None = own_reason(solid.n_facets, self._n_facets)
         else:
-            outcome = self._without_slivers() or self._record.result or self._found()
+            outcome = self._without_slivers() or self._least_miss or self._record.result or self._found()
             outcome = with_facets_back(
                 self._target, self._checks, self._judge, self._kept(outcome), self._n_facets
             )
@@ -286,10 +287,13 @@ class Search:
         """One that misses a constraint, the others confirmed by public descriptors, where that can be."""
         if outcome.exact:
             return outcome
-        request = self._request.nearly_met_by(outcome.descriptors)
-        problems = (request.problem(self._target.rays, angle) for angle in CHECK_ANGLES)
-        found = confirmed(request, tuple(problems), outcome.without_redundant())
-        return replace(found, worst=outcome.worst) if found.exact else outcome
+        for nearly in (NEARLY, EXACT):
+            request = self._request.nearly_met_by(outcome.descriptors, nearly)
+            problems = (request.problem(self._target.rays, angle) for angle in CHECK_ANGLES)
+            found = confirmed(request, tuple(problems), outcome.without_redundant())
+            if found.exact:
+                return replace(found, worst=outcome.worst)
+        return outcome
 
     @cached_property
     def _itself(self) -> ConvexPolyhedron | None:
@@ -323,20 +327,23 @@ class Search:
                 self._target, problems, self._n_facets, self._tried - 1, self._rng, self._descent_steps
             )
 
-    def _as_round_as_can_be(self) -> Iterator[MethodStep]:
+    def _made_rounder(self) -> Iterator[MethodStep]:
         """The way to the sphericity from below; it is noted by how much it is missed."""
         rounder = list(self._relax(self._planes, only_rounder=True))
         yield from self._record.record_candidates(self._tried, rounder)
         self._misses += [rounder[-1].worst] if rounder else []
 
-    def _from_round_starts(self) -> Iterator[MethodStep]:
-        """Starts that are nearly as round as can be, until one leads to all constraints."""
-        for around_hull in (False, True):
-            if not self._record.met:
-                planes = round_planes(self._target, self._n_facets, self._rng, around_hull)
-                steps = self._level.bound_steps
-                found = relax_round(self._target, self._full, self._rest, planes, steps)
-                yield from self._record.record_candidates(self._tried, found)
+    def _as_round_as_can_be(self) -> Iterator[MethodStep]:
+        """A step for each better polyhedron on the way to the roundest, which is kept in mind."""
+        best, steps = self._record.best, self._level.bound_steps
+        problems = self._full, self._rest
+        for found in solve_round(self._target, problems, best, self._n_facets, self._rng, steps):
+            rank = found.worst, self._judge.value(found.normals, found.offsets)
+            if rank <= self._roundest[0]:
+                self._roundest = rank, found
+            yield from self._record.record_candidates(self._tried, [found])
+        if self._record.met:
+            self._confirm()
 
     def _relax(
         self, planes: tuple[FloatArray, FloatArray], only_rounder: bool = False
@@ -383,10 +390,13 @@ class Search:
         enough = self._hopeless or self._tried >= len(FEW_FACETS)
         return enough and sum(self._misses) > OUT_OF_REACH and not nearly_met
 
-    def _too_round(self) -> bool:
-        """Whether round starts have missed the sphericity by too much."""
-        best = self._record.best
-        return self._tried > ROUND_STARTS and best is not None and best.worst > TOO_ROUND
+    @property
+    def _least_miss(self) -> Candidate | None:
+        """The roundest polyhedron, where the sphericity alone is missed and no other start came nearer."""
+        best, (_, roundest) = self._record.best, self._roundest
+        if best is None or best.exact or roundest is None or roundest.worst > best.worst:
+            return None
+        return roundest
 
     @property
     def _whole(self) -> bool:

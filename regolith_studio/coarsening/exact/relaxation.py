@@ -85,7 +85,7 @@ def relax(
         Whether to do nothing where a rougher polyhedron is wanted.
     """
     rest, full = (each._replace(sample_angle=FINE_ANGLE) for each in (rest, full))
-    point = _measured_and_projected(rest, *planes)
+    point = measured_and_projected(rest, *planes)
     apart = 0.0
     if point.worst > TOLERANCE:
         nearest = None if only_rounder else relax_in_order(rest, planes)
@@ -96,23 +96,6 @@ def relax(
         full = full._replace(wanted=rest.wanted, asked=rest.asked | (np.arange(5) == SPHERICITY))
     for found in nearer_sphericity(target, full, rest, point, bound_steps, only_rounder):
         yield replace(found, worst=max(found.worst, apart))
-
-
-def relax_round(
-    target: Target,
-    full: Problem,
-    rest: Problem,
-    planes: tuple[FloatArray, FloatArray],
-    bound_steps: int,
-) -> Iterator[Candidate]:
-    """As :func:`relax` from planes that are round already: they may be rounder than what is wanted.
-
-    Nothing comes where the other constraints are not met together.
-    """
-    rest, full = (each._replace(sample_angle=FINE_ANGLE) for each in (rest, full))
-    point = _measured_and_projected(rest, *planes)
-    if point.worst <= TOLERANCE:
-        yield from nearer_sphericity(target, full, rest, point, bound_steps, only_rounder=False)
 
 
 def nearer_sphericity(
@@ -147,7 +130,7 @@ def from_beyond(
     target: Target, full: Problem, beyond: ConstrainedPoint, bound_steps: int
 ) -> Iterator[Candidate]:
     """From a polyhedron that went past the wanted sphericity back to it."""
-    point = _measured_and_projected(full, beyond.normals, beyond.offsets)
+    point = measured_and_projected(full, beyond.normals, beyond.offsets)
     yield from descend_from(target, full, point, bound_steps, 0)
 
 
@@ -222,7 +205,7 @@ def sphericity_residual(problem: Problem, point: ConstrainedPoint) -> float:
     return log_sphericity(volume, surface) - float(problem.wanted[SPHERICITY])
 
 
-def _measured_and_projected(problem: Problem, normals: FloatArray, offsets: FloatArray) -> ConstrainedPoint:
+def measured_and_projected(problem: Problem, normals: FloatArray, offsets: FloatArray) -> ConstrainedPoint:
     point = measure(problem, normals, offsets)
     return project_and_verify(problem, point, first_metric(problem, point), PROJECTION_STEPS)
 
@@ -269,7 +252,7 @@ def towards(
         wanted = problem.wanted.copy()
         wanted[key] = value
         tried = problem._replace(asked=asked, wanted=wanted)
-        then = _measured_and_projected(tried, best.normals, best.offsets)
+        then = measured_and_projected(tried, best.normals, best.offsets)
         if then.worst < TOLERANCE:
             held, best, now = tried, then, value
             if value == goal:
