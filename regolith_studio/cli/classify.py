@@ -66,6 +66,12 @@ def train(
     planar: Annotated[
         bool, typer.Option("--planar", help="Filter within slices along z only (2-D features).")
     ] = False,
+    hessian: Annotated[
+        bool,
+        typer.Option(
+            "--hessian/--no-hessian", help="Take the eigenvalues of the second derivatives as features."
+        ),
+    ] = True,
     json: Json = False,
     seed: Seed = 0,
 ) -> None:
@@ -79,7 +85,7 @@ def train(
 
     with usage_errors():
         given = contents.of(scan)
-        features = FeatureSettings(_numbers(sigmas, "--sigmas"), planar)
+        features = FeatureSettings(_numbers(sigmas, "--sigmas"), planar, hessian)
         settings = ClassifierSettings(features, model, seed=seed)  # type: ignore[arg-type]  # checked there
         classes = _classes(grain)
     edges = tuple(np.ravel(np.asarray(given.opened().voxel_size, dtype=float)).tolist())

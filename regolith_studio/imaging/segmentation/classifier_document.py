@@ -60,8 +60,9 @@ def training_from(document: Mapping[str, Any], name: str) -> TrainingSet:
         raise FileError(f"{name} is no classifier: it does not say {FORMAT!r}.")
     try:
         given = dict(document["settings"])
-        sigmas = tuple(float(each) for each in given["features"]["sigmas"])
-        features = FeatureSettings(sigmas, bool(given.pop("features")["planar"]))
+        seen = given.pop("features")
+        sigmas = tuple(float(each) for each in seen["sigmas"])
+        features = FeatureSettings(sigmas, bool(seen["planar"]), bool(seen["hessian"]))
         settings = ClassifierSettings(features, **given)
         classes = tuple(PixelClass(str(c["name"]), bool(c["is_grain"])) for c in document["classes"])
         rows = np.array(document["voxels"], dtype=np.float64)

@@ -78,7 +78,7 @@ class ClassifierSettings:
     features: FeatureSettings = field(default_factory=FeatureSettings)
     kind: ClassifierKind = "network"
     hidden: int = 32
-    regularisation: float = 3.0
+    regularisation: float = 10.0
     seed: int = 0
 
     def __post_init__(self) -> None:

@@ -1,4 +1,4 @@
-"""What a pixel classifier sees of a voxel: Gaussians of several widths, their differences, and gradients.
+"""What a pixel classifier sees of a voxel: Gaussians of several widths, their differences and derivatives.
 
 A Gaussian along one axis of a block is a product with a banded matrix. Blocks whose margins are
 :attr:`FeatureSettings.margin` voxels therefore give what the whole volume gives, thin slices cost little more
@@ -20,6 +20,11 @@ from regolith_studio.imaging.volume import Volume
 from regolith_studio.imaging.volume_slabs import SliceSource, slab_ranges, thick_slabs
 
 FloatBlock = NDArray[np.float32]
+_Orders = tuple[int, int, int]
+_FIRST: tuple[_Orders, ...] = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
+_PURE: tuple[_Orders, ...] = ((2, 0, 0), (0, 2, 0), (0, 0, 2))
+_MIXED: tuple[_Orders, ...] = ((1, 1, 0), (1, 0, 1), (0, 1, 1))
+"""Orders of derivatives along x, y and z."""
 
 _TRUNCATE = 3.0
 """Standard deviations after which a Gaussian ends."""
@@ -37,10 +42,14 @@ class FeatureSettings:
         Standard deviations of the Gaussians in voxels, ascending.
     planar
         Filter within slices along z only (2-D), in place of all directions (3-D).
+    hessian
+        Whether the eigenvalues of the second derivatives are features: curved and flat surfaces, necks and
+        thin plates differ in them.
     """
 
     sigmas: tuple[float, ...] = (1.0, 2.0, 4.0, 8.0)
     planar: bool = False
+    hessian: bool = True
 
     def __post_init__(self) -> None:
         ascending = all(a < b for a, b in pairwise(self.sigmas))
@@ -59,10 +68,12 @@ class FeatureSettings:
     def names(self) -> tuple[str, ...]:
         """Of the features, in their order."""
         pairs = pairwise(self.sigmas)
+        eigenvalues = range(1, 3 if self.planar else 4) if self.hessian else ()
         return (
             f"gaussian {self.sigmas[-1]:g}",
             *(f"gaussian {a:g} - gaussian {b:g}" for a, b in pairs),
             *(f"gradient magnitude {each:g}" for each in self.sigmas),
+            *(f"hessian eigenvalue {k} {each:g}" for each in self.sigmas for k in eigenvalues),
         )
 
 
@@ -93,18 +104,21 @@ def block_features(
     numpy.ndarray
         Shape (nx, ny, nz, n_features).
     """
-    smooth, gradients = [], []
+    smooth, gradients, curvatures = [], [], []
     for sigma in settings.sigmas:
         part = grown(box, _reach(sigma), outer)
         cut = tuple(slice(a.start - b.start, a.stop - b.start) for a, b in zip(part, outer, strict=True))
         single = np.array(values[cut].T, dtype=np.float32, order="C")
         if values.dtype.kind == "f":
             np.nan_to_num(single, copy=False, nan=0.0, posinf=0.0, neginf=0.0)
-        gaussian, gradient = _smoothed(single, part, box, shape, sigma, settings.planar, step)
-        smooth.append(gaussian)
-        gradients.append(gradient)
+        highest = 2 if settings.hessian else 1
+        found = _derivatives(single, part, box, shape, sigma, settings.planar, step, highest)
+        smooth.append(found[0, 0, 0])
+        gradients.append(np.sqrt(sum(found[order] ** 2 for order in _FIRST)))
+        if settings.hessian:
+            curvatures += _planar_eigenvalues(found) if settings.planar else _eigenvalues(found)
     differences = [a - b for a, b in pairwise(smooth)]
-    return np.stack([smooth[-1], *differences, *gradients], axis=-1).transpose(2, 1, 0, 3)
+    return np.stack([smooth[-1], *differences, *gradients, *curvatures], axis=-1).transpose(2, 1, 0, 3)
 
 
 def features_in(
@@ -161,7 +175,7 @@ def _reach(sigma: float) -> int:
     return int(_TRUNCATE * sigma + 0.5)
 
 
-def _smoothed(
+def _derivatives(
     values: FloatBlock,
     part: Box,
     box: Box,
@@ -169,22 +183,57 @@ def _smoothed(
     sigma: float,
     planar: bool,
     step: tuple[int, int, int],
-) -> tuple[FloatBlock, FloatBlock]:
-    """Gaussian of one width in a box and the magnitude of its gradient; values and results [z, y, x]."""
+    highest: int,
+) -> dict[_Orders, FloatBlock]:
+    """Derivatives of a Gaussian of one width in a box, by their orders along x, y and z.
+
+    `highest` is the largest sum of the three orders. Values and results are [z, y, x].
+    """
     weights = [
-        [_matrix(n, inner, outer, pace, 0.0 if planar and axis == 2 else sigma, order) for order in (0, 1)]
+        [
+            _matrix(n, inner, outer, pace, 0.0 if planar and axis == 2 else sigma, order)
+            for order in range(highest + 1)
+        ]
         for axis, (n, inner, outer, pace) in enumerate(zip(shape, box, part, step, strict=True))
     ]
+    found: dict[_Orders, FloatBlock] = {(0, 0, 0): values}
     # The axis along which most voxels fall away comes first.
-    first, second, third = np.argsort([len(each[0]) / each[0].shape[1] for each in weights])
-    once = _along(values, weights[first][0], first)
-    twice = _along(once, weights[second][0], second)
-    gaussian = _along(twice, weights[third][0], third)
-    squared = _along(twice, weights[third][1], third) ** 2
-    squared += _along(_along(once, weights[second][1], second), weights[third][0], third) ** 2
-    slope = _along(_along(values, weights[first][1], first), weights[second][0], second)
-    squared += _along(slope, weights[third][0], third) ** 2
-    return gaussian, np.sqrt(squared, out=squared)
+    for axis in np.argsort([len(each[0]) / each[0].shape[1] for each in weights]).tolist():
+        found = {
+            _with(orders, axis, order): _along(block, weights[axis][order], axis)
+            for orders, block in found.items()
+            for order in range(highest + 1 - sum(orders))
+        }
+    return found
+
+
+def _with(orders: _Orders, axis: int, order: int) -> _Orders:
+    x, y, z = (order if each == axis else orders[each] for each in range(3))
+    return x, y, z
+
+
+def _eigenvalues(found: dict[_Orders, FloatBlock]) -> list[FloatBlock]:
+    """Eigenvalues of the symmetric matrices of second derivatives, the largest first.
+
+    Closed form by the angle of the characteristic cubic (Smith, Communications of the ACM 4, 168, 1961).
+    """
+    (xx, yy, zz), (xy, xz, yz) = ([found[orders] for orders in each] for each in (_PURE, _MIXED))
+    mean = (xx + yy + zz) / 3.0
+    a, b, c = xx - mean, yy - mean, zz - mean
+    spread = np.sqrt((a**2 + b**2 + c**2 + 2.0 * (xy**2 + xz**2 + yz**2)) / 6.0)
+    determinant = a * (b * c - yz**2) - xy * (xy * c - yz * xz) + xz * (xy * yz - b * xz)
+    cube = np.maximum(2.0 * spread**3, np.float32(np.finfo(np.float32).tiny))
+    angle = np.arccos(np.clip(determinant / cube, -1.0, 1.0)) / 3.0
+    first = mean + 2.0 * spread * np.cos(angle)
+    last = mean + 2.0 * spread * np.cos(angle + np.float32(2.0 * np.pi / 3.0))
+    return [first, 3.0 * mean - first - last, last]
+
+
+def _planar_eigenvalues(found: dict[_Orders, FloatBlock]) -> list[FloatBlock]:
+    """The same of second derivatives along x and y alone."""
+    (xx, yy, _), (xy, *_) = ([found[orders] for orders in each] for each in (_PURE, _MIXED))
+    mean, spread = (xx + yy) / 2.0, np.hypot((xx - yy) / 2.0, xy)
+    return [mean + spread, mean - spread]
 
 
 def _along(values: FloatBlock, weights: FloatBlock, axis: int) -> FloatBlock:
@@ -200,13 +249,20 @@ def _along(values: FloatBlock, weights: FloatBlock, axis: int) -> FloatBlock:
 
 
 def _matrix(n: int, inner: slice, outer: slice, step: int, sigma: float, order: int) -> FloatBlock:
-    """Weights of the voxels `outer` in a Gaussian (order 0) or slope (1) at every `step`-th of `inner`."""
+    """Weights of the voxels `outer` in a Gaussian or its derivative at every `step`-th of `inner`.
+
+    Those of the first derivative give 1 of a slope of 1, those of the second 1 of x^2 / 2 and 0 of that
+    slope; both give 0 of a constant.
+    """
     reach = _reach(sigma)
     offsets = np.arange(-reach, reach + 1)
     kernel = np.exp(-0.5 * (offsets / sigma) ** 2) if sigma else np.ones(1)
     kernel /= kernel.sum()
     if order:
-        kernel = kernel * offsets / max(float((kernel * offsets**2).sum()), np.finfo(float).tiny)
+        moment = offsets if order == 1 else offsets**2 - float((kernel * offsets**2).sum())
+        kernel = kernel * moment
+        response = float((kernel * offsets**order).sum()) / order
+        kernel = kernel / max(response, np.finfo(float).tiny)
     outputs = np.arange(inner.start, inner.stop, step)
     inputs = np.clip(outputs[:, None] + offsets, 0, n - 1) - outer.start
     weights = np.zeros((len(outputs), outer.stop - outer.start))

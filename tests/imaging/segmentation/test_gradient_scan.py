@@ -75,6 +75,6 @@ def test_that_ten_strokes_find_the_grains_which_no_threshold_does():
     with Image.open(PICTURE) as shipped:
         difference = np.abs(np.asarray(shipped.convert("RGB"), dtype=float) - picture).mean()
     assert best < 0.5, f"the best threshold has an IoU of {best:.3f}"
-    assert reached > 0.93, f"ten strokes have an IoU of {reached:.3f}"
+    assert reached > 0.95, f"ten strokes have an IoU of {reached:.3f}"
     assert matched >= 0.95 * 30, f"{matched} of 30 grains are matched"
     assert difference < 1.0

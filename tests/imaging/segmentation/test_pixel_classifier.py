@@ -83,7 +83,24 @@ def test_that_the_gradient_of_a_ramp_is_its_slope() -> None:
     x, y, z = np.mgrid[:40, :40, :40]
     volume = grey((2.0 * x + 3.0 * y - 6.0 * z).astype(np.float32))
     features = features_in(volume, box_between((15, 15, 15), (25, 25, 25)), FeatureSettings((1.0, 3.0)))
-    np.testing.assert_allclose(features[..., 2:], 7.0, atol=1e-3)
+    np.testing.assert_allclose(features[..., 2:4], 7.0, atol=1e-3)
+    np.testing.assert_allclose(features[..., 4:], 0.0, atol=1e-4)
+
+
+@pytest.mark.parametrize("planar", [False, True])
+def test_that_the_curvatures_of_a_quadratic_form_are_the_eigenvalues_of_its_matrix(planar: bool) -> None:
+    matrix = np.array([[0.5, 0.2, -0.1], [0.2, -0.3, 0.15], [-0.1, 0.15, 0.1]])
+    places = np.stack(np.mgrid[:40, :40, :40], axis=-1) - 20.0
+    volume = grey((0.5 * np.einsum("...i,ij,...j", places, matrix, places)).astype(np.float32))
+    settings = FeatureSettings((1.0, 2.0), planar)
+    found = features_in(volume, box_between((17, 17, 17), (23, 23, 23)), settings)
+    expected = np.linalg.eigvalsh(matrix[:2, :2] if planar else matrix)[::-1]
+    assert [name.split()[0] for name in settings.names[4:]] == ["hessian"] * 2 * len(expected)
+    np.testing.assert_allclose(
+        found[..., 4:], np.broadcast_to([*expected, *expected], found[..., 4:].shape), atol=1e-3
+    )
+    flat = grey(np.full((30, 30, 30), 7.0, np.float32))
+    assert np.isfinite(features_in(flat, box_between((0, 0, 0), flat.shape), settings)).all()
 
 
 def test_that_planar_features_do_not_look_at_other_slices() -> None:
@@ -181,7 +198,7 @@ def test_that_how_much_of_a_class_is_painted_does_not_make_it_likelier() -> None
     rng = np.random.default_rng(0)
     rows = np.concatenate([rng.normal(-1, 1, (2000, 2)), rng.normal(1, 1, (100, 2))]).astype(np.float32)
     labels = np.repeat([0, 1], [2000, 100])
-    settings = ClassifierSettings(FeatureSettings((1.0,)), "logistic")
+    settings = ClassifierSettings(FeatureSettings((1.0,), hessian=False), "logistic")
     training = TrainingSet(np.zeros((2100, 3), int), labels, rows, USUAL_CLASSES, np.ones(3), "", settings)
     (between,) = train(training).probabilities(np.zeros((1, 2), dtype=np.float32))
     assert between[1] == pytest.approx(0.5, abs=0.1)  # by symmetry; 1 : 20 of the voxels are grain
@@ -197,7 +214,7 @@ def test_that_how_much_of_a_class_is_painted_does_not_make_it_likelier() -> None
     ],
 )
 def test_that_what_is_not_painted_is_named(labels: list[int], sentence: str) -> None:
-    vectors = np.zeros((len(labels), 8), dtype=np.float32)
+    vectors = np.zeros((len(labels), len(FeatureSettings().names)), dtype=np.float32)
     with pytest.raises(InputError, match=sentence):
         TrainingSet(
             np.zeros((len(labels), 3), int), np.array(labels, int), vectors, USUAL_CLASSES, np.ones(3)
