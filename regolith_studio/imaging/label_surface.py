@@ -46,15 +46,17 @@ def label_surface(labels: NDArray[Any], voxel_size: FloatArray, max_edge: int = 
     import pyvista
 
     step = max(1, -(-max(labels.shape) // max_edge))
-    coarse = np.maximum(labels[::step, ::step, ::step], 0)
+    coarse = np.pad(np.maximum(labels[::step, ::step, ::step], 0), 1)  # also makes a single slice a volume
     present, compact = np.unique(coarse, return_inverse=True)
-    if present[0] != 0:  # no voxel is free: the margin of the contour is
-        present, compact = np.concatenate([[0], present]), compact + 1
     spacing = np.asarray(voxel_size, float) * step
-    image: Any = pyvista.ImageData(dimensions=coarse.shape, spacing=spacing, origin=spacing / 2)
+    image: Any = pyvista.ImageData(dimensions=coarse.shape, spacing=spacing, origin=-spacing / 2)
     image.point_data["labels"] = compact.reshape(coarse.shape).astype(np.int32).ravel(order="F")
     found: Any = image.contour_labels(
-        boundary_style="external", scalars="labels", output_mesh_type="triangles", progress_bar=False
+        boundary_style="external",
+        scalars="labels",
+        output_mesh_type="triangles",
+        pad_background=False,
+        progress_bar=False,
     )
     if not found.n_cells:
         return LabelSurface(np.zeros((0, 3)), np.zeros((0, 3), np.int64), np.zeros(0, np.int64))
