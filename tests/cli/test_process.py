@@ -108,6 +108,19 @@ def test_that_check_answers_without_a_display_and_survives_a_broken_opengl() -> 
         assert "OpenGL renderer string" in report["opengl"]
 
 
+def test_that_a_name_that_the_terminal_cannot_show_is_no_error(grains: Path, tmp_path: Path) -> None:
+    (tmp_path / "moon \N{FULL MOON SYMBOL}.stl").write_bytes((grains / "grain-a.stl").read_bytes())
+    done = subprocess.run(
+        [sys.executable, "-m", "regolith_studio", "describe", str(tmp_path)],
+        cwd=ROOT,
+        env={**os.environ, "PYTHONIOENCODING": "latin-1"},
+        capture_output=True,
+        timeout=120,
+    )
+    assert (done.returncode, done.stderr) == (0, b"")
+    assert b"moon \\U0001f315" in done.stdout
+
+
 @pytest.mark.skipif(os.name == "nt", reason="signals are a matter of POSIX")
 def test_that_a_signal_while_modules_are_loaded_is_no_traceback() -> None:
     code = (

@@ -84,6 +84,23 @@ def test_that_a_folder_that_cannot_be_written_is_no_error(tmp_path: Path) -> Non
     assert not Preferences().save(tmp_path / "file" / "p.json")
 
 
+@pytest.mark.skipif(os.name == "nt", reason="the limit of file sizes is one of POSIX")
+def test_that_a_failed_save_keeps_the_file_and_leaves_no_other(tmp_path: Path) -> None:
+    """Each save on a full disk had left a file of its own."""
+    import resource
+
+    path = tmp_path / "preferences.json"
+    assert Preferences(window={"theme": "dark"}).save(path)
+    kept, limits = path.read_bytes(), resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (8, limits[1]))
+    try:
+        saved = [Preferences(window={"theme": "light"}).save(path) for _ in range(3)]
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+    assert saved == [False] * 3
+    assert [(each.name, each.read_bytes()) for each in tmp_path.iterdir()] == [(path.name, kept)]
+
+
 def test_that_the_environment_can_name_another_folder(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
