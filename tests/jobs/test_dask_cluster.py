@@ -182,6 +182,23 @@ def test_that_a_cluster_of_this_machine_gives_the_same_bytes(tmp_path: Path, alo
         assert done(tmp_path / "out", executor) == alone
 
 
+@pytest.mark.slow
+@pytest.mark.skipif(os.name == "nt", reason="signals are a matter of POSIX")
+def test_that_a_worker_of_this_machine_that_dies_is_no_line_of_dask(
+    tmp_path: Path, alone: dict[str, bytes], capfd: pytest.CaptureFixture[str]
+) -> None:
+    killed: list[int] = []
+    with closing(Executor.on_cluster(workers=2)) as executor:
+        nannies = executor._runner._cluster.workers.values()  # type: ignore[union-attr]
+        for step in run_recipe(small_recipe(), tmp_path, tmp_path / "out", executor, chunk=2):
+            if isinstance(step, Progress) and step.done >= 2 and not killed:
+                killed = [next(iter(nannies)).pid]
+                os.kill(killed[0], signal.SIGKILL)
+    assert killed
+    assert digests(tmp_path / "out") == alone
+    assert capfd.readouterr().err == ""
+
+
 def test_that_an_encrypted_address_needs_files_that_are_there(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="encrypted"):
         dask_cluster.DaskRunner("tls://127.0.0.1:8786")

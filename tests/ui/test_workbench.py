@@ -8,7 +8,15 @@ from datetime import datetime
 import pytest
 from PySide6.QtCore import Qt, QTimer
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QApplication, QMessageBox, QPushButton, QScrollArea, QSplitter, QWidget
+from PySide6.QtWidgets import (
+    QApplication,
+    QLineEdit,
+    QMessageBox,
+    QPushButton,
+    QScrollArea,
+    QSplitter,
+    QWidget,
+)
 
 from regolith_studio.jobs.events import Job, Progress
 from regolith_studio.session.preferences import Preferences
@@ -18,6 +26,7 @@ from regolith_studio.ui.activity import TaskListPanel, time_left
 from regolith_studio.ui.app import open_window
 from regolith_studio.ui.dialogs.closing import worth_asking
 from regolith_studio.ui.dialogs.command_palette import CommandPalette
+from regolith_studio.ui.dialogs.export import ExportDialog
 from regolith_studio.ui.pages.lecture.page import LESSONS
 from regolith_studio.ui.panels.particle_list import ParticleListPanel
 from regolith_studio.ui.project_files import autosave_path, stale_autosaves
@@ -146,6 +155,37 @@ def test_that_what_another_window_has_saved_is_not_replaced_without_asking(windo
     assert asked == 2 * [
         "work.regolith has changed on the disk since this window opened or saved it. Replace it?"
     ]
+
+
+@pytest.mark.skipif(os.name == "nt", reason="the limit of file sizes is one of POSIX")
+def test_that_what_cannot_be_written_leaves_the_earlier_project_and_no_export(
+    window, wait, tmp_path, monkeypatch
+):
+    import resource
+
+    target = tmp_path / "work.regolith"
+    monkeypatch.setattr(
+        "regolith_studio.ui.project_files.QFileDialog.getSaveFileName", lambda *_: (str(target), "")
+    )
+    assert window.projects.save()
+    kept, limits = target.read_bytes(), resource.getrlimit(resource.RLIMIT_FSIZE)
+    window.session.choose(method="quadric", n_facets=15)
+    window.menus.by_name["export"].trigger()
+    dialog = window.findChild(ExportDialog)
+    dialog.findChild(QLineEdit, "export_folder").setText(str(tmp_path / "dataset"))
+    resource.setrlimit(resource.RLIMIT_FSIZE, (200, limits[1]))
+    try:
+        saved = window.projects.save()
+        said = window.toast.sentence.text()
+        dialog.go.click()
+        wait(lambda: "dataset" in window.toast.sentence.text(), SECONDS)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+    assert not saved
+    assert said.startswith(f"The file {target} cannot be written")
+    assert f"{tmp_path / 'dataset'} cannot be written" in window.toast.sentence.text()
+    assert [(path.name, path.read_bytes()) for path in tmp_path.iterdir()] == [(target.name, kept)]
+    dialog.reject()
 
 
 def test_that_a_project_whose_name_was_completed_replaces_none_without_asking(window, tmp_path, monkeypatch):
