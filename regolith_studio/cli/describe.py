@@ -29,6 +29,16 @@ BorderWeights = Annotated[
         help="Correct the statistics for large grains that the border of a scan has cut off.",
     ),
 ]
+TableDegree = Annotated[
+    int | None,
+    typer.Option(
+        "--l-max",
+        min=1,
+        help="Leave out the coefficients of tables above this degree.",
+        metavar="L",
+        show_default="all that the table has",
+    ),
+]
 Csv = Annotated[
     Path | None,
     typer.Option(
@@ -49,6 +59,7 @@ def describe(
     weighting: Weighting = "number",
     border_weights: BorderWeights = True,
     csv: Csv = None,
+    l_max: TableDegree = None,
     reading: ReadingOptions,
     json: Json = False,
     jobs: Jobs = 1,
@@ -63,7 +74,11 @@ def describe(
     from regolith_studio.session.results import ParticleEntry
 
     del seed  # taken by every command; nothing here is random
-    loaded = reading.read(meshes)
+    loaded = reading.read(meshes, l_max)
+    if l_max is not None and all(
+        each.source is None or each.source.l_max is None for each in loaded.particles
+    ):
+        raise typer.BadParameter("--l-max is for tables of coefficients, and none of these files is one.")
     facts = run_with_progress(measure_sample(loaded.particles, workers=jobs))
     pairs = list(zip(loaded.particles, facts, strict=True))
     entries = [

@@ -22,8 +22,13 @@ class ReadingOptions:
     unit: Unit = "um"
     repair: Repair = True
 
-    def read(self, paths: Sequence[Path]) -> "LoadedParticles":
+    def read(self, paths: Sequence[Path], l_max: int | None = None) -> "LoadedParticles":
         """The particles in files and folders; unreadable files are reported on stderr.
+
+        Parameters
+        ----------
+        l_max
+            Degree above which coefficients of tables are left out.
 
         Raises
         ------
@@ -35,7 +40,8 @@ class ReadingOptions:
 
         with usage_errors():
             unit_factor(self.unit)
-        loaded: LoadedParticles = run_with_progress(load_particles(tuple(paths), self.unit, self.repair))
+        reading = load_particles(tuple(paths), self.unit, self.repair, l_max)
+        loaded: LoadedParticles = run_with_progress(reading)
         print_errors(problem.with_path for problem in loaded.problems)
         return loaded
 

@@ -26,12 +26,15 @@ class Source:
         Length unit that the file's numbers were taken in: ``um``, ``mm``, ``m``, ``voxel`` ...
     repaired
         Whether the mesh was repaired as it was read.
+    l_max
+        Degree above which the coefficients of a table were to be left out; ``None`` where all were taken.
     """
 
     path: str
     sha256: str
     unit: str
     repaired: bool = True
+    l_max: int | None = None
 
 
 @dataclass(frozen=True)

@@ -34,8 +34,12 @@ FIT_DEGREE = 30
 """Everything is fitted to this degree once; lower ones are truncations of that fit."""
 
 
-def load_particles(paths: Sequence[Path], unit: str = "um", repair: bool = True) -> Steps:
+def load_particles(
+    paths: Sequence[Path], unit: str = "um", repair: bool = True, l_max: int | None = None
+) -> Steps:
     """Read the meshes in `paths` (files and folders); returns :class:`LoadedParticles`.
+
+    Coefficients of tables above `l_max` are left out.
 
     Raises
     ------
@@ -44,7 +48,7 @@ def load_particles(paths: Sequence[Path], unit: str = "um", repair: bool = True)
     """
     problems: list[FileProblem] = []
     results: list[Particle | FileProblem] = []
-    files = find_files(paths, problems)
+    files = find_files(paths, problems, l_max)
     yield from compile_first("read")
     yield Started(N_("Reading particles"), len(files))
     for done, (file, result) in enumerate(read_each(files, unit, repair), start=1):

@@ -1,6 +1,6 @@
 """Files of spherical-harmonics coefficients as other programs print them."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Literal
 
@@ -131,10 +131,17 @@ _FINE_DEGREE = 16
 """Above it 2,562 vertices do not resolve the coefficients."""
 
 
-def read_table_particle(path: Path, unit: str, group: str = "", sandbox: Sandbox | None = None) -> Particle:
+def read_table_particle(
+    path: Path, unit: str, group: str = "", sandbox: Sandbox | None = None, l_max: int | None = None
+) -> Particle:
     """The particle that a table of coefficients describes, about its star point.
 
     Its mesh has 5,120 faces, or 20,480 where the degree is above 16, and the volume of the smooth surface.
+
+    Parameters
+    ----------
+    l_max
+        Degree above which coefficients are left out; by default none are.
 
     Raises
     ------
@@ -146,9 +153,15 @@ def read_table_particle(path: Path, unit: str, group: str = "", sandbox: Sandbox
     from regolith_studio.harmonics.surface import reconstruct
 
     table = read_coefficients(path, unit, sandbox=sandbox)
+    coefficients, notes = table.coefficients, table.notes
+    if l_max is not None and l_max < coefficients.l_max:
+        notes += (
+            f"Coefficients above l = {l_max} are left out; its table has them up to {coefficients.l_max}.",
+        )
+        coefficients = coefficients.truncated(l_max)
     try:
-        mesh = reconstruct(table.coefficients, level=5 if table.coefficients.l_max > _FINE_DEGREE else 4)
+        mesh = reconstruct(coefficients, level=5 if coefficients.l_max > _FINE_DEGREE else 4)
     except GeometryError as error:
         sentence = f"holds no particle: {str(error)[0].lower()}{str(error)[1:]}"
         raise GeometryError(message_about(path, sentence)) from None
-    return Particle(table.name, mesh, group, table.source, table.notes)
+    return Particle(table.name, mesh, group, replace(table.source, l_max=l_max), notes)

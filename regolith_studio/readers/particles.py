@@ -38,13 +38,15 @@ MAX_NAME_BYTES = 150
 class MeshFile:
     """A file to be read, the group that its place in a folder puts it in, and its particle's weight.
 
-    `listed` holds the SHA-256 of files by their names, as the list of its folder has them.
+    `listed` holds the SHA-256 of files by their names, as the list of its folder has them. Coefficients of
+    tables above `l_max` are left out.
     """
 
     path: Path
     group: str = ""
     weight: float = 1.0
     listed: Mapping[str, str] = field(default_factory=dict)
+    l_max: int | None = None
 
 
 @dataclass(frozen=True)
@@ -72,7 +74,12 @@ class LoadedParticles:
 
 
 def read_mesh(
-    path: str | Path, unit: str = "um", *, repair: bool = True, sandbox: Sandbox | None = None
+    path: str | Path,
+    unit: str = "um",
+    *,
+    repair: bool = True,
+    l_max: int | None = None,
+    sandbox: Sandbox | None = None,
 ) -> Particle:
     """The particle in one file.
 
@@ -85,6 +92,8 @@ def read_mesh(
         Unit of the file's numbers, a key of `UNITS`, or ``voxel:SIZE`` in micrometres.
     repair
         Whether to make one sound body of it; if not, what is wrong stands in the notes only.
+    l_max
+        Degree above which coefficients of a table are left out; by default none are.
     sandbox
         The child process that parses the file; by default the one of this process.
 
@@ -95,7 +104,7 @@ def read_mesh(
     GeometryError
         With one sentence if it holds nothing that encloses a volume.
     """
-    return read_file(MeshFile(Path(path)), unit, repair, sandbox)
+    return read_file(MeshFile(Path(path), l_max=l_max), unit, repair, sandbox)
 
 
 def read_particles(
@@ -103,6 +112,7 @@ def read_particles(
     unit: str = "um",
     repair: bool = True,
     on_problem: ProblemListener | None = None,
+    l_max: int | None = None,
 ) -> list[Particle]:
     """The particles in mesh files and in folders of them, in the order of their names.
 
@@ -111,7 +121,7 @@ def read_particles(
 
     Parameters
     ----------
-    paths, unit, repair
+    paths, unit, repair, l_max
         As for `read_mesh`; folders are searched to any depth.
     on_problem
         Called for each file that could not be read; by default it is written to the program's log.
@@ -122,7 +132,7 @@ def read_particles(
         If no file could be read at all: the first file's message.
     """
     problems: list[FileProblem] = []
-    results = [result for _, result in read_each(find_files(paths, problems), unit, repair)]
+    results = [result for _, result in read_each(find_files(paths, problems, l_max), unit, repair)]
     loaded = collect_particles(results, problems)
     for problem in loaded.problems:
         (on_problem or _log_problem)(Path(problem.path), problem.sentence)
@@ -208,16 +218,21 @@ def read_file(
 def _read_file(file: MeshFile, unit: str, repair: bool, sandbox: Sandbox | None) -> Particle:
     suffix = file.path.suffix.lower()
     if suffix in TABLE_SUFFIXES:
-        return replace(read_table_particle(file.path, unit, file.group, sandbox), weight=file.weight)
+        return _read_table(file, unit, sandbox)
     if suffix in TEXT_SUFFIXES:
         return _mesh_or_table(file, unit, repair, sandbox)
     return _read_mesh(file, unit, repair, sandbox)
 
 
+def _read_table(file: MeshFile, unit: str, sandbox: Sandbox | None) -> Particle:
+    particle = read_table_particle(file.path, unit, file.group, sandbox, file.l_max)
+    return replace(particle, weight=file.weight)
+
+
 def _mesh_or_table(file: MeshFile, unit: str, repair: bool, sandbox: Sandbox | None) -> Particle:
     """The particle in a text file whose content decides between table and mesh."""
     try:
-        return replace(read_table_particle(file.path, unit, file.group, sandbox), weight=file.weight)
+        return _read_table(file, unit, sandbox)
     except FileError as no_table:
         try:
             return _read_mesh(file, unit, repair, sandbox)
@@ -249,21 +264,28 @@ def _read_mesh(file: MeshFile, unit: str, repair: bool, sandbox: Sandbox | None)
     return Particle(path.stem, mesh, file.group, source, notes, file.weight, repaired)
 
 
-def find_files(paths: Sequence[str | Path], problems: list[FileProblem]) -> list[MeshFile]:
+def find_files(
+    paths: Sequence[str | Path], problems: list[FileProblem], l_max: int | None = None
+) -> list[MeshFile]:
     """As `mesh_files`, but a folder without meshes is added to `problems`."""
     try:
-        return mesh_files(paths)
+        return mesh_files(paths, l_max)
     except FileError as error:
         if len(paths) == 1:
             problems.append(FileProblem(str(paths[0]), str(error)))
             return []
-    return [file for path in paths for file in find_files([path], problems)]
+    return [file for path in paths for file in find_files([path], problems, l_max)]
 
 
-def mesh_files(paths: Sequence[str | Path]) -> list[MeshFile]:
+def mesh_files(paths: Sequence[str | Path], l_max: int | None = None) -> list[MeshFile]:
     """The files that `read_particles` would read, in its order: those given, and those in folders.
 
     Weights come from the ``particles.csv`` that ``extract`` writes beside its meshes.
+
+    Parameters
+    ----------
+    l_max
+        Degree above which coefficients of tables are left out.
 
     Raises
     ------
@@ -290,6 +312,7 @@ def mesh_files(paths: Sequence[str | Path]) -> list[MeshFile]:
             file,
             weight=weights[file.path.parent].get(file.path.stem, 1.0),
             listed=lists[file.path.parent],
+            l_max=l_max,
         )
         for file in files
     ]

@@ -120,8 +120,8 @@ def _inputs(origins: Sequence[ParticleSource]) -> list[str | FilesEntry]:
     files = [each for each in origins if isinstance(each, FileSource)]
     named: list[str | FilesEntry] = [SAMPLE] if not origins or SampleSource() in origins else []
     for number, each in enumerate(files):
-        entry = FilesEntry(files=list(each.paths), unit=each.unit, repair=each.repair)
-        named += [entry] if number else each.paths
+        entry = FilesEntry(files=list(each.paths), unit=each.unit, repair=each.repair, l_max=each.l_max)
+        named += [entry] if number or each.l_max is not None else each.paths
     return named
 
 

@@ -48,11 +48,14 @@ class FileSource:
         Of those without one.
     repair
         Whether meshes were repaired.
+    l_max
+        Degree above which coefficients of tables were left out.
     """
 
     paths: tuple[str, ...]
     unit: str
     repair: bool = True
+    l_max: int | None = None
 
     def members(self) -> tuple[Member, ...]:
         """All files that are there now, in order; also those that cannot be read."""
@@ -240,8 +243,8 @@ class _References:
         from regolith_studio.session.batch.preprocessing import read_index, resolved
 
         named = (
-            FileSource(tuple(str(base / file) for file in files), unit, repair)
-            for files, unit, repair in recipe.openings
+            FileSource(tuple(str(base / file) for file in each.files), each.unit, each.repair, each.l_max)
+            for each in recipe.openings
         )
         self._files = {key: each for each in named for key, _, _ in each.members()}
         self._volumes = {

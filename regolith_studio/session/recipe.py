@@ -77,11 +77,18 @@ class Population(Strict):
 
 
 class FilesEntry(Strict):
-    """Files and folders that are read together, in a unit of their own; relative to the recipe."""
+    """Files and folders that are read together, in a unit of their own; relative to the recipe.
+
+    Parameters
+    ----------
+    l_max
+        Degree above which coefficients of tables are left out; by default none are.
+    """
 
     files: list[str] = Field(min_length=1)
     unit: str
     repair: bool = True
+    l_max: int | None = Field(default=None, ge=1)
 
 
 class NamedParticle(Strict):
@@ -221,8 +228,9 @@ class RecipeInputs(Strict):
     ----------
     inputs
         Files and folders of meshes and tables of coefficients, or ``sample:all``; by default the sample,
-        or nothing where there are volumes or a population. Those in another unit, or with another answer
-        to whether meshes are repaired, stand in entries of their own, and are read after the others.
+        or nothing where there are volumes or a population. Those in another unit, with another answer
+        to whether meshes are repaired, or cut at a degree, stand in entries of their own, and are read after
+        the others.
     volumes
         CT volumes whose grains are particles too.
     population
@@ -303,12 +311,11 @@ class Recipe(_ChoiceEntries):
         return self
 
     @property
-    def openings(self) -> tuple[tuple[tuple[str, ...], str, bool], ...]:
-        """Files and folders read together, their unit, whether they are repaired; without the sample."""
-        plain = tuple(entry for entry in self.inputs if isinstance(entry, str) and entry != SAMPLE)
-        others = (entry for entry in self.inputs if isinstance(entry, FilesEntry))
-        first = ((plain, self.unit, self.repair),) if plain else ()
-        return first + tuple((tuple(each.files), each.unit, each.repair) for each in others)
+    def openings(self) -> tuple[FilesEntry, ...]:
+        """Files and folders that are read together, those named alone first; without the sample."""
+        plain = [entry for entry in self.inputs if isinstance(entry, str) and entry != SAMPLE]
+        first = (FilesEntry(files=plain, unit=self.unit, repair=self.repair),) if plain else ()
+        return first + tuple(entry for entry in self.inputs if isinstance(entry, FilesEntry))
 
     @property
     def only_files(self) -> bool:

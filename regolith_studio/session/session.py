@@ -166,8 +166,9 @@ class Session:
         if recipe.only_files and recipe.inputs == [SAMPLE]:
             return self.open_sample()
         if recipe.only_files and len(recipe.openings) == 1 and SAMPLE not in recipe.inputs:
-            ((files, unit, repair),) = recipe.openings
-            return self.open([base / file for file in files], unit, repair=repair)
+            (entry,) = recipe.openings
+            if entry.l_max is None:
+                return self.open([base / file for file in entry.files], entry.unit, repair=entry.repair)
 
         return self._restore(recipe, base)
 

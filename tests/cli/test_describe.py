@@ -106,6 +106,24 @@ def test_that_statistics_and_a_table_are_written_where_they_are_asked_for(
     assert lines[0].startswith("name,group,volume [um^3],equivalent_radius [um],surface_area [um^2]")
 
 
+def test_that_tables_are_cut_at_a_degree_and_meshes_alone_are_refused_one(
+    command, grains: Path, tmp_path: Path
+) -> None:
+    """A ball with a part of the second degree, along z."""
+    rows = {(0, 0): 10.0, (2, 0): 3.0}
+    orders = [(n, m) for n in range(4) for m in range(-n, n + 1)]
+    text = "\n".join(f"{n} {m} {rows.get((n, m), 0.0)} 0" for n, m in orders)
+    (tmp_path / "grain.anm").write_text(text)
+    for options, ratio, degree in (((), 1.5, None), (("--l-max", "1"), 1.0, 1)):
+        (entry,) = command("describe", tmp_path / "grain.anm", "--json", *options).json
+        assert entry["source"]["l_max"] == degree
+        assert (entry["aspect_ratio"] > 0.99 * ratio) is True
+        assert (entry["aspect_ratio"] < 1.01) is (degree == 1)
+    refused = command("describe", grains, "--l-max", "10")
+    assert refused.code == 2
+    assert "--l-max is for tables of coefficients" in refused.err
+
+
 def test_that_an_unknown_weighting_is_bad_use(command, grains: Path) -> None:
     result = command("describe", grains, "--statistics", "--weighting", "mass")
     assert result.code == 2

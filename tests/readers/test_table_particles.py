@@ -64,6 +64,19 @@ def test_that_a_text_that_is_neither_mesh_nor_table_is_one_sentence(content, sen
         read_mesh(tmp_path / "letter.txt")
 
 
+def test_that_a_table_is_cut_at_the_degree_asked_for(tmp_path) -> None:
+    """A ball with a part of the third degree; what is cut off is said."""
+    (tmp_path / "bump.anm").write_text(table_of([20.0 * np.sqrt(4 * np.pi), *[0.0] * 8, 9.0, *[0.0] * 6]))
+    ball = 4 / 3 * np.pi * 20.0**3
+    whole, cut, more = (read_mesh(tmp_path / "bump.anm", l_max=degree) for degree in (None, 2, 12))
+    assert whole.mesh.volume == more.mesh.volume == pytest.approx(ball + 20.0 * 9.0**2, rel=1e-4)
+    assert cut.mesh.volume == pytest.approx(ball, rel=1e-9)
+    assert cut.notes == ("Coefficients above l = 2 are left out; its table has them up to 3.",)
+    assert (whole.notes, more.notes) == ((), ())
+    assert [each.source.l_max for each in (whole, cut, more)] == [None, 2, 12]
+    assert [each.notes for each in read_particles([tmp_path], l_max=2)] == [cut.notes]
+
+
 def test_that_a_surface_through_its_centre_is_refused(tmp_path) -> None:
     (tmp_path / "eight.anm").write_text(table_of([1.0, 0.0, 5.0, 0.0]))
     with pytest.raises(GeometryError, match=r"^eight\.anm holds no particle"):
@@ -80,11 +93,11 @@ def test_that_volume_and_area_agree_with_the_numbers_of_the_table_s_own_program(
     for at in range(0, 3338, 300):
         name = str(arrays["name"][at])
         volume, area, degree = stated[name][6], stated[name][7], int(stated[name][11])
-        orders = [(n, m) for n in range(degree + 1) for m in range(-n, n + 1)]
-        rows = zip(orders, arrays["anm"][at], strict=False)
+        orders = [(n, m) for n in range(31) for m in range(-n, n + 1)]
+        rows = zip(orders, arrays["anm"][at], strict=True)
         path = tmp_path / f"{Path(name).stem}.anm"
         path.write_text("\n".join(f"{n} {m} {a.real:.9e} {a.imag:.9e}" for (n, m), a in rows))
-        mesh = read_mesh(path).mesh
+        mesh = read_mesh(path, l_max=degree).mesh
         volumes.append(mesh.volume / volume - 1)
         areas.append(mesh.surface_area / area - 1)
     assert np.abs(volumes).max() < 5e-3

@@ -50,6 +50,20 @@ def described(folder: Path) -> list[dict[str, Any]]:
     return found
 
 
+def test_that_tables_of_a_recipe_are_cut_at_the_degree_of_their_entry(tmp_path: Path) -> None:
+    text = "\n".join(
+        f"{n} {m} {20.0 if n == 0 else 0.3 * (m == 0)} 0" for n in range(9) for m in range(-n, n + 1)
+    )
+    (tmp_path / "grain.anm").write_text(text)
+    entry = {"files": ["grain.anm"], "unit": "um"}
+    for name, given in (("whole", entry), ("cut", {**entry, "l_max": 3})):
+        run(tmp_path / name, inputs=[given])
+    areas = [described(tmp_path / name)[0]["surface_area"] for name in ("whole", "cut")]
+    wanted = [read_mesh(tmp_path / "grain.anm", l_max=degree).mesh.surface_area for degree in (None, 3)]
+    assert areas == pytest.approx(wanted, rel=1e-9)
+    assert areas[1] < 0.99 * areas[0]
+
+
 @pytest.fixture
 def grains(tmp_path: Path) -> Path:
     """Six bumpy ellipsoids of 10 to 30 micrometres."""

@@ -98,7 +98,7 @@ def test_that_meshes_of_folders_in_two_units_with_broken_files_are_the_same_in_a
     session_recipe = assert_that_a_run_gives_the_dataset_of(session, tmp_path)
     assert session_recipe.without_source == ()
     assert session_recipe.recipe.unit == "um"
-    assert session_recipe.recipe.openings[1][1] == "mm"
+    assert session_recipe.recipe.openings[1].unit == "mm"
 
 
 def test_that_meshes_mended_and_left_as_they_are_are_the_same_in_a_run(
@@ -114,7 +114,7 @@ def test_that_meshes_mended_and_left_as_they_are_are_the_same_in_a_run(
     repaired, as_it_is = [entry.particle.mesh.volume for entry in session.particles]
     assert as_it_is == pytest.approx(1.008 * repaired, rel=1e-4)  # the second ball has a fifth of the size
     session_recipe = assert_that_a_run_gives_the_dataset_of(session, tmp_path)
-    assert [repair for _, _, repair in session_recipe.recipe.openings] == [True, False]
+    assert [each.repair for each in session_recipe.recipe.openings] == [True, False]
 
 
 def test_that_the_sample_and_a_file_beside_it_are_the_same_in_a_run(session: Session, tmp_path: Path) -> None:

@@ -80,12 +80,12 @@ class FileInput(_NamedInput):
 
     @property
     def fingerprint(self) -> str:
-        """Path, size and time of the file."""
+        """Path, size and time of the file, and the degree that its table is cut at."""
         try:
             state = self.file.path.stat()
         except OSError:
             return f"{self.file.path} missing"
-        return f"{self.file.path} {state.st_size} {state.st_mtime_ns}"
+        return f"{self.file.path} {state.st_size} {state.st_mtime_ns} {self.file.l_max}"
 
     def particle(self) -> Particle:
         """The particle in the file."""
@@ -184,9 +184,10 @@ class BatchInputs:
         if SAMPLE in recipe.inputs:
             for particle in sample_particles():
                 members.append(SampleInput(unique_name(particle.name, particle.group, taken), particle.name))
-        for files, unit, repair in recipe.openings:
-            for file in find_files([base / name for name in files], problems):
-                members.append(FileInput(unique_name(file.path.stem, file.group, taken), file, unit, repair))
+        for each in recipe.openings:
+            for file in find_files([base / name for name in each.files], problems, each.l_max):
+                name = unique_name(file.path.stem, file.group, taken)
+                members.append(FileInput(name, file, each.unit, each.repair))
         for folder in prepared.volumes:
             for entry in read_index(folder):
                 members.append(GrainInput(unique_name(entry["name"], entry["group"], taken), folder, entry))

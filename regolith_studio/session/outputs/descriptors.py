@@ -41,6 +41,7 @@ def described(particle: Particle, facts: MeasuredParticle) -> dict[str, Any]:
             "sha256": source.sha256,
             "unit": source.unit,
             "repaired": source.repaired,
+            "l_max": source.l_max,
         }
     return entry
 
