@@ -177,7 +177,7 @@ def _model_of_card(card: MaterialCard, request: GenerationRequest) -> FittedMode
             f"The card {card.name} holds no particles, so that no other model can be fitted to it: it brings "
             f"{card.key} with settings of its own."
         )
-    return card.model(min(PAPER_DEGREE, card.l_max) if request.l_max is None else request.l_max)
+    return card.model(request.l_max)
 
 
 def _given_model(model: FittedModel, request: GenerationRequest) -> FittedModel:

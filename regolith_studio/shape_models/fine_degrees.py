@@ -68,6 +68,10 @@ class FineDegrees:
         covariance = np.cov(left.T).reshape(2 * [fine.shape[1]]) + 1e-9 * np.eye(fine.shape[1])
         return cls(left.mean(axis=0), slopes, np.asarray(np.linalg.cholesky(covariance), dtype=np.float64))
 
+    def first(self, count: int) -> "FineDegrees":
+        """The lowest `count` of the degrees, at least one."""
+        return FineDegrees(self.offset[:count], self.slopes[:count], self.factor[:count, :count])
+
     def louder(self, change: float) -> "FineDegrees":
         """The same with ln P_l larger by `change` at all degrees."""
         return replace(self, offset=np.asarray(self.offset) + change)

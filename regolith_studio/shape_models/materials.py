@@ -5,7 +5,8 @@ log-normal law of sizes: what publications print. The model of such numbers is a
 ln(r / mean) = r / mean - 1, so that A_l of ln r is 4 pi times the squared relative amplitude.
 
 Random phases are not the shape of a real material. The card of a sample therefore also holds the numbers of
-its hull field, which is then the card's model, and how far 1,000 draws of it are from the sample.
+its hull field with all degrees of the sample, which is then the card's model, and how far 1,000 draws of it
+are from the sample.
 """
 
 from collections.abc import Mapping
@@ -20,20 +21,21 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from regolith_studio.errors import FileError, InputError, format_validation_error, os_error_reason
 from regolith_studio.io.atomic import write_bytes
 from regolith_studio.io.json_text import json_bytes
+from regolith_studio.messages import N_, Message, Number
 from regolith_studio.resources import resource
-from regolith_studio.shape_models.calibration import measured_features
 from regolith_studio.shape_models.goodness_of_fit import relative_wasserstein
-from regolith_studio.shape_models.models.hull_field import DEGREES, HullFieldSettings
+from regolith_studio.shape_models.models.hull_field import DEGREES, HullField, HullFieldSettings
 from regolith_studio.shape_models.models.hull_field import MODEL as HULL_FIELD_MODEL
 from regolith_studio.shape_models.models.log_field import LogField, LogFieldModel, LogFieldSettings
 from regolith_studio.shape_models.protocol import FittedModel
 from regolith_studio.shape_models.sample import Sample
-from regolith_studio.shape_models.shape_features import CONVEXITY, outer_features_of_radii, shape_features
+from regolith_studio.shape_models.shape_features import whole_features_of_log_radii, whole_features_of_radii
 from regolith_studio.shape_models.size_law import LogNormalSizes
 
 LARGEST_CARD = 1_000_000
 LOG_FIELD, HULL_FIELD = "log_field", "hull_field"
-HULL_DEGREE = 10
+FIELD_DEGREE = 10
+"""Of fields in ln r, unless another is asked for, as in section 3.1."""
 N_JUDGED = 1000
 JUDGED = ("equivalent_radius", "aspect_ratio", "sphericity", "convexity")
 Amplitude = Annotated[float, Field(ge=0.0, le=1.0)]
@@ -73,6 +75,19 @@ class MaterialCard(BaseModel):
         """Of its model in ``MODELS``."""
         return LOG_FIELD if self.hull_field is None else HULL_FIELD
 
+    @property
+    def judged(self) -> str:
+        """A sentence with the judgement; empty for cards that have none."""
+        if self.judgement is None:
+            return ""
+        return Message(
+            N_(
+                "Draws differ from the sample of the card by {equivalent_radius} % in r_eq, {aspect_ratio} % "
+                "in AR, {sphericity} % in S and {convexity} % in V/CH (Wasserstein distance over the mean)."
+            ),
+            **{key: Number(far, ".2g") for key, far in self.judgement.items()},
+        )
+
     @classmethod
     def of(cls, sample: Sample, name: str, label: str, origin: str, l_max: int | None = None) -> Self:
         """The card of a sample: its statistics rounded to three digits, its hull field, and their judgement.
@@ -90,7 +105,7 @@ class MaterialCard(BaseModel):
         radii = sample.star_shaped().equivalent_radii
         hull, judgement = None, None
         if degree >= DEGREES[0]:
-            hull, judgement = _judged_hull_field(sample, min(degree, HULL_DEGREE))
+            hull, judgement = _judged_hull_field(sample.truncated(degree))
         try:
             return cls(
                 name=name,
@@ -111,19 +126,25 @@ class MaterialCard(BaseModel):
                 f"The sample makes no card: {format_validation_error(error.errors(include_url=False))}."
             ) from error
 
-    def model(self, l_max: int = 10) -> FittedModel:
-        """The hull field where the card has one of this degree, or else the field in ln r.
+    def model(self, l_max: int | None = None) -> FittedModel:
+        """The hull field where the card has one, or else the field in ln r.
+
+        Parameters
+        ----------
+        l_max
+            By default all degrees of the hull field, and up to 10 of the field in ln r.
 
         Raises
         ------
         InputError
-            If the card does not reach `l_max`.
+            If the card does not have this degree.
         """
-        if self.hull_field is None or len(self.hull_field["spectrum"]) != l_max + 1:
-            return self.field(l_max)
-        return HULL_FIELD_MODEL.restored(self.hull_field, {})
+        if self.hull_field is None:
+            return self.field(min(FIELD_DEGREE, self.l_max) if l_max is None else l_max)
+        field: HullField = HULL_FIELD_MODEL.restored(self.hull_field, {})
+        return field if l_max is None else field.truncated(l_max)
 
-    def field(self, l_max: int = 10) -> LogField:
+    def field(self, l_max: int = FIELD_DEGREE) -> LogField:
         """The field in ln r of the material.
 
         Raises
@@ -140,22 +161,21 @@ class MaterialCard(BaseModel):
         return LogField(4 * np.pi * amplitudes**2, sizes, self.unit, self.median_radius)
 
 
-def _judged_hull_field(sample: Sample, l_max: int) -> tuple[dict[str, Any], dict[str, float]]:
+def _judged_hull_field(sample: Sample) -> tuple[dict[str, Any], dict[str, float]]:
     """Numbers of the hull field of a sample, and the distances of its draws from the sample in percent.
 
-    Aspect ratio, sphericity and share of the hull are those of
+    Aspect ratio, sphericity and share of the hull are the outer features of
     :mod:`~regolith_studio.shape_models.shape_features`, on a grid of directions.
     """
-    fitted = HULL_FIELD_MODEL.fit(sample, HullFieldSettings(l_max, "log_normal_mixture"))
+    fitted = HULL_FIELD_MODEL.fit(sample, HullFieldSettings(sample.l_max, "log_normal_mixture"))
     draws = fitted.draw(N_JUDGED, 0)
-    sizes = draws.equivalent_radii()
-    measured = sample.truncated(l_max).star_shaped()
-    shares = shape_features(measured.coefficients)[:, CONVEXITY]
-    outer = outer_features_of_radii(measured.coefficients, shares)
-    drawn = measured_features(draws.coefficients, sizes)[1]
+    measured = sample.star_shaped()
     tables = [
-        np.column_stack([radii, np.exp(table[:, 0]), 1 / (1 + np.exp(-table[:, 1:]))])
-        for radii, table in ((measured.equivalent_radii, outer), (sizes, drawn))
+        np.column_stack([radii, np.exp(outer[:, 0]), 1 / (1 + np.exp(-outer[:, 1:]))])
+        for radii, outer in (
+            (measured.equivalent_radii, whole_features_of_radii(measured.coefficients)),
+            (draws.equivalent_radii(), whole_features_of_log_radii(draws.coefficients)),
+        )
     ]
     ones = [np.ones(len(table)) for table in tables]
     distances = [relative_wasserstein(*pair, *ones) for pair in zip(tables[0].T, tables[1].T, strict=True)]

@@ -1560,6 +1560,10 @@
         <translation>Gezogen</translation>
     </message>
     <message>
+        <source>Draws differ from the sample of the card by {equivalent_radius} % in r_eq, {aspect_ratio} % in AR, {sphericity} % in S and {convexity} % in V/CH (Wasserstein distance over the mean).</source>
+        <translation>Gezogene weichen von der Stichprobe der Karte ab um {equivalent_radius} % in r_eq, {aspect_ratio} % in AR, {sphericity} % in S und {convexity} % in V/CH (Wasserstein-Abstand durch Mittelwert).</translation>
+    </message>
+    <message>
         <source>Drop</source>
         <translation>Verwerfen</translation>
     </message>

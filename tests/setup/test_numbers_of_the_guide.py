@@ -73,6 +73,12 @@ def test_that_new_draws_are_as_far_from_measured_particles_as_these_from_each_ot
     assert RESULTS["shape_models"]["novelty"]["rows"]["recombined"][1] >= 0.9
 
 
+def test_that_the_card_of_a_sample_is_within_two_floors_of_other_particles() -> None:
+    rows = RESULTS["shape_models"]["draws of a card"]["rows"]
+    pairs = zip(rows["particles of the card"], rows["hull field"], strict=True)
+    assert [key for key, (floor, found) in zip(KEYS, pairs, strict=True) if found > 2 * floor] == []
+
+
 def test_that_the_volume_of_touching_grains_is_within_a_percent() -> None:
     rows = RESULTS["segmentation"]["contacts"]["rows"]
     assert set(rows) == {"0", "1", "6", "12"}

@@ -165,6 +165,24 @@ def test_that_draws_with_fine_degrees_fill_their_hulls_and_are_as_round_as_the_s
     assert (cut.mean(axis=1) > measured.mean(axis=1) + error).all()
 
 
+@pytest.mark.slow
+def test_that_a_field_cut_at_a_degree_draws_the_first_degrees_of_the_same_particles(
+    rough_sample: Callable[..., Sample],
+) -> None:
+    whole = MODEL.fit(rough_sample(20, 13), HullFieldSettings(13, "log_normal"))
+    rows = whole.draw(5, 1).coefficients
+    for degree in (10, 13):
+        cut = whole.truncated(degree)
+        assert cut.l_max == degree
+        np.testing.assert_allclose(
+            cut.draw(5, 1).coefficients[:, 1:], rows[:, 1 : (degree + 1) ** 2], rtol=1e-12
+        )
+    assert np.isfinite(whole.truncated(12).draw(5, 1).coefficients).all()
+    for degree in (9, 14):
+        with pytest.raises(InputError, match=f"from l = 10 to 13, got l_max = {degree}"):
+            whole.truncated(degree)
+
+
 @pytest.mark.parametrize("l_max", [2, 31])
 def test_that_a_degree_that_has_no_facets_or_too_many_is_refused(
     l_max: int, rough_sample: Callable[..., Sample]

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.spatial import ConvexHull
 from scipy.stats import norm
 
 from regolith_studio.errors import FileError, InputError
@@ -13,7 +14,7 @@ from regolith_studio.shape_models.inertia_ellipsoid import principal_axes
 from regolith_studio.shape_models.log_radius import sized
 from regolith_studio.shape_models.materials import MaterialCard, materials, read_card, write_card
 from regolith_studio.shape_models.models.log_field import MODEL, LogFieldSettings
-from regolith_studio.shape_models.realizations import Realizations
+from regolith_studio.shape_models.realizations import Realizations, virtual_mesh
 from regolith_studio.shape_models.sample import Sample
 from regolith_studio.shape_models.size_law import size_law_from
 from regolith_studio.studies.population import descriptors_of
@@ -117,6 +118,26 @@ def test_that_the_card_of_a_sample_draws_its_shapes_and_says_how_well() -> None:
     measured = np.exp(np.abs(principal_axes(rows).log_ratios))
     assert axes.mean() == pytest.approx(measured.mean(), rel=0.03)
     assert materials()["ma165"].key == "log_field"
+
+
+@pytest.mark.slow
+def test_that_the_card_of_a_sample_fills_its_hulls_as_the_particles_do_with_all_their_degrees() -> None:
+    """Those cut at the tenth degree fill more of theirs."""
+    drawn = materials()["ma165"].field(16).draw(150, 0)
+    sample = Sample(np.stack([drawn.particle(i).values for i in range(150)]))
+    card = MaterialCard.of(sample, "fine", "Fine", "Synthetic, for a test.")
+    draws = card.model().draw(300, 1)
+    assert draws.l_max == 16
+
+    def shares(rows: Realizations) -> float:
+        meshes = [virtual_mesh(rows, i, 3) for i in range(150)]
+        return float(np.mean([mesh.volume / ConvexHull(mesh.vertices).volume for mesh in meshes]))
+
+    wanted = shares(Realizations(sample.coefficients, "radius", "measured", 0))
+    assert shares(draws) == pytest.approx(wanted, rel=0.005)
+    assert shares(Realizations(sample.truncated(10).coefficients, "radius", "cut", 0)) > 1.01 * wanted
+    assert card.judgement is not None
+    assert f"{card.judgement['sphericity']:.2g} % in S" in card.judged
 
 
 @pytest.mark.parametrize("l_max", [0, 31])

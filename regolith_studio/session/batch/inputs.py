@@ -238,8 +238,7 @@ def _select(members: Sequence[BatchInput], selection: Sequence[str | NamedPartic
 def model_of(population: Population, folder: Path | None) -> FittedModel:
     """The model that particles are drawn from."""
     if folder is None:
-        card = materials()[population.sources[0]]
-        return card.model(population.l_max or min(PAPER_DEGREE, card.l_max))
+        return materials()[population.sources[0]].model(population.l_max or None)
     fitted: FittedModel = read_shape_source(str(folder / MODEL)).content  # type: ignore[assignment]
     return fitted
 

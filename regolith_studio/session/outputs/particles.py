@@ -26,6 +26,7 @@ from regolith_studio.messages import N_
 from regolith_studio.readers.shape_files import ShapeSource
 from regolith_studio.session.outputs.descriptors import described, descriptor_table
 from regolith_studio.shape_models.chunked_sampling import RejectionSampler
+from regolith_studio.shape_models.materials import MaterialCard
 from regolith_studio.shape_models.protocol import FittedModel
 from regolith_studio.shape_models.realizations import Realizations
 from regolith_studio.shape_models.sample import Sample
@@ -208,6 +209,7 @@ def generation_document(generated: GeneratedParticles) -> dict[str, Any]:
         "coefficients": f"of {'the radius' if draws.scale == 'radius' else 'ln radius'}; {CONVENTION}",
         "components": _components(generated),
         "rejection_bias": _rejection_bias(generated),
+        "judgement": content.judgement if isinstance(content, MaterialCard) else None,
     }
 
 

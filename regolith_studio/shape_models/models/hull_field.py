@@ -142,6 +142,22 @@ class HullField(SizedSampler):
         """Degree of what is moved to its hull."""
         return self.l_max - (0 if self.fine is None else len(self.fine))
 
+    def truncated(self, l_max: int) -> "HullField":
+        """The field without the degrees above `l_max`.
+
+        Raises
+        ------
+        InputError
+            If `l_max` is beyond the field, or below the degree of what is moved to its hull.
+        """
+        if not self._base <= l_max <= self.l_max:
+            reach = f"from l = {self._base} to {self.l_max}" if self.fine else f"to l = {self.l_max}"
+            raise InputError(f"This field drawn to its hull reaches {reach}, got l_max = {l_max}.")
+        if l_max == self.l_max or self.fine is None:
+            return self
+        fine = self.fine.first(l_max - self._base) if l_max > self._base else None
+        return replace(self, spectrum=np.asarray(self.spectrum)[: l_max + 1], fine=fine)
+
     def shapes(
         self, radii: FloatArray, _components: IntArray, rng: np.random.Generator
     ) -> tuple[FloatArray, dict[str, IntArray]]:
