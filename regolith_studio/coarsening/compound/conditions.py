@@ -9,6 +9,7 @@ from regolith_studio.coarsening.compound.hull import HullOfParts, add_hull_charg
 from regolith_studio.coarsening.compound.measures import (
     MeasuredCompound,
     Planes,
+    is_one_body,
     measure_compound,
     parts_overlap,
 )
@@ -124,7 +125,7 @@ def point_of(
     tangents: FloatArray | None = None,
     near: TrackedBoxes | None = None,
 ) -> CompoundPoint | None:
-    """The union with its conditions, or ``None`` where it cannot be measured.
+    """The union with its conditions, or ``None`` where it cannot be measured or is not one body.
 
     Parameters
     ----------
@@ -135,7 +136,9 @@ def point_of(
     """
     compound = measure_compound(planes)
     hull = None if compound is None else hull_of(compound.vertices)
-    if compound is None or hull is None or not compound.volume > 0.0 or parts_overlap(compound):
+    if compound is None or hull is None or not compound.volume > 0.0:
+        return None
+    if parts_overlap(compound) or not is_one_body(compound):
         return None
     boxes = _boxes(problem, compound, hull, near)
     if boxes is None:

@@ -58,7 +58,7 @@ def fill_exposed_edges(
                     squared = dot(line, line)
                     if squared < PARALLEL * PARALLEL:
                         continue
-                    p = _common_point(normals, offsets, a, b, squared)
+                    p = _common_point(normals, offsets, a, b, line, squared)
                     low, high = clipped(normals, offsets, first[i], first[i + 1], a, p, line, -np.inf, np.inf)
                     low, high = clipped(normals, offsets, first[j], first[j + 1], b, p, line, low, high)
                     if low < high:
@@ -92,13 +92,17 @@ def part_of(first: IntArray, plane: int) -> int:
 
 
 @kernel_noalloc
-def _common_point(normals: FloatArray, offsets: FloatArray, a: int, b: int, squared: float) -> Vector:
-    """The point of both planes that is nearest to the origin; `squared` as of the product of the normals."""
+def _common_point(
+    normals: FloatArray, offsets: FloatArray, a: int, b: int, line: Vector, squared: float
+) -> Vector:
+    """A point of both planes: from the foot point of plane a to plane b, across `line` within plane a.
+
+    The formula with both normals loses half the digits where planes are nearly parallel. `squared` is the
+    square of the length of `line`, the vector product of the normals of b and a.
+    """
     n, m = row(normals, a), row(normals, b)
-    cosine = dot(n, m)
-    x = (offsets[a] - offsets[b] * cosine) / squared
-    y = (offsets[b] - offsets[a] * cosine) / squared
-    return mixed(n, x, m, y)
+    foot = mixed(n, offsets[a], n, 0.0)
+    return mixed(foot, 1.0, cross(n, line), (offsets[b] - dot(m, foot)) / squared)
 
 
 @kernel_noalloc

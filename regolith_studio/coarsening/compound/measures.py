@@ -7,7 +7,7 @@ import numpy as np
 from regolith_studio.coarsening.compound.exposed_edges import fill_exposed_areas, fill_exposed_edges
 from regolith_studio.coarsening.core.intersection import FINE
 from regolith_studio.coarsening.core.polyhedron_measures import measure_polyhedron
-from regolith_studio.geometry.arrays import FloatArray, IntArray
+from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray
 
 EDGES_PER_PLANE = 12
 
@@ -103,17 +103,37 @@ def measure_compound(planes: Planes) -> MeasuredCompound | None:
     )
 
 
+def meeting_parts(compound: MeasuredCompound) -> BoolArray:
+    """Of which parts the surfaces intersect where it is exposed, shape (k, k)."""
+    part = _part_of_planes(compound.planes)
+    meet = np.zeros((len(compound.planes.inner),) * 2, dtype=np.bool_)
+    one, two = part[compound.edge_planes[compound.edge_planes[:, 2] < 0, :2]].T
+    meet[one, two] = meet[two, one] = True
+    return meet
+
+
 def parts_overlap(compound: MeasuredCompound) -> bool:
     """Whether parts that are to touch overlap: the surfaces of two meet that no plane separates."""
-    planes, partner = compound.planes, compound.planes.partner
+    partner = compound.planes.partner
     if partner is None:
         return False
-    k = len(planes.inner)
-    part = np.repeat(np.arange(k), np.diff(planes.first))
-    separated = np.zeros((k, k), dtype=np.bool_)
-    separated[part[partner >= 0], partner[partner >= 0]] = True
-    meeting = part[compound.edge_planes[compound.edge_planes[:, 2] < 0, :2]]
-    return not separated[meeting[:, 0], meeting[:, 1]].all()
+    meet = meeting_parts(compound)
+    meet[_part_of_planes(compound.planes)[partner >= 0], partner[partner >= 0]] = False
+    return bool(meet.any())
+
+
+def is_one_body(compound: MeasuredCompound) -> bool:
+    """Whether all parts that have an exposed surface hang together."""
+    meet = meeting_parts(compound) | np.eye(len(compound.planes.inner), dtype=np.bool_)
+    for _ in range(3):  # paths of up to 8 edges: as many as there can be parts
+        meet = meet @ meet
+    areas = np.bincount(_part_of_planes(compound.planes), np.maximum(compound.areas, 0.0))
+    seen = areas > HIDDEN
+    return bool(meet[np.ix_(seen, seen)].all())
+
+
+def _part_of_planes(planes: Planes) -> IntArray:
+    return np.repeat(np.arange(len(planes.inner)), np.diff(planes.first))
 
 
 HIDDEN = 1e-9

@@ -10,12 +10,12 @@ from regolith_studio.coarsening.compound.conditions import (
     stepped,
 )
 from regolith_studio.coarsening.compound.line_overlap import shared_with_lines
-from regolith_studio.coarsening.compound.measures import Planes, measure_compound
+from regolith_studio.coarsening.compound.measures import Planes, is_one_body, measure_compound
 from regolith_studio.coarsening.compound.scan_lines import scan_lines
 from regolith_studio.coarsening.core.box_search import FINE_ANGLE
 from regolith_studio.geometry.mesh import Mesh
 from tests.coarsening.compound.unions import manifold_of, random_planes, solid_of
-from tests.geometry.solids import rough_stone
+from tests.geometry.solids import rotation, rough_stone
 
 
 def stone() -> Mesh:
@@ -33,6 +33,19 @@ def test_that_volume_and_exposed_area_are_those_of_manifold3d(seed: int, parts: 
     assert found.areas.sum() == pytest.approx(found.surface_area, rel=1e-12)
 
 
+@pytest.mark.parametrize("seed", range(12))
+def test_that_parts_hang_together_where_manifold3d_finds_one_body(seed: int) -> None:
+    """Parts thrown into a larger room than they fill: some touch others, some do not."""
+    planes = random_planes(seed, 5)
+    moved = planes.inner * 2.0
+    part = np.repeat(np.arange(5), 10)
+    shifted = planes.offsets + np.einsum("ij,ij->i", planes.normals, (moved - planes.inner)[part])
+    found = measure_compound(planes._replace(offsets=shifted, inner=moved))
+    assert found is not None
+    bodies = solid_of(planes._replace(offsets=shifted, inner=moved)).decompose()
+    assert is_one_body(found) == (len(bodies) == 1)
+
+
 def test_that_apart_cubes_are_added_up() -> None:
     cube = np.vstack([np.eye(3), -np.eye(3)])
     far = np.array([[0.0, 0.0, 0.0], [5.0, 0.0, 0.0]])
@@ -41,6 +54,28 @@ def test_that_apart_cubes_are_added_up() -> None:
     assert found is not None
     assert (found.volume, found.surface_area) == pytest.approx((2.0, 12.0))
     assert np.count_nonzero(found.edge_planes[:, 2] < 0) == 0
+
+
+@pytest.mark.parametrize("angle", [1e-2, 4e-6, 1e-7])
+def test_that_facets_that_nearly_touch_are_exposed_where_the_gap_is_open(angle: float) -> None:
+    """A narrower block on a cube, its bottom turned by a small angle about a middle line: half is open.
+
+    The normals are longer or shorter than 1 by what many small steps leave.
+    """
+    cube = np.vstack([np.eye(3), -np.eye(3)])
+    tilted = cube.copy()
+    tilted[5] = [np.sin(angle), 0.0, -np.cos(angle)]
+    offsets = np.array([0.5, 0.5, 0.0, 0.5, 0.5, 1.0, 0.4, 0.4, 1.0, 0.4, 0.4, 0.0])
+    for seed in range(40):
+        rng = np.random.default_rng(seed)
+        turn = rotation(seed) * (1.0 + 2e-15 * rng.normal())
+        shift = np.random.default_rng(seed).normal(size=3)
+        normals = np.vstack([cube, tilted]) @ turn.T
+        inner = np.array([[0.0, 0.0, -0.5], [0.0, 0.0, 0.5]]) @ turn.T + shift
+        found = measure_compound(Planes(normals, offsets + normals @ shift, np.array([0, 6, 12]), inner))
+        assert found is not None
+        assert found.areas[[2, 11]] == pytest.approx([0.68, 0.32 / np.cos(angle)], abs=1e-6)
+        assert found.volume == pytest.approx(1.64 - 0.064 * np.tan(angle), abs=1e-7)
 
 
 def test_that_a_part_that_does_not_hold_its_inner_point_is_refused() -> None:
