@@ -18,16 +18,27 @@ from regolith_studio.dem.evaluation.settings import (
 )
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.messages import N_, Message, Number
 
 RELIABLE_N = 1000
 """Number of particles above which the bias of the evaluation is below half a degree."""
-COARSE_PILE = (
-    f"With fewer than {RELIABLE_N:,} particles the cut at the toe changes the angle by some degrees; "
-    "the interval contains that."
+COARSE_PILE = Message(
+    N_(
+        "With fewer than {count} particles the cut at the toe changes the angle by some degrees; "
+        "the interval contains that."
+    ),
+    count=Number(RELIABLE_N, ","),
 )
 """Said of smaller piles, before a run and with the angle."""
-
-
+LEFT_OUT = N_("Left out: {reason}")
+DOME = N_(
+    "The heap is a dome: its flanks are steeper at the foot than at the top by {share} % of their slope, "
+    "so that it has no single angle."
+)
+HOLLOW = N_(
+    "The heap is hollow: its flanks are flatter at the foot than at the top by {share} % of their slope, "
+    "so that it has no single angle."
+)
 PAPER_AZIMUTHS = (0.0, 90.0)
 """Degrees of x-z and y-z."""
 
@@ -122,7 +133,11 @@ def measure_repose(
     sections, refused = _sections(surfaces, mean_diameter, settings)
     if len(sections) < settings.azimuths / 2:
         raise NotAPileError(
-            f"Only {len(sections)} of {settings.azimuths} sections through the heap have two straight flanks."
+            Message(
+                N_("Only {count} of {total} sections through the heap have two straight flanks."),
+                count=len(sections),
+                total=settings.azimuths,
+            )
         )
     _check_straightness(sections)
     warnings = [*left_out, *refused]
@@ -159,7 +174,11 @@ def check_number(n: int, settings: EvaluationSettings) -> None:
     """
     if n < settings.min_particles:
         raise NotAPileError(
-            f"{n} particles are too few for a pile; at least {settings.min_particles} are needed.",
+            Message(
+                N_("{count} particles are too few for a pile; at least {needed} are needed."),
+                count=n,
+                needed=settings.min_particles,
+            ),
             "too few particles",
         )
 
@@ -192,7 +211,7 @@ def _surfaces(
         except NotAPileError as refusal:
             if azimuth in PAPER_AZIMUTHS:
                 raise
-            left_out.append(f"Left out: {refusal}")
+            left_out.append(Message(LEFT_OUT, reason=refusal.sentence))
     return surfaces, left_out
 
 
@@ -206,12 +225,16 @@ def _surface(
 ) -> Profile:
     discs = project(points, diameters, base, np.radians(azimuth), settings.slab * mean_diameter)
     if not len(discs.u):
-        raise NotAPileError(f"The slice at {azimuth:g} degrees holds no particle.", "scattered")
+        template = N_("The slice at {azimuth} degrees contains no particle.")
+        raise NotAPileError(Message(template, azimuth=Number(azimuth, "g")), "scattered")
     profile = surface_profile(discs, mean_diameter, settings)
     inside = (discs.u >= profile.u[profile.first]) & (discs.u <= profile.u[profile.last])
     if inside.mean() < HEAP_SHARE:
         raise NotAPileError(
-            f"The particles lie scattered: only {100 * inside.mean():.0f} % of them are in the heap.",
+            Message(
+                N_("The particles are scattered: only {share} % of them are in the heap."),
+                share=Number(100 * inside.mean(), ".0f"),
+            ),
             "scattered",
         )
     return profile
@@ -229,7 +252,7 @@ def _sections(
         except NotAPileError as refusal:
             if azimuth in PAPER_AZIMUTHS:
                 raise
-            left_out.append(f"Left out: {refusal}")
+            left_out.append(Message(LEFT_OUT, reason=refusal.sentence))
     return sections, left_out
 
 
@@ -238,11 +261,7 @@ def _check_straightness(sections: Sequence[Section]) -> None:
     curvatures = [each for section in sections for each in section.curvature]
     mean = float(np.mean(curvatures))
     if abs(mean) > max(MAX_CURVATURE, standard_interval(curvatures, 0.99)):
-        shape = "a dome: its flanks are steeper" if mean > 0.0 else "hollow: its flanks are flatter"
-        raise NotAPileError(
-            f"The heap is {shape} at the foot than at the top by {100 * abs(mean):.0f} % of their slope, "
-            "so that it has no single angle."
-        )
+        raise NotAPileError(Message(DOME if mean > 0.0 else HOLLOW, share=Number(100 * abs(mean), ".0f")))
 
 
 def _cut_shift(

@@ -14,7 +14,7 @@ import numpy as np
 from regolith_studio.dem.case import PreparedCase
 from regolith_studio.dem.engine import RunChecks, SimulationResult
 from regolith_studio.dem.run_checks import check_run, measure_filling
-from regolith_studio.dem.snapshot import EngineState, ParticleState, Snapshot
+from regolith_studio.dem.snapshot import PHASES, EngineState, ParticleState, Snapshot, progress_message
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.messages import N_
 
@@ -22,7 +22,6 @@ LOOK = 0.5
 """Simulated time between two samples of the energies and speeds."""
 CLEAR = 0.5
 """Distance between rim and pile, in mean diameters, at which the cylinder is removed."""
-PHASES = ("fill", "settle", "lift", "rest")
 FALL, SETTLE, REST = 25.0, 6.0, 18.0
 
 
@@ -72,7 +71,7 @@ class LiftingSettings:
         default=3.0, metadata={"label": N_("Time at rest"), "minimum": 0.1, "maximum": 1000.0}
     )
     max_rest_time: float = field(
-        default=60.0, metadata={"label": N_("Longest wait"), "minimum": 1.0, "maximum": 1e5}
+        default=60.0, metadata={"label": N_("Maximum duration"), "minimum": 1.0, "maximum": 1e5}
     )
     snapshots: int = field(default=120, metadata={"label": N_("Snapshots"), "minimum": 2, "maximum": 10_000})
 
@@ -273,9 +272,7 @@ def _is_clear(run: LiftingRun) -> bool:
 def _snapshot(run: LiftingRun) -> Snapshot:
     share = min(0.99, run.solver.time / run.expected)
     simulated = run.solver.time * run.units.time
-    return Snapshot(
-        particles_of(run), share, f"{run.phase}, {simulated:.2f} s simulated", lambda: _state(run)
-    )
+    return Snapshot(particles_of(run), share, progress_message(run.phase, simulated), lambda: _state(run))
 
 
 def _state(run: LiftingRun) -> EngineState:

@@ -11,6 +11,7 @@ from regolith_studio.dem.engine import RunChecks
 from regolith_studio.dem.initial_packing import enclosing_radii
 from regolith_studio.dem.snapshot import ParticleState
 from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.messages import N_, Message, Number
 
 MAX_OVERLAP = 0.02
 """Maximum accepted overlap at rest, in mean diameters."""
@@ -44,13 +45,16 @@ def check_run(
     kept, sentences = int(np.count_nonzero(heights > -1.0)), list(problems)
     largest = float(overlaps.max(initial=0.0))
     if kept < len(heights):
-        sentences.append(f"{len(heights) - kept} of {len(heights)} particles fell through the plate.")
+        template = N_("{lost} of {count} particles fell through the plate.")
+        sentences.append(Message(template, lost=len(heights) - kept, count=len(heights)))
     if largest > MAX_OVERLAP:
-        sentences.append(f"Particles overlap by up to {100 * largest:.1f} % of the mean diameter.")
+        template = N_("Particles overlap by up to {overlap} % of the mean diameter.")
+        sentences.append(Message(template, overlap=Number(100 * largest, ".1f")))
     if energy_gain > MAX_ENERGY_GAIN:
-        sentences.append(f"The energy rose by {energy_gain:.2g} m g d a particle out of nothing.")
+        template = N_("The energy rose by {gain} m g d per particle without external work.")
+        sentences.append(Message(template, gain=Number(energy_gain, ".2g")))
     if not at_rest:
-        sentences.append("The heap was still moving at the end.")
+        sentences.append(Message(N_("The heap was still moving at the end.")))
     return RunChecks(
         particles_in=len(heights),
         particles_out=kept,

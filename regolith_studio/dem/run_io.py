@@ -4,7 +4,7 @@ import hashlib
 import io
 import os
 import shutil
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -26,6 +26,7 @@ from regolith_studio.io.atomic import exchange, remove_quietly
 from regolith_studio.io.json_text import canonical_json, parse_strict_json
 from regolith_studio.io.natural_order import natural_key
 from regolith_studio.io.output_lock import NEW, hidden_beside, output_lock
+from regolith_studio.messages import Message, from_json, to_json
 
 FORMAT = "regolith-studio-repose"
 SCHEMA_VERSION = 1
@@ -52,6 +53,11 @@ class RunSummary:
         """Degrees, or ``None`` where there is no pile."""
         angle = (self.document.get("measurement") or {}).get("angle_deg")
         return None if angle is None else float(angle)
+
+    def message(self, sentence: str) -> str:
+        """A sentence of the document as a message that can be translated, where it was written as one."""
+        found = map(from_json, self.document.get("messages", ()))
+        return next((each for each in found if each == sentence), sentence)
 
 
 @contextmanager
@@ -330,7 +336,22 @@ def run_document(
         },
         "checks": _checks(ending.checks) if ending else None,
         "measurement": _measurement(measured),
+        "messages": [to_json(each) for each in _sentences(ending, measured) if isinstance(each, Message)],
     }
+
+
+def _sentences(
+    ending: SimulationResult | None, measured: ReposeMeasurement | NotAPileError | None
+) -> Sequence[str]:
+    """The sentences of a document."""
+    of_run = ending.checks.problems if ending else ()
+    match measured:
+        case ReposeMeasurement():
+            return (*of_run, *measured.warnings)
+        case NotAPileError():
+            return (*of_run, measured.sentence)
+        case _:
+            return of_run
 
 
 def case_document(case: ReposeCase) -> dict[str, Any]:

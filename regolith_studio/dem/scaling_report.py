@@ -7,6 +7,7 @@ import numpy as np
 from regolith_studio.dataset.parameters import PAPER_COARSE_GRAINING, PAPER_FILL_HEIGHT
 from regolith_studio.dem.angle_of_repose import COARSE_PILE, RELIABLE_N
 from regolith_studio.dem.case import PreparedCase
+from regolith_studio.messages import N_, Message, Number
 
 
 @dataclass(frozen=True)
@@ -85,31 +86,47 @@ def scaling_report(prepared: PreparedCase) -> ScalingReport:
 
 def _sentences(prepared: PreparedCase, bonds: tuple[float, float, float]) -> list[str]:
     test, mean, factor = prepared.case.test, prepared.mean_diameter, prepared.coarse_graining
-    sentences = [
-        f"{len(prepared):,} particles of {1e3 * mean:.2g} mm stand for {1e3 * test.mass:.3g} g: "
-        f"{factor:.0f} times the size of the dataset's (the paper: {PAPER_COARSE_GRAINING:.0f})."
-    ]
+    scale = Message(
+        N_(
+            "{count} particles of {size} mm represent {mass} g: {factor} times the size of the dataset's "
+            "(the paper: {paper})."
+        ),
+        count=Number(len(prepared), ","),
+        size=Number(1e3 * mean, ".2g"),
+        mass=Number(1e3 * test.mass, ".3g"),
+        factor=Number(factor, ".0f"),
+        paper=Number(PAPER_COARSE_GRAINING, ".0f"),
+    )
+    sentences: list[str] = [scale]
     across = test.diameter / mean
     if across < 20:
-        sentences.append(f"The cylinder is only {across:.1f} particles wide; walls and single grains matter.")
+        narrow = N_("The cylinder is only {across} particles wide; walls and single grains matter.")
+        sentences.append(Message(narrow, across=Number(across, ".1f")))
     if len(prepared) < RELIABLE_N:
         sentences.append(COARSE_PILE)
     low, high = PAPER_FILL_HEIGHT
     if not 0.9 * low <= prepared.fill_height <= 1.1 * high:
-        sentences.append(
-            f"The filling will be about {100 * prepared.fill_height:.2g} cm high (the paper: 2.5 to 3 cm)."
-        )
+        filled = N_("The filling will be about {height} cm high (the paper: 2.5 to 3 cm).")
+        sentences.append(Message(filled, height=Number(100 * prepared.fill_height, ".2g")))
     real, given, simulated = bonds
     if prepared.case.contact.surface_energy > 0.0:
         sentences.append(
-            f"Cohesion over weight is {_plain(real)} for the dataset's particles and {_plain(given)} for the "
-            f"simulated ones at the given surface energy; this run has {_plain(simulated)}."
+            Message(
+                N_(
+                    "Cohesion over weight is {real} for the dataset's particles and {given} for the "
+                    "simulated ones at the given surface energy; this run has {simulated}."
+                ),
+                real=_plain(real),
+                given=_plain(given),
+                simulated=_plain(simulated),
+            )
         )
     if prepared.case.contact.static_friction != prepared.case.contact.dynamic_friction:
-        sentences.append("The constraint solver knows one coefficient of friction; it takes the static one.")
+        one = N_("The constraint solver has one coefficient of friction; it takes the static one.")
+        sentences.append(Message(one))
     return sentences
 
 
-def _plain(number: float) -> str:
+def _plain(number: float) -> Number:
     """Two significant digits without exponents below 1000."""
-    return f"{number:.2g}" if number < 100 else f"{number:.0f}"
+    return Number(number, ".2g" if number < 100 else ".0f")

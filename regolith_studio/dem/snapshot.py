@@ -12,9 +12,17 @@ import numpy as np
 
 from regolith_studio.errors import FileError
 from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats, locked_integers
+from regolith_studio.messages import N_, Message, Number
 
+PHASES = (N_("fill"), N_("settle"), N_("lift"), N_("rest"))
+"""Of the test, in their order."""
 MAX_UNPACKED_BYTES = 2_000_000_000
 """Maximum unpacked size of a file in bytes."""
+
+
+def progress_message(phase: str, seconds: float) -> Message:
+    """How far a simulation is: its phase and the simulated time."""
+    return Message(N_("{phase}, {time} s simulated"), phase=Message(phase), time=Number(seconds, ".2f"))
 
 
 @dataclass(frozen=True, eq=False)

@@ -130,7 +130,7 @@ def check_shapes(prepared: PreparedCase, engine: Engine) -> None:
 def _simulate(record: "_RunWriter", folder: Path, request: ReposeRequest) -> Steps:
     """Run the engine and save how it ends."""
     steps = run_engine(record.engine.key, record.prepared, record.settings, record.folder, request.threads)
-    share, message = 0.0, "starting"
+    share, message = 0.0, N_("starting")
     try:
         while True:
             try:

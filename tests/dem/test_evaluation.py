@@ -18,6 +18,7 @@ from regolith_studio.dem.evaluation.profile import Discs, base_level, connected_
 from regolith_studio.dem.evaluation.settings import EvaluationSettings, NotAPileError
 from regolith_studio.dem.evaluation.slope_fit import fit_asymmetric, fit_symmetric
 from regolith_studio.errors import InputError
+from regolith_studio.studies.figures.repose import framed
 from tests.dem.packings import cone, packing
 
 
@@ -231,3 +232,13 @@ def test_that_the_document_names_both_planes_and_every_choice() -> None:
     assert [each["plane"] for each in document["sections"][:3]] == ["x-z", "y-z", None]
     assert document["angle_deg"] == found.angle
     assert set(document["settings"]) == {each.name for each in dataclasses.fields(EvaluationSettings)}
+
+
+def test_that_a_picture_of_a_section_does_not_follow_nearly_flat_flanks_away_from_the_heap() -> None:
+    section = measure_repose(cone(30, 1000, 0), 1.0).sections[0]
+    reach, top = framed(section)
+    flat = dataclasses.replace(section.symmetric, slope=section.symmetric.slope / 20.0)
+    wide, height = framed(dataclasses.replace(section, symmetric=flat))
+    half = max(abs(section.profile.u[[section.profile.first, section.profile.last]]))
+    assert half < reach < 1.3 * half
+    assert (wide, height) == (pytest.approx(1.3 * half), pytest.approx(top))

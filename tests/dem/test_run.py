@@ -45,6 +45,7 @@ from regolith_studio.jobs.repose_study import (
     values_in,
     with_value,
 )
+from regolith_studio.messages import Message
 from regolith_studio.studies.figures.repose import write_repose_study
 from tests.dem.packings import cone
 
@@ -93,6 +94,9 @@ def test_that_a_run_leaves_everything_that_it_followed_from(finished: Path, boxe
     assert document["checks"]["max_overlap"] < 0.05
     assert document["checks"]["energy_gain"] < 0.05
     assert document["measurement"]["status"] in NO_ANGLE
+    reason = document["measurement"]["reason"]
+    assert isinstance(read_run(finished).message(reason), Message), "it can be translated"
+    assert read_run(finished).message(reason) == reason
     assert "restitution" in document["not_given_in_the_paper"]
 
 

@@ -11,7 +11,8 @@ from PySide6.QtWidgets import QFileDialog, QInputDialog, QWidget
 from regolith_studio.dataset.folder_io import write_dataset
 from regolith_studio.dataset.parameters import ContactParameters, LiftingCylinderTest
 from regolith_studio.dem.evaluation.profile import Discs
-from regolith_studio.dem.run_io import FORMAT, read_run, save_result
+from regolith_studio.dem.run_checks import check_run
+from regolith_studio.dem.run_io import FORMAT, RunSummary, read_run, save_result
 from regolith_studio.dem.snapshot import ParticleState, Snapshot, particle_state_bytes
 from regolith_studio.errors import JobCancelled
 from regolith_studio.geometry.mesh import Mesh
@@ -19,6 +20,7 @@ from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.jobs.events import Partial
 from regolith_studio.jobs.runners.run_job import InlineRunner
+from regolith_studio.messages import to_json
 from regolith_studio.session.session import Session
 from regolith_studio.studies.repose import runs_from
 from regolith_studio.ui.bindings import Bindings
@@ -27,6 +29,7 @@ from regolith_studio.ui.dialogs.folder import FolderDialog
 from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.pages.repose import PAGE
 from regolith_studio.ui.pages.repose.player import RunPlayer
+from regolith_studio.ui.pages.repose.runs import checks_text
 from regolith_studio.ui.pages.repose.section_plot import particle_text
 from regolith_studio.ui.widgets.forms import ParameterForm
 from regolith_studio.ui.widgets.toast import Toast
@@ -410,3 +413,23 @@ def test_that_the_whole_column_of_particles_is_in_the_picture_before_the_lift(sh
     player.show_moment(pile, "Before")
     assert player.frame.view.pose.parallel_scale >= 0.5 * 2.0 * test.height
     player.release()
+
+
+def test_that_the_problems_of_a_saved_run_are_shown_in_the_language_of_the_window(speaking, tmp_path):
+    checks = check_run(
+        np.array([-5.0, 1.0]),
+        np.array([0.034]),
+        energy_gain=0.0,
+        kinetic_energy=0.0,
+        at_rest=True,
+        filling=(0, 0),
+    )
+    document = {"checks": {"problems": [str(each) for each in checks.problems], "passed": False}}
+    document["messages"] = [to_json(each) for each in checks.problems]
+    run = RunSummary(tmp_path, json.loads(json.dumps(document)))
+    assert checks_text(run) == " ".join(checks.problems)
+    speaking("de")
+    assert checks_text(run) == (
+        "1 von 2 Partikeln fielen durch die Platte. Partikel überlappen um bis zu 3,4 % "
+        "des mittleren Durchmessers."
+    )

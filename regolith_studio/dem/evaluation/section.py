@@ -20,6 +20,7 @@ from regolith_studio.dem.evaluation.slope_fit import (
     silhouette_deficit,
 )
 from regolith_studio.geometry.arrays import BoolArray, FloatArray
+from regolith_studio.messages import N_, Message, Number
 
 SELECTIONS = 5
 """Times that the points between the cuts are chosen anew by the fitted lines."""
@@ -94,15 +95,28 @@ def evaluate_section(
     symmetric = None if fit is None else fit_symmetric(profile.u[used], fit.surface, settings.min_points)
     if fit is None or symmetric is None:
         raise NotAPileError(
-            f"The section at {azimuth:g} degrees has no two flanks: {used.sum()} surface points lie between "
-            f"the cuts, and each flank needs {settings.min_points} that rise to an apex."
+            Message(
+                N_(
+                    "The section at {azimuth} degrees has no two flanks: {points} surface points lie between "
+                    "the cuts, and each flank needs {needed} that rise to an apex."
+                ),
+                azimuth=Number(azimuth, "g"),
+                points=int(used.sum()),
+                needed=settings.min_points,
+            )
         )
     if fit.asymmetric.angle > MAX_ANGLE:
         raise NotAPileError(_column(fit.asymmetric.angle), "column stands")
     if fit.asymmetric.r_squared < MIN_R_SQUARED:
         raise NotAPileError(
-            f"The section at {azimuth:g} degrees is no pile: two straight flanks explain only "
-            f"{100 * max(fit.asymmetric.r_squared, 0.0):.0f} % of its surface."
+            Message(
+                N_(
+                    "The section at {azimuth} degrees is no pile: two straight flanks explain only "
+                    "{share} % of the variance of its surface."
+                ),
+                azimuth=Number(azimuth, "g"),
+                share=Number(100 * max(fit.asymmetric.r_squared, 0.0), ".0f"),
+            )
         )
     curvature = flank_curvature(profile.u[used], fit.surface, fit.asymmetric)
     return Section(azimuth, profile, used, low, high, fit.asymmetric, symmetric, fit.uncorrected, curvature)
@@ -170,8 +184,11 @@ def _check_shape(profile: Profile, mean_diameter: float, settings: EvaluationSet
     layers = profile.top / mean_diameter
     if layers < settings.min_height:
         raise NotAPileError(
-            f"The particles lie in a layer {layers:.1f} mean diameters high; a pile has at least "
-            f"{settings.min_height:g}.",
+            Message(
+                N_("The particles form a layer {height} mean diameters high; a pile has at least {needed}."),
+                height=Number(layers, ".1f"),
+                needed=Number(settings.min_height, "g"),
+            ),
             "layer",
         )
     steepness = float(np.degrees(np.arctan2(2 * profile.top, profile.width)))
@@ -179,5 +196,6 @@ def _check_shape(profile: Profile, mean_diameter: float, settings: EvaluationSet
         raise NotAPileError(_column(steepness), "column stands")
 
 
-def _column(angle: float) -> str:
-    return f"The heap is {angle:.0f} degrees steep: the column still stands and has not become a pile."
+def _column(angle: float) -> Message:
+    template = N_("The heap is {angle} degrees steep: the column still stands and has not become a pile.")
+    return Message(template, angle=Number(angle, ".0f"))

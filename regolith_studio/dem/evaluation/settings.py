@@ -59,7 +59,8 @@ class EvaluationSettings:
         default=0.15, metadata={"label": N_("Lower cut"), "minimum": 0.0, "maximum": 0.45}
     )
     toe: float = field(
-        default=1.5, metadata={"label": N_("Lowest cut, in mean d"), "minimum": 0.0, "maximum": 10.0}
+        default=1.5,
+        metadata={"label": N_("Minimum height of the cut, in mean d"), "minimum": 0.0, "maximum": 10.0},
     )
     slab: float = field(
         default=0.0,
@@ -75,13 +76,15 @@ class EvaluationSettings:
     )
     azimuths: int = field(default=12, metadata={"label": N_("Sections"), "minimum": 2, "maximum": 360})
     min_points: int = field(
-        default=4, metadata={"label": N_("Points a flank"), "minimum": 3, "maximum": 1000}
+        default=4, metadata={"label": N_("Points per flank"), "minimum": 3, "maximum": 1000}
     )
     min_particles: int = field(
-        default=150, metadata={"label": N_("Fewest particles"), "minimum": 10, "maximum": 1_000_000}
+        default=150,
+        metadata={"label": N_("Minimum number of particles"), "minimum": 10, "maximum": 1_000_000},
     )
     min_height: float = field(
-        default=2.5, metadata={"label": N_("Lowest pile, in mean d"), "minimum": 0.0, "maximum": 100.0}
+        default=2.5,
+        metadata={"label": N_("Minimum height of the heap, in mean d"), "minimum": 0.0, "maximum": 100.0},
     )
     confidence: float = field(
         default=0.95, metadata={"label": N_("Confidence"), "minimum": 0.5, "maximum": 0.999}
@@ -124,4 +127,5 @@ class NotAPileError(InputError):
 
     def __init__(self, sentence: str, status: Status = "no flanks") -> None:
         super().__init__(sentence)
+        self.sentence = sentence
         self.status: Status = status

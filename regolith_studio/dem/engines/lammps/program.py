@@ -42,7 +42,7 @@ class LammpsSettings:
     """
 
     spheres: int = field(
-        default=12, metadata={"label": N_("Spheres a particle"), "minimum": 1, "maximum": 64}
+        default=12, metadata={"label": N_("Spheres per particle"), "minimum": 1, "maximum": 64}
     )
     max_error: float = field(
         default=0.0, metadata={"label": N_("Error of the spheres"), "minimum": 0.0, "maximum": 0.9}

@@ -12,13 +12,13 @@ from regolith_studio.dem.case import PreparedCase
 from regolith_studio.dem.engines.lammps.clumps import Clumps
 from regolith_studio.dem.engines.lammps.program import LammpsSettings
 from regolith_studio.dem.scaling_report import rayleigh_time
+from regolith_studio.dem.snapshot import PHASES
 from regolith_studio.geometry.arrays import FloatArray
 
 TANGENTIAL_DAMPING = 1.0
 TYPICAL_OVERLAP = 0.005
 """Mean diameters, where the two laws of damping are made equal."""
 SETTLE = 8.0
-PHASES = ("fill", "settle", "lift", "rest")
 
 
 @dataclass(frozen=True)

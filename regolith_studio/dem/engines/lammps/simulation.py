@@ -25,7 +25,7 @@ from regolith_studio.dem.engines.lammps.script import (
 from regolith_studio.dem.external_program import printed_lines, running_program, written_files
 from regolith_studio.dem.initial_packing import enclosing_radii
 from regolith_studio.dem.run_checks import check_run, measure_filling
-from regolith_studio.dem.snapshot import ParticleState, Snapshot
+from regolith_studio.dem.snapshot import ParticleState, Snapshot, progress_message
 from regolith_studio.errors import RegolithError
 from regolith_studio.geometry.arrays import FloatArray, IntArray
 
@@ -220,7 +220,7 @@ def _snapshot(run: _Run, path: Path, step: int) -> Snapshot:
     return Snapshot(
         particles,
         min(0.99, run.plan.time(step) / run.plan.total),
-        f"{particles.phase}, {particles.time:.2f} s simulated",
+        progress_message(particles.phase, particles.time),
     )
 
 

@@ -6,9 +6,11 @@ import numpy as np
 from regolith_studio.dem.case import PreparedCase
 from regolith_studio.dem.engines.mujoco.model import build_model
 from regolith_studio.dem.engines.mujoco.settings import MujocoSettings
-from regolith_studio.dem.lifting_cylinder import PHASES, Units, lift_speed
+from regolith_studio.dem.lifting_cylinder import Units, lift_speed
+from regolith_studio.dem.snapshot import PHASES
 from regolith_studio.errors import RegolithError
 from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.messages import N_, Message
 
 MAX_MOVE = 0.01
 """Largest way in a step of all but one in a hundred particles, in mean diameters. Grains that slide faster
@@ -88,7 +90,7 @@ class MujocoSolver:
     def problems(self) -> list[str]:
         full = (mujoco.mjtWarning.mjWARN_CONTACTFULL, mujoco.mjtWarning.mjWARN_CNSTRFULL)
         crowded = any(self.data.warning[each].number for each in full)
-        return ["MuJoCo had no room for all contacts."] if crowded else []
+        return [Message(N_("MuJoCo had no room for all contacts."))] if crowded else []
 
     def notes(self, times: dict[float, float]) -> list[str]:
         shares = {step: time / sum(times.values()) for step, time in sorted(times.items(), reverse=True)}

@@ -10,7 +10,8 @@ from regolith_studio.dem.case import PreparedCase
 from regolith_studio.dem.engine import ENGINE_THREADS
 from regolith_studio.dem.engines.rapier.settings import RapierSettings
 from regolith_studio.dem.initial_packing import enclosing_radii, loose_column
-from regolith_studio.dem.lifting_cylinder import PHASES, Units, lift_speed
+from regolith_studio.dem.lifting_cylinder import Units, lift_speed
+from regolith_studio.dem.snapshot import PHASES
 from regolith_studio.errors import RegolithError
 from regolith_studio.geometry.arrays import FloatArray
 

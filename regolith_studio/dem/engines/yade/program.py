@@ -50,7 +50,7 @@ class YadeSettings:
         default=5e3, metadata={"label": N_("Stiffness, in m g / d³"), "minimum": 1e2, "maximum": 1e9}
     )
     step_share: float = field(
-        default=0.35, metadata={"label": N_("Step, share of a swing"), "minimum": 0.01, "maximum": 0.5}
+        default=0.35, metadata={"label": N_("Step, share of an oscillation"), "minimum": 0.01, "maximum": 0.5}
     )
     damping: float = field(default=0.4, metadata={"label": N_("Damping"), "minimum": 0.0, "maximum": 0.9})
     n_segments: int = field(
@@ -66,7 +66,7 @@ class YadeSettings:
         default=2.0, metadata={"label": N_("Time at rest"), "minimum": 0.1, "maximum": 1000.0}
     )
     max_rest_time: float = field(
-        default=20.0, metadata={"label": N_("Longest wait"), "minimum": 1.0, "maximum": 1e5}
+        default=20.0, metadata={"label": N_("Maximum duration"), "minimum": 1.0, "maximum": 1e5}
     )
     restarts: int = field(default=20, metadata={"label": N_("Restarts"), "minimum": 0, "maximum": 1000})
     snapshots: int = field(default=60, metadata={"label": N_("Snapshots"), "minimum": 2, "maximum": 10_000})

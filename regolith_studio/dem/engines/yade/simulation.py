@@ -16,7 +16,7 @@ from regolith_studio.dem.engines.yade.input_files import LENGTH, YadeState, inpu
 from regolith_studio.dem.engines.yade.program import YadeSettings, command, expected_duration
 from regolith_studio.dem.external_program import printed_lines, running_program, written_files
 from regolith_studio.dem.run_checks import check_run, measure_filling, overlap_depths
-from regolith_studio.dem.snapshot import ParticleState, Snapshot
+from regolith_studio.dem.snapshot import ParticleState, Snapshot, progress_message
 from regolith_studio.errors import RegolithError
 
 
@@ -114,7 +114,7 @@ def _snapshot(run: _Run, state: YadeState) -> Snapshot:
     if state.phase in ("fill", "settle"):
         run.fill = measure_filling(run.prepared, run.particles)
     share = min(0.99, state.time / run.duration)
-    return Snapshot(run.particles, share, f"{state.phase}, {run.particles.time:.2f} s simulated")
+    return Snapshot(run.particles, share, progress_message(state.phase, run.particles.time))
 
 
 def _notes(run: _Run) -> tuple[str, ...]:

@@ -76,5 +76,5 @@ def read_other(parent: QWidget, toast: Toast) -> ParticleState | None:
     n = len(found)
     still = np.tile([1.0, 0.0, 0.0, 0.0], (n, 1))
     return ParticleState(
-        found.points, diameters, still, np.zeros(n, dtype=np.int64), 0.0, float("inf"), "imported"
+        found.points, diameters, still, np.zeros(n, dtype=np.int64), 0.0, float("inf"), N_("imported")
     )

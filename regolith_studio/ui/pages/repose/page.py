@@ -45,7 +45,7 @@ from regolith_studio.ui.pages.repose.setup import EnginePanel, SetupPanel
 from regolith_studio.ui.pages.repose.study import StudyPanel
 from regolith_studio.ui.pages.repose.study_controller import ReposeStudyController
 from regolith_studio.ui.theme import Theme
-from regolith_studio.ui.translation import tr
+from regolith_studio.ui.translation import tr, translate
 from regolith_studio.ui.translation.numbers import localized
 from regolith_studio.ui.widgets.headline import Headline
 
@@ -86,7 +86,7 @@ class ReposePage(PageWidget):
         self._place()
         self._connect()
         self._context.bindings.refresh("dataset_folder", self._take_dataset)
-        self.setup.show_consequences([tr("Open a dataset, or make one from the open particles.")])
+        self.setup.show_consequences([tr("Open a dataset, or build one from the open particles.")])
         self._list_runs()
 
     # --- the page of the window ----------------------------------------------------------------
@@ -148,14 +148,14 @@ class ReposePage(PageWidget):
         options = DatasetOptions(name="open particles", preset=session.choices.preset, overwrite=True)
         job = Job(build_dataset_folder, (particles, session.choices.coarsening_request, folder, options))
         self._context.start(
-            tr("Making a dataset"), job, lambda built: self.setup.set_dataset(built.folder), lane=BUILD
+            tr("Building a dataset"), job, lambda built: self.setup.set_dataset(built.folder), lane=BUILD
         )
 
     def run_test(self) -> None:
         """Simulate the case of the set-up panel."""
         dataset = self.setup.dataset
         if dataset is None:
-            self._context.toast.problem(tr("There is no dataset yet: open one, or make one first."))
+            self._context.toast.problem(tr("There is no dataset yet: open or build one first."))
             return
         try:
             request = self.setup.request()
@@ -239,7 +239,7 @@ class ReposePage(PageWidget):
             return
         if request.case.n_particles > MAX_PARTICLES:
             words = tr(
-                "More than {count:,} particles are for other programs: export the dataset.",
+                "At most {count:,} particles can be simulated here; export the dataset for other programs.",
                 count=MAX_PARTICLES,
             )
             self.setup.show_consequences([], words)
@@ -268,7 +268,7 @@ class ReposePage(PageWidget):
             time=duration_text(seconds),
             longer=duration_text(2 * seconds),
         )
-        self.setup.show_consequences([time, *scaling_report(prepared).sentences])
+        self.setup.show_consequences([time, *map(translate, scaling_report(prepared).sentences)])
         scene = (prepared.part_vertices, request.case.shapes == "spheres", request.case.test)
         if self._running:
             self._live_scene = self._live_scene or scene
@@ -287,14 +287,15 @@ class ReposePage(PageWidget):
         if isinstance(moment, Snapshot) and self._live_scene is not None:
             self._live_pile = moment.particles
             self.player.set_scene(*self._live_scene)
-            self.player.show_moment(moment.particles, tr("Running"), moment.message)
+            self.player.show_moment(moment.particles, tr("Running"), translate(moment.message))
 
     def _finished(self, run: ReposeRun) -> None:
         self._set_running(False)
         self._list_runs(run.folder)
-        self._show_run(RunSummary(run.folder, run.document))
+        summary = RunSummary(run.folder, run.document)
+        self._show_run(summary)
         for problem in run.document["checks"]["problems"]:
-            self._context.toast.problem(problem)
+            self._context.toast.problem(translate(summary.message(problem)))
 
     def _failed(self, failure: Failed) -> None:
         self._set_running(False)
@@ -308,7 +309,7 @@ class ReposePage(PageWidget):
         self._show_nothing(tr("The run was stopped before it was measured."))
         if self._live_pile is not None and self._live_scene is not None:
             self.player.set_scene(*self._live_scene)
-            self.player.show_moment(self._live_pile, tr("Stopped"), tr("the particles as they were then"))
+            self.player.show_moment(self._live_pile, tr("Stopped"), tr("the particles when it was stopped"))
 
     def _set_running(self, running: bool) -> None:
         self._running = running
@@ -343,7 +344,7 @@ class ReposePage(PageWidget):
             self._measure(pile)
         else:
             self._show_measurement(
-                NotAPileError(tr("This run was not finished: {state}.", state=run.document["state"]))
+                NotAPileError(tr("This run was not finished: {state}.", state=tr(run.document["state"])))
             )
 
     def _measure(self, pile: ParticleState) -> None:
@@ -366,7 +367,7 @@ class ReposePage(PageWidget):
             self._measured = None
             self._show_answer(tr("There is no angle of repose."))
             for plot in (self.x_z, self.y_z):
-                plot.show_nothing(str(measured))
+                plot.show_nothing(translate(getattr(measured, "sentence", "")))
             return
         self._measured = measured
         low, high = measured.interval

@@ -125,7 +125,7 @@ class RunPlayer(QWidget):
         if self._files:
             self.toggle()
         else:
-            report(tr("There is no run to play: make one, or choose one of the list."))
+            report(tr("There is no run to play: run a test or choose a run in the list."))
 
     def toggle(self) -> None:
         """Play from the beginning, or from here, or pause."""

@@ -20,13 +20,13 @@ from regolith_studio.dem.angle_of_repose import ReposeMeasurement
 from regolith_studio.dem.run_io import RunSummary
 from regolith_studio.messages import N_
 from regolith_studio.ui.theme import Theme
-from regolith_studio.ui.translation import tr
+from regolith_studio.ui.translation import tr, translate
 from regolith_studio.ui.translation.numbers import localized, number_text
 from regolith_studio.ui.widgets.plots.curves import CurvePlot, PlotCurve
 
 AGAINST: Mapping[str, tuple[str, ...]] = {
     N_("Static friction"): ("case", "contact", "static_friction"),
-    N_("Facets a particle"): ("particles", "mean_facets"),
+    N_("Facets per particle"): ("particles", "mean_facets"),
     N_("Rolling resistance"): ("case", "contact", "rolling_friction"),
     N_("Gravity [m/s²]"): ("case", "test", "gravity"),
     N_("Wall friction"): ("case", "test", "wall_friction"),
@@ -36,6 +36,11 @@ AGAINST: Mapping[str, tuple[str, ...]] = {
 }
 SHAPES = (N_("polyhedra"), N_("spheres"))
 """Parameters that distinguish runs."""
+STATES = (
+    *(N_("finished"), N_("stopped"), N_("failed")),
+    *(N_("too few particles"), N_("layer"), N_("column stands"), N_("no flanks"), N_("scattered")),
+)
+"""States of a run, and why a heap has no angle."""
 HEADINGS = (
     N_("Run"),
     N_("Angle"),
@@ -149,7 +154,7 @@ def _cells(run: RunSummary) -> tuple[str, ...]:
     angle = (
         localized(f"{run.angle:.1f}°")
         if run.angle is not None
-        else str(measurement.get("status", document["state"]))
+        else tr(str(measurement.get("status", document["state"])))
     )
     return (
         run.folder.name,
@@ -170,7 +175,7 @@ def _explained(run: RunSummary) -> str:
     measurement = run.document.get("measurement") or {}
     checks = run.document.get("checks") or {}
     problems = [run.document.get("problem"), measurement.get("reason"), *checks.get("problems", ())]
-    return "\n".join(each for each in problems if each)
+    return "\n".join(translate(run.message(each)) for each in problems if each)
 
 
 def _at(document: Mapping[str, Any], path: tuple[str, ...]) -> Any:
@@ -184,9 +189,9 @@ def checks_text(run: RunSummary) -> str:
     """Result of the checks of a run, or its problem or state."""
     checks = run.document.get("checks")
     if checks is None:
-        return str(run.document.get("problem") or run.document["state"])
+        return tr(str(run.document.get("problem") or run.document["state"]))
     if checks["problems"]:
-        return " ".join(checks["problems"])
+        return " ".join(translate(run.message(each)) for each in checks["problems"])
     overlap = 100 * checks["max_overlap"]
     return tr(
         "Checked: {count:,} particles, overlap at most {overlap:.1f} % of d",
@@ -210,12 +215,12 @@ def angle_text(measured: ReposeMeasurement) -> str:
     """What the angle of repose is the mean of, and what to know about it."""
     return (
         tr(
-            "Mean of {count} sections. Two perpendicular sections give {asymmetric:.1f}° (one angle a flank)"
-            " and {symmetric:.1f}° (one angle for both).",
+            "Mean of {count} sections. Two perpendicular sections give {asymmetric:.1f}° (one "
+            "angle per flank) and {symmetric:.1f}° (one angle for both).",
             count=len(measured.sections),
             asymmetric=measured.paper_asymmetric.mean,
             symmetric=measured.paper_symmetric.mean,
         )
         + " "
-        + " ".join(measured.warnings[:2])
+        + " ".join(map(translate, measured.warnings[:2]))
     )

@@ -36,7 +36,7 @@ from regolith_studio.ui.widgets.forms import SettingsForm
 from regolith_studio.ui.widgets.labels import ElidedLabel, heading, remark
 from regolith_studio.ui.widgets.presets import PresetForm
 
-PRESETS = {N_("Teaching"): 300, N_("Usual"): 1000, N_("Fine"): 5000}
+PRESETS = {N_("Teaching"): 300, N_("Standard"): 1000, N_("Fine"): 5000}
 SHAPES = {N_("The dataset's polyhedra"): "polyhedra", N_("Spheres of the same volumes"): "spheres"}
 COHESION = {
     N_("None"): "none",

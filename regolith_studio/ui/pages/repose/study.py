@@ -60,7 +60,7 @@ class StudyPanel(QWidget):
         self._study: ReposeStudy | None = None
         self.key = QComboBox()
         self.key.setObjectName("repose_study_key")
-        self.key.setAccessibleName(tr("What is varied"))
+        self.key.setAccessibleName(tr("Varied quantity"))
         for name, (label, _) in VARIED.items():
             self.key.addItem(tr(label), name)
         self.values = NumbersLine(VARIED["static_friction"][1])
@@ -68,7 +68,7 @@ class StudyPanel(QWidget):
         self.values.setAccessibleName(tr("Values, with commas between them"))
         self.repeats = QSpinBox()
         self.repeats.setObjectName("repose_study_repeats")
-        self.repeats.setAccessibleName(tr("Runs of each value, with other seeds"))
+        self.repeats.setAccessibleName(tr("Runs per value, with different seeds"))
         self.repeats.setRange(1, 100)
         self.start, self.stop = QPushButton(tr("Start or resume")), QPushButton(tr("Stop"))
         self.start.setObjectName("repose_study_start")
@@ -185,7 +185,7 @@ class StudyPanel(QWidget):
         form.setContentsMargins(8, 6, 0, 0)
         form.addRow(tr("Vary"), self.key)
         form.addRow(tr("Values"), self.values)
-        form.addRow(tr("Runs of each"), self.repeats)
+        form.addRow(tr("Runs per value"), self.repeats)
         buttons = QHBoxLayout()
         buttons.addWidget(self.start)
         buttons.addWidget(self.stop)
@@ -215,7 +215,7 @@ class StudyPanel(QWidget):
         tip = tr("Names of presets: {names}", names=", ".join(presets())) if key == "preset" else ""
         self.values.setToolTip(tip)
         self.show_status(
-            tr("A dataset is made of the open particles for every value.") if key in SHAPE_KEYS else ""
+            tr("A dataset is built from the open particles for each value.") if key in SHAPE_KEYS else ""
         )
 
     def _announce(self) -> None:
