@@ -10,6 +10,7 @@ from PySide6.QtGui import QGuiApplication
 from PySide6.QtWidgets import QDialog, QFileDialog, QWidget
 
 from regolith_studio.errors import RegolithError
+from regolith_studio.geometry.particle import Particle
 from regolith_studio.io.atomic import write_files
 from regolith_studio.jobs.events import Job
 from regolith_studio.jobs.particle_jobs import measure_first
@@ -19,7 +20,15 @@ from regolith_studio.session.code_export import as_command, as_python
 from regolith_studio.session.file_kinds import FileKind, kind_of_all
 from regolith_studio.session.preferences import Preferences
 from regolith_studio.session.project import SessionRecipe, input_shown, inputs_of
-from regolith_studio.session.provenance import MAX_RESTORED, FileSource, ParticleRef, SampleSource
+from regolith_studio.session.provenance import (
+    MAX_RESTORED,
+    FileSource,
+    ParticleRef,
+    ParticleSource,
+    SampleSource,
+    VirtualSource,
+    VolumeSource,
+)
 from regolith_studio.session.recipe import DatasetRequest, Recipe, read_recipe
 from regolith_studio.session.session import Session
 from regolith_studio.session.verdict import cost_of_imitating_the_fit
@@ -81,6 +90,7 @@ class Commands(QObject):
         self._export: ExportDialog | None = None
         self._export_task = 0
         self._before: Recipe | None = None
+        self._after: Recipe | None = None
 
     def open(self) -> None:
         """Ask for files and open them."""
@@ -111,10 +121,7 @@ class Commands(QObject):
         unit = unit or self._ask_unit(list(paths))
         if unit is None:
             return
-        particles = self._session.particles
-        answer = REPLACE
-        if not all(each.ref is not None and isinstance(each.ref.origin, SampleSource) for each in particles):
-            answer = ask_add_or_replace(self._preferences, len(particles), self._window) or ""
+        answer = self._add_or_replace(SampleSource)
         if not answer:
             return
         for path in paths:
@@ -122,6 +129,25 @@ class Commands(QObject):
         self._preferences.save()
         self._remember_open()
         self._try(lambda: self._session.open(paths, unit, add=answer == ADD))
+
+    def adopt(self, particles: Sequence[Particle], origin: ParticleSource) -> bool:
+        """Open particles that a page has made; whether the user has agreed.
+
+        Asks whether they are added or replace the open ones where some of those were read from files.
+        """
+        made_here = (SampleSource, VolumeSource, VirtualSource)
+        answer = self._add_or_replace(*made_here)
+        if answer:
+            self._remember_open()
+            self._session.adopt(particles, add=answer == ADD, origin=origin)
+        return bool(answer)
+
+    def _add_or_replace(self, *replaceable: type[ParticleSource]) -> str:
+        """``add`` or ``replace``, asked unless all open particles are of replaceable sources; or nothing."""
+        particles = self._session.particles
+        if all(each.ref is not None and isinstance(each.ref.origin, replaceable) for each in particles):
+            return REPLACE
+        return ask_add_or_replace(self._preferences, len(particles), self._window) or ""
 
     def change_unit(self, id: str) -> None:
         """Ask for the unit of the files that this particle was opened with, and read them again in it."""
@@ -199,29 +225,44 @@ class Commands(QObject):
         dialog.open()
 
     def undo(self) -> None:
-        """Take the last step back; where there is none, reopen what was open before the last opening."""
+        """Undo the last change; where there is none, reopen what was open before the last opening."""
         if self._session.can_undo or self._before is None:
             self._session.undo()
             return
-        before, self._before = self._before, None
-        self._try(lambda: self._session.open_recipe(before, Path.cwd(), keep_selected=True))
+        before, self._before, self._after = self._before, None, self._reopening()
+        self._reopen(before)
+
+    def redo(self) -> None:
+        """Redo what was undone last, a change or an opening."""
+        if self._session.can_redo or not self.can_redo:
+            self._session.redo()
+            return
+        after, self._after, self._before = self._after, None, self._reopening()
+        self._reopen(after)
 
     @property
     def can_undo(self) -> bool:
         """Whether :meth:`undo` would change something."""
         return self._session.can_undo or self._before is not None
 
-    def _remember_open(self) -> None:
-        """Keep how to reopen the particles that are about to be closed; those without a source cannot be."""
-        entries = self._session.particles
-        if not entries:
-            return
-        kept = SessionRecipe.of(entries, self._session.choices)
-        self._before = None if kept.without_source or kept.model else kept.recipe
+    @property
+    def can_redo(self) -> bool:
+        """Whether :meth:`redo` would change something; a change after an undone opening discards it."""
+        return self._session.can_redo or (self._after is not None and not self._session.can_undo)
 
-    def redo(self) -> None:
-        """Take it again."""
-        self._session.redo()
+    def _remember_open(self) -> None:
+        """Keep how to reopen the particles that are about to be closed."""
+        if self._session.particles:
+            self._before, self._after = self._reopening(), None
+
+    def _reopening(self) -> Recipe | None:
+        """How to reopen the open particles; ``None`` where some came from no file."""
+        kept = SessionRecipe.of(self._session.particles, self._session.choices)
+        return None if kept.without_source or kept.model else kept.recipe
+
+    def _reopen(self, recipe: Recipe | None) -> None:
+        if recipe is not None:
+            self._try(lambda: self._session.open_recipe(recipe, Path.cwd(), keep_selected=True))
 
     def start_study(self, kind: Kind) -> None:
         """Run a study over all open particles."""
@@ -253,7 +294,12 @@ class Commands(QObject):
         if recipe.representatives or recipe.exports:
             self._session.opened_request = DatasetRequest(recipe.representatives, recipe.exports)
         if recipe.population is not None and recipe.population.n > MAX_RESTORED:
-            self._toast.note(tr("Its choices are taken; it is too large to be opened: use Run as a batch."))
+            self._toast.note(
+                tr(
+                    "Its settings have been applied; its population is too large to "
+                    "be opened: use Run as a batch."
+                )
+            )
             return None
         return self._session.open_recipe(recipe, path.parent)
 

@@ -158,7 +158,7 @@ class MainWindow(QMainWindow):
 
     def _show_choices(self) -> None:
         self.menus.by_name["undo"].setEnabled(self.commands.can_undo)
-        self.menus.by_name["redo"].setEnabled(self.session.can_redo)
+        self.menus.by_name["redo"].setEnabled(self.commands.can_redo)
         self.menus.by_name["repair"].setChecked(self.session.choices.repair)
 
     def _list_recent(self) -> None:

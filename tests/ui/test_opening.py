@@ -12,6 +12,7 @@ from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.io.stl import stl_bytes
 from regolith_studio.jobs.runners.run_job import InlineRunner
 from regolith_studio.resources import guide_folder
+from regolith_studio.session.provenance import SampleSource
 from regolith_studio.session.session import Session
 from regolith_studio.ui.commands import Commands
 from regolith_studio.ui.dialogs.guide import PAGES, as_markdown
@@ -96,6 +97,42 @@ def test_that_replaced_particles_come_back_by_undo_and_added_ones_go(opening, tm
     assert names(session) == ["one"]
     commands.open_paths([other], "um")  # it is not asked again
     assert names(session) == ["one", "two"]
+
+
+def test_that_an_undone_opening_is_redone_until_something_else_changes(opening, tmp_path):
+    commands, session, _ = opening
+    press("opening_replace")
+    commands.open_paths([write_ball(tmp_path / "b" / "two.stl", 30.0)], "um")
+    assert not commands.can_redo
+    commands.undo()
+    assert commands.can_redo
+    commands.redo()
+    assert names(session) == ["two"]
+    assert not commands.can_redo
+    commands.undo()
+    assert names(session) == ["one"]
+    session.choose(l_max=5)
+    assert not commands.can_redo
+    commands.undo()
+    commands.redo()
+    assert (names(session), session.choices.l_max) == (["one"], 5)
+
+
+def test_that_particles_of_a_page_ask_before_they_replace_those_of_a_file_and_can_be_undone(opening):
+    commands, session, _ = opening
+    origin = SampleSource()  # any source but a file
+    press("opening_cancel")
+    assert not commands.adopt([Particle("drawn", icosphere(1))], origin)
+    assert names(session) == ["one"]
+    press("opening_replace")
+    assert commands.adopt([Particle("drawn", icosphere(1))], origin)
+    assert names(session) == ["drawn"]
+    commands.undo()
+    assert names(session) == ["one"]
+    press("opening_replace")
+    commands.adopt([Particle("drawn", icosphere(1))], origin)
+    assert commands.adopt([Particle("again", icosphere(1))], origin)  # nothing is asked: no file is closed
+    assert names(session) == ["again"]
 
 
 def test_that_a_unit_is_changed_afterwards_and_undo_goes_back(opening, monkeypatch, tmp_path):

@@ -48,8 +48,9 @@ What a page can rely on
 * It is built at its first visit, in the thread of the window, and kept until the window closes. Its parts are
   made in the constructor or in :meth:`PageWidget.build`; numerical libraries are imported inside jobs.
 * **State**: ``context.session`` is the one truth: ``particles``, ``choices``, ``results``,
-  ``choose(...)``, ``adopt(particles)`` for particles made by a page (they replace or join the open
-  ones and are measured and shown everywhere), ``dataset_folder`` and ``runs_folder`` (written last).
+  ``choose(...)``, ``dataset_folder`` and ``runs_folder`` (written last).
+  ``context.commands.adopt(particles, origin)`` opens particles made by a page: they replace or join the open
+  ones, and are measured and shown everywhere.
 * **Refreshing**: ``context.bindings.refresh("particles choices", action, ("l_max",))`` calls `action` soon
   after these events, and now; after a change of choices only if one of the fields named has changed.
   ``slow=True`` for tables and plots. Nothing is refreshed while the page is hidden;

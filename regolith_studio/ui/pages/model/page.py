@@ -299,8 +299,8 @@ class ModelPage(PageWidget):
             self.drawing.show_names(getattr(self._model, "names", ()))
 
     def _take_over(self, particles: tuple[Particle, ...], origin: VirtualSource) -> None:
-        self._context.session.adopt(particles, origin=origin)
-        self._context.toast.note(tr("{count:,} virtual particles are open now.", count=len(particles)))
+        if self._context.commands.adopt(particles, origin):
+            self._context.toast.note(tr("{count:,} virtual particles are open now.", count=len(particles)))
 
     # --- the state of the controls -------------------------------------------------------------
 

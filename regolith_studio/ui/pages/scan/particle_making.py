@@ -85,7 +85,8 @@ class ParticleMaking(QObject):
             )
             return
         origin = VolumeSource.of(entry, extraction.particles)
-        self._context.session.adopt(extraction.particles, origin=origin)
+        if not self._context.commands.adopt(extraction.particles, origin):
+            return
         summary = translate(extraction.summary)
         self._context.toast.note(summary)
         self.made.emit(summary)
