@@ -134,8 +134,8 @@ def tabs(name: str, pages: Sequence[tuple[QWidget, str]]) -> QTabWidget:
     return made
 
 
-def scrolled_column(panels: Sequence[QWidget]) -> QScrollArea:
-    """Panels below each other, with a scroll bar where they do not fit."""
+def scrolled_column(panels: Sequence[QWidget], least: int = CONTROLS_WIDTH - 30) -> QScrollArea:
+    """Panels below each other, with a scroll bar where they do not fit; at least so many pixels wide."""
     inside = QWidget()
     column = QVBoxLayout(inside)
     column.setSpacing(20)
@@ -143,7 +143,7 @@ def scrolled_column(panels: Sequence[QWidget]) -> QScrollArea:
     for panel in panels:
         column.addWidget(panel)
     column.addStretch(1)
-    area = _Column()
+    area = _Column(least)
     area.setObjectName("controls")
     area.setWidgetResizable(True)
     area.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
@@ -166,11 +166,15 @@ def scrolled(part: QWidget) -> QScrollArea:
 class _Column(QScrollArea):
     """A column as wide as its content needs, in any language and font size."""
 
+    def __init__(self, least: int) -> None:
+        super().__init__()
+        self._least = least
+
     def minimumSizeHint(self) -> QSize:
         inside = self.widget()
         needed = inside.minimumSizeHint().width() if inside is not None else 0
         bar = self.verticalScrollBar().sizeHint().width()
-        return QSize(max(CONTROLS_WIDTH - 30, needed + bar), super().minimumSizeHint().height())
+        return QSize(max(self._least, needed + bar), super().minimumSizeHint().height())
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
         if event.type() == QEvent.Type.LayoutRequest:

@@ -13,6 +13,8 @@ from regolith_studio.ui.layout import Splitter
 LAYOUT = "layout"
 STANDARD_SIZE = (1480, 900)
 """Of a new window in pixels, where the screen is large enough."""
+FRAME = QSize(8, 40)
+"""Pixels that window managers add to the size of a window for its title and borders, at most."""
 EQUAL = 1000
 
 
@@ -33,7 +35,7 @@ class WindowState:
         kept = _bytes(self._kept().get("window"))
         if kept is not None and window.restoreGeometry(kept):
             return True
-        window.resize(window.size().boundedTo(window.screen().availableSize()))
+        window.resize(window.size().boundedTo(room_on_screen(window)))
         return False
 
     def restore_parts(self, root: QWidget) -> None:
@@ -62,7 +64,7 @@ class WindowState:
         """Give window and borders the places of a new window, and forget others."""
         self._preferences.window = self._preferences.window | {LAYOUT: {}}
         window.showNormal()
-        window.resize(QSize(*STANDARD_SIZE).boundedTo(window.screen().availableSize()))
+        window.resize(QSize(*STANDARD_SIZE).boundedTo(room_on_screen(window)))
         for splitter in window.findChildren(QSplitter):
             if isinstance(splitter, Splitter):
                 splitter.restore_standard()
@@ -72,6 +74,11 @@ class WindowState:
     def _kept(self) -> dict[str, Any]:
         kept = self._preferences.window.get(LAYOUT)
         return dict(kept) if isinstance(kept, dict) else {}
+
+
+def room_on_screen(window: QMainWindow) -> QSize:
+    """Largest size of the window's content with which its frame is on the screen."""
+    return window.screen().availableSize() - FRAME
 
 
 def _bytes(text: object) -> QByteArray | None:

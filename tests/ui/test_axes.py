@@ -1,5 +1,7 @@
 """Axes of plots: nothing on them is cut, and their numbers are those of the data."""
 
+import itertools
+
 import pytest
 from PySide6.QtCore import QPointF
 from PySide6.QtGui import QFont, QFontMetricsF
@@ -57,6 +59,7 @@ def test_that_large_numbers_at_an_axis_do_not_lie_upon_each_other(curve, app):
     curve.setFont(font)
     curve.resize(400, 160)
     app.processEvents()
+    curve.grab()  # the range follows when it is painted
     axis = curve.axes["left"]
     (low, high), length = axis.range, axis.size().height()
     spacing = axis.tickSpacing(low, high, length)[0][0]
@@ -111,3 +114,24 @@ def test_that_numbers_below_an_axis_do_not_touch_in_large_letters(curve, app):
     spacing = axis.tickSpacing(low, high, length)[0][0]
     widest = QFontMetricsF(axis._tick_font).horizontalAdvance("100")
     assert spacing / (high - low) * length > widest
+
+
+@pytest.mark.parametrize("height", [120, 240, 1200])
+def test_that_the_numbers_at_a_logarithmic_axis_do_not_touch(shown, app, height):
+    plot = CurvePlot("Number", "Distance", "nothing", log_y=True)
+    plot.set_curves([PlotCurve("one", "#0072b2", (0.0, 50.0, 70.0), (0.9, 0.1, 0.01))])
+    shown(plot)
+    plot.resize(400, height)
+    app.processEvents()
+    plot.grab()
+    axis = plot.axes["left"]
+    (low, high), length = axis.range, axis.size().height()
+    words = {}
+    for spacing, values in axis.tickValues(low, high, length):
+        words |= dict(zip(values, axis.tickStrings(values, 1.0, spacing), strict=True))
+    assert {"0.1", "0.01"} <= set(words.values())
+    seen = sorted(value for value, word in words.items() if word)
+    gaps = [length * (b - a) / (high - low) for a, b in itertools.pairwise(seen)]
+    assert min(gap for gap in gaps if gap > 0.1) >= QFontMetricsF(plot.small_font()).ascent()
+    if height == 1200:
+        assert "0.7" in words.values()

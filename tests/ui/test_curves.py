@@ -17,6 +17,7 @@ def test_that_points_without_a_place_on_the_axes_leave_the_others_in_sight(shown
     seen = PlotCurve("seen", "#0072b2", (1.0, 2.0), (0.5, 0.25), markers=True)
     plot.set_curves([PlotCurve("nowhere", "#000000", (1.0, 2.0), values, markers=True), seen])
     app.processEvents()
+    plot.grab()  # the range follows when it is painted
     (left, right), _ = plot.canvas.viewRange()
     assert left <= 1.0
     assert right >= 2.0
@@ -31,6 +32,7 @@ def test_that_no_tick_lies_between_steps_that_are_counted(shown, app, x, between
     plot = shown(CurvePlot("Step", "Loss", "Nothing yet."))
     plot.set_curves([PlotCurve("loss", "#0072b2", x, (0.3, 0.2, 0.1))])
     app.processEvents()
+    plot.grab()
     axis = plot.canvas.getAxis("bottom")
     (left, right), _ = plot.canvas.viewRange()
     ticks = [value for _, values in axis.tickValues(left, right, axis.width()) for value in values]

@@ -1,6 +1,7 @@
 """The table of errors: percentages, and below them the ends of their intervals."""
 
 import pytest
+from PySide6.QtCore import QRect, Qt
 
 from regolith_studio.ui.widgets.heat_table import HeatTable
 
@@ -46,3 +47,23 @@ def test_that_a_narrow_table_is_scrolled_and_cuts_neither_names_nor_numbers(show
         assert head.sectionSize(at) > head.fontMetrics().horizontalAdvance(name)
         assert head.sectionSize(at) >= table.table.sizeHintForColumn(at), "the interval is elided"
     assert head.length() >= table.table.viewport().width() - 7  # of which none is left empty
+
+
+@pytest.mark.parametrize("width", [420, 590])
+@pytest.mark.parametrize("points", [9.0, 18.0])
+def test_that_the_names_of_rows_are_wrapped_and_not_cut(shown, width, points):
+    table = HeatTable("nothing yet")
+    font = table.font()
+    font.setPointSizeF(points)
+    table.setFont(font)
+    name = "Volume, surface area, aspect ratio"
+    table.set_values(["all", name], ["V", "S", "Dmin", "Dmax", "AR", "CH", "J"], [[0.0204] * 7] * 2)
+    table.resize(width, 300)
+    shown(table)
+    rows = table.table.verticalHeader()
+    wrapped = Qt.TextFlag.TextWordWrap
+    needed = rows.fontMetrics().boundingRect(QRect(0, 0, rows.width() - 8, 1000), wrapped, name)
+    assert needed.height() <= table.table.rowHeight(1)
+    assert needed.width() <= rows.width()
+    assert rows.defaultAlignment() & wrapped
+    assert rows.textElideMode() == Qt.TextElideMode.ElideNone

@@ -11,6 +11,7 @@ from regolith_studio.ui.main_window import MainWindow
 from regolith_studio.ui.widgets.headline import Headline
 from regolith_studio.ui.widgets.labels import (
     CITATION,
+    ElidedLabel,
     WrappedLabel,
     heading,
     with_citations,
@@ -20,7 +21,7 @@ from regolith_studio.ui.widgets.labels import (
 WORDS = "In each step one plane is moved at random, and the move is accepted or rejected. " * 3
 
 
-def test_that_a_whole_label_has_all_its_lines_where_there_is_no_room_for_them(app):
+def test_that_a_whole_label_has_all_its_lines_where_there_is_no_room_for_them(app, wait):
     label, below = WrappedLabel(WORDS), QWidget()
     below.setMinimumHeight(40)
     around = QWidget()
@@ -30,10 +31,14 @@ def test_that_a_whole_label_has_all_its_lines_where_there_is_no_room_for_them(ap
     around.resize(240, 60)
     around.show()
     app.processEvents()
-    assert label.height() >= label.heightForWidth(label.width()) > 4 * label.fontMetrics().height()
+    wait(
+        lambda: label.height() >= label.heightForWidth(label.width()) > 4 * label.fontMetrics().height(), 10.0
+    )
     label.setText(3 * WORDS)
-    app.processEvents()
-    assert label.height() >= label.heightForWidth(label.width()) > 12 * label.fontMetrics().height()
+    wait(
+        lambda: label.height() >= label.heightForWidth(label.width()) > 12 * label.fontMetrics().height(),
+        10.0,
+    )
     around.deleteLater()
 
 
@@ -77,3 +82,16 @@ def test_that_references_to_the_paper_are_links_to_its_citation(shown, preferenc
     dialog = window.findChild(QDialog, "about_dialog")
     assert any("Geometry-Preserving" in each.text() for each in dialog.findChildren(QLabel))
     dialog.close()
+
+
+def test_that_a_line_leaves_out_whole_parts_before_it_is_elided(shown):
+    label = shown(ElidedLabel("1.27 × 1.75 µm, 4,998 triangles; finer", in_parts=True))
+    width = label.fontMetrics().horizontalAdvance
+    for room, seen in (
+        (label.text(), label.text()),
+        ("1.27 × 1.75 µm, 4,998 triangles;", "1.27 × 1.75 µm, 4,998 triangles"),
+        ("1.27 × 1.75 µm, 4,9", "1.27 × 1.75 µm"),
+        ("1.27 × 1.", "1.27 × …"),
+    ):
+        label.resize(width(room) + 2, 20)
+        assert label.shown_text() == seen

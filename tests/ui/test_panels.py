@@ -295,3 +295,12 @@ def test_that_the_loss_has_no_steps_before_the_first(shown, wait, steps):
     first, last = view.viewRange()[0]
     assert -0.5 <= first <= 0.0, "the first step can be seen, and nothing before it"
     assert last < 1.2 * steps + 1.0
+
+
+def test_that_the_losses_of_two_starts_are_not_joined_by_a_line(shown):
+    panel = shown(LossCurvePanel())
+    panel.show_results(Results(loss_history=((0, 0.9), (1, 0.8), (0, 0.7), (1, 0.6))))
+    current, best = panel.plot.curves
+    assert current.y == pytest.approx((0.9, 0.8, np.nan, 0.7, 0.6), nan_ok=True)
+    assert current.x == pytest.approx((0, 1, np.nan, 0, 1), nan_ok=True)
+    assert best.y == pytest.approx(current.y, nan_ok=True)

@@ -176,6 +176,32 @@ def test_that_the_names_of_the_classes_of_zingg_take_the_letters_of_the_window(w
     assert QApplication.font().pointSizeF() == pytest.approx(usual)
 
 
+@pytest.mark.parametrize("height", [260, 700])
+def test_that_no_point_covers_a_name_of_zingg(shown, height):
+    panel = ScatterPanel()
+    panel.resize(500, height)
+    ends = {"flatness": (0.3, 1.0, 0.3, 1.0), "elongation": (0.3, 0.3, 1.0, 1.0)}
+    rows = [dict(zip(ends, pair, strict=True)) for pair in zip(*ends.values(), strict=True)]
+    particles = [Particle(str(number), icosphere(0)) for number in range(len(rows))]
+    panel.show_entries(
+        [ParticleEntry(each.name, each, descriptors=row) for each, row in zip(particles, rows, strict=True)],
+        (),
+    )
+    shown(panel)
+    QApplication.processEvents()
+    words = [each for each in panel._items if isinstance(each, pg.TextItem)]
+    assert len(words) == 4
+    (points,) = [each for each in panel._items if isinstance(each, pg.ScatterPlotItem)]
+    box = panel.plot.canvas.getViewBox()
+    seen = box.mapRectToScene(box.rect())
+    for word in words:
+        place = word.mapRectToScene(word.boundingRect())
+        assert seen.adjusted(-1, -1, 1, 1).contains(place)
+        for point in points.points():
+            at = points.mapToScene(point.pos())
+            assert not place.contains(at), word.toPlainText()
+
+
 def test_that_a_logarithmic_plot_cannot_be_dragged_to_where_numbers_end(shown):
     from regolith_studio.ui.widgets.plots.canvas import MAX_DECADES
     from regolith_studio.ui.widgets.plots.curves import CurvePlot

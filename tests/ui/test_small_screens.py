@@ -203,7 +203,13 @@ def test_that_boxes_and_legends_of_explore_are_whole(shown, preferences, settled
     for _ in range(3):
         app.processEvents()
     page = window.page
-    for box in (page.coarsening.target, page.coarsening.method):
+    page.three_views.comparison.set_mode(overlay=True)
+    page.plots.show_section(True)
+    for _ in range(3):
+        app.processEvents()
+    boxes = (page.coarsening.target, page.coarsening.method, page.loss.preset, page.plots.section.direction)
+    partners = [frame.partner for frame in page.three_views.frames.values()] if letters == 100 else []
+    for box in (*boxes, *partners):
         metrics = box.fontMetrics()
         assert all(metrics.horizontalAdvance(box.itemText(at)) <= text_room(box) for at in range(box.count()))
     for panel in (page.plots.error_bars, page.plots.loss_curve):

@@ -1,6 +1,8 @@
 """Plot of the loss (Eq. 9) against the steps of the coarsening, updated while it runs."""
 
-from itertools import accumulate
+import math
+from collections.abc import Sequence
+from itertools import accumulate, chain, pairwise
 
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 
@@ -29,12 +31,13 @@ class LossCurvePanel(QWidget):
         history = results.loss_history
         if not history:
             return
-        steps, losses = zip(*history, strict=True)
-        best = tuple(accumulate(losses, min))
+        best = accumulate((loss for _, loss in history), min)
+        rows = [(*each, low) for each, low in zip(history, best, strict=True)]
+        steps, losses, lowest = _broken_at_starts(rows)
         theme = self.plot.theme
         curves = [
-            PlotCurve(tr("present"), theme.polyhedron, steps, losses, markers=len(steps) < 40),
-            PlotCurve(tr("best so far"), theme.muted, steps, best, dash=True),
+            PlotCurve(tr("current"), theme.polyhedron, steps, losses, markers=len(steps) < 40),
+            PlotCurve(tr("best so far"), theme.muted, steps, lowest, dash=True),
         ]
         self.plot.set_curves(curves)
         progress = results.coarsening_progress
@@ -48,3 +51,10 @@ class LossCurvePanel(QWidget):
         self.plot.set_theme(theme)
         if self._results:
             self.show_results(self._results)
+
+
+def _broken_at_starts(rows: Sequence[tuple[float, float, float]]) -> tuple[tuple[float, ...], ...]:
+    """Columns of rows of step, loss and lowest loss, with a row of NaN where another start begins."""
+    gap = (math.nan,) * 3
+    parts = [(gap, row) if row[0] <= before[0] else (row,) for before, row in pairwise(rows)]
+    return tuple(zip(rows[0], *chain.from_iterable(parts), strict=True))

@@ -291,7 +291,7 @@ class ThreeViews(QSplitter):
 
     def _empty_titles(self) -> None:
         self.frames[PARTICLE].set_texts(tr("Particle"))
-        self.frames[FIT].set_texts(tr("Spherical-harmonics fit"), tr("waiting for the coefficients …"))
+        self.frames[FIT].set_texts(tr("Spherical-harmonics fit"), tr("being computed …"), tr("Fit"))
         late = tr("being computed; the first one takes longer …")
         self.frames[POLYHEDRON].set_texts(tr("Polyhedron"), late)
 
@@ -306,7 +306,7 @@ def _missing_facets_text(results: Results) -> str:
     done = results.coarsened
     if done is None or done.n_facets == done.n_facets_asked:
         return ""
-    return tr("; {count} facets were asked for", count=done.n_facets_asked)
+    return tr("; {count} facets were requested", count=done.n_facets_asked)
 
 
 class Distances(QObject):

@@ -55,10 +55,11 @@ class ViewFrame(QFrame):
         self._title.setProperty("role", "heading")
         self._title.setMinimumWidth(10)
         self._title.setObjectName(f"title_{name}")
-        self.detail = ElidedLabel(role="remark")
+        self.detail = ElidedLabel(role="remark", in_parts=True)
         self.partner = ChoiceBox(f"partner_{name}", tr(compare), partners or {})
         self.partner.setMinimumContentsLength(7)
-        self.partner.setToolTip(tr("What is laid over it, or shown to the right of the line"))
+        self.partner.prefers_whole = True
+        self.partner.setToolTip(tr("Second surface: overlaid, or right of the line"))
         self.partner.currentIndexChanged.connect(lambda _: self.partnerChanged.emit(self.partner.value()))
         self.partner.hide()
         view.widget.setObjectName(f"scene_{name}")

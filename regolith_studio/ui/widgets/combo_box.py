@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 
-from PySide6.QtCore import QEvent, QRect, QSignalBlocker, Qt
+from PySide6.QtCore import QEvent, QRect, QSignalBlocker, QSize, Qt
 from PySide6.QtGui import QPaintEvent, QResizeEvent
 from PySide6.QtWidgets import (
     QAbstractButton,
@@ -20,14 +20,42 @@ MARGIN = 2
 """Pixels between the frame and the text of a combo box."""
 
 
+MOST_LETTERS = 38
+"""Width in mean letters up to which a box asks for room for its longest label: own presets have any name."""
+
+
 class ElidedComboBox(QComboBox):
-    """A combo box that may be narrower than its labels, which are elided in the middle or at the end."""
+    """A combo box that may be narrower than its labels, which are elided in the middle or at the end.
+
+    With :attr:`prefers_whole` its size hint has room for the longest label, with :attr:`needs_whole`
+    its minimum too.
+    """
+
+    prefers_whole = needs_whole = False
 
     def __init__(self, elide: Qt.TextElideMode = Qt.TextElideMode.ElideRight) -> None:
         super().__init__()
         self._elide = elide
         self.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
         self.setMinimumContentsLength(12)
+
+    def whole_width(self) -> int:
+        """Width at which no label is elided."""
+        labels = (self.itemText(row) for row in range(self.count()))
+        widest = max(map(self.fontMetrics().horizontalAdvance, labels), default=0)
+        return widest + self.width() - text_room(self)
+
+    def sizeHint(self) -> QSize:
+        return self._with_labels(super().sizeHint(), self.prefers_whole or self.needs_whole)
+
+    def minimumSizeHint(self) -> QSize:
+        return self._with_labels(super().minimumSizeHint(), self.needs_whole)
+
+    def _with_labels(self, hint: QSize, wanted: bool) -> QSize:
+        if not wanted:
+            return hint
+        most = MOST_LETTERS * self.fontMetrics().averageCharWidth()
+        return QSize(max(hint.width(), min(self.whole_width(), most)), hint.height())
 
     def paintEvent(self, event: QPaintEvent) -> None:  # noqa: ARG002
         option = QStyleOptionComboBox()
@@ -49,12 +77,6 @@ class ChoiceBox(ElidedComboBox):
         for key, label in entries.items():
             words = tr(label)
             self.addItem(words[:1].upper() + words[1:], key)
-
-    def whole_width(self) -> int:
-        """Width at which no label is elided."""
-        labels = (self.itemText(row) for row in range(self.count()))
-        widest = max(map(self.fontMetrics().horizontalAdvance, labels), default=0)
-        return widest + self.width() - text_room(self)
 
     def value(self) -> str:
         """The selected key."""
@@ -88,6 +110,7 @@ class ComboBoxRow(QWidget):
         self._grid.setContentsMargins(0, 0, 0, 0)
         self._grid.setSpacing(spacing)
         self._grid.setColumnStretch(0, 1)
+        self._grid.setSizeConstraint(QGridLayout.SizeConstraint.SetNoConstraint)  # it folds when it is narrow
         self._needed = 0
         self.refold()
 
@@ -100,6 +123,12 @@ class ComboBoxRow(QWidget):
         behind = sum(wide) + len(self._buttons) * self._grid.spacing()
         self._needed = widest + self._box.width() - text_room(self._box) + behind
         self._place()
+
+    def minimumSizeHint(self) -> QSize:
+        """The width of the box or of the buttons, which may stand below it."""
+        least = [each.minimumSizeHint().width() for each in self._buttons]
+        buttons = sum(least) + (len(least) - 1) * self._grid.spacing()
+        return QSize(max(self._box.minimumSizeHint().width(), buttons), super().minimumSizeHint().height())
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)

@@ -3,13 +3,14 @@
 import math
 from collections.abc import Sequence
 
-from PySide6.QtCore import QEvent, Qt
+from PySide6.QtCore import QEvent, QRect, Qt
 from PySide6.QtGui import QColor, QResizeEvent
 from PySide6.QtWidgets import (
     QAbstractItemView,
     QHeaderView,
     QLabel,
     QStackedLayout,
+    QStyle,
     QTableWidget,
     QTableWidgetItem,
     QWidget,
@@ -80,7 +81,6 @@ class HeatTable(QWidget):
         """
         self._values = tuple(tuple(float(value) for value in row) for row in values)
         self._bands = bands
-        self._rows.set_lines(1 if bands is None else 2)
         self._stack.setCurrentIndex(1 if rows else 0)
         self.table.setRowCount(len(rows))
         self.table.setColumnCount(len(columns))
@@ -116,7 +116,7 @@ class HeatTable(QWidget):
         self._keep_legible()
 
     def _keep_legible(self) -> None:
-        keep_legible(self.table, self.width())
+        keep_legible(self.table, self.width(), self._rows, 1 if self._bands is None else 2)
 
     def _band(self, row: int, column: int) -> str:
         """A second line with the interval, unless its rounded ends are equal."""
@@ -153,7 +153,11 @@ def numbers_table(name: str) -> QTableWidget:
     table.setHorizontalScrollMode(QTableWidget.ScrollMode.ScrollPerPixel)
     table.horizontalHeader().setSectionResizeMode(QHeaderView.ResizeMode.Stretch)
     table.horizontalHeader().setMinimumSectionSize(MIN_COLUMN)
-    table.verticalHeader().setTextElideMode(Qt.TextElideMode.ElideRight)
+    rows = table.verticalHeader()
+    rows.setTextElideMode(Qt.TextElideMode.ElideNone)
+    rows.setDefaultAlignment(
+        Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter | Qt.TextFlag.TextWordWrap
+    )
     return table
 
 
@@ -164,7 +168,7 @@ def set_head_tips(table: QTableWidget, tips: Sequence[str]) -> None:
             item.setToolTip(tip)
 
 
-def keep_legible(table: QTableWidget, width: int) -> None:
+def keep_legible(table: QTableWidget, width: int, heights: FontRowHeight, lines: int) -> None:
     """Make columns at least as wide as their names and cells; a table that is too narrow is scrolled.
 
     The width of a cell is what its delegate asks for: with less, the longest text is elided.
@@ -172,7 +176,9 @@ def keep_legible(table: QTableWidget, width: int) -> None:
     Parameters
     ----------
     width
-        Of the table. The vertical header shrinks first and elides its names.
+        Of the table. The vertical header shrinks first and wraps its names.
+    heights, lines
+        Of the rows, and how many lines of text their cells have.
     """
     names, model = table.horizontalHeader().fontMetrics(), table.model()
     heads = [table.horizontalHeaderItem(column) for column in range(table.columnCount())]
@@ -181,8 +187,27 @@ def keep_legible(table: QTableWidget, width: int) -> None:
     least = max([MIN_COLUMN, *widths, *(table.sizeHintForIndex(cell).width() for cell in cells)])
     table.horizontalHeader().setMinimumSectionSize(least)
     left: float = width - least * table.columnCount() - MARGINS
-    left = min(max(left, _MIN_HEADER_SHARE * width), _MAX_HEADER_SHARE * width)
+    words = (word for name in _row_names(table) for word in name.split())
+    longest = max(map(table.verticalHeader().fontMetrics().horizontalAdvance, words), default=0)
+    left = max(left, _MIN_HEADER_SHARE * width, longest + 2 * MARGINS)
+    left = min(left, _MAX_HEADER_SHARE * width)
     table.verticalHeader().setMaximumWidth(round(left))
+    heights.set_lines(max(lines, _lines_of_names(table, round(left))))
+
+
+def _row_names(table: QTableWidget) -> list[str]:
+    return [each.text() for each in map(table.verticalHeaderItem, range(table.rowCount())) if each]
+
+
+def _lines_of_names(table: QTableWidget, width: int) -> int:
+    """Lines that the longest name of a row takes in a header of this width."""
+    rows = table.verticalHeader()
+    letters = rows.fontMetrics()
+    margin = rows.style().pixelMetric(QStyle.PixelMetric.PM_HeaderMargin, None, rows)
+    room = QRect(0, 0, max(width - 2 * margin, 1), 10_000)
+    wrapped = Qt.TextFlag.TextWordWrap
+    heights = [letters.boundingRect(room, wrapped, name).height() for name in _row_names(table)]
+    return math.ceil(max(heights, default=0) / letters.lineSpacing())
 
 
 def centred_remark(text: str) -> QLabel:

@@ -102,6 +102,9 @@ class WrappedLabel(QLabel):
         self.updateGeometry()
 
 
+PART_END = re.compile("[,;] ")
+
+
 class ElidedLabel(QWidget):
     """One line of plain text, elided at the end if necessary, with the whole text as tool tip.
 
@@ -109,11 +112,13 @@ class ElidedLabel(QWidget):
     ----------
     role
         ``heading`` or ``remark``, for the style sheet.
+    in_parts
+        Whether parts after a comma or semicolon are left out as a whole where there is no room for them.
     """
 
-    def __init__(self, text: str = "", role: str = "") -> None:
+    def __init__(self, text: str = "", role: str = "", *, in_parts: bool = False) -> None:
         super().__init__()
-        self._text = ""
+        self._text, self._in_parts = "", in_parts
         self.setProperty("role", role)
         self.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
         self.setText(text)
@@ -137,9 +142,17 @@ class ElidedLabel(QWidget):
     def minimumSizeHint(self) -> QSize:
         return QSize(20, self.fontMetrics().height() + 2)
 
+    def shown_text(self) -> str:
+        """What there is room for."""
+        metrics, text = self.fontMetrics(), self._text
+        ends = [match.start() for match in PART_END.finditer(text)] if self._in_parts else []
+        while ends and metrics.horizontalAdvance(text) > self.width():
+            text = text[: ends.pop()]
+        return metrics.elidedText(text, Qt.TextElideMode.ElideRight, self.width())
+
     def paintEvent(self, event: QPaintEvent) -> None:  # noqa: ARG002
         painter = QPainter(self)
-        shown = self.fontMetrics().elidedText(self._text, Qt.TextElideMode.ElideRight, self.width())
+        shown = self.shown_text()
         flags = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter
         painter.setPen(self.palette().windowText().color())
         painter.drawText(self.rect(), int(flags), shown)

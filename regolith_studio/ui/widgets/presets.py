@@ -58,6 +58,7 @@ class PresetBar(QWidget):
         super().__init__()
         self._entries: tuple[PresetEntry, ...] = ()
         self.box = ElidedComboBox(Qt.TextElideMode.ElideMiddle)  # the mark at the end must be seen
+        self.box.needs_whole = True
         self.box.setObjectName(name)
         self.box.setAccessibleName(accessible)
         self.reset = QPushButton(tr("Reset"))

@@ -25,10 +25,10 @@ PAGE = Page(
         ActionSpec(PAGE_MENU, "back", N_("Step &back"), "", "PgUp"),
         ActionSpec(PAGE_MENU, "forward", N_("Step &forward"), "", "PgDown", N_("One step")),
         ActionSpec(
-            PAGE_MENU, "another", N_("&Another one"), "dice", "Ctrl+Return", N_("Another seed"), bar="words"
+            PAGE_MENU, "another", N_("&Another seed"), "dice", "Ctrl+Return", N_("Another seed"), bar="words"
         ),
         ActionSpec(PAGE_MENU, "larger", N_("&Larger letters"), "", "Ctrl++"),
         ActionSpec(PAGE_MENU, "smaller", N_("S&maller letters"), "", "Ctrl+-"),
-        ActionSpec(PAGE_MENU, "full_screen", N_("F&ull screen"), "", "F11", N_("And back")),
+        ActionSpec(PAGE_MENU, "full_screen", N_("F&ull screen"), "", "F11", N_("Full screen on or off")),
     ),
 )

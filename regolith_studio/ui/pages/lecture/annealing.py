@@ -4,7 +4,7 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-from PySide6.QtWidgets import QLabel, QSplitter, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QLabel, QVBoxLayout, QWidget
 
 from regolith_studio.coarsening.progress import placed
 from regolith_studio.geometry.arrays import FloatArray
@@ -14,8 +14,8 @@ from regolith_studio.scene import surfaces
 from regolith_studio.scene.comparison import OTHER, show_other
 from regolith_studio.scene.lecture_scenes import show_move
 from regolith_studio.scene.shapes import FIT, SceneShape
-from regolith_studio.ui.layout import scrolled, side_by_side, stacked
 from regolith_studio.ui.pages.lecture import texts
+from regolith_studio.ui.pages.lecture.arrangement import lesson_columns
 from regolith_studio.ui.pages.lecture.playback_bar import PlaybackBar
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import tr
@@ -30,7 +30,7 @@ from regolith_studio.ui.widgets.plots.curves import CurvePlot, PlotCurve
 
 TRANSLUCENT = 0.6
 """Opacity of a polyhedron that is shown with the edges of another one."""
-WAIT = N_("The particle is annealed …")
+WAIT = N_("Simulated annealing is running …")
 
 
 class AnnealingView(QWidget):
@@ -186,7 +186,7 @@ class AnnealingView(QWidget):
         frame.set_texts(
             tr("Exact method"),
             tr(
-                "loss {loss:.4g}; {facets} facets; veil: what is imitated",
+                "loss {loss:.4g}; {facets} facets; translucent: target",
                 loss=exact.loss,
                 facets=exact.n_facets,
             ),
@@ -199,7 +199,7 @@ class AnnealingView(QWidget):
             return
         seen = lesson.steps[: number + 1]
         k = tuple(float(step.number) for step in seen)
-        present = PlotCurve(tr("present"), theme.polyhedron, k, tuple(step.evaluation.loss for step in seen))
+        present = PlotCurve(tr("current"), theme.polyhedron, k, tuple(step.evaluation.loss for step in seen))
         curves = [present, *self._proposals(seen)]
         if lesson.exact is not None:
             ends = (0.0, float(len(lesson.steps) - 1))
@@ -265,26 +265,17 @@ class AnnealingView(QWidget):
         self.terms.set_bars([texts.plain(key) for key in before], series, tips=tips)
 
     def _arrange(self) -> None:
-        texts = QWidget()
-        column = QVBoxLayout(texts)
-        column.setContentsMargins(10, 6, 6, 6)
-        column.setSpacing(10)
-        column.addWidget(self.sentence)
-        for each in (self.rule, self.loss_formula):
-            column.addWidget(each)
-        column.addWidget(QLabel(tr("Exact method:")))
-        column.addWidget(self.exact_formula)
-        column.addStretch(1)
-        above = side_by_side([*self.frames.values(), scrolled(texts)], [500, 500, 560], stretch=2)
-        below = side_by_side([self.loss, self.chance, self.terms], [560, 420, 560], stretch=0)
-        for row in (above, below):
-            for place in range(row.count()):
-                row.setStretchFactor(place, 1)
-        rows: QSplitter = stacked([above, below], [520, 300], stretch=0)
-        rows.setObjectName("lecture_annealing_rows")
+        of_exact = QLabel(tr("Exact method:"))
+        parts = lesson_columns(
+            "lecture_annealing",
+            list(self.frames.values()),
+            [self.loss, self.chance],
+            [self.sentence, self.rule, self.loss_formula, of_exact, self.exact_formula],
+            self.terms,
+        )
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
-        layout.addWidget(rows, 1)
+        layout.addWidget(parts, 1)
         layout.addWidget(self.playback)
 
 

@@ -8,8 +8,8 @@ from regolith_studio.jobs.lecture_jobs import DegreeStep
 from regolith_studio.messages import N_
 from regolith_studio.scene import surfaces
 from regolith_studio.scene.palette import DESCRIPTOR_COLOURS
-from regolith_studio.ui.layout import scrolled, side_by_side
 from regolith_studio.ui.pages.lecture import texts
+from regolith_studio.ui.pages.lecture.arrangement import lesson_columns
 from regolith_studio.ui.pages.lecture.playback_bar import PlaybackBar
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import tr, tr_count
@@ -20,7 +20,7 @@ from regolith_studio.ui.widgets.formula import FormulaLabel, prepare
 from regolith_studio.ui.widgets.labels import remark
 from regolith_studio.ui.widgets.plots.curves import CurvePlot, PlotCurve
 
-WAIT = N_("The particle is fitted …")
+WAIT = N_("Fitting the particle …")
 
 
 class DegreesView(QWidget):
@@ -135,18 +135,8 @@ class DegreesView(QWidget):
         self.errors.canvas.setXRange(0, max(len(self._steps) - 1, 1), padding=0.02)
 
     def _arrange(self) -> None:
-        texts = QWidget()
-        column = QVBoxLayout(texts)
-        column.setContentsMargins(10, 6, 6, 6)
-        column.setSpacing(10)
-        column.addWidget(self.sentence)
-        column.addWidget(self.formula)
-        column.addWidget(self.errors, 1)
-        parts = side_by_side([*self.frames.values(), scrolled(texts)], [500, 500, 560], stretch=2)
-        parts.setObjectName("lecture_degrees_columns")
-        for place in range(parts.count()):
-            parts.setStretchFactor(place, 1)
+        views, texts = list(self.frames.values()), [self.sentence, self.formula]
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
-        layout.addWidget(parts, 1)
+        layout.addWidget(lesson_columns("lecture_degrees", views, [self.errors], texts), 1)
         layout.addWidget(self.playback)

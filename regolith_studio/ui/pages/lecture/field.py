@@ -10,8 +10,8 @@ from regolith_studio.jobs.lecture_jobs import DrawnField, draw_field_later
 from regolith_studio.scene.lecture_scenes import show_field
 from regolith_studio.shape_models.materials import materials
 from regolith_studio.ui.latest_job import LatestJob
-from regolith_studio.ui.layout import scrolled, side_by_side
 from regolith_studio.ui.pages.lecture import texts
+from regolith_studio.ui.pages.lecture.arrangement import lesson_columns
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.views.camera_link import CameraLink
@@ -59,7 +59,7 @@ class FieldView(QWidget):
         self.material = ChoiceBox(
             "field_material", tr("Material"), {key: card.label for key, card in materials().items()}
         )
-        self.spectrum = SpectrumEditor(tr("No material."))
+        self.spectrum = SpectrumEditor(tr("No material is chosen."))
         self.spectrum.setObjectName("field_spectrum")
         self.spectrum.keep_readable()
         self.reset, self.another = QPushButton(tr("Reset the spectrum")), QPushButton(tr("Draw again"))
@@ -140,21 +140,11 @@ class FieldView(QWidget):
             self.link.frame(drawn.mesh.vertices)
 
     def _arrange(self) -> None:
-        texts = QWidget()
-        column = QVBoxLayout(texts)
-        column.setContentsMargins(10, 6, 6, 6)
-        column.setSpacing(10)
-        column.addWidget(ComboBoxRow(self.material, (self.reset, self.another), spacing=10))
-        column.addWidget(self.sentence)
-        column.addWidget(self.formula)
-        column.addWidget(self.spectrum, 1)
-        parts = side_by_side([*self.frames.values(), scrolled(texts)], [500, 500, 560], stretch=2)
-        parts.setObjectName("lecture_field_columns")
-        for place in range(parts.count()):
-            parts.setStretchFactor(place, 1)
+        choices = ComboBoxRow(self.material, (self.reset, self.another), spacing=10)
+        views, texts = list(self.frames.values()), [choices, self.sentence, self.formula]
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
-        layout.addWidget(parts, 1)
+        layout.addWidget(lesson_columns("lecture_field", views, [self.spectrum], texts), 1)
 
 
 def _sentence(drawn: DrawnField, amplitudes: FloatArray, seed: int) -> str:

@@ -173,7 +173,7 @@ class LecturePage(PageWidget):
         )
         self.request.setText(
             tr(
-                "{count} planes, imitating {imitated}, seed {seed}",
+                "{count} planes; target: {imitated}; seed {seed}",
                 count=choices.facet_count,
                 imitated=imitated,
                 seed=seed,
@@ -229,7 +229,7 @@ class LecturePage(PageWidget):
 
     def _control_playback(self, action: Callable[[PlaybackBar], object]) -> None:
         if self.lesson == "field":
-            self._context.toast.note(tr("A random field has no steps: drag its bars, or draw anew."))
+            self._context.toast.note(tr("A random field has no steps: drag its bars, or draw again."))
             return
         playback = (self.annealing if self.lesson == "annealing" else self.degrees).playback
         if playback.has_steps:

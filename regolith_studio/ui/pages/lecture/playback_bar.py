@@ -11,12 +11,12 @@ from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec
 
 SPEED = NumberSpec(
     N_("Speed"),
-    N_("Steps a second"),
+    N_("Steps per second"),
     0.5,
     20.0,
     0.5,
     suffix=" /s",
-    tip=N_("Steps a second while it plays by itself."),
+    tip=N_("Steps per second during playback."),
 )
 USUAL_SPEED = 2.0
 
@@ -53,7 +53,7 @@ class PlaybackBar(QWidget):
             button.setToolTip(words)
         self.slider = QSlider(Qt.Orientation.Horizontal)
         self.slider.setObjectName(f"{name}_step")
-        self.slider.setAccessibleName(tr("Which {noun}", noun=tr(noun)))
+        self.slider.setAccessibleName(tr("Number of the {noun}", noun=tr(noun)))
         self.speed = NumberSlider(SPEED)
         self.speed.setObjectName(f"{name}_speed")
         self.speed.setMaximumWidth(300)

@@ -172,7 +172,7 @@ def degree_sentence(step: DegreeStep) -> str:
             symbol=DEGREE,
             degree=step.l_max,
         )
-    names = {0: tr("a sphere"), 1: tr("a sphere that is shifted a little"), 2: tr("nearly an ellipsoid")}
+    names = {0: tr("a sphere"), 1: tr("a slightly displaced sphere"), 2: tr("nearly an ellipsoid")}
     shape = names.get(step.l_max, tr("finer details"))
     errors = ", ".join(
         f"{in_a_sentence(tr(CATALOGUE[key].label))} {number_text(value, '.1%')}"

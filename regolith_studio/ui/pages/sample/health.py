@@ -126,7 +126,7 @@ class HealthPanel(QWidget):
         ]
         self.legend.setText(
             "<br>".join(lines)
-            or tr("Nothing to show: no faults, and all of the surface is seen from the star point.")
+            or tr("Nothing to show: no faults, and the whole surface is visible from the star point.")
         )
 
     def _make_table(self) -> QTableWidget:

@@ -41,6 +41,7 @@ class ScatterPanel(QWidget):
         self._entries: tuple[ParticleEntry, ...] = ()
         self._chosen: frozenset[str] = frozenset()
         self._items: list[Any] = []
+        self._corners: dict[tuple[int, int], pg.TextItem] = {}
         self.across = _descriptor_box("scatter_x", tr("Horizontal axis"))
         self.up = _descriptor_box("scatter_y", tr("Vertical axis"))
         self.log = QCheckBox(tr("Logarithmic"))
@@ -88,12 +89,13 @@ class ScatterPanel(QWidget):
             box.currentIndexChanged.connect(lambda _at: self._draw())
         self.log.toggled.connect(lambda _on: self._draw())
         self.zingg.clicked.connect(lambda: self.set_axes(*ZINGG))
+        self.plot.canvas.getViewBox().sigResized.connect(self._place_zingg)
 
     def _draw(self) -> None:
         canvas = self.plot.canvas
         for item in self._items:
             canvas.removeItem(item)
-        self._items = []
+        self._items, self._corners = [], {}
         self.plot.set_empty(not self._entries)
         if not self._entries:
             return
@@ -111,6 +113,7 @@ class ScatterPanel(QWidget):
         count = len(self._entries)
         self.plot.set_remark(tr_count(N_("1 particle"), N_("{count} particles"), count))
         canvas.enableAutoRange()
+        self._place_zingg()
 
     def _draw_group(self, members: Sequence[ParticleEntry], number: int) -> None:
         x, y = self.axes()
@@ -147,11 +150,25 @@ class ScatterPanel(QWidget):
             self.plot.canvas.addItem(line, ignoreBounds=True)
             self._items.append(line)
         for name, right, upper in _CORNERS:
-            word = pg.TextItem(tr(name), color=self.plot.theme.muted, anchor=(1 - right, upper))
-            word.setPos(1.0 if right else THRESHOLD - 0.01, 1.0 if upper else THRESHOLD - 0.01)
-            word.setAnchor((1, 0))
+            word = pg.TextItem(tr(name), color=self.plot.theme.muted, anchor=(1, 1 - upper))
             self.plot.canvas.addItem(word, ignoreBounds=True)
             self._items.append(word)
+            self._corners[right, upper] = word
+
+    def _place_zingg(self, *_: object) -> None:
+        """Give the names of Zingg's classes strips above and below all points."""
+        if not self._corners:
+            return
+        known = [each.descriptors for each in self._entries if each.descriptors]
+        places = [(each["flatness"], each["elongation"]) for each in known]
+        left, bottom = np.nanmin([*places, (THRESHOLD - 0.1, THRESHOLD - 0.1)], axis=0)
+        box = self.plot.canvas.getViewBox()
+        letters = max(word.boundingRect().height() for word in self._corners.values())
+        strip = (1.0 - bottom) * letters / max(box.height() - 2.0 * letters, letters)
+        low, high = bottom - strip - 0.01, 1.0 + strip + 0.01
+        self.plot.canvas.setRange(xRange=(left - 0.02, 1.02), yRange=(low, high), padding=0.0)
+        for (right, upper), word in self._corners.items():
+            word.setPos(1.02 if right else THRESHOLD - 0.01, high if upper else low)
 
     def _clicked(self, _item: Any, points: Sequence[Any], event: Any) -> None:
         if len(points):

@@ -63,9 +63,8 @@ class StatisticsPanel(QWidget):
         self.border.setObjectName("statistics_border")
         self.border.setToolTip(
             tr(
-                "Grains that the border of the scan cuts were left out, large ones more often than small"
-                " ones. "
-                "Each of the others counts a little more for it (weights of Miles and Lantuéjoul)."
+                "Grains cut by the border of the scan were left out, large ones more often than "
+                "small ones. The others have larger weights in return (Miles-Lantuéjoul)."
             )
         )
         self.border.setChecked(True)

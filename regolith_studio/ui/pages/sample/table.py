@@ -52,7 +52,7 @@ def columns() -> tuple[SampleColumn, ...]:
         (
             HEALTH,
             tr("Health"),
-            tr("Of the mesh; the tool tip of a cell says what was found and repaired"),
+            tr("Of the mesh; the tool tip of a cell lists what was found and repaired"),
             health_word,
         ),
         ("group", tr("Group"), tr("Sample or size fraction"), lambda entry: entry.particle.group),

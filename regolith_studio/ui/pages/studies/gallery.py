@@ -29,7 +29,7 @@ from regolith_studio.ui.widgets.thumbnails import thumbnail
 SIZE = 120
 LETTERS = 22
 """Pixels below a picture."""
-WAITING = N_("The polyhedra of six particles, one row a loss function.")
+WAITING = N_("The polyhedra of six particles, one row per loss function.")
 Index = QModelIndex | QPersistentModelIndex
 MAX_PARTICLES = 6
 """Maximum number of columns."""
@@ -61,7 +61,7 @@ class GalleryPanel(QWidget):
         self._stack.addWidget(centred_remark(tr(WAITING)))
         self._stack.addWidget(self.table)
         self.frame = StudyFrame("solids", self._parts)
-        self.frame.set_remark(tr("for the particle on screen and those after it, one row a loss function"))
+        self.frame.set_remark(tr("for the particle on screen and those after it, one row per loss function"))
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(self.frame, 1)

@@ -20,7 +20,6 @@ from regolith_studio.session.study_requests import chosen_rows
 from regolith_studio.studies.sweeps import SWEEPS
 from regolith_studio.ui.dialogs.folder import FolderDialog
 from regolith_studio.ui.layout import (
-    CONTROLS_WIDTH,
     padded,
     scrolled_column,
     side_by_side,
@@ -39,6 +38,8 @@ from regolith_studio.ui.translation import tr, tr_count, translate
 from regolith_studio.ui.widgets.labels import heading
 
 LMAX_TITLE = N_("Error against l<sub>max</sub> (Fig. 3)")
+BAR_WIDTH = 200
+"""Initial width of the choices in pixels."""
 COARSENING_TITLE = N_("Error of coarsened particles")
 TABS = {"facets": N_("Facets"), "tradeoff": N_("Overlap or descriptors"), "sensitivity": N_("Weights")}
 """Object name of the tab after that of Fig. 8."""
@@ -207,7 +208,7 @@ class StudiesPage(PageWidget):
     def _place(self) -> None:
         above = side_by_side(
             [_titled(tr(LMAX_TITLE), _framed(self.lmax_study)), _titled(tr(COARSENING_TITLE), self.tabs)],
-            [400, 980],
+            [360, 980],
             stretch=1,
         )
         above.setObjectName("studies_figures")
@@ -215,8 +216,8 @@ class StudiesPage(PageWidget):
         below = _titled(tr("Polyhedra by loss function (Fig. 7)"), _framed(self.gallery))
         rows = stacked([above, below], [370, 500], stretch=1)
         rows.setObjectName("studies_rows")
-        parts = [padded(rows, 10, 10, 2, 8), scrolled_column([self.bar])]
-        columns = side_by_side(parts, [1200, CONTROLS_WIDTH], stretch=0)
+        parts = [padded(rows, 10, 10, 2, 8), scrolled_column([self.bar], 0)]
+        columns = side_by_side(parts, [1200, BAR_WIDTH], stretch=0)
         columns.setObjectName("studies_columns")
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)

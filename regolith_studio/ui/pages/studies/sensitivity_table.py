@@ -25,7 +25,7 @@ class SensitivityTable(QWidget):
         self.table = numbers_table(tr("Changes of errors in percentage points"))
         self.table.setTextElideMode(Qt.TextElideMode.ElideNone)
         self.table.setWordWrap(False)
-        FontRowHeight(self.table, 10)
+        self._rows = FontRowHeight(self.table, 10)
         self._stack = QStackedLayout(self)
         self._stack.addWidget(centred_remark(placeholder))
         self._stack.addWidget(self.table)
@@ -43,7 +43,7 @@ class SensitivityTable(QWidget):
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)
-        keep_legible(self.table, self.width())
+        keep_legible(self.table, self.width(), self._rows, 1)
 
     def _fill(self) -> None:
         study = self._study
@@ -84,7 +84,7 @@ class SensitivityTable(QWidget):
                     + ("" if sure[r, k] else "\n" + tr("Not significant."))
                 )
                 self.table.setItem(r, k, item)
-        keep_legible(self.table, self.width())
+        keep_legible(self.table, self.width(), self._rows, 1)
 
     def _ground(self, share: float) -> QColor:
         colour = QColor(self._theme.bad if share > 0 else self._theme.fit)

@@ -23,7 +23,7 @@ from regolith_studio.ui.widgets.plots.curves import PlotCurve
 from regolith_studio.ui.widgets.study_frame import StudyFrame
 
 OVERLAP = "Jaccard"
-ON_AND_OFF = N_("The method keeps descriptors exactly: each is asked for or not, whatever its weight.")
+ON_AND_OFF = N_("The method meets descriptors exactly: each is requested or not, whatever its weight.")
 
 
 class StudyView(Protocol):

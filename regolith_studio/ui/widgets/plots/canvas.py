@@ -1,6 +1,7 @@
 """Canvas and axes of plots: a pyqtgraph view box without menus, labels that fit, logarithmic limits."""
 
 import html
+import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -144,6 +145,8 @@ class PlotCanvas(pg.GraphicsView):  # type: ignore[misc]
         self._box.setAspectLocked(locked)
 
 
+DIGITS = (((2, 3, 4, 5, 6, 7, 8, 9), math.log10(10 / 9)), ((2, 5), math.log10(2)), ((3,), math.log10(3)))
+"""Leading digits of the numbers at a logarithmic axis, and their smallest distance in decades."""
 WIDER = (1, 2, 4, 10)
 """Multiples of the distance of ticks, until their labels have room."""
 
@@ -196,8 +199,24 @@ class FittedAxis(pg.AxisItem):  # type: ignore[misc]
             self._shown = (rich, points)
             self.setLabel(rich, color=colour, **{"font-size": f"{points:.1f}pt"})
 
-    def tickStrings(self, values: Sequence[float], scale: float, spacing: float) -> list[str]:
-        return [localized(each) for each in super().tickStrings(values, scale, spacing)]
+    def tickStrings(self, values: Sequence[float], scale: float, spacing: float | None) -> list[str]:
+        words = [localized(each) for each in super().tickStrings(values, scale, spacing)]
+        if not self.logMode or spacing is not None:
+            return words
+        shown = self._digits_with_room()
+        return [
+            word if round(10 ** (value % 1.0)) in (1, 10, *shown) else ""
+            for word, value in zip(words, values, strict=True)
+        ]
+
+    def _digits_with_room(self) -> tuple[int, ...]:
+        """Leading digits whose numbers do not touch within a decade of a logarithmic axis."""
+        letters = QFontMetricsF(self._tick_font)
+        upright = self.orientation in ("left", "right")
+        needed = letters.height() if upright else letters.horizontalAdvance("0.0005")
+        low, high = self.range
+        decade = self._length() / max(high - low, 1e-9)
+        return next((digits for digits, gap in DIGITS if gap * decade >= needed), ())
 
     def _length(self) -> float:
         size = self.size()
