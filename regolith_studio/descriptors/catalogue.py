@@ -273,7 +273,7 @@ _ROWS = (
     Descriptor(
         "principal_moment_min",
         "I_1",
-        N_("Least moment of inertia"),
+        N_("Smallest moment of inertia"),
         5,
         N_("about the centroid"),
         principal_moment_min,

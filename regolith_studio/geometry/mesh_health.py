@@ -284,7 +284,7 @@ def _sentences(found: MeshHealth, searched: bool) -> Sequence[str]:
         (
             found.duplicate_faces > 0,
             count_message(
-                N_("1 face is there twice."), N_("{count} faces are there twice."), found.duplicate_faces
+                N_("1 face is duplicated."), N_("{count} faces are duplicated."), found.duplicate_faces
             ),
         ),
         (

@@ -208,8 +208,8 @@ def _about_hidden(fit: HarmonicFit) -> tuple[str, ...]:
     if not fit.hidden_surface_share > HIDDEN_TOLERANCE:
         return ()
     template = N_(
-        "{surface} of the surface and {volume} of the volume are hidden from the star point and cannot be"
-        " kept by a radius function."
+        "Hidden from the star point: {surface} of the surface, {volume} of the volume."
+        " A radius function cannot represent them."
     )
     surface, volume = Number(fit.hidden_surface_share, ".1%"), Number(fit.unrepresentable_volume_share, ".1%")
     return (Message(template, surface=surface, volume=volume),)

@@ -44,7 +44,7 @@ class FitOptions:
             AUTOMATIC: N_("Automatic"),
             "centre_of_mass": N_("Centre of mass"),
             "kernel_centre": N_("Centre of the kernel"),
-            "least_hidden_volume": N_("Least hidden volume"),
+            "least_hidden_volume": N_("Minimum hidden volume"),
         },
     )
     rule: str = setting(

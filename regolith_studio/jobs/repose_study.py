@@ -228,7 +228,7 @@ class ReposeStudyRequest:
                 _with_shape_value(self.coarsening, self.key, value)
             return
         if self.dataset is None:
-            raise InputError(N_("There is no dataset yet: open one, or make one first."))
+            raise InputError(N_("There is no dataset yet: open or build one first."))
         for value in self.values:
             with_value(self.request, self.key, value)
 

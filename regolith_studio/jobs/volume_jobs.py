@@ -120,7 +120,7 @@ def scan_of(
 
 def read_header(given: VolumeInput) -> Steps:
     """Read what a file says about itself; returns a ``VolumeHeader``."""
-    yield Started(Message(N_("Looking at {name}"), name=given.path.name))
+    yield Started(Message(N_("Inspecting {name}"), name=given.path.name))
     return describe_volume(given.path, dataset=given.dataset, axes=given.axes, raw=given.raw)
 
 
@@ -276,7 +276,7 @@ def slice_images(volume: Volume) -> Generator[Step, None, SliceImages]:
         except StopIteration as end:
             return SliceImages(volume.array, *end.value)
         if done % 16 == 0:
-            yield Progress(done, total, N_("Looking through the slices"))
+            yield Progress(done, total, N_("Reading the slices"))
 
 
 def _n_bytes(source: SliceSource) -> int:

@@ -54,7 +54,7 @@ class Choices(FitOptions):
     l_max: int = setting(
         10,
         "Maximum degree",
-        "Degree at which the series is cut: 0 is a sphere, 10 keeps the form, 30 nearly all details.",
+        "Degree at which the series is truncated: 0 is a sphere, 10 keeps the form, 30 nearly all details.",
         minimum=0,
         maximum=FIT_DEGREE,
     )
@@ -71,7 +71,7 @@ class Choices(FitOptions):
         "What the coarsening imitates: the particle, or its fit (section 3.2 of the paper).",
         choices=TARGETS,
     )
-    method: str = setting(DEFAULT_METHOD, "Coarsening method", "Key of the coarsening method.")
+    method: str = setting(DEFAULT_METHOD, "Coarsening method", "Method of coarsening.")
     settings: tuple[tuple[str, Scalar], ...] = ()
     preset: str = setting(DEFAULT_PRESET, "Preset", "Preset of the weights of the loss (Eq. 9).")
     weights: LossWeights = field(default_factory=lambda: LossWeights.from_preset(DEFAULT_PRESET))

@@ -52,7 +52,7 @@ def health_word(entry: ParticleEntry) -> str:
 def health_sentences(entry: ParticleEntry) -> tuple[str, ...]:
     """All that is known about the mesh."""
     if entry.health is None:
-        return (N_("Being measured …"),)
+        return (N_("Measuring …"),)
     return (*entry.health.problems, *entry.particle.notes) or (N_("A closed mesh without faults."),)
 
 

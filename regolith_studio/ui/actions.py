@@ -114,13 +114,23 @@ ROWS: tuple[ActionSpec, ...] = (
     ActionSpec(N_("&View"), "tasks", N_("&Tasks"), "", "Ctrl+T", N_("Running tasks")),
     ActionSpec(N_("&View"), "log", N_("L&og"), "", "Ctrl+Shift+L", N_("Messages so far")),
     ActionSpec(
-        N_("&View"), "standard_layout", N_("Standard la&yout"), "", "", N_("Restore sizes and borders")
+        N_("&View"),
+        "standard_layout",
+        N_("Standard la&yout"),
+        "",
+        "",
+        N_("Restore the standard sizes of all panels"),
     ),
     ActionSpec(N_("&View"), BREAK, ""),
     ActionSpec(N_("&Help"), "tour", N_("&Tour"), "tour", "", N_("Tour of the window")),
     ActionSpec(N_("&Help"), "guide", N_("&Guide"), "", "", N_("The manual of the program")),
     ActionSpec(
-        N_("&Help"), "explain", N_("&Explain this page"), "help", "F1", N_("What the guide says of the page")
+        N_("&Help"),
+        "explain",
+        N_("&Explain this page"),
+        "help",
+        "F1",
+        N_("The chapter of the guide on this page"),
     ),
     ActionSpec(N_("&Help"), "shortcuts", N_("&Keyboard and mouse"), "", "Ctrl+F1"),
     ActionSpec(N_("&Help"), "about", N_("&About Regolith Studio")),

@@ -112,7 +112,7 @@ class ProjectFiles(QObject):
                 return
 
     def _ask_about(self, path: Path, lock: QLockFile) -> None:
-        text = tr("Regolith Studio was not closed properly the last time. Bring its state back?")
+        text = tr("Regolith Studio was not closed properly the last time. Restore its state?")
         box = QMessageBox(QMessageBox.Icon.Question, tr("Recover"), text, parent=self._window)
         box.setObjectName("recovery")
         box.setInformativeText(_saved_at(path))
@@ -255,7 +255,7 @@ def stale_autosaves() -> list[Path]:
 def _saved_at(path: Path) -> str:
     """Text with the time of an autosave."""
     moment = QDateTime.fromSecsSinceEpoch(int(path.stat().st_mtime))
-    return tr("It was kept at {moment}.", moment=moment.toString("yyyy-MM-dd HH:mm"))
+    return tr("It was saved at {moment}.", moment=moment.toString("yyyy-MM-dd HH:mm"))
 
 
 def _remove(autosave: Path) -> None:

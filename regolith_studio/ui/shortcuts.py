@@ -59,13 +59,13 @@ class Shortcuts:
         if not keys:
             return ""
         if not text or sequence.count() != 1:
-            return tr("{keys} is no key that a command can have.", keys=keys)
+            return tr("{keys} cannot be assigned to a command.", keys=keys)
         if text in _NEEDED or (len(text) == 1 and text.isprintable()):
-            return tr("{keys} is needed for typing and for moving about; add Ctrl or Alt.", keys=text)
+            return tr("{keys} is reserved for typing and navigation; add Ctrl or Alt.", keys=text)
         for other in self.actions:
             if other != name and self.keys(other) == text and self._meet(name, other):
                 name_of_other = plain(self.actions[other])
-                return tr("{keys} already runs “{command}”.", keys=text, command=name_of_other)
+                return tr("{keys} is already assigned to “{command}”.", keys=text, command=name_of_other)
         return ""
 
     def change(self, name: str, keys: str) -> None:

@@ -8,12 +8,12 @@
         <translation>&amp;Über Regolith Studio</translation>
     </message>
     <message>
-        <source>&amp;Another one</source>
-        <translation>&amp;Ein anderes</translation>
-    </message>
-    <message>
         <source>&amp;Another particle in the view</source>
         <translation>&amp;Ein anderes Partikel zeigen</translation>
+    </message>
+    <message>
+        <source>&amp;Another seed</source>
+        <translation>Anderer Start&amp;wert</translation>
     </message>
     <message>
         <source>&amp;Bounding box</source>
@@ -276,7 +276,7 @@
         <translation>1 Fläche hat keinen Inhalt.</translation>
     </message>
     <message>
-        <source>1 face is there twice.</source>
+        <source>1 face is duplicated.</source>
         <translation>1 Fläche ist doppelt vorhanden.</translation>
     </message>
     <message>
@@ -301,7 +301,7 @@
     </message>
     <message>
         <source>1 m in the file is 1 mm of the particles, coarse graining applied; y up</source>
-        <translation>1 m in der Datei ist 1 mm der Partikel, mit Vergröberungsfaktor; y zeigt nach oben</translation>
+        <translation>1 m in der Datei ist 1 mm der Partikel, mit Coarse-Graining; y zeigt nach oben</translation>
     </message>
     <message>
         <source>1 open particle</source>
@@ -368,7 +368,7 @@
         <translation>95.</translation>
     </message>
     <message>
-        <source>; {count} facets were asked for</source>
+        <source>; {count} facets were requested</source>
         <translation>; {count} Facetten waren verlangt</translation>
     </message>
     <message>
@@ -424,8 +424,8 @@
         <translation>Ein geschlossenes, fehlerfreies Netz.</translation>
     </message>
     <message>
-        <source>A dataset is made of the open particles for every value.</source>
-        <translation>Für jeden Wert wird aus den geöffneten Partikeln ein Datensatz gemacht.</translation>
+        <source>A dataset is built from the open particles for each value.</source>
+        <translation>Für jeden Wert wird aus den geöffneten Partikeln ein Datensatz gebaut.</translation>
     </message>
     <message>
         <source>A dataset was written to {folder}.</source>
@@ -448,12 +448,12 @@
         <translation>A der Hülle / A ihres Ellipsoids (nach Kuo und Freeman)</translation>
     </message>
     <message>
-        <source>A random field has no steps: drag its bars, or draw anew.</source>
+        <source>A random field has no steps: drag its bars, or draw again.</source>
         <translation>Ein Zufallsfeld hat keine Schritte: Balken ziehen oder neu ziehen lassen.</translation>
     </message>
     <message>
-        <source>A raw file says nothing about itself: how many voxels are in it, and of which type?</source>
-        <translation>Eine Rohdatei sagt nichts über sich: Wie viele Voxel hat sie, und von welchem Typ?</translation>
+        <source>A raw file has no header. Enter the number of voxels and their type.</source>
+        <translation>Eine Rohdatei hat keinen Kopf. Geben Sie die Anzahl der Voxel und ihren Typ an.</translation>
     </message>
     <message>
         <source>A recipe file</source>
@@ -500,8 +500,12 @@
         <translation>Hinzufügen</translation>
     </message>
     <message>
-        <source>Add the new ones to them, or replace them? Undo brings replaced ones back.</source>
-        <translation>Die neuen hinzufügen oder die offenen ersetzen? Rückgängig holt ersetzte zurück.</translation>
+        <source>Add the new ones to them, or replace them? Undo restores replaced ones.</source>
+        <translation>Die neuen hinzufügen oder die offenen ersetzen? Rückgängig stellt ersetzte wieder her.</translation>
+    </message>
+    <message>
+        <source>Additional files</source>
+        <translation>Weitere Dateien</translation>
     </message>
     <message>
         <source>Address of the scheduler</source>
@@ -540,6 +544,10 @@
         <translation>Alle Dateien (*)</translation>
     </message>
     <message>
+        <source>All open particles. Click a row to show one; the arrow keys move through the list. The icon shows the health of the mesh. Drop your own files anywhere in the window.</source>
+        <translation>Alle geöffneten Partikel. Ein Klick auf eine Zeile zeigt eines davon; die Pfeiltasten bewegen sich durch die Liste. Das Symbol zeigt den Zustand des Netzes. Eigene Dateien lassen sich irgendwo im Fenster ablegen.</translation>
+    </message>
+    <message>
         <source>All particles</source>
         <translation>Alle Partikel</translation>
     </message>
@@ -560,10 +568,6 @@
         <translation>Formate zulassen, die Formen ändern</translation>
     </message>
     <message>
-        <source>Also</source>
-        <translation>Außerdem</translation>
-    </message>
-    <message>
         <source>Amplitude √A&lt;sub&gt;l&lt;/sub&gt; / c&lt;sub&gt;00&lt;/sub&gt; [%]</source>
         <translation>Amplitude √A&lt;sub&gt;l&lt;/sub&gt; / c&lt;sub&gt;00&lt;/sub&gt; [%]</translation>
     </message>
@@ -574,10 +578,6 @@
     <message>
         <source>An encrypted cluster needs a folder with {names}.</source>
         <translation>Ein verschlüsselter Cluster braucht einen Ordner mit {names}.</translation>
-    </message>
-    <message>
-        <source>And back</source>
-        <translation>Und zurück</translation>
     </message>
     <message>
         <source>Angle</source>
@@ -688,6 +688,10 @@
         <translation>Höchstens</translation>
     </message>
     <message>
+        <source>At most {count:,} particles can be simulated here; export the dataset for other programs.</source>
+        <translation>Höchstens {count:,} Partikel lassen sich hier simulieren; exportieren Sie den Datensatz für andere Programme.</translation>
+    </message>
+    <message>
         <source>At {symbol} = {degree} the series has a negative radius somewhere: it is no surface.</source>
         <translation>Bei {symbol} = {degree} hat die Reihe irgendwo einen negativen Radius: sie ist keine Oberfläche.</translation>
     </message>
@@ -726,10 +730,6 @@
     <message>
         <source>Before the repair:</source>
         <translation>Vor der Reparatur:</translation>
-    </message>
-    <message>
-        <source>Being measured …</source>
-        <translation>Wird vermessen …</translation>
     </message>
     <message>
         <source>Best-fit ellipsoid</source>
@@ -784,12 +784,12 @@
         <translation>Datensatz bauen …</translation>
     </message>
     <message>
-        <source>Building the dataset</source>
+        <source>Building a dataset</source>
         <translation>Datensatz wird gebaut</translation>
     </message>
     <message>
-        <source>Bump that is a grain of its own, in voxels</source>
-        <translation>Höcker, der ein eigenes Korn ist, in Voxeln</translation>
+        <source>Building the dataset</source>
+        <translation>Datensatz wird gebaut</translation>
     </message>
     <message>
         <source>By hand: drag the line</source>
@@ -1029,11 +1029,11 @@
     </message>
     <message>
         <source>Coarse graining</source>
-        <translation>Vergröberung</translation>
+        <translation>Coarse-Graining</translation>
     </message>
     <message>
         <source>Coarse-graining factor</source>
-        <translation>Vergröberungsfaktor</translation>
+        <translation>Coarse-Graining-Faktor</translation>
     </message>
     <message>
         <source>Coarsen the open particles first</source>
@@ -1064,12 +1064,20 @@
         <translation>Kohäsion</translation>
     </message>
     <message>
+        <source>Cohesion over weight is {real} for the dataset&apos;s particles and {given} for the simulated ones at the given surface energy; this run has {simulated}.</source>
+        <translation>Kohäsion zu Gewicht ist {real} bei den Partikeln des Datensatzes und {given} bei den simulierten mit der gegebenen Oberflächenenergie; dieser Lauf hat {simulated}.</translation>
+    </message>
+    <message>
         <source>Colour the fit by its distance from the particle</source>
         <translation>Den Fit nach seinem Abstand vom Partikel färben</translation>
     </message>
     <message>
         <source>Colours the faults in the picture, as they were before the mesh was repaired</source>
         <translation>Färbt die Fehler im Bild, wie sie vor der Reparatur des Netzes waren</translation>
+    </message>
+    <message>
+        <source>Combines the surface of one measured particle with the form of another.</source>
+        <translation>Verbindet die Oberfläche eines gemessenen Partikels mit der Form eines anderen.</translation>
     </message>
     <message>
         <source>Command</source>
@@ -1117,7 +1125,7 @@
     </message>
     <message>
         <source>Compiling, once after an installation</source>
-        <translation>Wird übersetzt, einmal nach einer Installation</translation>
+        <translation>Wird kompiliert, einmal nach einer Installation</translation>
     </message>
     <message>
         <source>Compound of convex parts</source>
@@ -1300,8 +1308,8 @@
         <translation>Strg + Ziehen</translation>
     </message>
     <message>
-        <source>Ctrl+Shift+P finds any command by a few letters, Ctrl+Z takes back any choice, Ctrl+S keeps the project. The tour is in the Help menu.</source>
-        <translation>Strg+Umschalt+P findet jeden Befehl nach wenigen Buchstaben, Strg+Z nimmt jede Wahl zurück, Strg+S sichert das Projekt. Der Rundgang steht im Menü Hilfe.</translation>
+        <source>Ctrl+Shift+P finds any command by a few letters, Ctrl+Z undoes any change, Ctrl+S saves the project. The tour is in the Help menu.</source>
+        <translation>Strg+Umschalt+P findet jeden Befehl nach wenigen Buchstaben, Strg+Z macht jede Änderung rückgängig, Strg+S speichert das Projekt. Der Rundgang steht im Menü Hilfe.</translation>
     </message>
     <message>
         <source>Cut all views</source>
@@ -1352,7 +1360,7 @@
         <translation>Grad, bei dem Anpassungen abgeschnitten werden und Modelle ziehen; im Artikel 10.</translation>
     </message>
     <message>
-        <source>Degree at which the series is cut: 0 is a sphere, 10 keeps the form, 30 nearly all details.</source>
+        <source>Degree at which the series is truncated: 0 is a sphere, 10 keeps the form, 30 nearly all details.</source>
         <translation>Grad, bei dem die Reihe abgebrochen wird: 0 ist eine Kugel, 10 behält die Form, 30 fast alle Einzelheiten.</translation>
     </message>
     <message>
@@ -1480,8 +1488,8 @@
         <translation>Fertig: {count} Dateien in {folder}.</translation>
     </message>
     <message>
-        <source>Drag it. At 0 the fit is a sphere, at 10 it keeps the form, at 30 nearly all details.</source>
-        <translation>Ziehen Sie daran. Bei 0 ist der Fit eine Kugel, bei 10 behält er die Form, bei 30 fast alle Einzelheiten.</translation>
+        <source>Drag the slider. At 0 the fit is a sphere; at 10 it keeps the form, at 30 nearly all details.</source>
+        <translation>Ziehen Sie am Regler. Bei 0 ist der Fit eine Kugel; bei 10 behält er die Form, bei 30 fast alle Einzelheiten.</translation>
     </message>
     <message>
         <source>Draw</source>
@@ -1592,10 +1600,6 @@
         <translation>Jeder Term allein</translation>
     </message>
     <message>
-        <source>Each with</source>
-        <translation>Jedes mit</translation>
-    </message>
-    <message>
         <source>Each with {fineness}; method: {method}; chosen on the page Explore.</source>
         <translation>Jedes Polyeder mit {fineness}; Verfahren: {method}; gewählt auf der Seite Erkunden.</translation>
     </message>
@@ -1650,6 +1654,14 @@
     <message>
         <source>Engines</source>
         <translation>Rechenkerne</translation>
+    </message>
+    <message>
+        <source>Enter a folder for the results.</source>
+        <translation>Geben Sie einen Ordner für die Ergebnisse an.</translation>
+    </message>
+    <message>
+        <source>Enter a new or empty folder.</source>
+        <translation>Geben Sie einen neuen oder leeren Ordner an.</translation>
     </message>
     <message>
         <source>Equivalent diameter [µm]</source>
@@ -1732,10 +1744,6 @@
         <translation>Jede Kante gehört zu genau zwei Dreiecken</translation>
     </message>
     <message>
-        <source>Every open particle. Click a row to put it on screen; the arrow keys walk through the list. The icon shows the health of the mesh. Drop your own files anywhere in the window.</source>
-        <translation>Alle geöffneten Partikel. Ein Klick auf eine Zeile zeigt eines davon; die Pfeiltasten bewegen sich durch die Liste. Das Symbol zeigt den Zustand des Netzes. Eigene Dateien lassen sich irgendwo im Fenster ablegen.</translation>
-    </message>
-    <message>
         <source>Every run is kept in {folder}.</source>
         <translation>Jeder Lauf wird in {folder} aufbewahrt.</translation>
     </message>
@@ -1812,16 +1820,16 @@
         <translation>Facetten</translation>
     </message>
     <message>
-        <source>Facets a particle</source>
-        <translation>Facetten je Partikel</translation>
-    </message>
-    <message>
         <source>Facets n</source>
         <translation>Facetten n</translation>
     </message>
     <message>
         <source>Facets of the open particles</source>
         <translation>Facetten der geöffneten Partikel</translation>
+    </message>
+    <message>
+        <source>Facets per particle</source>
+        <translation>Facetten je Partikel</translation>
     </message>
     <message>
         <source>Factors on one weight at a time</source>
@@ -1832,12 +1840,8 @@
         <translation>Faktoren auf das Gewicht der Überdeckung</translation>
     </message>
     <message>
-        <source>Fewer facets make a faster simulation. The views say how many facets, vertices and triangles the polyhedron really has, and a sentence appears here if a request cannot be met.</source>
-        <translation>Weniger Facetten machen die Simulation schneller. Über der Ansicht steht, wie viele Facetten, Ecken und Dreiecke das Polyeder wirklich hat; hier erscheint ein Satz, wenn eine Anforderung nicht erfüllbar ist.</translation>
-    </message>
-    <message>
-        <source>Fewest particles</source>
-        <translation>Wenigste Partikel</translation>
+        <source>Fewer facets make the simulation faster. The title of the view states the numbers of facets, vertices and triangles; a note appears here if a request cannot be met.</source>
+        <translation>Weniger Facetten machen die Simulation schneller. Der Titel der Ansicht nennt die Anzahl der Facetten, Ecken und Dreiecke; hier erscheint ein Hinweis, wenn eine Anforderung nicht erfüllbar ist.</translation>
     </message>
     <message>
         <source>Field drawn to its hull</source>
@@ -2060,6 +2064,10 @@
         <translation>Modell wird angepasst</translation>
     </message>
     <message>
+        <source>Fitting the particle …</source>
+        <translation>Das Partikel wird angepasst …</translation>
+    </message>
+    <message>
         <source>Flatness</source>
         <translation>Abplattung</translation>
     </message>
@@ -2070,10 +2078,6 @@
     <message>
         <source>Flip</source>
         <translation>Umkehren</translation>
-    </message>
-    <message>
-        <source>Floor</source>
-        <translation>Rauschen</translation>
     </message>
     <message>
         <source>Folder (created if missing):</source>
@@ -2160,6 +2164,10 @@
         <translation>Vorne (von -y)</translation>
     </message>
     <message>
+        <source>Full screen on or off</source>
+        <translation>Vollbild ein oder aus</translation>
+    </message>
+    <message>
         <source>GIF of l_max 0 to 30</source>
         <translation>GIF von l_max 0 bis 30</translation>
     </message>
@@ -2208,16 +2216,16 @@
         <translation>Körner sind dunkler als das, was zwischen ihnen ist.</translation>
     </message>
     <message>
-        <source>Grains fill most of it and hang together: if the grains are dark, tick that below; else move the level or make h smaller.</source>
-        <translation>Körner füllen das meiste und hängen zusammen: Sind die Körner dunkel, haken Sie das unten an; sonst verschieben Sie den Schwellwert oder verkleinern h.</translation>
+        <source>Grains cut by the border of the scan were left out, large ones more often than small ones. The others have larger weights in return (Miles-Lantuéjoul).</source>
+        <translation>Körner, die der Rand des Scans schneidet, fielen weg, große öfter als kleine. Die übrigen haben dafür größere Gewichte (Miles-Lantuéjoul).</translation>
+    </message>
+    <message>
+        <source>Grains fill most of the frame and are connected. Tick Grains are dark if they are; otherwise change the level or reduce h.</source>
+        <translation>Körner füllen das meiste des Rahmens und hängen zusammen. Haken Sie „Körner sind dunkel“ an, wenn sie es sind; sonst ändern Sie den Schwellwert oder verkleinern h.</translation>
     </message>
     <message>
         <source>Grains of fewer voxels are left out; below 12 voxels in diameter shapes are coarse.</source>
         <translation>Körner mit weniger Voxeln entfallen; unter 12 Voxeln Durchmesser sind Formen grob.</translation>
-    </message>
-    <message>
-        <source>Grains that the border of the scan cuts were left out, large ones more often than small ones. Each of the others counts a little more for it (weights of Miles and Lantuéjoul).</source>
-        <translation>Körner, die der Rand des Scans schneidet, fielen weg, große öfter als kleine. Jedes der übrigen zählt dafür etwas mehr (Gewichte nach Miles und Lantuéjoul).</translation>
     </message>
     <message>
         <source>Gravity</source>
@@ -2276,6 +2284,14 @@
         <translation>Zustand des Netzes</translation>
     </message>
     <message>
+        <source>Height above which a maximum of the distance map is a grain of its own. Increase it if grains are split, reduce it if grains stay connected.</source>
+        <translation>Höhe, ab der ein Maximum der Abstandskarte ein eigenes Korn ist. Vergrößern Sie sie, wenn Körner zerteilt werden; verkleinern Sie sie, wenn Körner verbunden bleiben.</translation>
+    </message>
+    <message>
+        <source>Height of a maximum that is a grain of its own, in voxels</source>
+        <translation>Höhe eines Maximums, das ein eigenes Korn ist, in Voxeln</translation>
+    </message>
+    <message>
         <source>Hertz and Mindlin stiffness, cohesion, rolling resistance; single precision</source>
         <translation>Steifigkeit nach Hertz und Mindlin, Kohäsion, Rollwiderstand; einfache Genauigkeit</translation>
     </message>
@@ -2308,6 +2324,10 @@
         <translation>Vom Sternpunkt aus verdeckt, sodass keine Radiusfunktion es darstellen kann</translation>
     </message>
     <message>
+        <source>Hidden from the star point: {surface} of the surface, {volume} of the volume. A radius function cannot represent them.</source>
+        <translation>Vom Sternpunkt aus verdeckt: {surface} der Oberfläche, {volume} des Volumens. Eine Radiusfunktion kann sie nicht wiedergeben.</translation>
+    </message>
+    <message>
         <source>Hidden surface</source>
         <translation>Verdeckte Fläche</translation>
     </message>
@@ -2334,10 +2354,6 @@
     <message>
         <source>Horizontal axis</source>
         <translation>Waagerechte Achse</translation>
-    </message>
-    <message>
-        <source>How far a bump must stand out to be a grain of its own. Grains cut in two: larger. Grains that stick together: smaller.</source>
-        <translation>Wie weit ein Höcker vorstehen muss, um ein eigenes Korn zu sein. Werden Körner zerteilt: größer. Bleiben Körner verbunden: kleiner.</translation>
     </message>
     <message>
         <source>How many facets</source>
@@ -2368,6 +2384,14 @@
         <translation>Unabhängige normalverteilte Koeffizienten; Ziehungen mit negativem Radius werden verworfen.</translation>
     </message>
     <message>
+        <source>Inspecting the volume</source>
+        <translation>Volumen wird geprüft</translation>
+    </message>
+    <message>
+        <source>Inspecting {name}</source>
+        <translation>{name} wird geprüft</translation>
+    </message>
+    <message>
         <source>Intermediate diameter</source>
         <translation>Mittlerer Durchmesser</translation>
     </message>
@@ -2384,10 +2408,6 @@
         <translation>Bereich</translation>
     </message>
     <message>
-        <source>Into:</source>
-        <translation>Nach:</translation>
-    </message>
-    <message>
         <source>Isometric</source>
         <translation>Isometrisch</translation>
     </message>
@@ -2396,8 +2416,8 @@
         <translation>Es besteht aus {count} getrennten Körpern.</translation>
     </message>
     <message>
-        <source>It does not say how large a voxel is.</source>
-        <translation>Sie sagt nicht, wie groß ein Voxel ist.</translation>
+        <source>It does not state the size of a voxel.</source>
+        <translation>Sie nennt die Größe eines Voxels nicht.</translation>
     </message>
     <message>
         <source>It encloses no volume.</source>
@@ -2428,8 +2448,8 @@
         <translation>Es ist keine Mannigfaltigkeit: {count} Kanten gehören zu drei oder mehr Flächen.</translation>
     </message>
     <message>
-        <source>It was kept at {moment}.</source>
-        <translation>Er wurde {moment} festgehalten.</translation>
+        <source>It was saved at {moment}.</source>
+        <translation>Er wurde {moment} gespeichert.</translation>
     </message>
     <message>
         <source>Iterations</source>
@@ -2440,16 +2460,8 @@
         <translation>Iterationen k_max</translation>
     </message>
     <message>
-        <source>Its choices are taken; it is too large to be opened: use Run as a batch.</source>
-        <translation>Seine Einstellungen sind übernommen; zum Öffnen ist es zu groß: nehmen Sie „Als Stapel ausführen“.</translation>
-    </message>
-    <message>
         <source>Its faces are not oriented consistently.</source>
         <translation>Seine Flächen sind nicht einheitlich orientiert.</translation>
-    </message>
-    <message>
-        <source>Its name says how many voxels are in it, and its size agrees.</source>
-        <translation>Ihr Name sagt, wie viele Voxel sie hat, und ihre Größe stimmt damit überein.</translation>
     </message>
     <message>
         <source>Its normals point inwards.</source>
@@ -2458,6 +2470,10 @@
     <message>
         <source>Its particles are convex polyhedra.</source>
         <translation>Seine Partikel sind konvexe Polyeder.</translation>
+    </message>
+    <message>
+        <source>Its settings have been applied; its population is too large to be opened: use Run as a batch.</source>
+        <translation>Seine Einstellungen sind übernommen; seine Population ist zum Öffnen zu groß: nehmen Sie „Als Stapel ausführen“.</translation>
     </message>
     <message>
         <source>Its surface touches itself in 1 corner.</source>
@@ -2488,12 +2504,12 @@
         <translation>KS / Rauschen</translation>
     </message>
     <message>
-        <source>KS floor</source>
-        <translation>KS-Rauschen</translation>
-    </message>
-    <message>
         <source>KS from</source>
         <translation>KS von</translation>
+    </message>
+    <message>
+        <source>KS noise</source>
+        <translation>KS-Rauschen</translation>
     </message>
     <message>
         <source>KS to</source>
@@ -2521,15 +2537,11 @@
     </message>
     <message>
         <source>Keeping the sphericity costs overlap: the Jaccard distance is {kept}; with the sphericity free it is {free}, and the sphericity is off by {error} %. The preset Shape first leaves it free.</source>
-        <translation>Die Sphärizität einzuhalten kostet Überdeckung: Der Jaccard-Abstand ist {kept}; mit freier Sphärizität ist er {free}, und die Sphärizität weicht um {error} % ab. Die Voreinstellung „Form zuerst“ lässt sie frei.</translation>
+        <translation>Die Sphärizität einzuhalten kostet Überdeckung: Die Jaccard-Distanz ist {kept}; mit freier Sphärizität ist sie {free}, und die Sphärizität weicht um {error} % ab. Die Vorlage „Form zuerst“ lässt sie frei.</translation>
     </message>
     <message>
         <source>Kept the largest of {count} bodies, with {share} of their volume.</source>
         <translation>Der größte von {count} Körpern wurde behalten, mit {share} ihres Volumens.</translation>
-    </message>
-    <message>
-        <source>Key of the coarsening method.</source>
-        <translation>Verfahren der Vergröberung.</translation>
     </message>
     <message>
         <source>Keyboard and mouse</source>
@@ -2612,14 +2624,6 @@
         <translation>Größengesetz</translation>
     </message>
     <message>
-        <source>Least hidden volume</source>
-        <translation>Kleinstes verdecktes Volumen</translation>
-    </message>
-    <message>
-        <source>Least moment of inertia</source>
-        <translation>Kleinstes Trägheitsmoment</translation>
-    </message>
-    <message>
         <source>Leave out grains at the border</source>
         <translation>Körner am Rand weglassen</translation>
     </message>
@@ -2644,7 +2648,11 @@
         <translation>Ausgelassen: {names}.</translation>
     </message>
     <message>
-        <source>Left: the particle as it was read; the shipped ones are synthetic. Middle: its spherical-harmonics fit. Right: the convex polyhedron for a DEM solver. Drag to turn: all three turn together.</source>
+        <source>Left out: {reason}</source>
+        <translation>Ausgelassen: {reason}</translation>
+    </message>
+    <message>
+        <source>Left: the particle as it was read; the shipped ones are synthetic. Middle: its spherical-harmonics fit. Right: the convex polyhedron for a DEM solver. Drag to rotate; the three views rotate together.</source>
         <translation>Links: das Partikel, wie es gelesen wurde; die mitgelieferten sind synthetisch. Mitte: sein Fit mit Kugelflächenfunktionen. Rechts: das konvexe Polyeder für ein DEM-Programm. Zum Drehen ziehen: alle drei drehen sich gemeinsam.</translation>
     </message>
     <message>
@@ -2665,7 +2673,7 @@
     </message>
     <message>
         <source>Level</source>
-        <translation>Schwelle</translation>
+        <translation>Niveau</translation>
     </message>
     <message>
         <source>Library</source>
@@ -2704,6 +2712,10 @@
         <translation>Koppeln</translation>
     </message>
     <message>
+        <source>Load settings from a file</source>
+        <translation>Einstellungen aus einer Datei laden</translation>
+    </message>
+    <message>
         <source>Log</source>
         <translation>Protokoll</translation>
     </message>
@@ -2720,28 +2732,12 @@
         <translation>Logarithmisch</translation>
     </message>
     <message>
-        <source>Longest wait</source>
-        <translation>Längste Wartezeit</translation>
-    </message>
-    <message>
         <source>Look</source>
         <translation>Ansehen</translation>
     </message>
     <message>
         <source>Look &amp;from</source>
         <translation>&amp;Blickrichtung</translation>
-    </message>
-    <message>
-        <source>Looking at the volume</source>
-        <translation>Volumen wird angesehen</translation>
-    </message>
-    <message>
-        <source>Looking at {name}</source>
-        <translation>{name} wird angesehen</translation>
-    </message>
-    <message>
-        <source>Looking through the slices</source>
-        <translation>Schichten werden durchgesehen</translation>
     </message>
     <message>
         <source>Loss</source>
@@ -2776,24 +2772,12 @@
         <translation>Unterer Schnitt</translation>
     </message>
     <message>
-        <source>Lowest cut, in mean d</source>
-        <translation>Tiefster Schnitt, in mittleren d</translation>
-    </message>
-    <message>
-        <source>Lowest pile, in mean d</source>
-        <translation>Niedrigster Kegel, in mittleren d</translation>
-    </message>
-    <message>
         <source>Lunar soil (published ratios and sizes)</source>
         <translation>Mondboden (veröffentlichte Verhältnisse und Größen)</translation>
     </message>
     <message>
         <source>Make particles</source>
         <translation>Partikel erzeugen</translation>
-    </message>
-    <message>
-        <source>Making a dataset</source>
-        <translation>Datensatz wird gemacht</translation>
     </message>
     <message>
         <source>Making a material card</source>
@@ -2852,6 +2836,14 @@
         <translation>Größter Durchmesser</translation>
     </message>
     <message>
+        <source>Maximum duration</source>
+        <translation>Höchstdauer</translation>
+    </message>
+    <message>
+        <source>Maximum number of triangles</source>
+        <translation>Höchstzahl der Dreiecke</translation>
+    </message>
+    <message>
         <source>Mean Jaccard distance [%]</source>
         <translation>Mittlere Jaccard-Distanz [%]</translation>
     </message>
@@ -2872,7 +2864,7 @@
         <translation>Mittlerer Fehler der Deskriptoren gegen mittlere Jaccard-Distanz: links unten ist besser.</translation>
     </message>
     <message>
-        <source>Mean of {count} sections. Two perpendicular sections give {asymmetric:.1f}° (one angle a flank) and {symmetric:.1f}° (one angle for both).</source>
+        <source>Mean of {count} sections. Two perpendicular sections give {asymmetric:.1f}° (one angle per flank) and {symmetric:.1f}° (one angle for both).</source>
         <translation>Mittel von {count} Schnitten. Zwei senkrechte Schnitte geben {asymmetric:.1f}° (ein Winkel je Flanke) und {symmetric:.1f}° (ein Winkel für beide).</translation>
     </message>
     <message>
@@ -2912,6 +2904,10 @@
         <translation>Schüttkegel wird vermessen</translation>
     </message>
     <message>
+        <source>Measuring …</source>
+        <translation>Wird vermessen …</translation>
+    </message>
+    <message>
         <source>Median distance to the nearest measured particle, over that between measured ones: 0 is a copy</source>
         <translation>Mediane Distanz zum nächsten gemessenen Partikel, geteilt durch die zwischen gemessenen: 0 ist eine Kopie</translation>
     </message>
@@ -2948,6 +2944,10 @@
         <translation>Verfahren</translation>
     </message>
     <message>
+        <source>Method of coarsening.</source>
+        <translation>Verfahren der Vergröberung.</translation>
+    </message>
+    <message>
         <source>Metres (m)</source>
         <translation>Meter (m)</translation>
     </message>
@@ -2970,6 +2970,22 @@
     <message>
         <source>Minimum diameter</source>
         <translation>Kleinster Durchmesser</translation>
+    </message>
+    <message>
+        <source>Minimum height of the cut, in mean d</source>
+        <translation>Mindesthöhe des Schnitts, in mittleren d</translation>
+    </message>
+    <message>
+        <source>Minimum height of the heap, in mean d</source>
+        <translation>Mindesthöhe der Schüttung, in mittleren d</translation>
+    </message>
+    <message>
+        <source>Minimum hidden volume</source>
+        <translation>Kleinstes verdecktes Volumen</translation>
+    </message>
+    <message>
+        <source>Minimum number of particles</source>
+        <translation>Mindestzahl der Partikel</translation>
     </message>
     <message>
         <source>Minimum number of voxels of a grain</source>
@@ -3012,16 +3028,12 @@
         <translation>Mehr Facetten helfen hier nicht: {count} Facetten hatten einen Verlust von {loss}.</translation>
     </message>
     <message>
-        <source>More than {count:,} particles are for other programs: export the dataset.</source>
-        <translation>Mehr als {count:,} Partikel sind Sache anderer Programme: exportieren Sie den Datensatz.</translation>
-    </message>
-    <message>
-        <source>Most triangles</source>
-        <translation>Meiste Dreiecke</translation>
-    </message>
-    <message>
         <source>Mouse in the views</source>
         <translation>Maus in den Ansichten</translation>
+    </message>
+    <message>
+        <source>MuJoCo had no room for all contacts.</source>
+        <translation>MuJoCo hatte keinen Platz für alle Kontakte.</translation>
     </message>
     <message>
         <source>Multi-Otsu, three classes</source>
@@ -3030,14 +3042,6 @@
     <message>
         <source>Name</source>
         <translation>Name</translation>
-    </message>
-    <message>
-        <source>Name a folder for the results.</source>
-        <translation>Nennen Sie einen Ordner für die Ergebnisse.</translation>
-    </message>
-    <message>
-        <source>Name a folder, new or empty.</source>
-        <translation>Nennen Sie einen neuen oder leeren Ordner.</translation>
     </message>
     <message>
         <source>Name and health of the mesh</source>
@@ -3136,8 +3140,8 @@
         <translation>Kein Korn ist gemalt; malen Sie auch einige Voxel von Körnern.</translation>
     </message>
     <message>
-        <source>No material.</source>
-        <translation>Kein Material.</translation>
+        <source>No material is chosen.</source>
+        <translation>Kein Material ist gewählt.</translation>
     </message>
     <message>
         <source>No open particle comes from a file: open some, or choose a recipe file.</source>
@@ -3174,6 +3178,10 @@
     <message>
         <source>No volume is open.</source>
         <translation>Kein Volumen ist geöffnet.</translation>
+    </message>
+    <message>
+        <source>Noise</source>
+        <translation>Rauschen</translation>
     </message>
     <message>
         <source>Non-local means (slow)</source>
@@ -3224,7 +3232,7 @@
         <translation>Nichts ist in Arbeit.</translation>
     </message>
     <message>
-        <source>Nothing to show: no faults, and all of the surface is seen from the star point.</source>
+        <source>Nothing to show: no faults, and the whole surface is visible from the star point.</source>
         <translation>Nichts zu zeigen: keine Mängel, und die ganze Oberfläche ist vom Sternpunkt aus zu sehen.</translation>
     </message>
     <message>
@@ -3284,6 +3292,10 @@
         <translation>Anzahl der Formen, aus denen die Schüttung besteht.</translation>
     </message>
     <message>
+        <source>Number of the {noun}</source>
+        <translation>Nummer: {noun}</translation>
+    </message>
+    <message>
         <source>Numbering grains</source>
         <translation>Körner werden nummeriert</translation>
     </message>
@@ -3312,11 +3324,7 @@
         <translation>Objekte</translation>
     </message>
     <message>
-        <source>Of all random numbers: the same seed gives the same polyhedron.</source>
-        <translation>Aller Zufallszahlen: derselbe Startwert ergibt dasselbe Polyeder.</translation>
-    </message>
-    <message>
-        <source>Of the mesh; the tool tip of a cell says what was found and repaired</source>
+        <source>Of the mesh; the tool tip of a cell lists what was found and repaired</source>
         <translation>Des Netzes; der Hinweis einer Zelle sagt, was gefunden und repariert wurde</translation>
     </message>
     <message>
@@ -3330,10 +3338,6 @@
     <message>
         <source>On this computer or on a cluster</source>
         <translation>Auf diesem Rechner oder auf einem Cluster</translation>
-    </message>
-    <message>
-        <source>One after the other, then all</source>
-        <translation>Eine nach der anderen, dann alle</translation>
     </message>
     <message>
         <source>One particle, its spherical-harmonics fit and its polyhedron side by side</source>
@@ -3369,7 +3373,11 @@
     </message>
     <message>
         <source>Only the overlap has a weight.</source>
-        <translation>Nur die Überlappung hat ein Gewicht.</translation>
+        <translation>Nur die Überdeckung hat ein Gewicht.</translation>
+    </message>
+    <message>
+        <source>Only {count} of {total} sections through the heap have two straight flanks.</source>
+        <translation>Nur {count} von {total} Schnitten durch die Schüttung haben zwei gerade Flanken.</translation>
     </message>
     <message>
         <source>Open &amp;dataset …</source>
@@ -3428,8 +3436,8 @@
         <translation>Datensatz öffnen …</translation>
     </message>
     <message>
-        <source>Open a dataset, or make one from the open particles.</source>
-        <translation>Öffnen Sie einen Datensatz, oder machen Sie einen aus den geöffneten Partikeln.</translation>
+        <source>Open a dataset, or build one from the open particles.</source>
+        <translation>Öffnen Sie einen Datensatz, oder bauen Sie einen aus den geöffneten Partikeln.</translation>
     </message>
     <message>
         <source>Open a fit, model or card</source>
@@ -3604,16 +3612,20 @@
         <translation>Beispiele malen</translation>
     </message>
     <message>
-        <source>Pairs</source>
-        <translation>Paare</translation>
+        <source>Pairs (plot)</source>
+        <translation>Paare (Bild)</translation>
     </message>
     <message>
-        <source>Pairs in numbers</source>
-        <translation>Paarwerte</translation>
+        <source>Pairs (table)</source>
+        <translation>Paare (Tabelle)</translation>
     </message>
     <message>
         <source>Pairs of triangles that intersect each other</source>
         <translation>Paare von Dreiecken, die sich schneiden</translation>
+    </message>
+    <message>
+        <source>Pan the view</source>
+        <translation>Die Ansicht verschieben</translation>
     </message>
     <message>
         <source>Parametric, with facets: size, form, roughness and hull ratio are correlated as in the sample.</source>
@@ -3680,6 +3692,10 @@
         <translation>Partikel der Studien</translation>
     </message>
     <message>
+        <source>Particles overlap by up to {overlap} % of the mean diameter.</source>
+        <translation>Partikel überlappen um bis zu {overlap} % des mittleren Durchmessers.</translation>
+    </message>
+    <message>
         <source>Particles shown</source>
         <translation>Gezeigte Partikel</translation>
     </message>
@@ -3732,7 +3748,7 @@
         <translation>Abspielen oder anhalten</translation>
     </message>
     <message>
-        <source>Points a flank</source>
+        <source>Points per flank</source>
         <translation>Punkte je Flanke</translation>
     </message>
     <message>
@@ -3768,8 +3784,8 @@
         <translation>Polyeder, {count} Facetten</translation>
     </message>
     <message>
-        <source>Pores without a way out become grain.</source>
-        <translation>Poren ohne Ausgang werden zum Korn gezählt.</translation>
+        <source>Pores enclosed by a grain are counted as grain.</source>
+        <translation>Poren, die ein Korn umschließt, zählen als Korn.</translation>
     </message>
     <message>
         <source>Positions (*.npz *.csv *.txt *.dat *.xyz *.dump *.lammpstrj *.vtk *.vtp *.vtu);;All files (*)</source>
@@ -3797,11 +3813,11 @@
     </message>
     <message>
         <source>Preset</source>
-        <translation>Vorgabe</translation>
+        <translation>Vorlage</translation>
     </message>
     <message>
         <source>Preset of the loss weights of the representative particles.</source>
-        <translation>Vorgabe für die Verlustgewichte der Repräsentanten.</translation>
+        <translation>Vorlage für die Verlustgewichte der Repräsentanten.</translation>
     </message>
     <message>
         <source>Preset of weights</source>
@@ -3812,12 +3828,12 @@
         <translation>Vorlage: {label}</translation>
     </message>
     <message>
-        <source>Press Find representatives: the error against their number, and the sampling noise.</source>
-        <translation>Drücken Sie „Repräsentanten finden“: Fehler gegen ihre Anzahl, und das Stichprobenrauschen.</translation>
+        <source>Press Find representatives to plot the error against their number.</source>
+        <translation>Drücken Sie „Repräsentanten finden“, um den Fehler gegen ihre Anzahl zu zeichnen.</translation>
     </message>
     <message>
-        <source>Press Find representatives: they appear here with their weights.</source>
-        <translation>Drücken Sie „Repräsentanten finden“: sie erscheinen hier mit ihren Gewichten.</translation>
+        <source>Press Find representatives to show them here with their weights.</source>
+        <translation>Drücken Sie „Repräsentanten finden“, um sie hier mit ihren Gewichten zu zeigen.</translation>
     </message>
     <message>
         <source>Preview</source>
@@ -3952,6 +3968,10 @@
         <translation>Beispielscan wird gelesen</translation>
     </message>
     <message>
+        <source>Reading the slices</source>
+        <translation>Schichten werden gelesen</translation>
+    </message>
+    <message>
         <source>Reading the volume</source>
         <translation>Volumen wird gelesen</translation>
     </message>
@@ -3988,6 +4008,10 @@
         <translation>Wiederholen</translation>
     </message>
     <message>
+        <source>Redo the last step (Ctrl+Shift+Z)</source>
+        <translation>Den letzten Schritt wiederholen (Strg+Umschalt+Z)</translation>
+    </message>
+    <message>
         <source>Reference surface</source>
         <translation>Bezugsfläche</translation>
     </message>
@@ -4000,8 +4024,8 @@
         <translation>Auszuwertender Bereich</translation>
     </message>
     <message>
-        <source>Regolith Studio was not closed properly the last time. Bring its state back?</source>
-        <translation>Regolith Studio wurde zuletzt nicht ordentlich geschlossen. Den Stand zurückholen?</translation>
+        <source>Regolith Studio was not closed properly the last time. Restore its state?</source>
+        <translation>Regolith Studio wurde zuletzt nicht ordentlich geschlossen. Den Stand wiederherstellen?</translation>
     </message>
     <message>
         <source>Rejected</source>
@@ -4026,6 +4050,10 @@
     <message>
         <source>Remarks</source>
         <translation>Anmerkungen</translation>
+    </message>
+    <message>
+        <source>Remove all examples</source>
+        <translation>Alle Beispiele entfernen</translation>
     </message>
     <message>
         <source>Removed 1 double face.</source>
@@ -4108,6 +4136,14 @@
         <translation>Repräsentanten</translation>
     </message>
     <message>
+        <source>Requested</source>
+        <translation>Verlangt</translation>
+    </message>
+    <message>
+        <source>Resamples the sample: measured surfaces, slightly rotated within their ellipsoids and mirrored.</source>
+        <translation>Bildet die Probe nach: gemessene Oberflächen, in ihren Ellipsoiden etwas gedreht und gespiegelt.</translation>
+    </message>
+    <message>
         <source>Reset</source>
         <translation>Zurücksetzen</translation>
     </message>
@@ -4128,8 +4164,8 @@
         <translation>Stoßzahl</translation>
     </message>
     <message>
-        <source>Restore sizes and borders</source>
-        <translation>Größen und Grenzen wiederherstellen</translation>
+        <source>Restore the standard sizes of all panels</source>
+        <translation>Die üblichen Größen aller Bereiche wiederherstellen</translation>
     </message>
     <message>
         <source>Restore the volume</source>
@@ -4137,7 +4173,7 @@
     </message>
     <message>
         <source>Restoring particles</source>
-        <translation>Stelle Partikel wieder her</translation>
+        <translation>Partikel werden wiederhergestellt</translation>
     </message>
     <message>
         <source>Resume</source>
@@ -4160,8 +4196,8 @@
         <translation>Rechte oder mittlere Taste ziehen, Umschalt + Ziehen</translation>
     </message>
     <message>
-        <source>Roll the picture</source>
-        <translation>Das Bild rollen</translation>
+        <source>Roll the view</source>
+        <translation>Die Ansicht rollen</translation>
     </message>
     <message>
         <source>Rolling</source>
@@ -4184,8 +4220,8 @@
         <translation>Wurzel des mittleren quadratischen relativen Fehlers jedes Deskriptors gegen die Anzahl der Facetten.</translation>
     </message>
     <message>
-        <source>Root mean squared relative error of each descriptor, one row a loss function.</source>
-        <translation>Wurzel des mittleren quadrierten relativen Fehlers jedes Deskriptors, eine Zeile je Verlustfunktion.</translation>
+        <source>Root mean squared relative error of each descriptor, one row per loss function.</source>
+        <translation>Wurzel des mittleren quadratischen relativen Fehlers jedes Deskriptors, eine Zeile je Verlustfunktion.</translation>
     </message>
     <message>
         <source>Root mean squared relative error over the descriptors that have a weight (Eq. 10)</source>
@@ -4194,6 +4230,14 @@
     <message>
         <source>Rosin-Rammler, the same for all</source>
         <translation>Rosin-Rammler, für alle gleich</translation>
+    </message>
+    <message>
+        <source>Rotate all views together</source>
+        <translation>Alle Ansichten gemeinsam drehen</translation>
+    </message>
+    <message>
+        <source>Rotate the particle</source>
+        <translation>Das Partikel drehen</translation>
     </message>
     <message>
         <source>Rotation [rad]</source>
@@ -4256,16 +4300,16 @@
         <translation>Läufe</translation>
     </message>
     <message>
-        <source>Runs of each</source>
+        <source>Runs of the study</source>
+        <translation>Läufe der Studie</translation>
+    </message>
+    <message>
+        <source>Runs per value</source>
         <translation>Läufe je Wert</translation>
     </message>
     <message>
-        <source>Runs of each value, with other seeds</source>
+        <source>Runs per value, with different seeds</source>
         <translation>Läufe je Wert, mit anderen Startwerten</translation>
-    </message>
-    <message>
-        <source>Runs of the study</source>
-        <translation>Läufe der Studie</translation>
     </message>
     <message>
         <source>Runs that ended in a pile are compared here.</source>
@@ -4281,7 +4325,7 @@
     </message>
     <message>
         <source>SI; coarse graining applied</source>
-        <translation>SI; mit Vergröberungsfaktor</translation>
+        <translation>SI; mit Coarse-Graining</translation>
     </message>
     <message>
         <source>SI; sizes are equivalent diameters in metres before coarse graining, which Rocky applies itself</source>
@@ -4504,6 +4548,10 @@
         <translation>Zweiter</translation>
     </message>
     <message>
+        <source>Second surface: overlaid, or right of the line</source>
+        <translation>Zweite Oberfläche: darübergelegt oder rechts der Linie</translation>
+    </message>
+    <message>
         <source>Section</source>
         <translation>Schnitt</translation>
     </message>
@@ -4530,6 +4578,10 @@
     <message>
         <source>Seed of the random numbers.</source>
         <translation>Startwert der Zufallszahlen.</translation>
+    </message>
+    <message>
+        <source>Seed of the random numbers: the same seed gives the same polyhedron.</source>
+        <translation>Startwert der Zufallszahlen: derselbe Startwert ergibt dasselbe Polyeder.</translation>
     </message>
     <message>
         <source>Segment the whole volume</source>
@@ -4632,10 +4684,6 @@
         <translation>Anteil des Volumens in weggelassenen Körpern</translation>
     </message>
     <message>
-        <source>Shift the picture</source>
-        <translation>Das Bild verschieben</translation>
-    </message>
-    <message>
         <source>Show in &amp;Explore</source>
         <translation>In Er&amp;kunden zeigen</translation>
     </message>
@@ -4672,12 +4720,20 @@
         <translation>Dreiecke zeigen</translation>
     </message>
     <message>
+        <source>Shows one view enlarged, then the next, then all</source>
+        <translation>Zeigt eine Ansicht vergrößert, dann die nächste, dann alle</translation>
+    </message>
+    <message>
         <source>Sieve classes, the same for all</source>
         <translation>Siebklassen, für alle gleich</translation>
     </message>
     <message>
         <source>Simulated annealing</source>
         <translation>Simuliertes Abkühlen</translation>
+    </message>
+    <message>
+        <source>Simulated annealing is running …</source>
+        <translation>Das simulierte Abkühlen läuft …</translation>
     </message>
     <message>
         <source>Single diameters, the same for all</source>
@@ -4690,6 +4746,10 @@
     <message>
         <source>Size jitter</source>
         <translation>Größenstreuung</translation>
+    </message>
+    <message>
+        <source>Size of each</source>
+        <translation>Größe je Polyeder</translation>
     </message>
     <message>
         <source>Size of letters</source>
@@ -4724,12 +4784,20 @@
         <translation>Kleinstes l&lt;sub&gt;max&lt;/sub&gt; mit allen Fehlern unter</translation>
     </message>
     <message>
+        <source>Smallest moment of inertia</source>
+        <translation>Kleinstes Trägheitsmoment</translation>
+    </message>
+    <message>
         <source>Snapshots</source>
         <translation>Momentaufnahmen</translation>
     </message>
     <message>
         <source>Solid</source>
         <translation>Körper</translation>
+    </message>
+    <message>
+        <source>Sorted by distance to the sample</source>
+        <translation>Geordnet nach dem Abstand zur Probe</translation>
     </message>
     <message>
         <source>Source of the model</source>
@@ -4756,12 +4824,12 @@
         <translation>Kugel</translation>
     </message>
     <message>
-        <source>Spheres a particle</source>
-        <translation>Kugeln je Partikel</translation>
-    </message>
-    <message>
         <source>Spheres of the same volumes</source>
         <translation>Kugeln gleicher Volumen</translation>
+    </message>
+    <message>
+        <source>Spheres per particle</source>
+        <translation>Kugeln je Partikel</translation>
     </message>
     <message>
         <source>Spherical-harmonics fit</source>
@@ -4785,7 +4853,7 @@
     </message>
     <message>
         <source>Sphericity {sphericity} needs more than 100,000 facets; with {faces} the most is {most}.</source>
-        <translation>Die Sphärizität {sphericity} braucht mehr als 100,000 Facetten; mit {faces} sind höchstens {most} möglich.</translation>
+        <translation>Die Sphärizität {sphericity} braucht mehr als 100.000 Facetten; mit {faces} sind höchstens {most} möglich.</translation>
     </message>
     <message>
         <source>Split again</source>
@@ -4810,6 +4878,10 @@
     <message>
         <source>Splits</source>
         <translation>Teilungen</translation>
+    </message>
+    <message>
+        <source>Standard</source>
+        <translation>Standard</translation>
     </message>
     <message>
         <source>Standard la&amp;yout</source>
@@ -4908,16 +4980,16 @@
         <translation>Schrittweite in mittleren |p|</translation>
     </message>
     <message>
-        <source>Step, share of a swing</source>
+        <source>Step, share of an oscillation</source>
         <translation>Schritt, Anteil einer Schwingung</translation>
     </message>
     <message>
-        <source>Steps a second</source>
+        <source>Steps per second</source>
         <translation>Schritte je Sekunde</translation>
     </message>
     <message>
-        <source>Steps a second while it plays by itself.</source>
-        <translation>Schritte je Sekunde, während es von selbst läuft.</translation>
+        <source>Steps per second during playback.</source>
+        <translation>Schritte je Sekunde beim Abspielen.</translation>
     </message>
     <message>
         <source>Stiffness, in m g / d³</source>
@@ -4941,7 +5013,7 @@
     </message>
     <message>
         <source>Stopped</source>
-        <translation>Angehalten</translation>
+        <translation>Abgebrochen</translation>
     </message>
     <message>
         <source>Stopped. Choose another seed, or come back to this page, to begin again.</source>
@@ -4957,7 +5029,7 @@
     </message>
     <message>
         <source>Stopped; nothing was written.</source>
-        <translation>Angehalten; es wurde nichts geschrieben.</translation>
+        <translation>Abgebrochen; es wurde nichts geschrieben.</translation>
     </message>
     <message>
         <source>Stopping criterion</source>
@@ -5004,40 +5076,36 @@
         <translation>Oberflächenenergie</translation>
     </message>
     <message>
-        <source>Surfaces of measured particles on the forms of others: new particles, descriptors as in the sample.</source>
-        <translation>Oberflächen gemessener Partikel auf den Formen anderer: neue Partikel, Kenngrößen wie in der Probe.</translation>
-    </message>
-    <message>
         <source>Surfaces tried</source>
         <translation>Versuchte Oberflächen</translation>
     </message>
     <message>
         <source>Synthesised by Regolith Studio from the angular power spectrum and size spread of 1,230 particles of the published micro-CT set cement133, rounded to two digits; the length unit is taken as micrometres and no measured particle is contained.</source>
-        <translation>Von Regolith Studio synthetisiert aus dem Leistungsspektrum und der Größenstreuung von 1,230 Partikeln des veröffentlichten Mikro-CT-Satzes cement133, auf zwei Stellen gerundet; als Längeneinheit gelten Mikrometer, und kein gemessenes Partikel ist enthalten.</translation>
+        <translation>Von Regolith Studio synthetisiert aus dem Leistungsspektrum und der Größenstreuung von 1.230 Partikeln des veröffentlichten Mikro-CT-Satzes cement133, auf zwei Stellen gerundet; als Längeneinheit gelten Mikrometer, und kein gemessenes Partikel ist enthalten.</translation>
     </message>
     <message>
         <source>Synthesised by Regolith Studio from the angular power spectrum and size spread of 1,599 particles of the published micro-CT set cement141, rounded to two digits; the length unit is taken as micrometres and no measured particle is contained.</source>
-        <translation>Von Regolith Studio synthetisiert aus dem Leistungsspektrum und der Größenstreuung von 1,599 Partikeln des veröffentlichten Mikro-CT-Satzes cement141, auf zwei Stellen gerundet; als Längeneinheit gelten Mikrometer, und kein gemessenes Partikel ist enthalten.</translation>
+        <translation>Von Regolith Studio synthetisiert aus dem Leistungsspektrum und der Größenstreuung von 1.599 Partikeln des veröffentlichten Mikro-CT-Satzes cement141, auf zwei Stellen gerundet; als Längeneinheit gelten Mikrometer, und kein gemessenes Partikel ist enthalten.</translation>
     </message>
     <message>
         <source>Synthesised by Regolith Studio from the angular power spectrum and size spread of 2,000 particles of the published micro-CT set sacci425, rounded to two digits; the length unit is taken as micrometres and no measured particle is contained.</source>
-        <translation>Von Regolith Studio synthetisiert aus dem Leistungsspektrum und der Größenstreuung von 2,000 Partikeln des veröffentlichten Mikro-CT-Satzes sacci425, auf zwei Stellen gerundet; als Längeneinheit gelten Mikrometer, und kein gemessenes Partikel ist enthalten.</translation>
+        <translation>Von Regolith Studio synthetisiert aus dem Leistungsspektrum und der Größenstreuung von 2.000 Partikeln des veröffentlichten Mikro-CT-Satzes sacci425, auf zwei Stellen gerundet; als Längeneinheit gelten Mikrometer, und kein gemessenes Partikel ist enthalten.</translation>
     </message>
     <message>
         <source>Synthesised by Regolith Studio from the angular power spectrum and size spread of 3,179 particles of the published micro-CT set cement116, rounded to two digits; the length unit is taken as micrometres and no measured particle is contained.</source>
-        <translation>Von Regolith Studio synthetisiert aus dem Leistungsspektrum und der Größenstreuung von 3,179 Partikeln des veröffentlichten Mikro-CT-Satzes cement116, auf zwei Stellen gerundet; als Längeneinheit gelten Mikrometer, und kein gemessenes Partikel ist enthalten.</translation>
+        <translation>Von Regolith Studio synthetisiert aus dem Leistungsspektrum und der Größenstreuung von 3.179 Partikeln des veröffentlichten Mikro-CT-Satzes cement116, auf zwei Stellen gerundet; als Längeneinheit gelten Mikrometer, und kein gemessenes Partikel ist enthalten.</translation>
     </message>
     <message>
         <source>Synthesised by Regolith Studio from the angular power spectrum and size spread of 4,204 particles of the published micro-CT set ma160, rounded to two digits; the length unit is taken as micrometres and no measured particle is contained.</source>
-        <translation>Von Regolith Studio synthetisiert aus dem Leistungsspektrum und der Größenstreuung von 4,204 Partikeln des veröffentlichten Mikro-CT-Satzes ma160, auf zwei Stellen gerundet; als Längeneinheit gelten Mikrometer, und kein gemessenes Partikel ist enthalten.</translation>
+        <translation>Von Regolith Studio synthetisiert aus dem Leistungsspektrum und der Größenstreuung von 4.204 Partikeln des veröffentlichten Mikro-CT-Satzes ma160, auf zwei Stellen gerundet; als Längeneinheit gelten Mikrometer, und kein gemessenes Partikel ist enthalten.</translation>
     </message>
     <message>
         <source>Synthesised by Regolith Studio from the angular power spectrum and size spread of 6,261 particles of the published micro-CT set ma165, rounded to two digits; the length unit is taken as micrometres and no measured particle is contained.</source>
-        <translation>Von Regolith Studio synthetisiert aus dem Leistungsspektrum und der Größenstreuung von 6,261 Partikeln des veröffentlichten Mikro-CT-Satzes ma165, auf zwei Stellen gerundet; als Längeneinheit gelten Mikrometer, und kein gemessenes Partikel ist enthalten.</translation>
+        <translation>Von Regolith Studio synthetisiert aus dem Leistungsspektrum und der Größenstreuung von 6.261 Partikeln des veröffentlichten Mikro-CT-Satzes ma165, auf zwei Stellen gerundet; als Längeneinheit gelten Mikrometer, und kein gemessenes Partikel ist enthalten.</translation>
     </message>
     <message>
         <source>Synthesised by Regolith Studio: mean axial ratios S/I = 0.770 and I/L = 0.758 of ten Apollo and Luna soils (doi:10.1186/s40623-022-01737-9), sizes of soil 10084 between 10 and 1,000 um (Basu et al. 2001, by mass 4.28 +/- 2.23 phi); the roughness is that of the set MA165, as none is published, the spread of the ratios is that of a random field, shape does not depend on size, and no measured particle is contained.</source>
-        <translation>Von Regolith Studio synthetisiert: mittlere Achsenverhältnisse S/I = 0.770 und I/L = 0.758 von zehn Böden von Apollo und Luna (doi:10.1186/s40623-022-01737-9), Größen von Boden 10084 zwischen 10 und 1,000 um (Basu et al. 2001, nach Masse 4.28 +/- 2.23 phi); die Rauheit ist die des Satzes MA165, da keine veröffentlicht ist, die Streuung der Verhältnisse die eines Zufallsfelds, die Form hängt nicht von der Größe ab, und kein gemessenes Partikel ist enthalten.</translation>
+        <translation>Von Regolith Studio synthetisiert: mittlere Achsenverhältnisse S/I = 0,770 und I/L = 0,758 von zehn Böden von Apollo und Luna (doi:10.1186/s40623-022-01737-9), Größen von Boden 10084 zwischen 10 und 1.000 µm (Basu et al. 2001, nach Masse 4,28 ± 2,23 phi); die Rauheit ist die des Satzes MA165, da keine veröffentlicht ist, die Streuung der Verhältnisse die eines Zufallsfelds, die Form hängt nicht von der Größe ab, und kein gemessenes Partikel ist enthalten.</translation>
     </message>
     <message>
         <source>Synthetic particle</source>
@@ -5070,34 +5138,6 @@
     <message>
         <source>Tables of coefficients (*.anm *.sh *.shc *.txt *.dat *.csv)</source>
         <translation>Tabellen von Koeffizienten (*.anm *.sh *.shc *.txt *.dat *.csv)</translation>
-    </message>
-    <message>
-        <source>Take all examples back</source>
-        <translation>Alle Beispiele zurücknehmen</translation>
-    </message>
-    <message>
-        <source>Take all strokes back</source>
-        <translation>Alle Striche zurücknehmen</translation>
-    </message>
-    <message>
-        <source>Take it again (Ctrl+Shift+Z)</source>
-        <translation>Ihn wiederholen (Strg+Umschalt+Z)</translation>
-    </message>
-    <message>
-        <source>Take settings from a file</source>
-        <translation>Einstellungen aus einer Datei nehmen</translation>
-    </message>
-    <message>
-        <source>Take the classifier as the threshold of the segmentation</source>
-        <translation>Den Klassifikator als Schwelle der Segmentierung nehmen</translation>
-    </message>
-    <message>
-        <source>Take the last step back (Ctrl+Z)</source>
-        <translation>Den letzten Schritt zurücknehmen (Strg+Z)</translation>
-    </message>
-    <message>
-        <source>Take the last stroke back (Ctrl+Z)</source>
-        <translation>Den letzten Strich zurücknehmen (Strg+Z)</translation>
     </message>
     <message>
         <source>Tangential force</source>
@@ -5152,6 +5192,10 @@
         <translation>Der Schwerpunkt liegt außerhalb des Partikels; genommen wird der Punkt mit dem kleinsten verdeckten Volumen.</translation>
     </message>
     <message>
+        <source>The chapter of the guide on this page</source>
+        <translation>Das Kapitel des Handbuchs zu dieser Seite</translation>
+    </message>
+    <message>
         <source>The command is on the clipboard.</source>
         <translation>Das Kommando ist in der Zwischenablage.</translation>
     </message>
@@ -5160,8 +5204,16 @@
         <translation>Die Kommandozeile, die dasselbe tut</translation>
     </message>
     <message>
+        <source>The constraint solver has one coefficient of friction; it takes the static one.</source>
+        <translation>Der Löser mit Zwangsbedingungen hat einen Reibungsbeiwert; er nimmt den der Haftreibung.</translation>
+    </message>
+    <message>
         <source>The cut sample is the measured one cut at l_max = {degree}.</source>
         <translation>Die abgeschnittene Probe ist die gemessene, abgeschnitten bei l_max = {degree}.</translation>
+    </message>
+    <message>
+        <source>The cylinder is only {across} particles wide; walls and single grains matter.</source>
+        <translation>Der Zylinder ist nur {across} Partikel breit; Wände und einzelne Körner wirken sich aus.</translation>
     </message>
     <message>
         <source>The dataset is in {folder}.</source>
@@ -5178,6 +5230,10 @@
     <message>
         <source>The dataset&apos;s polyhedra</source>
         <translation>Polyeder des Datensatzes</translation>
+    </message>
+    <message>
+        <source>The energy rose by {gain} m g d per particle without external work.</source>
+        <translation>Die Energie stieg um {gain} m g d je Partikel ohne äußere Arbeit.</translation>
     </message>
     <message>
         <source>The errors appear when the fit is measured.</source>
@@ -5256,6 +5312,10 @@
         <translation>Die Dateien der {count} geöffneten Partikel, wie jetzt eingestellt</translation>
     </message>
     <message>
+        <source>The filling will be about {height} cm high (the paper: 2.5 to 3 cm).</source>
+        <translation>Die Füllung wird etwa {height} cm hoch (im Artikel: 2,5 bis 3 cm).</translation>
+    </message>
+    <message>
         <source>The folder contains an unfinished run: resume it, or choose another folder.</source>
         <translation>Der Ordner enthält einen unfertigen Lauf: setzen Sie ihn fort, oder wählen Sie einen anderen Ordner.</translation>
     </message>
@@ -5272,8 +5332,24 @@
         <translation>Der Ordner Ihrer Datensätze</translation>
     </message>
     <message>
-        <source>The grey values about a grain tell its volume better than its mask, however blurred the scan.</source>
-        <translation>Die Grauwerte um ein Korn sagen sein Volumen besser als seine Maske, wie unscharf der Scan auch ist.</translation>
+        <source>The grey values around a grain give its volume more accurately than its mask, also in blurred scans.</source>
+        <translation>Die Grauwerte um ein Korn geben sein Volumen genauer an als seine Maske, auch in unscharfen Scans.</translation>
+    </message>
+    <message>
+        <source>The heap is a dome: its flanks are steeper at the foot than at the top by {share} % of their slope, so that it has no single angle.</source>
+        <translation>Die Schüttung ist eine Kuppel: Ihre Flanken sind am Fuß um {share} % ihrer Neigung steiler als oben, sodass sie keinen einzelnen Winkel hat.</translation>
+    </message>
+    <message>
+        <source>The heap is hollow: its flanks are flatter at the foot than at the top by {share} % of their slope, so that it has no single angle.</source>
+        <translation>Die Schüttung ist hohl: Ihre Flanken sind am Fuß um {share} % ihrer Neigung flacher als oben, sodass sie keinen einzelnen Winkel hat.</translation>
+    </message>
+    <message>
+        <source>The heap is {angle} degrees steep: the column still stands and has not become a pile.</source>
+        <translation>Die Schüttung ist {angle} Grad steil: Die Säule steht noch und ist nicht zum Schüttkegel geworden.</translation>
+    </message>
+    <message>
+        <source>The heap was still moving at the end.</source>
+        <translation>Die Schüttung bewegte sich am Ende noch.</translation>
     </message>
     <message>
         <source>The language takes effect when the program starts again.</source>
@@ -5292,8 +5368,8 @@
         <translation>Der Verlust erscheint, sobald die Vergröberung beginnt.</translation>
     </message>
     <message>
-        <source>The loss falls while the coarsening runs; the spectrum shows which degrees are kept. Nothing here blocks the window: what runs is in the status bar and can be stopped there.</source>
-        <translation>Der Verlust fällt, während die Vergröberung läuft; das Spektrum zeigt, welche Grade erhalten bleiben. Nichts davon blockiert das Fenster: was in Arbeit ist, steht in der Statuszeile und lässt sich dort abbrechen.</translation>
+        <source>The loss falls while the coarsening runs; the spectrum shows which degrees are kept. The window stays responsive; running tasks are in the status bar and can be stopped there.</source>
+        <translation>Der Verlust fällt, während die Vergröberung läuft; das Spektrum zeigt, welche Grade erhalten bleiben. Das Fenster bleibt bedienbar; laufende Aufgaben stehen in der Statuszeile und lassen sich dort abbrechen.</translation>
     </message>
     <message>
         <source>The loss of the exact method</source>
@@ -5308,7 +5384,7 @@
         <translation>Das Handbuch des Programms</translation>
     </message>
     <message>
-        <source>The method keeps descriptors exactly: each is asked for or not, whatever its weight.</source>
+        <source>The method meets descriptors exactly: each is requested or not, whatever its weight.</source>
         <translation>Das Verfahren hält Deskriptoren genau ein: jeder wird verlangt oder nicht, gleich mit welchem Gewicht.</translation>
     </message>
     <message>
@@ -5316,12 +5392,12 @@
         <translation>Der Hüllquader kleinsten Volumens</translation>
     </message>
     <message>
-        <source>The nearest to the sample first</source>
-        <translation>Das der Probe nächste zuerst</translation>
-    </message>
-    <message>
         <source>The number of facets follows from it: n facets have at most 4n−12 triangles.</source>
         <translation>Die Anzahl der Facetten folgt daraus: n Facetten haben höchstens 4n−12 Dreiecke.</translation>
+    </message>
+    <message>
+        <source>The number of voxels in its name agrees with its size.</source>
+        <translation>Die Anzahl der Voxel in ihrem Namen stimmt mit ihrer Größe überein.</translation>
     </message>
     <message>
         <source>The one with the nearest sphericity is kept.</source>
@@ -5332,12 +5408,12 @@
         <translation>Die andere Hälfte ist dem Modell dann unbekannt, wie bei seiner Auswertung.</translation>
     </message>
     <message>
-        <source>The page Lecture shows the ideas one step at a time, each formula with its numbers: the annealing, the degrees of the fit, a random field. Ctrl+Space plays, the page keys step, Ctrl++ enlarges the letters, F11 fills the screen.</source>
-        <translation>Die Seite Vorlesung zeigt die Gedanken Schritt für Schritt, jede Formel mit ihren Zahlen: das simulierte Abkühlen, die Grade des Fits, ein Zufallsfeld. Strg+Leertaste spielt ab, die Bildtasten gehen einen Schritt, Strg++ vergrößert die Schrift, F11 füllt den Bildschirm.</translation>
+        <source>The page Lecture shows the algorithms step by step, each formula with its numbers: simulated annealing, the degrees of the fit, a random field. Ctrl+Space plays, the page keys step, Ctrl++ enlarges the letters, F11 fills the screen.</source>
+        <translation>Die Seite Vorlesung zeigt die Verfahren Schritt für Schritt, jede Formel mit ihren Zahlen: das simulierte Abkühlen, die Grade des Fits, ein Zufallsfeld. Strg+Leertaste spielt ab, die Bildtasten gehen einen Schritt, Strg++ vergrößert die Schrift, F11 füllt den Bildschirm.</translation>
     </message>
     <message>
-        <source>The pages follow the work: find grains in a scan, model their shape and draw new ones, build a dataset for Rocky, YADE or LAMMPS, and measure the angle of repose.</source>
-        <translation>Die Seiten folgen der Arbeit: Körner in einem Scan finden, ihre Form modellieren und neue ziehen, einen Datensatz für Rocky, YADE oder LAMMPS bauen und den Schüttwinkel messen.</translation>
+        <source>The pages follow the workflow: find grains in a scan, model their shape and draw new particles, build a dataset for Rocky, YADE or LAMMPS, and measure the angle of repose.</source>
+        <translation>Die Seiten folgen dem Arbeitsablauf: Körner in einem Scan finden, ihre Form modellieren und neue Partikel ziehen, einen Datensatz für Rocky, YADE oder LAMMPS bauen und den Schüttwinkel messen.</translation>
     </message>
     <message>
         <source>The particle</source>
@@ -5348,12 +5424,12 @@
         <translation>Das Partikel hat Tunnel (Geschlecht {particle}), die Vereinigung der konvexen Teile hat das Geschlecht {union}: keine Bedingung erhält Tunnel, sie werden geschlossen oder verlegt. Mehr Teile können sie erhalten.</translation>
     </message>
     <message>
-        <source>The particle is annealed …</source>
-        <translation>Das Partikel wird abgekühlt …</translation>
+        <source>The particles are scattered: only {share} % of them are in the heap.</source>
+        <translation>Die Partikel sind verstreut: Nur {share} % von ihnen liegen in der Schüttung.</translation>
     </message>
     <message>
-        <source>The particle is fitted …</source>
-        <translation>Das Partikel wird angepasst …</translation>
+        <source>The particles form a layer {height} mean diameters high; a pile has at least {needed}.</source>
+        <translation>Die Partikel bilden eine Schicht von {height} mittleren Durchmessern Höhe; ein Schüttkegel hat mindestens {needed}.</translation>
     </message>
     <message>
         <source>The picture is coarse until all of the volume has been read.</source>
@@ -5368,7 +5444,7 @@
         <translation>Die Darstellung erscheint, sobald die Partikel vermessen sind.</translation>
     </message>
     <message>
-        <source>The polyhedra of six particles, one row a loss function.</source>
+        <source>The polyhedra of six particles, one row per loss function.</source>
         <translation>Die Polyeder von sechs Partikeln, eine Zeile je Verlustfunktion.</translation>
     </message>
     <message>
@@ -5397,7 +5473,7 @@
     </message>
     <message>
         <source>The run was stopped before it was measured.</source>
-        <translation>Der Lauf wurde vor der Messung angehalten.</translation>
+        <translation>Der Lauf wurde vor der Messung abgebrochen.</translation>
     </message>
     <message>
         <source>The same for the Kolmogorov-Smirnov distance</source>
@@ -5408,12 +5484,16 @@
         <translation>Die Probe</translation>
     </message>
     <message>
-        <source>The sample again: measured surfaces, rotated a little within their ellipsoids and mirrored.</source>
-        <translation>Noch einmal die Probe: gemessene Oberflächen, in ihren Ellipsoiden etwas gedreht und gespiegelt.</translation>
-    </message>
-    <message>
         <source>The script is on the clipboard.</source>
         <translation>Das Skript ist in der Zwischenablage.</translation>
+    </message>
+    <message>
+        <source>The section at {azimuth} degrees has no two flanks: {points} surface points lie between the cuts, and each flank needs {needed} that rise to an apex.</source>
+        <translation>Der Schnitt bei {azimuth} Grad hat keine zwei Flanken: {points} Oberflächenpunkte liegen zwischen den Grenzen, und jede Flanke braucht {needed}, die zu einer Spitze ansteigen.</translation>
+    </message>
+    <message>
+        <source>The section at {azimuth} degrees is no pile: two straight flanks explain only {share} % of the variance of its surface.</source>
+        <translation>Der Schnitt bei {azimuth} Grad ist kein Schüttkegel: Zwei gerade Flanken erklären nur {share} % der Varianz seiner Oberfläche.</translation>
     </message>
     <message>
         <source>The series of a fit has no random numbers.</source>
@@ -5426,6 +5506,10 @@
     <message>
         <source>The sizes of the classes appear here.</source>
         <translation>Die Größen der Klassen erscheinen hier.</translation>
+    </message>
+    <message>
+        <source>The slice at {azimuth} degrees contains no particle.</source>
+        <translation>Die Scheibe bei {azimuth} Grad enthält kein Partikel.</translation>
     </message>
     <message>
         <source>The slices state no positions; they were ordered by their numbers.</source>
@@ -5512,8 +5596,8 @@
         <translation>Es gibt keinen Datensatz zu exportieren: bauen oder öffnen Sie zuerst einen.</translation>
     </message>
     <message>
-        <source>There is no dataset yet: open one, or make one first.</source>
-        <translation>Es gibt noch keinen Datensatz: öffnen oder machen Sie zuerst einen.</translation>
+        <source>There is no dataset yet: open or build one first.</source>
+        <translation>Es gibt noch keinen Datensatz: öffnen oder bauen Sie zuerst einen.</translation>
     </message>
     <message>
         <source>There is no measured pile to export yet.</source>
@@ -5528,8 +5612,8 @@
         <translation>Es gibt kein Modell zu speichern: passen Sie zuerst eines an.</translation>
     </message>
     <message>
-        <source>There is no run to play: make one, or choose one of the list.</source>
-        <translation>Es gibt keinen Lauf zum Abspielen: einen machen oder einen der Liste wählen.</translation>
+        <source>There is no run to play: run a test or choose a run in the list.</source>
+        <translation>Es gibt keinen Lauf zum Abspielen: führen Sie einen Versuch durch oder wählen Sie einen Lauf der Liste.</translation>
     </message>
     <message>
         <source>There is nothing to export: open a particle first.</source>
@@ -5540,8 +5624,8 @@
         <translation>Es gibt nichts zu berichten: zuerst ein Partikel öffnen.</translation>
     </message>
     <message>
-        <source>They are cut. Each of the others then counts a little more (Miles-Lantuéjoul weights).</source>
-        <translation>Sie sind angeschnitten. Jedes der anderen zählt dann etwas mehr (Gewichte nach Miles und Lantuéjoul).</translation>
+        <source>They are cut by the border. The others then have larger weights (Miles-Lantuéjoul).</source>
+        <translation>Der Rand schneidet sie an. Die übrigen haben dann größere Gewichte (Miles-Lantuéjoul).</translation>
     </message>
     <message>
         <source>They are expanded in spherical harmonics first.</source>
@@ -5628,16 +5712,8 @@
         <translation>Tunnel</translation>
     </message>
     <message>
-        <source>Turn all views together</source>
-        <translation>Alle Ansichten gemeinsam drehen</translation>
-    </message>
-    <message>
-        <source>Turn the cross-section on in the tool bar.</source>
-        <translation>Schalten Sie den Querschnitt in der Werkzeugleiste ein.</translation>
-    </message>
-    <message>
-        <source>Turn the particle</source>
-        <translation>Das Partikel drehen</translation>
+        <source>Turn on Section in the tool bar.</source>
+        <translation>Schalten Sie „Schnitt“ in der Werkzeugleiste ein.</translation>
     </message>
     <message>
         <source>Two surfaces on either side of a line</source>
@@ -5664,8 +5740,20 @@
         <translation>Zurück</translation>
     </message>
     <message>
+        <source>Undo all strokes</source>
+        <translation>Alle Striche zurücknehmen</translation>
+    </message>
+    <message>
         <source>Undo stroke</source>
         <translation>Strich zurück</translation>
+    </message>
+    <message>
+        <source>Undo the last step (Ctrl+Z)</source>
+        <translation>Den letzten Schritt zurücknehmen (Strg+Z)</translation>
+    </message>
+    <message>
+        <source>Undo the last stroke (Ctrl+Z)</source>
+        <translation>Den letzten Strich zurücknehmen (Strg+Z)</translation>
     </message>
     <message>
         <source>Unit</source>
@@ -5700,6 +5788,10 @@
         <translation>&amp;Geöffnete Partikel verwenden</translation>
     </message>
     <message>
+        <source>Use the classifier as the threshold of the segmentation</source>
+        <translation>Den Klassifikator als Schwelle der Segmentierung verwenden</translation>
+    </message>
+    <message>
         <source>Use the drawn particles as population</source>
         <translation>Die gezogenen Partikel als Population übernehmen</translation>
     </message>
@@ -5716,12 +5808,8 @@
         <translation>{count} Facetten verwenden</translation>
     </message>
     <message>
-        <source>Use {count} facets: more gain nothing</source>
-        <translation>{count} Facetten verwenden: mehr bringen nichts</translation>
-    </message>
-    <message>
-        <source>Usual</source>
-        <translation>Üblich</translation>
+        <source>Use {count} facets: more do not help</source>
+        <translation>{count} Facetten verwenden: mehr helfen nicht</translation>
     </message>
     <message>
         <source>Usually 10.</source>
@@ -5762,6 +5850,10 @@
     <message>
         <source>Values, with commas between them</source>
         <translation>Werte, mit Semikolon dazwischen</translation>
+    </message>
+    <message>
+        <source>Varied quantity</source>
+        <translation>Veränderte Größe</translation>
     </message>
     <message>
         <source>Vary</source>
@@ -5840,10 +5932,6 @@
         <translation>Reibung der Wand</translation>
     </message>
     <message>
-        <source>Wanted</source>
-        <translation>Verlangt</translation>
-    </message>
-    <message>
         <source>Wasserstein distance {apart:.1%} of the mean, Kolmogorov-Smirnov distance {gap:.2f}; means {measured} measured, {drawn} drawn</source>
         <translation>Wasserstein-Distanz {apart:.1%} des Mittels, Kolmogorow-Smirnow-Distanz {gap:.2f}; Mittel {measured} gemessen, {drawn} gezogen</translation>
     </message>
@@ -5896,24 +5984,8 @@
         <translation>Was mit ihnen geschieht</translation>
     </message>
     <message>
-        <source>What is laid over it, or shown to the right of the line</source>
-        <translation>Was darübergelegt oder rechts der Linie gezeigt wird</translation>
-    </message>
-    <message>
-        <source>What is varied</source>
-        <translation>Was verändert wird</translation>
-    </message>
-    <message>
-        <source>What it holds</source>
-        <translation>Was er enthält</translation>
-    </message>
-    <message>
         <source>What it looks like: {looks}</source>
         <translation>Wonach es aussieht: {looks}</translation>
-    </message>
-    <message>
-        <source>What the guide says of the page</source>
-        <translation>Was das Handbuch zu der Seite sagt</translation>
     </message>
     <message>
         <source>What the prediction shows</source>
@@ -5936,16 +6008,16 @@
         <translation>Welcher Radius zählt, wo ein Strahl die Oberfläche mehrmals durchstößt. Volumen erhalten: die Kubikwurzel der vorzeichenbehafteten Summe von r³ über alle Durchstöße.</translation>
     </message>
     <message>
-        <source>Which {noun}</source>
-        <translation>Welcher {noun}</translation>
-    </message>
-    <message>
         <source>Wi&amp;pe</source>
         <translation>&amp;Wischblende</translation>
     </message>
     <message>
         <source>Wipe</source>
         <translation>Wischen</translation>
+    </message>
+    <message>
+        <source>With fewer than {count} particles the cut at the toe changes the angle by some degrees; the interval contains that.</source>
+        <translation>Mit weniger als {count} Partikeln verändert die Grenze am Fuß den Winkel um einige Grad; der Bereich enthält das.</translation>
     </message>
     <message>
         <source>Working on particles</source>
@@ -6008,12 +6080,12 @@
         <translation>Vergrößern und verkleinern</translation>
     </message>
     <message>
-        <source>a sphere</source>
-        <translation>eine Kugel</translation>
+        <source>a slightly displaced sphere</source>
+        <translation>eine etwas verschobene Kugel</translation>
     </message>
     <message>
-        <source>a sphere that is shifted a little</source>
-        <translation>eine etwas verschobene Kugel</translation>
+        <source>a sphere</source>
+        <translation>eine Kugel</translation>
     </message>
     <message>
         <source>about the centroid</source>
@@ -6032,6 +6104,10 @@
         <translation>noch etwa {seconds} s</translation>
     </message>
     <message>
+        <source>above l&lt;sub&gt;max&lt;/sub&gt;</source>
+        <translation>über l&lt;sub&gt;max&lt;/sub&gt;</translation>
+    </message>
+    <message>
         <source>accept</source>
         <translation>annehmen</translation>
     </message>
@@ -6048,8 +6124,8 @@
         <translation>alle</translation>
     </message>
     <message>
-        <source>all classes, by {kinds}</source>
-        <translation>alle Klassen, nach {kinds}</translation>
+        <source>all classes, weighted by {kinds}</source>
+        <translation>alle Klassen, gewichtet nach {kinds}</translation>
     </message>
     <message>
         <source>all models</source>
@@ -6236,6 +6312,10 @@
         <translation>Koeffizienten</translation>
     </message>
     <message>
+        <source>column stands</source>
+        <translation>Säule steht</translation>
+    </message>
+    <message>
         <source>compared at {count} facets each, not at an error</source>
         <translation>verglichen bei je {count} Facetten, nicht bei einem Fehler</translation>
     </message>
@@ -6252,11 +6332,11 @@
         <translation>Kontaktparameter: gedämpft nach Hertz, Mindlin-Deresiewicz, JKR</translation>
     </message>
     <message>
-        <source>continuous size distributions: at most 16 sizes a class</source>
+        <source>continuous size distributions: at most 16 sizes per class</source>
         <translation>stetige Größenverteilungen: höchstens 16 Größen je Klasse</translation>
     </message>
     <message>
-        <source>continuous size distributions: at most 16 sizes a shape</source>
+        <source>continuous size distributions: at most 16 sizes per shape</source>
         <translation>stetige Größenverteilungen: höchstens 16 Größen je Form</translation>
     </message>
     <message>
@@ -6268,12 +6348,12 @@
         <translation>Anzahl</translation>
     </message>
     <message>
-        <source>curve</source>
-        <translation>Kurve</translation>
+        <source>current</source>
+        <translation>aktuell</translation>
     </message>
     <message>
-        <source>cut off</source>
-        <translation>abgeschnitten</translation>
+        <source>curve</source>
+        <translation>Kurve</translation>
     </message>
     <message>
         <source>dark | middle</source>
@@ -6396,6 +6476,10 @@
         <translation>Facetten: es sind die der Hülle der Ecken</translation>
     </message>
     <message>
+        <source>failed</source>
+        <translation>fehlgeschlagen</translation>
+    </message>
+    <message>
         <source>fast</source>
         <translation>schnell</translation>
     </message>
@@ -6404,8 +6488,16 @@
         <translation>Abbildungen</translation>
     </message>
     <message>
+        <source>fill</source>
+        <translation>Füllen</translation>
+    </message>
+    <message>
         <source>finer details</source>
         <translation>feinere Einzelheiten</translation>
+    </message>
+    <message>
+        <source>finished</source>
+        <translation>beendet</translation>
     </message>
     <message>
         <source>first</source>
@@ -6440,7 +6532,7 @@
         <translation>Ordner mit {names}</translation>
     </message>
     <message>
-        <source>for the particle on screen and those after it, one row a loss function</source>
+        <source>for the particle on screen and those after it, one row per loss function</source>
         <translation>für das gezeigte Partikel und die danach, eine Zeile je Verlustfunktion</translation>
     </message>
     <message>
@@ -6453,7 +6545,7 @@
     </message>
     <message>
         <source>friction, restitution</source>
-        <translation>Reibung, Restitution</translation>
+        <translation>Reibung, Stoßzahl</translation>
     </message>
     <message>
         <source>from</source>
@@ -6478,6 +6570,10 @@
     <message>
         <source>hidden from the star point</source>
         <translation>vom Sternpunkt aus verdeckt</translation>
+    </message>
+    <message>
+        <source>imported</source>
+        <translation>importiert</translation>
     </message>
     <message>
         <source>in the file</source>
@@ -6524,6 +6620,10 @@
         <translation>Labels von Körnern</translation>
     </message>
     <message>
+        <source>layer</source>
+        <translation>Schicht</translation>
+    </message>
+    <message>
         <source>least distance of two parallel tangent planes</source>
         <translation>kleinster Abstand zweier paralleler Tangentialebenen</translation>
     </message>
@@ -6534,6 +6634,10 @@
     <message>
         <source>left {angle:.1f}°</source>
         <translation>links {angle:.1f}°</translation>
+    </message>
+    <message>
+        <source>lift</source>
+        <translation>Heben</translation>
     </message>
     <message>
         <source>lifting cylinder</source>
@@ -6564,8 +6668,8 @@
         <translation>Verlust {loss:.4g}; {facets} Facetten aus {planes} Ebenen</translation>
     </message>
     <message>
-        <source>loss {loss:.4g}; {facets} facets; veil: what is imitated</source>
-        <translation>Verlust {loss:.4g}; {facets} Facetten; Schleier: das Vorbild</translation>
+        <source>loss {loss:.4g}; {facets} facets; translucent: target</source>
+        <translation>Verlust {loss:.4g}; {facets} Facetten; durchscheinend: Ziel</translation>
     </message>
     <message>
         <source>lower bound</source>
@@ -6629,7 +6733,7 @@
     </message>
     <message>
         <source>mm, mg, ms; coarse graining applied</source>
-        <translation>mm, mg, ms; mit Vergröberungsfaktor</translation>
+        <translation>mm, mg, ms; mit Coarse-Graining</translation>
     </message>
     <message>
         <source>model</source>
@@ -6646,6 +6750,10 @@
     <message>
         <source>no</source>
         <translation>nein</translation>
+    </message>
+    <message>
+        <source>no flanks</source>
+        <translation>keine Flanken</translation>
     </message>
     <message>
         <source>no numbers needed</source>
@@ -6756,10 +6864,6 @@
         <translation>gemeinsam</translation>
     </message>
     <message>
-        <source>present</source>
-        <translation>aktuell</translation>
-    </message>
-    <message>
         <source>problem</source>
         <translation>Problem</translation>
     </message>
@@ -6812,6 +6916,10 @@
         <translation>neu gezogen</translation>
     </message>
     <message>
+        <source>rest</source>
+        <translation>Ruhe</translation>
+    </message>
+    <message>
         <source>right flank: {z:.3g} mm, {angle:.1f}°</source>
         <translation>rechte Flanke: {z:.3g} mm, {angle:.1f}°</translation>
     </message>
@@ -6848,12 +6956,20 @@
         <translation>Rosin-Rammler</translation>
     </message>
     <message>
+        <source>scattered</source>
+        <translation>verstreut</translation>
+    </message>
+    <message>
         <source>second</source>
         <translation>zweiter Deskriptor</translation>
     </message>
     <message>
         <source>see tip</source>
         <translation>siehe Hinweis</translation>
+    </message>
+    <message>
+        <source>settle</source>
+        <translation>Absetzen</translation>
     </message>
     <message>
         <source>shapes</source>
@@ -6897,11 +7013,11 @@
     </message>
     <message>
         <source>shapes of volume 1; scales in metres, coarse graining applied</source>
-        <translation>Formen vom Volumen 1; Maße in Metern, mit Vergröberungsfaktor</translation>
+        <translation>Formen vom Volumen 1; Maße in Metern, mit Coarse-Graining</translation>
     </message>
     <message>
         <source>shapes of volume 1; scales in metres, coarse graining applied; SI material</source>
-        <translation>Formen vom Volumen 1; Maße in Metern, mit Vergröberungsfaktor; Material in SI</translation>
+        <translation>Formen vom Volumen 1; Maße in Metern, mit Coarse-Graining; Material in SI</translation>
     </message>
     <message>
         <source>shortest edge of the bounding box</source>
@@ -6945,7 +7061,7 @@
     </message>
     <message>
         <source>spheres of shapes of volume 1; scales, masses and moments in SI, coarse graining applied</source>
-        <translation>Kugeln von Formen mit Volumen 1; Maßstäbe, Massen und Trägheitsmomente in SI, vergröbert</translation>
+        <translation>Kugeln von Formen mit Volumen 1; Maßstäbe, Massen und Trägheitsmomente in SI, mit Coarse-Graining</translation>
     </message>
     <message>
         <source>sphericity</source>
@@ -6968,6 +7084,10 @@
         <translation>Feder, Dämpfer und Gleiter (wo der Widerstand über 0 ist)</translation>
     </message>
     <message>
+        <source>starting</source>
+        <translation>beginnt</translation>
+    </message>
+    <message>
         <source>std. dev.</source>
         <translation>Std.-Abw.</translation>
     </message>
@@ -6982,6 +7102,10 @@
     <message>
         <source>step {at} of {total}, loss {loss:.4g}</source>
         <translation>Schritt {at} von {total}, Verlust {loss:.4g}</translation>
+    </message>
+    <message>
+        <source>stopped</source>
+        <translation>abgebrochen</translation>
     </message>
     <message>
         <source>surface at {x:.3g} mm: {z:.3g} mm ({taken})</source>
@@ -7036,8 +7160,8 @@
         <translation>das Partikel selbst</translation>
     </message>
     <message>
-        <source>the particles as they were then</source>
-        <translation>die Partikel, wie sie dann waren</translation>
+        <source>the particles when it was stopped</source>
+        <translation>die Partikel beim Abbruch</translation>
     </message>
     <message>
         <source>the surface of the spherical-harmonics fit at l&lt;sub&gt;max&lt;/sub&gt; = {l_max}</source>
@@ -7046,6 +7170,10 @@
     <message>
         <source>to</source>
         <translation>bis</translation>
+    </message>
+    <message>
+        <source>too few particles</source>
+        <translation>zu wenige Partikel</translation>
     </message>
     <message>
         <source>touch</source>
@@ -7110,10 +7238,6 @@
     <message>
         <source>volume that the surface encloses</source>
         <translation>Volumen, das die Oberfläche umschließt</translation>
-    </message>
-    <message>
-        <source>waiting for the coefficients …</source>
-        <translation>wartet auf die Koeffizienten …</translation>
     </message>
     <message>
         <source>wanted</source>
@@ -7260,7 +7384,7 @@
         <translation>{counts} beim Grauwert {level}; {small} zu klein. {voxels} Voxel enthalten keine endliche Zahl (NaN oder unendlich) und liegen in keinem Korn.</translation>
     </message>
     <message>
-        <source>{count} faces are there twice.</source>
+        <source>{count} faces are duplicated.</source>
         <translation>{count} Flächen sind doppelt vorhanden.</translation>
     </message>
     <message>
@@ -7332,8 +7456,16 @@
         <translation>{count} Partikel sind offen.</translation>
     </message>
     <message>
+        <source>{count} particles are too few for a pile; at least {needed} are needed.</source>
+        <translation>{count} Partikel sind zu wenige für einen Schüttkegel; mindestens {needed} sind nötig.</translation>
+    </message>
+    <message>
         <source>{count} particles came from no file and are not in it ({names}); export them.</source>
         <translation>{count} Partikel stammen aus keiner Datei und sind nicht darin ({names}); exportieren Sie sie.</translation>
+    </message>
+    <message>
+        <source>{count} particles of {size} mm represent {mass} g: {factor} times the size of the dataset&apos;s (the paper: {paper}).</source>
+        <translation>{count} Partikel von {size} mm stehen für {mass} g: {factor}-mal so groß wie die des Datensatzes (im Artikel: {paper}).</translation>
     </message>
     <message>
         <source>{count} particles up to l = {degree}.</source>
@@ -7344,8 +7476,8 @@
         <translation>{count} Partikel; weggelassen: {border} am Rand, {small} zu klein.</translation>
     </message>
     <message>
-        <source>{count} planes, imitating {imitated}, seed {seed}</source>
-        <translation>{count} Ebenen, Vorbild: {imitated}, Startwert {seed}</translation>
+        <source>{count} planes; target: {imitated}; seed {seed}</source>
+        <translation>{count} Ebenen; Ziel: {imitated}; Startwert {seed}</translation>
     </message>
     <message>
         <source>{count} problems are listed in failed.csv.</source>
@@ -7408,16 +7540,16 @@
         <translation>{grains} Körner aus {bodies} zusammenhängenden Körpern</translation>
     </message>
     <message>
-        <source>{keys} already runs “{command}”.</source>
-        <translation>{keys} gehört schon zu „{command}“.</translation>
+        <source>{keys} cannot be assigned to a command.</source>
+        <translation>{keys} lässt sich keinem Befehl zuweisen.</translation>
     </message>
     <message>
-        <source>{keys} is needed for typing and for moving about; add Ctrl or Alt.</source>
-        <translation>{keys} wird zum Tippen und Bewegen gebraucht; nehmen Sie Strg oder Alt dazu.</translation>
+        <source>{keys} is already assigned to “{command}”.</source>
+        <translation>{keys} ist schon „{command}“ zugewiesen.</translation>
     </message>
     <message>
-        <source>{keys} is no key that a command can have.</source>
-        <translation>{keys} ist keine Taste, die ein Befehl haben kann.</translation>
+        <source>{keys} is reserved for typing and navigation; add Ctrl or Alt.</source>
+        <translation>{keys} ist zum Tippen und Navigieren reserviert; nehmen Sie Strg oder Alt dazu.</translation>
     </message>
     <message>
         <source>{label} cannot hold the compounds of this dataset: {why}</source>
@@ -7430,6 +7562,10 @@
     <message>
         <source>{least} voxels are a ball of {diameter:.1f} voxels in diameter.</source>
         <translation>{least} Voxel sind eine Kugel von {diameter:.1f} Voxeln Durchmesser.</translation>
+    </message>
+    <message>
+        <source>{lost} of {count} particles fell through the plate.</source>
+        <translation>{lost} von {count} Partikeln fielen durch die Platte.</translation>
     </message>
     <message>
         <source>{low:.1f} to {high:.1f}</source>
@@ -7536,8 +7672,8 @@
         <translation>{name}, Teilung {split}, Fit</translation>
     </message>
     <message>
-        <source>{name}: {count} shapes, by {weighting}</source>
-        <translation>{name}: {count} Formen, nach {weighting}</translation>
+        <source>{name}: {count} shapes, weighted by {weighting}</source>
+        <translation>{name}: {count} Formen, gewichtet nach {weighting}</translation>
     </message>
     <message>
         <source>{name}: {edges} voxels of {voxel}, {what} ({dtype}).</source>
@@ -7566,6 +7702,10 @@
     <message>
         <source>{number}. Grains merged at {place}</source>
         <translation>{number}. Körner vereint bei {place}</translation>
+    </message>
+    <message>
+        <source>{phase}, {time} s simulated</source>
+        <translation>{phase}, {time} s simuliert</translation>
     </message>
     <message>
         <source>{plane}, {axis} = {number} of {count}</source>
@@ -7606,10 +7746,6 @@
     <message>
         <source>{surface:.2%} of the surface is hidden from the star point; {volume:.2%} of the volume cannot be represented.</source>
         <translation>{surface:.2%} der Oberfläche sind vom Sternpunkt aus verdeckt; {volume:.2%} des Volumens lassen sich nicht darstellen.</translation>
-    </message>
-    <message>
-        <source>{surface} of the surface and {volume} of the volume are hidden from the star point and cannot be kept by a radius function.</source>
-        <translation>{surface} der Oberfläche und {volume} des Volumens sind vom Sternpunkt aus verdeckt und lassen sich durch keine Radiusfunktion wiedergeben.</translation>
     </message>
     <message>
         <source>{symbol} = {degree}: {shape}. The radius is missed by {missed:.1%} in the root mean square; errors against the particle: {errors}.</source>

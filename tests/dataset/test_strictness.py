@@ -146,7 +146,7 @@ TEXTS = {
         lambda text: text.replace('"weight": 0.5', '"weight": 0.5, "weight": 0.5', 1),
         "the key 'weight' twice at representatives[0]",
     ),
-    "cut off": (lambda text: text[: len(text) // 2], "is not JSON"),
+    "above l<sub>max</sub>": (lambda text: text[: len(text) // 2], "is not JSON"),
     "empty": (lambda _: "", "is not JSON"),
     "a list": (lambda _: "[]", "not a dataset"),
     "deep": (lambda _: "[" * 100_000, "nests too deeply"),

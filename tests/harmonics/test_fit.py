@@ -64,7 +64,7 @@ def test_that_a_fit_finds_the_coefficients_of_its_surface(rough):
 def test_that_a_ring_is_fitted_from_inside_its_tube_with_a_warning(torus):
     fit = fit_harmonics(torus(2.0, 0.8), 10, sampling_degree=30)
     assert "centre of mass lies outside" in fit.warnings[0]
-    assert "hidden from the star point" in fit.warnings[1]
+    assert "Hidden from the star point" in fit.warnings[1]
     assert fit.hidden_surface_share > 0.1
     assert fit.unrepresentable_volume_share > 0.1
 

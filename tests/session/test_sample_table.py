@@ -82,7 +82,7 @@ def test_that_what_is_not_measured_fails_every_comparison_but_no_word() -> None:
     bare = ParticleEntry("bare", Particle("bare", icosphere(1)))
     assert not filter_of("S>0")(bare)
     assert filter_of("bar unknown")(bare)
-    assert health_sentences(bare) == ("Being measured …",)
+    assert health_sentences(bare) == ("Measuring …",)
 
 
 def test_that_health_is_one_word(sample: tuple[ParticleEntry, ...]) -> None:

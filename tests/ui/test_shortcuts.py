@@ -56,12 +56,12 @@ def test_that_new_keys_work_and_are_kept(shortcuts, actions):
 @pytest.mark.parametrize(
     ("name", "keys", "words"),
     [
-        ("about", "Ctrl+Z", "already runs “Undo”"),
-        ("scan.find", "Ctrl+Q", "already runs “Quit”"),
-        ("about", "F5", "already runs “Scan.Find”"),
-        ("about", "A", "needed for typing"),
-        ("about", "Tab", "needed for typing"),
-        ("about", "nonsense+", "no key"),
+        ("about", "Ctrl+Z", "already assigned to “Undo”"),
+        ("scan.find", "Ctrl+Q", "already assigned to “Quit”"),
+        ("about", "F5", "already assigned to “Scan.Find”"),
+        ("about", "A", "reserved for typing"),
+        ("about", "Tab", "reserved for typing"),
+        ("about", "nonsense+", "cannot be assigned"),
     ],
 )
 def test_that_keys_that_are_taken_are_refused_in_one_sentence(shortcuts, name, keys, words):
@@ -91,7 +91,7 @@ def test_that_the_dialog_finds_changes_and_resets_by_keys_alone(shortcuts, shown
     dialog.choose("scan.find")
     QTest.keyClick(dialog.editor, Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier)
     dialog.change.click()
-    assert "already runs" in dialog.sentence.text()
+    assert "already assigned" in dialog.sentence.text()
     QTest.keyClick(dialog.editor, Qt.Key.Key_F7)
     dialog.change.click()
     assert shortcuts.keys("scan.find") == "F7"

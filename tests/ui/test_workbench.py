@@ -215,7 +215,7 @@ def test_that_a_crash_leaves_a_state_that_can_be_brought_back(window, wait):
     window.session.choose(n_facets=40)
     window.projects.offer_recovery()
     box = window.findChild(QMessageBox, "recovery")
-    assert box.informativeText() == "It was kept at 2026-03-09 07:05."
+    assert box.informativeText() == "It was saved at 2026-03-09 07:05."
     box.button(QMessageBox.StandardButton.Yes).click()
     assert window.session.choices.n_facets == 13
     window.projects._timer.setInterval(0)

@@ -74,7 +74,7 @@ EXPORTER = Exporter(
     loses=(
         N_("flat facets and edges"),
         N_("elastic constants and friction: they belong to the materials of the input script"),
-        N_("continuous size distributions: at most 16 sizes a class"),
+        N_("continuous size distributions: at most 16 sizes per class"),
     ),
     load_command="include {folder}/templates.in",
     files=_files,

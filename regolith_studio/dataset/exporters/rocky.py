@@ -108,7 +108,7 @@ EXPORTER = Exporter(
         N_("contact parameters: damped Hertzian, Mindlin-Deresiewicz, JKR"),
         N_("coarse graining, lifting cylinder"),
     ),
-    loses=(N_("continuous size distributions: at most 16 sizes a shape"), N_("rolling resistance")),
+    loses=(N_("continuous size distributions: at most 16 sizes per shape"), N_("rolling resistance")),
     load_command="python {shell}/rocky_case.py",
     files=_files,
     convex_only="",

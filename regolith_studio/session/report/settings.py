@@ -35,7 +35,7 @@ class ReportSettings:
         minimum=5,
         maximum=200,
     )
-    method: str = setting("exact", N_("Coarsening method"), N_("Key of the coarsening method."))
+    method: str = setting("exact", N_("Coarsening method"), N_("Method of coarsening."))
     preset: str = setting(
         "all", N_("Preset"), N_("Preset of the loss weights of the representative particles.")
     )

@@ -229,9 +229,7 @@ class RecombinedModel:
 
     key = KEY
     label = N_("Recombined surfaces")
-    summary = N_(
-        "Surfaces of measured particles on the forms of others: new particles, descriptors as in the sample."
-    )
+    summary = N_("Combines the surface of one measured particle with the form of another.")
     Settings = RecombinedSettings
 
     def fit(self, sample: Sample, settings: RecombinedSettings | None = None) -> Recombined:

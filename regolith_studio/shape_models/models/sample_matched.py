@@ -225,7 +225,7 @@ class SampleMatchedModel:
     key = KEY
     label = N_("Matched to the sample")
     summary = N_(
-        "The sample again: measured surfaces, rotated a little within their ellipsoids and mirrored."
+        "Resamples the sample: measured surfaces, slightly rotated within their ellipsoids and mirrored."
     )
     Settings = SampleMatchedSettings
 

@@ -46,11 +46,17 @@ def section_figure(points: FloatArray, diameters: FloatArray, measurement: Repos
     return figure
 
 
+STEEP_REACH = 1.3
+"""Half width of a picture in half widths of the heap, at most: nearly flat flanks meet the plate far away."""
+
+
 def framed(section: Section) -> tuple[float, float]:
     """Half width and height of what a picture of a section should show, in metres: no far strays."""
-    two, one = section.asymmetric, section.symmetric
+    two, one, profile = section.asymmetric, section.symmetric, section.profile
     toes = [abs(line.intercept / line.slope) for line in (two.left, two.right)]
-    return 1.15 * max(*toes, abs(one.apex[0]) + one.apex[1] / one.slope), 1.1 * max(two.apex[1], one.apex[1])
+    reach = max(*toes, abs(one.apex[0]) + one.apex[1] / one.slope)
+    heap = max(abs(profile.u[profile.first]), abs(profile.u[profile.last]))
+    return min(1.15 * reach, STEEP_REACH * heap), 1.1 * max(two.apex[1], one.apex[1])
 
 
 def write_section_figure(

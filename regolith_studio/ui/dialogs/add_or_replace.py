@@ -26,7 +26,7 @@ def ask_add_or_replace(preferences: Preferences, count: int, parent: QWidget) ->
     box.setObjectName("add_or_replace")
     box.setWindowTitle(tr("Open particles"))
     box.setText(tr_count(N_("1 particle is open."), N_("{count} particles are open."), count))
-    box.setInformativeText(tr("Add the new ones to them, or replace them? Undo brings replaced ones back."))
+    box.setInformativeText(tr("Add the new ones to them, or replace them? Undo restores replaced ones."))
     add = box.addButton(tr("Add"), QMessageBox.ButtonRole.AcceptRole)
     replace = box.addButton(tr("Replace"), QMessageBox.ButtonRole.DestructiveRole)
     cancel = box.addButton(QMessageBox.StandardButton.Cancel)

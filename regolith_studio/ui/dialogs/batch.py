@@ -99,7 +99,7 @@ class BatchDialog(RunDialog):
         """
         folder = self.folder.value()
         if folder is None or folder.is_file():
-            raise InputError(tr("Name a folder for the results."))
+            raise InputError(tr("Enter a folder for the results."))
         outputs = Outputs(**{key: box.isChecked() for key, box in self.results.items()})
         if self.source.value() is None and not any(box.isChecked() for box in self.results.values()):
             raise InputError(tr("Choose what is to be written."))
@@ -156,7 +156,7 @@ class BatchDialog(RunDialog):
         form = QFormLayout()
         form.addRow(tr("Recipe:"), self.source)
         form.addRow(tr("Write:"), grid)
-        form.addRow(tr("Into:"), self.folder)
+        form.addRow(tr("Folder:"), self.folder)
         form.addRow("", self.resume)
         form.addRow(tr("Run on:"), self.workers)
         promise = tr(

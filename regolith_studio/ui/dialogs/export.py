@@ -69,11 +69,11 @@ def summary(count: int, choices: Choices, cost: str = "") -> list[tuple[str, str
     method = tr("{method}, seed {seed}", method=tr(METHODS[choices.method].label), seed=choices.seed)
     return [
         (tr("Particles"), files),
-        (tr("Each with"), facet_limit_text(choices)),
+        (tr("Size of each"), facet_limit_text(choices)),
         (tr("Target"), target),
         (tr("Method"), method),
         (tr("Weights"), (weights or tr("none")) + f" ({preset})"),
-        (tr("Also"), tr("weights, size distribution, descriptors, provenance (JSON)")),
+        (tr("Additional files"), tr("weights, size distribution, descriptors, provenance (JSON)")),
     ]
 
 
@@ -169,7 +169,7 @@ class ExportDialog(QDialog):
         self.overwrite.setVisible(used)
         sentence = ""
         if blocked:
-            sentence = tr("Name a folder, new or empty.")
+            sentence = tr("Enter a new or empty folder.")
         elif used and not self.overwrite.isChecked():
             sentence = tr("The folder is not empty: choose another one, or replace the dataset in it.")
         self.state.setText(sentence)

@@ -83,7 +83,7 @@ class ReportDialog(RunDialog):
             raise InputError(tr("There is nothing to report on: open a particle first."))
         folder = self.folder.value()
         if folder is None or folder.is_file():
-            raise InputError(tr("Name a folder for the results."))
+            raise InputError(tr("Enter a folder for the results."))
         settings: dict[str, Any] = dict(self.form.value())
         return ReportRequest(folder, ReportSettings(**settings), self.workers.value())
 

@@ -26,9 +26,9 @@ from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.labels import heading, remark
 
 MOUSE = (
-    (N_("Left drag"), N_("Turn the particle")),
-    (N_("Right or middle drag, Shift + drag"), N_("Shift the picture")),
-    (N_("Ctrl + drag"), N_("Roll the picture")),
+    (N_("Left drag"), N_("Rotate the particle")),
+    (N_("Right or middle drag, Shift + drag"), N_("Pan the view")),
+    (N_("Ctrl + drag"), N_("Roll the view")),
     (N_("Wheel"), N_("Zoom")),
 )
 

@@ -39,7 +39,7 @@ FACETS = NumberSpec(
 )
 TRIANGLES = NumberSpec(
     "",
-    N_("Most triangles"),
+    N_("Maximum number of triangles"),
     4 * FACETS_LIMITS[0] - 12,
     228,
     limit=4 * FACETS_LIMITS[1] - 12,
@@ -166,7 +166,7 @@ class CoarseningPanel(QWidget):
         elif now == count:
             words = tr("Nothing is gained beyond {count} facets", count=count)
         else:
-            words = tr("Use {count} facets: more gain nothing", count=count)
+            words = tr("Use {count} facets: more do not help", count=count)
         self.enough.setText(words)
         self.enough.setToolTip(tr("No error falls by more than 0.1 % with more facets."))
         self.enough.setEnabled(now != count)
@@ -284,7 +284,7 @@ def _seed_field() -> QSpinBox:
     field = QSpinBox()
     field.setObjectName("seed")
     field.setAccessibleName(tr("Seed"))
-    field.setToolTip(tr("Of all random numbers: the same seed gives the same polyhedron."))
+    field.setToolTip(tr("Seed of the random numbers: the same seed gives the same polyhedron."))
     field.setRange(0, SEED_LIMIT)
     field.setKeyboardTracking(False)
     return field

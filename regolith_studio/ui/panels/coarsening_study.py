@@ -14,7 +14,7 @@ from regolith_studio.ui.widgets.heat_table import HeatTable
 from regolith_studio.ui.widgets.labels import plain_symbol
 from regolith_studio.ui.widgets.study_frame import StudyFrame
 
-PLACEHOLDER = N_("Root mean squared relative error of each descriptor, one row a loss function.")
+PLACEHOLDER = N_("Root mean squared relative error of each descriptor, one row per loss function.")
 HEADERS = (*(plain_symbol(CATALOGUE[key].symbol) for key in LOSS_KEYS), "Jaccard")
 KEYS = (*LOSS_KEYS, JACCARD)
 

@@ -23,7 +23,9 @@ L_MAX = NumberSpec(
     N_("Maximum degree"),
     0,
     FIT_DEGREE,
-    tip=N_("Degree at which the series is cut: 0 is a sphere, 10 keeps the form, 30 nearly all details."),
+    tip=N_(
+        "Degree at which the series is truncated: 0 is a sphere, 10 keeps the form, 30 nearly all details."
+    ),
 )
 
 

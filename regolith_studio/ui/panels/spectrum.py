@@ -67,7 +67,7 @@ class SpectrumPanel(QWidget):
         self._draw(np.log10(np.maximum(shares, 1e-12)), choices.l_max)
         theme = self.plot.theme
         kept = tr("up to l<sub>max</sub> = {l_max}", l_max=choices.l_max)
-        self.plot.set_legend([(theme.fit, kept), (theme.border, tr("cut off"))])
+        self.plot.set_legend([(theme.fit, kept), (theme.border, tr("above l<sub>max</sub>"))])
 
     def set_theme(self, theme: Theme) -> None:
         """Take the colours of a theme."""

@@ -144,7 +144,7 @@ def test_that_the_name_of_a_raw_file_fills_the_form_in_and_its_size_is_checked(p
     dialog = page.findChild(VolumeDialog)
     opens = dialog.findChild(QDialogButtonBox).button(QDialogButtonBox.StandardButton.Open)
     assert dialog.value().raw == RawLayout((30, 20, 10), "uint16", "big", 64)
-    assert "its size agrees" in dialog.facts.text()
+    assert "agrees with its size" in dialog.facts.text()
     assert "all of the file" in dialog.verdict.text()
     dialog.shape[2].setValue(9)
     assert "1,200 bytes more" in dialog.verdict.text()

@@ -158,7 +158,7 @@ def test_that_dark_grains_are_suspected_where_one_body_fills_the_frame(page, tmp
     np.save(tmp_path / "dark.npy", 255 - np.ascontiguousarray(sample_volume("grey").array[:90, :80, :70].T))
     page.opening.read(VolumeInput(tmp_path / "dark.npy", 2.3, kind="grey"))
     wait(lambda: page.preview.found is not None, SECONDS)
-    assert "if the grains are dark, tick that below" in page.workflow.found.text()
+    assert "Tick Grains are dark if they are" in page.workflow.found.text()
     page.controls.dark.click()
     wait(lambda: "dark" not in page.workflow.found.text(), SECONDS)
     assert page.preview.found.n_grains > 10

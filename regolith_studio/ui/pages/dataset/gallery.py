@@ -48,7 +48,7 @@ class RepresentativesGallery(QWidget):
         self.list.setGridSize(CELL + QSize(4, 4))
         self.list.setTextElideMode(Qt.TextElideMode.ElideMiddle)
         self.list.setFrameShape(self.list.Shape.NoFrame)
-        self.empty = QLabel(tr("Press Find representatives: they appear here with their weights."))
+        self.empty = QLabel(tr("Press Find representatives to show them here with their weights."))
         self.empty.setProperty("role", "remark")
         self.empty.setAlignment(Qt.AlignmentFlag.AlignCenter)
         self.empty.setWordWrap(True)

@@ -173,7 +173,7 @@ class LibraryPanel(QWidget):
             getattr(self, name).setObjectName(f"library_{name}")
         self.words.setAccessibleName(tr("Filter of the library"))
         self.tree.setAccessibleName(tr("Library"))
-        self.tree.setHeaderLabels([tr("Name"), tr("What it holds")])
+        self.tree.setHeaderLabels([tr("Name"), tr("Contents")])
         self.tree.setIconSize(QSize(PICTURE, PICTURE))
         self.tree.setColumnWidth(0, 300)
         self.tree.setFrameShape(self.tree.Shape.NoFrame)

@@ -34,7 +34,7 @@ class QualityPlot(CurvePlot):
         super().__init__(
             tr("Number of representatives"),
             tr("Distance to the population [deviations]"),
-            tr("Press Find representatives: the error against their number, and the sampling noise."),
+            tr("Press Find representatives to plot the error against their number."),
             log_y=True,
         )
         self.setObjectName("dataset_quality")
@@ -136,6 +136,6 @@ class SizesPlot(CurvePlot):
         mixture = 100 * (weights @ rows) / weights.sum()
         kinds = {one.sizes.weighting for one in self._classes}
         joint = " " + tr("and") + " "
-        words = tr("all classes, by {kinds}", kinds=joint.join(tr(each) for each in sorted(kinds)))
+        words = tr("all classes, weighted by {kinds}", kinds=joint.join(tr(each) for each in sorted(kinds)))
         curves.append(PlotCurve(words, self.theme.accent, tuple(at), tuple(mixture)))
         self.set_curves(curves)

@@ -54,7 +54,10 @@ def dataset_title(dataset: Dataset) -> str:
     """Name, number of shapes and weighting of a dataset."""
     counts = tr(str(dataset.weighting))
     return tr(
-        "{name}: {count} shapes, by {weighting}", name=dataset.name, count=len(dataset), weighting=counts
+        "{name}: {count} shapes, weighted by {weighting}",
+        name=dataset.name,
+        count=len(dataset),
+        weighting=counts,
     )
 
 

@@ -28,7 +28,7 @@ PAGE = Page(
             N_("&Link cameras"),
             "link",
             "Ctrl+L",
-            N_("Turn all views together"),
+            N_("Rotate all views together"),
             True,
             bar="under",
             label=N_("Link"),
@@ -132,7 +132,7 @@ PAGE = Page(
             N_("&Enlarge one view"),
             "",
             "Ctrl+Shift+M",
-            N_("One after the other, then all"),
+            N_("Shows one view enlarged, then the next, then all"),
         ),
         ActionSpec(
             PAGE_MENU,

@@ -42,14 +42,14 @@ WAITING = N_(
 FIGURES = {
     "number": N_("By number"),
     "volume": N_("By volume"),
-    "pairs": N_("Pairs"),
+    "pairs": N_("Pairs (plot)"),
     "quantiles": N_("Quantiles"),
     "components": N_("Parts"),
 }
 TABLES: dict[str, tuple[str, Callable[[PopulationStudy], Table]]] = {
     "targets": (N_("Targets"), target_table),
     "distances": (N_("Distances"), distance_table),
-    "energies": (N_("Pairs in numbers"), pair_table),
+    "energies": (N_("Pairs (table)"), pair_table),
 }
 HEADERS = (
     N_("Model"),
@@ -61,7 +61,7 @@ HEADERS = (
     N_("Rejected"),
 )
 TIPS = (
-    N_("The nearest to the sample first"),
+    N_("Sorted by distance to the sample"),
     N_(
         "Mean Wasserstein distance to the half that was held out, over that between random halves: 1 is noise"
     ),

@@ -14,13 +14,13 @@ WORDS = {
     "wasserstein": "W",
     "wasserstein_low": N_("from"),
     "wasserstein_high": N_("to"),
-    "floor": N_("Floor"),
+    "floor": N_("Noise"),
     "floor_p5": N_("5th"),
     "floor_p95": N_("95th"),
     "kolmogorov_smirnov": "KS",
     "kolmogorov_smirnov_low": N_("KS from"),
     "kolmogorov_smirnov_high": N_("KS to"),
-    "kolmogorov_smirnov_floor": N_("KS floor"),
+    "kolmogorov_smirnov_floor": N_("KS noise"),
     "wasserstein_in_floors": N_("W / noise"),
     "kolmogorov_smirnov_in_floors": N_("KS / noise"),
     "energy_distance": N_("Energy distance"),
@@ -28,7 +28,7 @@ WORDS = {
 """Short headers; tool tips have the long ones."""
 OTHER_WORDS = (
     *(N_("Model"), N_("Weighting"), N_("Descriptor"), N_("First"), N_("Second")),
-    *(N_("Target"), N_("Value"), N_("Wanted"), N_("Reached")),
+    *(N_("Target"), N_("Value"), N_("Requested"), N_("Reached")),
 )
 """Headers that equal the names of their columns, marked for translation."""
 TIPS = (

@@ -27,7 +27,7 @@ PAGE = Page(
         ActionSpec(PAGE_MENU, "open_slices", N_("Open a folder of s&lices …")),
         ActionSpec(PAGE_MENU, "sample_volume", N_("Open the sample &scan"), "sample"),
         ActionSpec(PAGE_MENU, BREAK, ""),
-        ActionSpec(PAGE_MENU, "open_settings", N_("Open se&ttings …"), tip=N_("Take settings from a file")),
+        ActionSpec(PAGE_MENU, "open_settings", N_("Open se&ttings …"), tip=N_("Load settings from a file")),
         ActionSpec(
             PAGE_MENU, "save_settings", N_("Sa&ve settings …"), tip=N_("Write settings for the next scan")
         ),
@@ -42,7 +42,12 @@ PAGE = Page(
             tip=N_("Write the volume of labels and a table of them for other programs"),
         ),
         ActionSpec(
-            PAGE_MENU, "make_particles", N_("&Make particles"), tip=N_("Open the grains as particles")
+            PAGE_MENU,
+            "make_particles",
+            N_("&Make particles"),
+            "",
+            "Ctrl+Return",
+            N_("Open the grains as particles"),
         ),
     ),
 )

@@ -69,12 +69,12 @@ class BrushPanel(QWidget):
         self.diameter.field.setObjectName("brush_size")
         self.diameter.setValue(4)
         self.overlay = choice("brush_overlay", tr("What the prediction shows"), OVERLAYS)
-        self.undo = button("brush_undo", tr("Undo stroke"), tr("Take the last stroke back (Ctrl+Z)"))
-        self.clear = button("brush_clear", tr("Clear"), tr("Take all strokes back"))
+        self.undo = button("brush_undo", tr("Undo stroke"), tr("Undo the last stroke (Ctrl+Z)"))
+        self.clear = button("brush_clear", tr("Clear"), tr("Undo all strokes"))
         self.use = button(
             "brush_use",
             tr("Use for the grains"),
-            tr("Take the classifier as the threshold of the segmentation"),
+            tr("Use the classifier as the threshold of the segmentation"),
         )
         self.browse = button("brush_open", tr("Open …"), tr("Open a classifier and use it for the grains"))
         self.save = button("brush_save", tr("Save …"), tr("Save the classifier for other scans"))

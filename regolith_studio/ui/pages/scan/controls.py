@@ -38,14 +38,14 @@ THRESHOLD = (
 SURFACE = (("grey", N_("Grey values")), ("mask", N_("Mask")))
 H_MAXIMA = NumberSpec(
     "h",
-    N_("Bump that is a grain of its own, in voxels"),
+    N_("Height of a maximum that is a grain of its own, in voxels"),
     0.0,
     6.0,
     0.1,
     limit=50.0,
     tip=N_(
-        "How far a bump must stand out to be a grain of its own. Grains cut in two: larger. "
-        "Grains that stick together: smaller."
+        "Height above which a maximum of the distance map is a grain of its own. Increase it if "
+        "grains are split, reduce it if grains stay connected."
     ),
 )
 OPENING = NumberSpec(
@@ -89,12 +89,12 @@ class SegmentationControls(QWidget):
             "split", tr("Separate touching grains"), tr("Otherwise each connected body is one grain.")
         )
         self.pores = _check(
-            "fill_pores", tr("Fill closed pores"), tr("Pores without a way out become grain.")
+            "fill_pores", tr("Fill closed pores"), tr("Pores enclosed by a grain are counted as grain.")
         )
         self.border = _check(
             "exclude_border",
             tr("Leave out grains at the border"),
-            tr("They are cut. Each of the others then counts a little more (Miles-Lantuéjoul weights)."),
+            tr("They are cut by the border. The others then have larger weights (Miles-Lantuéjoul)."),
         )
         self.opening, self.closing = _slider("opening", OPENING), _slider("closing", CLOSING)
         self.h_maxima, self.least = _slider("h_maxima", H_MAXIMA), _slider("min_voxels", MIN_VOXELS)
@@ -103,8 +103,8 @@ class SegmentationControls(QWidget):
         self.surface = choice("surface", tr("Surface"), SURFACE)
         self.surface.setToolTip(
             tr(
-                "The grey values about a grain tell its volume better than its mask,"
-                " however blurred the scan."
+                "The grey values around a grain give its volume more accurately than its mask, "
+                "also in blurred scans."
             )
         )
         self.region = SettingsForm(RegionSettings)

@@ -50,8 +50,8 @@ class EditsPanel(QWidget):
         self.list = QListWidget()
         self.list.setAccessibleName(tr("Corrections so far"))
         self.list.setMinimumHeight(120)
-        self.undo = button("edit_undo", tr("Undo"), tr("Take the last step back (Ctrl+Z)"))
-        self.redo = button("edit_redo", tr("Redo"), tr("Take it again (Ctrl+Shift+Z)"))
+        self.undo = button("edit_undo", tr("Undo"), tr("Undo the last step (Ctrl+Z)"))
+        self.redo = button("edit_redo", tr("Redo"), tr("Redo the last step (Ctrl+Shift+Z)"))
         self._arrange()
         for made in self.tools.values():
             made.toggled.connect(self._chosen)

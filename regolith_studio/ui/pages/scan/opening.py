@@ -70,7 +70,7 @@ class VolumeOpening(QObject):
             return
         job = Job(read_header, (VolumeInput(path),))
         self._context.start(
-            tr("Looking at the volume"), job, lambda header: self._on_header(path, header), lane="read"
+            tr("Inspecting the volume"), job, lambda header: self._on_header(path, header), lane="read"
         )
 
     def open_sample(self) -> None:

@@ -79,7 +79,7 @@ class VolumeDialog(QDialog):
         self.offset = _count("offset", tr("Bytes before the first voxel"), least=0)
         self.kind = choice("kind", tr("What the volume holds"), KINDS)
         self.axes = choice("axes", tr("Order of the array's axes"), AXES)
-        self._said = tr("A raw file says nothing about itself: how many voxels are in it, and of which type?")
+        self._said = tr("A raw file has no header. Enter the number of voxels and their type.")
         self.verdict, self.facts = remark(), remark()
         self._buttons = QDialogButtonBox(
             QDialogButtonBox.StandardButton.Open | QDialogButtonBox.StandardButton.Cancel, parent=self
@@ -154,7 +154,7 @@ class VolumeDialog(QDialog):
             edge = max(1, round(self._path.stat().st_size ** (1 / 3)))
             layout = RawLayout((edge, edge, edge), "uint8")
         else:
-            self._said = tr("Its name says how many voxels are in it, and its size agrees.")
+            self._said = tr("The number of voxels in its name agrees with its size.")
         for count, edge in zip(self.shape, layout.shape, strict=True):
             count.setValue(edge)
         self.dtype.setCurrentIndex(max(0, self.dtype.findData(layout.dtype)))
@@ -202,7 +202,7 @@ class VolumeDialog(QDialog):
         if self._header is None:
             return self._said
         edges = " × ".join(map(str, self._header.shape))
-        size = "" if self._header.voxel_size else tr("It does not say how large a voxel is.")
+        size = "" if self._header.voxel_size else tr("It does not state the size of a voxel.")
         parts = (
             tr("{edges} voxels, {dtype}.", edges=edges, dtype=self._header.dtype),
             size,

@@ -139,8 +139,8 @@ def _too_large(found: Segmentation) -> str:
     if found.sizes.sum() < _DENSEST * voxels and found.sizes.max() < _LARGEST * voxels:
         return ""
     return tr(
-        "Grains fill most of it and hang together: if the grains are dark, tick that below; else move the "
-        "level or make h smaller."
+        "Grains fill most of the frame and are connected. Tick Grains are dark if they are; "
+        "otherwise change the level or reduce h."
     )
 
 
