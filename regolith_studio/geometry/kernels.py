@@ -6,7 +6,9 @@ Python, which the tests compare it with.
 
 Machine code contains a copy of the kernels that a function calls, also of those in other files, while numba
 compares the date of the function's own file only. Code is therefore cached in a folder named after a hash of
-the sources of all kernels that the function may call: no edit and no update leaves old code behind.
+the sources of all kernels that the function may call: no edit and no update leaves old code behind. Their
+places and dates are in the hash too, since numba takes no code of another checkout or date: what a folder
+says is compiled is so for this checkout.
 
 Code that cannot be read is compiled again. Where the cache cannot be written, code is kept in a temporary
 folder of the user's, or not at all. Each says so in one line.
@@ -231,10 +233,11 @@ def _delete_unused(new: Path) -> None:
 
 @cache
 def kernel_sources(folder: Path) -> str:
-    """SHA-256 of the files in a folder that contain kernels, as hexadecimal digits."""
-    digest = hashlib.sha256()
+    """SHA-256 of the files in a folder that contain kernels, with their places and dates, as hexadecimal."""
+    digest = hashlib.sha256(os.fsencode(folder))
     for path in sorted(folder.rglob("*.py")):
         source = path.read_bytes()
         if any(mark in source for mark in _MARKS):
-            digest.update(path.relative_to(folder).as_posix().encode() + b"\0" + source + b"\0")
+            name = f"{path.relative_to(folder).as_posix()}\0{path.stat().st_mtime_ns}\0"
+            digest.update(name.encode() + source + b"\0")
     return digest.hexdigest()

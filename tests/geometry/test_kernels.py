@@ -123,6 +123,22 @@ def test_that_only_files_with_kernels_count(tmp_path: Path) -> None:
     assert kernels.kernel_sources(tmp_path) != before
 
 
+def test_that_another_checkout_or_date_has_code_of_its_own(tmp_path: Path) -> None:
+    """Numba takes none of another: marks that it is there made the window compile without a word."""
+    places = [tmp_path / "one", tmp_path / "two"]
+    for folder in places:
+        folder.mkdir()
+        (folder / "fast.py").write_text("@kernel")
+        os.utime(folder / "fast.py", (1e9, 1e9))
+    one, two = map(kernels.kernel_sources, places)
+    assert one != two
+    kernels.kernel_sources.cache_clear()
+    assert kernels.kernel_sources(places[0]) == one
+    kernels.kernel_sources.cache_clear()
+    os.utime(places[0] / "fast.py", (1e9, 2e9))
+    assert kernels.kernel_sources(places[0]) != one
+
+
 def test_that_machine_code_is_kept_below_the_folder_that_the_user_has_set(cache_below: Path) -> None:
     assert kernels._cache_folder(None).parent == cache_below  # type: ignore[union-attr]
 
