@@ -24,8 +24,8 @@ from regolith_studio.ui.views.factory import best_kind
 
 FILLED_CHECK = 100
 """Milliseconds between two looks at whether the views of the first start are filled."""
-IDLE = 3_000
-"""Milliseconds without work after which hidden pages forget closed particles."""
+IDLE, BUSY = 3_000, 60_000
+"""Milliseconds without work, and at most, after which hidden pages forget closed particles."""
 
 
 def show_recovery_and_tour(window: MainWindow) -> None:
@@ -62,7 +62,7 @@ def open_window(
     poster.setParent(window)
     if found:
         QTimer.singleShot(0, window, lambda: window.commands.open_paths(found, unit))
-    _release_memory_when_idle(window)
+    _release_memory(window)
     return window
 
 
@@ -71,14 +71,16 @@ def _compile_in_background(runner: ThreadRunner) -> None:
     runner.submit(Job(compile_first, tuple(TASKS)), lambda _event: None, "compile")
 
 
-def _release_memory_when_idle(window: MainWindow) -> None:
+def _release_memory(window: MainWindow) -> None:
     """Let hidden pages drop closed particles, and linecache the sources (40 MB) that PySide has read.
 
     PySide looks for its names in the source of every module that is imported after it.
     """
-    timer = QTimer(window, singleShot=True, interval=IDLE)
-    timer.timeout.connect(window.pages.refresh_hidden)
-    timer.timeout.connect(linecache.clearcache)
+    timer, latest = QTimer(window, singleShot=True, interval=IDLE), QTimer(window, interval=BUSY)
+    for each in (timer, latest):
+        each.timeout.connect(window.pages.refresh_hidden)
+        each.timeout.connect(linecache.clearcache)
+    latest.start()
     window.bindings.listen("tasks", lambda *_: timer.stop() if window.session.tasks else timer.start())
 
 

@@ -1,6 +1,7 @@
 """The whole window, drawn into pictures: what a user does and what then is seen."""
 
 import json
+import time
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ from PySide6.QtWidgets import QApplication, QLineEdit, QSlider, QWidget
 
 from regolith_studio.errors import InputError, MissingRequirement
 from regolith_studio.geometry.sphere_points import icosphere
+from regolith_studio.jobs.events import Job, Progress
 from regolith_studio.resources import resource
 from regolith_studio.session.results import SessionEvents
 from regolith_studio.ui.app import make_excepthook, open_window
@@ -303,6 +305,24 @@ def test_that_closed_particles_are_released_when_work_has_ended(monkeypatch, sho
     window.session.choose(l_max=5)
     wait(lambda: bool(busy), SECONDS)
     assert set(busy) == {0}
+
+
+def work_without_end():
+    while True:
+        time.sleep(0.01)
+        yield Progress(0, 0)
+
+
+@pytest.mark.slow
+def test_that_closed_particles_are_released_although_work_never_ends(monkeypatch, shown, preferences, wait):
+    monkeypatch.setattr("regolith_studio.ui.app.BUSY", 500)
+    released = []
+    monkeypatch.setattr(PageStack, "refresh_hidden", lambda _stack: released.append(True))
+    window = open_window(views="image", preferences=preferences)
+    shown(window)
+    window.session.run("endless", "endless", Job(work_without_end), lambda _result: None)
+    wait(lambda: len(released) > 1, SECONDS)
+    assert window.session.tasks
 
 
 def test_that_every_command_has_its_place_and_a_tip(window):
