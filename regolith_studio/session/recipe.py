@@ -113,8 +113,8 @@ class VolumeEntry(Strict):
     Parameters
     ----------
     file
-        File, or folder of slices, relative to the recipe; ``sample:grey`` or ``sample:labels`` for the
-        scan that ships with the program.
+        File, or folder of slices, relative to the recipe; ``sample:grey``, ``sample:labels`` or
+        ``sample:gradient`` for a scan that ships with the program.
     voxel_size, unit, kind, dataset, axes, raw
         As ``regolith-studio extract`` takes them; by default what the file says.
     recipe

@@ -980,6 +980,10 @@
         <translation>&amp;Filter leeren</translation>
     </message>
     <message>
+        <source>Click a grain to fill what it encloses in the slices of that view.</source>
+        <translation>Ein Korn anklicken, um zu füllen, was es in den Schichten dieser Ansicht umschließt.</translation>
+    </message>
+    <message>
         <source>Click a grain.</source>
         <translation>Klicken Sie ein Korn an.</translation>
     </message>
@@ -1440,6 +1444,10 @@
         <translation>Durchmesser in µm = Anteil; mit @volume dahinter zählt das Volumen.</translation>
     </message>
     <message>
+        <source>Diameter of the ball that paints and erases, in voxels</source>
+        <translation>Durchmesser der Kugel, die malt und radiert, in Voxeln</translation>
+    </message>
+    <message>
         <source>Diameter of the brush in voxels</source>
         <translation>Durchmesser des Pinsels in Voxeln</translation>
     </message>
@@ -1506,6 +1514,14 @@
     <message>
         <source>Draw again</source>
         <translation>Neu ziehen</translation>
+    </message>
+    <message>
+        <source>Draw from a grain to extend it, or from a free place for a new grain.</source>
+        <translation>Von einem Korn aus malen, um es zu erweitern, oder von einer freien Stelle aus für ein neues.</translation>
+    </message>
+    <message>
+        <source>Draw over grains to free their voxels.</source>
+        <translation>Über Körner ziehen, um ihre Voxel freizugeben.</translation>
     </message>
     <message>
         <source>Draw particles</source>
@@ -1670,6 +1686,10 @@
     <message>
         <source>Equivalent radius</source>
         <translation>Äquivalentradius</translation>
+    </message>
+    <message>
+        <source>Erase</source>
+        <translation>Radieren</translation>
     </message>
     <message>
         <source>Eraser</source>
@@ -1840,6 +1860,10 @@
         <translation>Faktoren auf das Gewicht der Überdeckung</translation>
     </message>
     <message>
+        <source>Features within slices only</source>
+        <translation>Merkmale nur in Schichten</translation>
+    </message>
+    <message>
         <source>Fewer facets make the simulation faster. The title of the view states the numbers of facets, vertices and triangles; a note appears here if a request cannot be met.</source>
         <translation>Weniger Facetten machen die Simulation schneller. Der Titel der Ansicht nennt die Anzahl der Facetten, Ecken und Dreiecke; hier erscheint ein Hinweis, wenn eine Anforderung nicht erfüllbar ist.</translation>
     </message>
@@ -1910,6 +1934,10 @@
     <message>
         <source>Figures and tables of the paper for the open particles, as one page</source>
         <translation>Bilder und Tabellen des Artikels für die offenen Partikel, auf einer Seite</translation>
+    </message>
+    <message>
+        <source>Fill</source>
+        <translation>Füllen</translation>
     </message>
     <message>
         <source>Fill a cylinder with the particles of a dataset, lift it, measure the pile</source>
@@ -2126,6 +2154,10 @@
     <message>
         <source>For regolith-studio run</source>
         <translation>Für regolith-studio run</translation>
+    </message>
+    <message>
+        <source>For slices that lie far apart: what is above and below does not count.</source>
+        <translation>Für Schichten, die weit auseinander liegen: Was darüber und darunter liegt, zählt nicht.</translation>
     </message>
     <message>
         <source>Form</source>
@@ -3528,8 +3560,16 @@
         <translation>&amp;Beispielscan öffnen</translation>
     </message>
     <message>
+        <source>Open the sample scan for the br&amp;ush</source>
+        <translation>Beispielscan für den Pi&amp;nsel öffnen</translation>
+    </message>
+    <message>
         <source>Open the scan that ships with the program</source>
         <translation>Den mitgelieferten Scan öffnen</translation>
+    </message>
+    <message>
+        <source>Open the second sample scan, whose grey values no threshold segments</source>
+        <translation>Den zweiten Beispielscan öffnen, dessen Grauwerte keine Schwelle segmentiert</translation>
     </message>
     <message>
         <source>Open the shipped particles</source>
@@ -3606,6 +3646,10 @@
     <message>
         <source>Page {title}</source>
         <translation>Seite {title}</translation>
+    </message>
+    <message>
+        <source>Paint</source>
+        <translation>Malen</translation>
     </message>
     <message>
         <source>Paint examples</source>
@@ -4884,6 +4928,10 @@
         <translation>Standard</translation>
     </message>
     <message>
+        <source>Standard deviations of the Gaussians that the classifier sees, ascending, in voxels; the widest should be about as wide as half a grain.</source>
+        <translation>Standardabweichungen der Gaußfilter, die der Klassifikator sieht, aufsteigend, in Voxeln; die breiteste sollte etwa ein halbes Korn breit sein.</translation>
+    </message>
+    <message>
         <source>Standard la&amp;yout</source>
         <translation>&amp;Standardanordnung</translation>
     </message>
@@ -6010,6 +6058,18 @@
     <message>
         <source>Wi&amp;pe</source>
         <translation>&amp;Wischblende</translation>
+    </message>
+    <message>
+        <source>Widths</source>
+        <translation>Breiten</translation>
+    </message>
+    <message>
+        <source>Widths are numbers of voxels, such as {example}.</source>
+        <translation>Breiten sind Anzahlen von Voxeln wie {example}.</translation>
+    </message>
+    <message>
+        <source>Widths of the features</source>
+        <translation>Breiten der Merkmale</translation>
     </message>
     <message>
         <source>Wipe</source>
@@ -7692,6 +7752,10 @@
         <translation>{number}. Korn gelöscht bei {place}</translation>
     </message>
     <message>
+        <source>{number}. Grain filled at {place}</source>
+        <translation>{number}. Korn gefüllt bei {place}</translation>
+    </message>
+    <message>
         <source>{number}. Grain split by a line at {place}</source>
         <translation>{number}. Korn durch Linie geteilt bei {place}</translation>
     </message>
@@ -7702,6 +7766,14 @@
     <message>
         <source>{number}. Grains merged at {place}</source>
         <translation>{number}. Körner vereint bei {place}</translation>
+    </message>
+    <message>
+        <source>{number}. Voxels erased at {place}</source>
+        <translation>{number}. Voxel radiert bei {place}</translation>
+    </message>
+    <message>
+        <source>{number}. Voxels painted at {place}</source>
+        <translation>{number}. Voxel gemalt bei {place}</translation>
     </message>
     <message>
         <source>{phase}, {time} s simulated</source>

@@ -1,4 +1,4 @@
-"""Corrections of labels by hand: merge, delete and split grains, in the order in which they were made.
+"""Corrections of labels by hand: merge, delete, split, fill and paint grains, in the order they were made.
 
 Edits name grains by voxels in them, not by numbers, so that a list of edits means the same on the labels that
 the same settings give again.
@@ -6,10 +6,12 @@ the same settings give again.
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any, Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy import ndimage
 from skimage.segmentation import watershed
 
 from regolith_studio.errors import InputError
@@ -19,9 +21,11 @@ from regolith_studio.imaging.label_table import label_table
 from regolith_studio.imaging.segmentation.splitting import distance_map
 from regolith_studio.imaging.volume import Volume
 
-EditKind = Literal["merge", "delete", "seeds", "cut"]
+EditKind = Literal["merge", "delete", "seeds", "cut", "fill", "paint", "erase"]
 EDIT_KINDS: tuple[EditKind, ...] = get_args(EditKind)
-_LEAST_POINTS: dict[EditKind, int] = {"merge": 2, "delete": 1, "seeds": 2, "cut": 2}
+_LEAST_POINTS: dict[EditKind, int] = {"merge": 2, "seeds": 2, "cut": 2}
+_IN_SLICES, _BRUSHED = ("cut", "fill"), ("paint", "erase")
+MAX_RADIUS = 100.0
 Voxel = tuple[int, int, int]
 _watershed: Any = watershed
 
@@ -36,30 +40,38 @@ class LabelEdit:
         ``merge`` gives all grains at the points the label of the first; ``delete`` removes those at the
         points; ``seeds`` splits the grain that holds all points into one a point, by a watershed of the
         distance to its surface; ``cut`` splits the grain that the line between two points crosses longest, by
-        the plane through the line and along `axis`.
+        the plane through the line and along `axis`; ``fill`` gives the grains at the points the free voxels
+        that they enclose in a slice across `axis`; ``paint`` gives all voxels within `radius` of the line
+        through the points the label at its first point, or a new one where no grain is there; ``erase``
+        frees them.
     points
         Voxels along x, y, z.
     axis
-        Direction across the slice in which a line was drawn.
+        Direction across the slice that was looked at.
+    radius
+        Of a brush, in voxels.
 
     Raises
     ------
     InputError
-        If the kind is another, or there are too few points.
+        If the kind is another, there are too few points, or the radius is out of its range.
     """
 
     kind: EditKind
     points: tuple[Voxel, ...]
     axis: int = 2
+    radius: float = 0.5
 
     def __post_init__(self) -> None:
         if self.kind not in EDIT_KINDS:
             raise InputError(f"An edit of labels is one of {', '.join(EDIT_KINDS)}, not {self.kind!r}.")
-        least = _LEAST_POINTS[self.kind]
+        least = _LEAST_POINTS.get(self.kind, 1)
         if len(set(self.points)) < least or (self.kind == "cut" and len(self.points) != 2):
             raise InputError(f"The edit {self.kind!r} of labels needs {least} different voxels.")
         if self.axis not in (0, 1, 2):
             raise InputError(f"The axis of an edit is 0, 1 or 2, got {self.axis!r}.")
+        if not 0.5 <= self.radius <= MAX_RADIUS:
+            raise InputError(f"The radius of a brush is 0.5 to {MAX_RADIUS:g} voxels, got {self.radius!r}.")
 
 
 def apply_edits(
@@ -112,6 +124,10 @@ class _LabelEditor:
                 self._split_by_seeds(edit.points)
             case "cut":
                 self._cut(edit)
+            case "fill":
+                self._fill({self._label_at(point) for point in edit.points}, edit.axis)
+            case "paint" | "erase":
+                self._paint(edit)
 
     def _label_at(self, point: Voxel) -> int:
         if not all(0 <= at < n for at, n in zip(point, self._numbers.shape, strict=True)):
@@ -176,12 +192,55 @@ class _LabelEditor:
             )
         return int(np.bincount(labels[labels > 0]).argmax())
 
+    def _fill(self, labels: set[int], axis: int) -> None:
+        filled = 0
+        for label in sorted(labels):
+            region = np.moveaxis(self._numbers[self._boxes[label]], axis, 0)
+            for picture in region:
+                enclosed = ndimage.binary_fill_holes(picture == label) & (picture <= 0)
+                picture[enclosed] = label
+                filled += int(enclosed.sum())
+        if not filled:
+            raise InputError("the grain encloses no free voxel in these slices.")
+
+    def _paint(self, edit: LabelEdit) -> None:
+        shape = np.array(self._numbers.shape)
+        corners = np.array(edit.points, dtype=np.float64)
+        if not ((corners >= 0) & (corners < shape)).all():
+            raise InputError("its line leaves the volume.")
+        low = np.maximum(corners.min(axis=0) - edit.radius, 0).astype(int)
+        high = np.minimum(np.ceil(corners.max(axis=0) + edit.radius).astype(int) + 1, shape)
+        box = box_between(low.tolist(), high.tolist())
+        near = _near_line([n.stop - n.start for n in box], corners - low, edit.radius)
+        label = max(int(self._numbers[edit.points[0]]), 0)
+        if edit.kind == "erase":
+            label = 0
+        elif not label:
+            label = self._highest = self._highest + 1
+        self._numbers[box][near] = label
+        if label:
+            self._boxes[label] = _about_both(self._boxes.get(label, box), box)
+
     def _write_parts(self, label: int, parts: Sequence[BoolArray]) -> None:
         region = self._numbers[self._boxes[label]]
         for part in parts:
             self._highest += 1
             region[part] = self._highest
             self._boxes[self._highest] = self._boxes[label]
+
+
+def _near_line(shape: Sequence[int], corners: FloatArray, radius: float) -> BoolArray:
+    """Voxels of a box whose centres lie within `radius` of the line through the corners, shape (n, 3).
+
+    The line is walked in steps of half a voxel at most.
+    """
+    free = np.ones(tuple(shape), dtype=bool)
+    for start, end in pairwise(np.concatenate([corners, corners[-1:]])):
+        count = 2 * int(np.ceil(np.abs(end - start).max())) + 1
+        places = np.rint(np.linspace(start, end, count)).astype(int)
+        free[tuple(places.T)] = False
+    distance: Any = ndimage.distance_transform_edt(free)
+    return np.asarray(distance <= radius)
 
 
 def _about_both(one: Box, other: Box) -> Box:
@@ -194,7 +253,8 @@ def edits_document(edits: Sequence[LabelEdit]) -> list[dict[str, Any]]:
     """Plain JSON of edits."""
     return [
         {"kind": each.kind, "points": [list(point) for point in each.points]}
-        | ({"axis": each.axis} if each.kind == "cut" else {})
+        | ({"axis": each.axis} if each.kind in _IN_SLICES else {})
+        | ({"radius": each.radius} if each.kind in _BRUSHED else {})
         for each in edits
     ]
 
@@ -209,7 +269,12 @@ def edits_from(document: Any) -> tuple[LabelEdit, ...]:
     """
     try:
         return tuple(
-            LabelEdit(each["kind"], tuple(_voxel(point) for point in each["points"]), each.get("axis", 2))
+            LabelEdit(
+                each["kind"],
+                tuple(_voxel(point) for point in each["points"]),
+                each.get("axis", 2),
+                float(each.get("radius", 0.5)),
+            )
             for each in document
         )
     except (KeyError, TypeError, ValueError, AttributeError):

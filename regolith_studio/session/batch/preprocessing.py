@@ -19,7 +19,7 @@ from regolith_studio.errors import InputError
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle, Source
 from regolith_studio.imaging.extraction import ExtractedParticle
-from regolith_studio.imaging.sample_volumes import SampleVolume, sample_file
+from regolith_studio.imaging.sample_volumes import SampleScan, SampleVolume, sample_file
 from regolith_studio.imaging.segmentation.classifier_document import training_document
 from regolith_studio.io.atomic import staged_folder
 from regolith_studio.io.json_text import json_bytes
@@ -45,8 +45,12 @@ from regolith_studio.shape_models.materials import materials
 
 INDEX = "grains.json"
 MODEL = "model.json"
-SAMPLE_VOLUMES: dict[str, SampleVolume] = {"sample:labels": "labels", "sample:grey": "grey"}
-"""The scan that ships with the program, by the names that recipes know it by."""
+SAMPLE_VOLUMES: dict[str, tuple[SampleVolume, SampleScan]] = {
+    "sample:labels": ("labels", "synthetic"),
+    "sample:grey": ("grey", "synthetic"),
+    "sample:gradient": ("grey", "gradient"),
+}
+"""The scans that ship with the program, by the names that recipes know them by."""
 
 
 @dataclass(frozen=True)
@@ -116,7 +120,7 @@ def resolved(entry: VolumeEntry, base: Path) -> VolumeEntry:
 def entry_of(volume: VolumeInput, settings: GrainSettings) -> VolumeEntry:
     """What a recipe says of a volume and of the way from its voxels to particles."""
     sizes, raw = volume.voxel_size, volume.raw
-    shipped = (name for name, kind in SAMPLE_VOLUMES.items() if volume.path == sample_file(kind))
+    shipped = (name for name, which in SAMPLE_VOLUMES.items() if volume.path == sample_file(*which))
     return VolumeEntry(
         file=next(shipped, str(volume.path.absolute())),
         voxel_size=[float(e) for e in sizes] if isinstance(sizes, Sequence) else sizes,
@@ -252,7 +256,7 @@ def _volume_input(entry: VolumeEntry, base: Path) -> VolumeInput:
         else RawLayout(**{**entry.raw.model_dump(), "shape": tuple(entry.raw.shape)})
     )
     return VolumeInput(
-        sample_file(SAMPLE_VOLUMES[entry.file]) if entry.file in SAMPLE_VOLUMES else base / entry.file,
+        sample_file(*SAMPLE_VOLUMES[entry.file]) if entry.file in SAMPLE_VOLUMES else base / entry.file,
         entry.voxel_size,
         entry.unit,
         entry.kind,

@@ -69,9 +69,43 @@ def test_that_a_grain_merged_into_a_distant_one_can_be_cut_as_a_whole():
     assert set(np.unique(found[20:26, :5])) != set(np.unique(found[20:26, 6:]))
 
 
+def test_that_filling_closes_what_a_grain_encloses_in_the_slices_that_are_seen():
+    labels = np.zeros((20, 20, 20), dtype=np.int32)
+    labels[4:16, 4:16, 4:16] = 1
+    labels[8:11, 8:11, :] = 0  # a hole along z, open at both ends
+    labels[9, 9, 9] = 2  # another grain in it
+    hole = np.zeros(labels.shape, dtype=bool)
+    hole[8:11, 8:11, 4:16] = True
+    found = edited(labels, LabelEdit("fill", ((5, 5, 5),), axis=2))
+    assert (found[hole & (labels == 0)] == 1).all()
+    assert found[9, 9, 9] == 2
+    assert np.array_equal(found[~hole], labels[~hole])
+    with pytest.raises(InputError, match="encloses no free voxel"):
+        edited(labels, LabelEdit("fill", ((5, 5, 5),), axis=0))
+
+
+def test_that_paint_is_a_ball_drawn_along_a_line_with_the_label_of_its_beginning():
+    labels = np.zeros((40, 24, 24), dtype=np.int32)
+    labels[2:8, 8:16, 8:16], labels[30:36, 8:16, 8:16] = 1, 2
+    line = LabelEdit("paint", ((5, 12, 12), (30, 12, 12)), radius=3.0)
+    x, y, z = np.mgrid[:40, :24, :24]
+    beyond = np.maximum(np.maximum(5 - x, x - 30), 0)
+    capsule = np.sqrt(beyond**2 + (y - 12) ** 2 + (z - 12) ** 2) <= 3.0
+    found = edited(labels, line)
+    assert np.array_equal(found, np.where(capsule, 1, labels))
+    erased = edited(labels, LabelEdit("erase", line.points, radius=3.0))
+    assert np.array_equal(erased, np.where(capsule, 0, labels))
+    new = edited(labels, LabelEdit("paint", ((20, 12, 12),), radius=2.0))
+    assert np.unique(new).tolist() == [0, 1, 2, 3]
+    assert np.count_nonzero(new == 3) == 33  # voxels within 2 of a voxel
+    joined = edited(labels, line, LabelEdit("delete", ((20, 12, 12),)))
+    assert np.unique(joined).tolist() == [0, 2]
+
+
 @pytest.mark.parametrize(
     ("edit", "words"),
     [
+        (LabelEdit("paint", ((14, 12, 12), (99, 12, 12)), radius=2.0), "its line leaves the volume"),
         (LabelEdit("delete", ((0, 0, 0),)), "there is no grain at voxel"),
         (LabelEdit("delete", ((99, 0, 0),)), "lies outside of the volume"),
         (LabelEdit("merge", ((14, 12, 12), (15, 12, 12))), "all its voxels lie in one grain"),
@@ -88,7 +122,11 @@ def test_that_an_edit_which_does_not_fit_the_labels_is_named(edit, words):
 @pytest.mark.parametrize(
     "document",
     [
-        [{"kind": "paint", "points": [[1, 2, 3]]}],
+        [{"kind": "smear", "points": [[1, 2, 3]]}],
+        [{"kind": "paint", "points": []}],
+        [{"kind": "paint", "points": [[1, 2, 3]], "radius": 0.1}],
+        [{"kind": "erase", "points": [[1, 2, 3]], "radius": "wide"}],
+        [{"kind": "erase", "points": [[1, 2, 3]], "radius": float("nan")}],
         [{"kind": "merge", "points": [[1, 2, 3], [1, 2, 3]]}],
         [{"kind": "delete", "points": [[1, 2.5, 3]]}],
         [{"kind": "delete", "points": [[1, 2]]}],
@@ -104,4 +142,5 @@ def test_that_a_recipe_with_damaged_edits_is_refused(document):
 
 def test_that_edits_come_back_from_their_document():
     edits = (LabelEdit("cut", ((1, 2, 3), (4, 5, 6)), axis=1), LabelEdit("delete", ((1, 2, 3),)))
+    edits += (LabelEdit("fill", ((1, 2, 3),), axis=0), LabelEdit("paint", ((1, 2, 3),), radius=2.5))
     assert edits_from(edits_document(edits)) == edits

@@ -130,6 +130,65 @@ def test_that_grains_are_merged_split_and_deleted_with_undo_and_the_recipe_does_
     assert page.grains.n_grains == 7
 
 
+def test_that_grains_are_painted_erased_and_filled_and_the_recipe_does_the_same(
+    page, objects, wait, tmp_path, monkeypatch
+):
+    page.tabs.setCurrentWidget(page.edits)
+    (view, *_) = page.slices.views
+    before = page.grains.labels.array.copy()
+    page.edits.diameter.setValue(6)
+
+    def draw(tool, *corners):
+        page.edits.tools[tool].click()
+        paint(view, corners)
+        wait(lambda: page.grains is not None, SECONDS)
+        return page.grains.labels.array
+
+    bridge = draw("paint", CENTRES[0], (16, 30), (16, 32))
+    assert bridge[16, 32, 16] == bridge[16, 32, 18] == before[16, 16, 16]
+    assert bridge[16, 32, 20] == 0  # a ball of six voxels reaches three beyond the slice
+    new = draw("paint", (32, 32), (33, 32))
+    assert new[32, 32, 16] > before.max()
+    assert page.grains.n_grains == 7
+    hole = draw("erase", (16, 16), (17, 16))
+    assert hole[16, 16, 16] == 0
+    page.edits.tools["fill"].click()
+    click_voxel(view, 10, 16)
+    wait(lambda: page.grains is not None, SECONDS)
+    found = page.grains.labels.array
+    assert found[16, 16, 16] == before[16, 16, 16]
+    assert page.edits.list.count() == 4
+    assert np.array_equal(labels_of_recipe(page, objects, tmp_path, monkeypatch), found)
+    undo_by_key(page)
+    wait(lambda: page.grains is not None, SECONDS)
+    assert page.grains.labels.array[16, 16, 16] == 0
+
+
+@pytest.mark.usefixtures("objects")
+def test_that_the_grain_being_mended_stands_out_in_three_dimensions(page, wait):
+    def coloured():
+        picture = page.slices.grains.frame.view.picture().astype(int)
+        return (np.ptp(picture, axis=2) > 60).mean()
+
+    wait(lambda: page.slices._surface is not None, SECONDS)
+    every = coloured()
+    page.tabs.setCurrentWidget(page.edits)
+    page.edits.tools["seeds"].click()
+    (view, *_) = page.slices.views
+    click_voxel(view, 9, 48)
+    assert page.slices._highlighted == {int(page.grains.labels.array[9, 48, 16])}
+    assert 0 < coloured() < 0.6 * every
+    click_voxel(view, 23, 48)
+    wait(lambda: page.grains is not None and len(page.slices._highlighted) == 2, SECONDS)
+    wait(lambda: page.slices._surface[0] is page.grains.labels, SECONDS)
+    assert 0 < coloured() < 0.6 * every
+    undo_by_key(page)
+    wait(lambda: page.grains is not None, SECONDS)
+    wait(lambda: page.slices._surface[0] is page.grains.labels, SECONDS)
+    assert page.slices._highlighted == set()
+    assert coloured() == pytest.approx(every, rel=0.02)
+
+
 @pytest.mark.usefixtures("objects")
 def test_that_a_line_which_divides_nothing_is_taken_back_with_a_sentence(page, wait):
     page.tabs.setCurrentWidget(page.edits)

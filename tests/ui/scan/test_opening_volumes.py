@@ -14,10 +14,9 @@ from regolith_studio.imaging.sample_volumes import sample_volume
 from regolith_studio.imaging.segmentation.segment import segment
 from regolith_studio.imaging.volume import Volume
 from regolith_studio.jobs import volume_jobs
-from regolith_studio.jobs.extraction_settings import (
-    VolumeInput,
-)
+from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput
 from regolith_studio.readers.volumes.header import RawLayout
+from regolith_studio.session.batch.preprocessing import entry_of
 from regolith_studio.ui.pages.scan.volume_dialog import VolumeDialog
 from tests.ui.scan.mouse import grains_seen, paint, press
 
@@ -240,3 +239,11 @@ def test_that_the_voxel_size_of_one_volume_is_offered_for_the_next(page, part, w
     dialog = next(each for each in page.findChildren(VolumeDialog) if each.isVisible())
     assert (dialog.edges[2].value(), dialog.unit.currentData()) == (0.4, "mm")
     dialog.reject()
+
+
+def test_that_the_second_sample_scan_is_in_the_menu_and_recipes_know_it_by_name(page, wait):
+    page.commands()["gradient_volume"]()
+    wait(lambda: page.preview.found is not None or page.scan is not None, SECONDS)
+    assert page.scan.volume.shape == (128, 128, 128)
+    assert page.scan.volume.kind == "grey"
+    assert entry_of(page.opening.given, GrainSettings()).file == "sample:gradient"

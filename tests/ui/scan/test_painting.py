@@ -78,3 +78,31 @@ def test_that_ctrl_z_takes_strokes_back_and_the_eraser_paint(page, minerals, wai
     QTest.keyClick(view.canvas, Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier)
     assert page.painting.strokes == ()
     assert not page.brush.undo.isEnabled()
+
+
+def test_that_other_widths_train_the_same_strokes_again_and_wrong_ones_are_explained(page, minerals, wait):
+    page.opening.read(VolumeInput(minerals, 2.0, kind="grey"))
+    wait(lambda: page.scan is not None and page.brush.isEnabled(), SECONDS)
+    page.slices.go_to((28, 16, 16))
+    page.tabs.setCurrentWidget(page.brush)
+    page.brush.paint.click()
+    (view, *_) = page.slices.views
+    page.brush.kind.setCurrentIndex(0)
+    paint(view, [(2, 2), (53, 2)])
+    page.brush.kind.setCurrentIndex(1)
+    paint(view, [(10, 16), (22, 16)])
+    wait(lambda: page.painting.training is not None, SECONDS)
+    before = page.painting.training
+    page.brush.sigmas.setValue("1, 3")
+    page.brush.sigmas.editingFinished.emit()
+    wait(lambda: page.painting.training.settings.features.sigmas == (1.0, 3.0), SECONDS)
+    assert page.painting.training.positions.tolist() == before.positions.tolist()
+    page.brush.planar.click()
+    wait(lambda: page.painting.training.settings.features.planar, SECONDS)
+    kept = page.painting.training
+    for wrong, words in (("3, 1", "ascend"), ("one", "Widths are numbers of voxels")):
+        page.brush.sigmas.setValue(wrong)
+        page.brush.sigmas.editingFinished.emit()
+        assert words in page.brush.state.text()
+    assert page.painting.training is kept
+    assert page.brush.features == kept.settings.features

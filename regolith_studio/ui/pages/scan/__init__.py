@@ -26,6 +26,12 @@ PAGE = Page(
         ),
         ActionSpec(PAGE_MENU, "open_slices", N_("Open a folder of s&lices …")),
         ActionSpec(PAGE_MENU, "sample_volume", N_("Open the sample &scan"), "sample"),
+        ActionSpec(
+            PAGE_MENU,
+            "gradient_volume",
+            N_("Open the sample scan for the br&ush"),
+            tip=N_("Open the second sample scan, whose grey values no threshold segments"),
+        ),
         ActionSpec(PAGE_MENU, BREAK, ""),
         ActionSpec(PAGE_MENU, "open_settings", N_("Open se&ttings …"), tip=N_("Load settings from a file")),
         ActionSpec(

@@ -5,14 +5,17 @@ from typing import Literal
 
 from PySide6.QtCore import Signal
 from PySide6.QtGui import QColor, QIcon, QPixmap
-from PySide6.QtWidgets import QCheckBox, QHBoxLayout, QPushButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QCheckBox, QHBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidget
 
+from regolith_studio.errors import InputError
 from regolith_studio.imaging.segmentation.pixel_classifier import PixelClass
+from regolith_studio.imaging.segmentation.pixel_features import FeatureSettings
 from regolith_studio.imaging.segmentation.strokes import ERASER
 from regolith_studio.messages import N_
 from regolith_studio.ui.pages.scan.controls import choice
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.labels import heading, remark
+from regolith_studio.ui.widgets.number_fields import NumbersLine
 from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec
 
 CLASSES = (
@@ -50,6 +53,7 @@ class BrushPanel(QWidget):
 
     paintingChanged = Signal(bool)  # noqa: N815
     overlayChanged = Signal(str)  # noqa: N815
+    featuresChanged = Signal()  # noqa: N815
     undoRequested = Signal()  # noqa: N815
     clearRequested = Signal()  # noqa: N815
     useRequested = Signal()  # noqa: N815
@@ -69,6 +73,19 @@ class BrushPanel(QWidget):
         self.diameter.field.setObjectName("brush_size")
         self.diameter.setValue(4)
         self.overlay = choice("brush_overlay", tr("What the prediction shows"), OVERLAYS)
+        self.sigmas = NumbersLine(", ".join(f"{each:g}" for each in FeatureSettings().sigmas))
+        self.sigmas.setObjectName("brush_sigmas")
+        self.sigmas.setAccessibleName(tr("Widths of the features"))
+        self.sigmas.setToolTip(
+            tr(
+                "Standard deviations of the Gaussians that the classifier sees, ascending, in voxels; the "
+                "widest should be about as wide as half a grain."
+            )
+        )
+        self.planar = QCheckBox(tr("Features within slices only"))
+        self.planar.setObjectName("brush_planar")
+        self.planar.setToolTip(tr("For slices that lie far apart: what is above and below does not count."))
+        self._features, self._missing = FeatureSettings(), ""
         self.undo = button("brush_undo", tr("Undo stroke"), tr("Undo the last stroke (Ctrl+Z)"))
         self.clear = button("brush_clear", tr("Clear"), tr("Undo all strokes"))
         self.use = button(
@@ -93,14 +110,39 @@ class BrushPanel(QWidget):
         label = ERASER if self.eraser.isChecked() else int(self.kind.currentData())
         return Brush(label, float(self.diameter.value()))
 
+    @property
+    def features(self) -> FeatureSettings:
+        """What the classifier sees of a voxel."""
+        return self._features
+
+    def _take_features(self) -> None:
+        """Use the widths that were typed, or say what is wrong with them."""
+        try:
+            sigmas = tuple(float(each) for each in self.sigmas.value().split(","))
+            features = FeatureSettings(sigmas, self.planar.isChecked())
+        except ValueError:
+            self._show_words(tr("Widths are numbers of voxels, such as {example}.", example="1, 2, 4, 8"))
+            return
+        except InputError as error:
+            self._show_words(str(error))
+            return
+        self._show_words(self._missing)
+        if features != self._features:
+            self._features = features
+            self.featuresChanged.emit()
+
     def set_state(self, n_strokes: int, missing: str, *, trained: bool) -> None:
         """Show how much is painted, and what is missing for a classifier."""
         self.undo.setEnabled(n_strokes > 0)
         self.clear.setEnabled(n_strokes > 0)
         self.use.setEnabled(trained)
         self.save.setEnabled(trained)
-        self.state.setText(missing)
-        self.state.setVisible(bool(missing))
+        self._missing = missing
+        self._show_words(missing)
+
+    def _show_words(self, words: str) -> None:
+        self.state.setText(words)
+        self.state.setVisible(bool(words))
 
     def _enable(self) -> None:
         for part in (self.kind, self.eraser, self.diameter, self.overlay):
@@ -110,6 +152,8 @@ class BrushPanel(QWidget):
         self.paint.toggled.connect(lambda _: self._enable())
         self.paint.toggled.connect(self.paintingChanged)
         self.overlay.currentIndexChanged.connect(lambda: self.overlayChanged.emit(self.overlay.currentData()))
+        self.sigmas.editingFinished.connect(self._take_features)
+        self.planar.toggled.connect(self._take_features)
         self.kind.currentIndexChanged.connect(lambda: self.eraser.setChecked(False))
         for part, signal in (
             (self.undo, self.undoRequested),
@@ -129,6 +173,8 @@ class BrushPanel(QWidget):
             (self.kind,),
             (self.diameter,),
             (self.overlay,),
+            (QLabel(tr("Widths")), self.sigmas),
+            (self.planar,),
             (self.undo, self.clear),
             (self.use,),
             (self.browse, self.save),
@@ -139,6 +185,7 @@ class BrushPanel(QWidget):
                 row.addWidget(part)
             layout.addLayout(row)
         layout.addWidget(self.state)
+        layout.addStretch(1)
 
 
 def button(name: str, words: str, tip: str) -> QPushButton:

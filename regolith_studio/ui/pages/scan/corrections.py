@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -32,14 +33,17 @@ from regolith_studio.jobs.volume_jobs import GrainSegmentation
 from regolith_studio.session.history import History
 from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.pages.scan.brush_panel import Brush
-from regolith_studio.ui.pages.scan.edits_panel import NO_TOOL, EditsPanel
+from regolith_studio.ui.pages.scan.edits_panel import BRUSHED, NO_TOOL, EditsPanel
 from regolith_studio.ui.pages.scan.objects_panel import OBJECT_COLOURS, ObjectsPanel
 from regolith_studio.ui.pages.scan.slices_view import SlicesView
 from regolith_studio.ui.translation import tr, translate
 
 _OPACITY, _EXAMPLE_OPACITY = 90, 190
+_SAMPLES = 200
+_BESIDE = [*np.eye(3, dtype=np.int64), *-np.eye(3, dtype=np.int64)]
+"""Places along a line at which grains are looked up, and the steps to both sides of it."""
 _CUT = Brush(ERASER, 1.0, "line")
-_CLICKS = {"merge": 2, "delete": 1, "seeds": 2}
+_CLICKS = {"merge": 2, "delete": 1, "seeds": 2, "fill": 1}
 
 
 @dataclass(frozen=True)
@@ -85,6 +89,7 @@ class Corrections(QObject):
         self._context, self._objects, self._edits, self._slices = context, objects, edits, slices
         self._history: History[CorrectionState] = History(CorrectionState())
         self._clicks: tuple[Voxel, ...] = ()
+        self._mended: LabelEdit | None = None
         self._grey: Volume | None = None
         self._base: GrainSegmentation | None = None
         self._found_with = SegmentationSettings()
@@ -167,12 +172,13 @@ class Corrections(QObject):
 
     def undo(self) -> None:
         """Take the last step back."""
-        self._clicks = ()
+        self._clicks, self._mended = (), None
         self._history.undo()
         self._refresh()
 
     def redo(self) -> None:
         """Take it again."""
+        self._mended = None
         self._history.redo()
         self._refresh()
 
@@ -196,6 +202,7 @@ class Corrections(QObject):
         return replace(loaded, actions=self.state.actions) if loaded is not None else None
 
     def _push(self, state: CorrectionState) -> None:
+        self._mended = None
         self._history.push(state)
         self._refresh()
 
@@ -260,7 +267,7 @@ class Corrections(QObject):
 
     # --- the mouse -----------------------------------------------------------------------------
 
-    def _on_click(self, x: int, y: int, z: int) -> None:
+    def _on_click(self, x: int, y: int, z: int, axis: int) -> None:
         if self._base is None:
             return
         place = (x, y, z)
@@ -275,9 +282,10 @@ class Corrections(QObject):
             self._clicks = (*self._clicks, place)
             if len(self._clicks) == needed:
                 clicks, self._clicks = self._clicks, ()
-                self._edit(self._edits.tool, clicks)
+                self._edit(self._edits.tool, clicks, axis)
             else:
                 self._edits.hint.setText(tr("Now click the second place."))
+                self._slices.highlight({int(self.grains.labels.array[place])})
 
     def _same_object(self, one: Voxel, other: Voxel) -> bool:
         assert self._base is not None
@@ -285,30 +293,44 @@ class Corrections(QObject):
         return bool(labels[one] == labels[other])
 
     def _on_line(self, axis: int, number: int, points: NDArray[np.float64]) -> None:
-        if self._edits.tool != "cut" or self.grains is None:
+        tool = self._edits.tool
+        if tool not in ("cut", *BRUSHED) or self.grains is None:
             return
-        ends = []
-        for point in (points[0], points[-1]):
-            place = [0, 0, 0]
-            place[axis] = number
-            for each, at in zip((k for k in range(3) if k != axis), point, strict=True):
-                place[each] = int(np.floor(at))
-            ends.append((place[0], place[1], place[2]))
-        self._edit("cut", tuple(ends), axis)
+        places = np.full((len(points), 3), number, dtype=np.int64)
+        places[:, [k for k in range(3) if k != axis]] = np.floor(points)
+        if tool in BRUSHED:
+            inside = ((places >= 0) & (places < self.grains.labels.shape)).all(axis=1)
+            places = places[inside]
+        else:
+            places = places[[0, -1]]
+        corners = [(x, y, z) for x, y, z in places.tolist()]
+        if corners:
+            kept = corners[:1] + [b for a, b in pairwise(corners) if a != b]
+            self._edit(tool, tuple(kept), axis, self._edits.diameter.value() / 2)
 
-    def _edit(self, kind: str, points: tuple[Voxel, ...], axis: int = 2) -> None:
+    def _edit(self, kind: str, points: tuple[Voxel, ...], axis: int = 2, radius: float = 0.5) -> None:
+        radius = radius if kind in BRUSHED else 0.5
         try:
-            edit = LabelEdit(kind, points, axis)  # type: ignore[arg-type]  # one of the tools
+            edit = LabelEdit(kind, points, axis, radius)  # type: ignore[arg-type]  # one of the tools
         except InputError as error:
             self._context.toast.problem(str(error))
             return
         self._push(replace(self.state, edits=(*self.state.edits, edit)))
+        self._mended = edit
 
     def _set_tool(self, kind: str) -> None:
         self._clicks = ()
         if kind:
             self._objects.mark.setChecked(False)
-        self._slices.set_line_tool(_CUT if kind == "cut" else None)
+        self._slices.highlight(set())
+        self._slices.set_line_tool(self._brush if kind in ("cut", *BRUSHED) else None)
+
+    def _brush(self) -> Brush:
+        """What the mouse draws with the tool."""
+        tool = self._edits.tool
+        if tool not in BRUSHED:
+            return _CUT
+        return Brush(ERASER if tool == "erase" else 1, float(self._edits.diameter.value()))
 
     def _set_marking(self, on: bool) -> None:
         if on:
@@ -329,8 +351,21 @@ class Corrections(QObject):
             self._slices.show_segmentation(self._base.segmentation, self._base.sections, self._colours())
         else:
             self._slices.show_segmentation(self._corrected.segmentation, self._corrected.sections)
+        self._slices.highlight(self._mended_labels())
         self._show_panels()
         self.changed.emit()
+
+    def _mended_labels(self) -> set[int]:
+        """Labels of the grains along the line of the last correction, and at its points."""
+        if self._mended is None or self._corrected is None:
+            return set()
+        labels = self._corrected.segmentation.labels.array
+        points = np.array(self._mended.points)
+        if self._mended.kind == "cut":
+            line = np.rint(np.linspace(points[0], points[-1], _SAMPLES)).astype(np.int64)
+            points = np.concatenate([line + step for step in _BESIDE])
+        inside = points[((points >= 0) & (points < labels.shape)).all(axis=1)]
+        return set(labels[tuple(inside.T)].tolist()) - {0}
 
     def _colours(self) -> NDArray[np.uint8]:
         """A colour for each label: grey without a class, more opaque for examples."""

@@ -3,13 +3,22 @@
 from collections.abc import Sequence
 
 from PySide6.QtCore import Signal
-from PySide6.QtWidgets import QButtonGroup, QHBoxLayout, QListWidget, QRadioButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import (
+    QButtonGroup,
+    QGridLayout,
+    QHBoxLayout,
+    QListWidget,
+    QRadioButton,
+    QVBoxLayout,
+    QWidget,
+)
 
 from regolith_studio.imaging.segmentation.label_edits import LabelEdit
 from regolith_studio.messages import N_
 from regolith_studio.ui.pages.scan.brush_panel import button
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.labels import heading, remark
+from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec
 
 NO_TOOL = ""
 TOOLS = (
@@ -18,12 +27,25 @@ TOOLS = (
     ("delete", N_("Delete"), N_("Click a grain.")),
     ("seeds", N_("Split by seeds"), N_("Click two places in a grain that are two grains.")),
     ("cut", N_("Split by a line"), N_("Draw a line across a grain.")),
+    (
+        "fill",
+        N_("Fill"),
+        N_("Click a grain to fill what it encloses in the slices of that view."),
+    ),
+    ("paint", N_("Paint"), N_("Draw from a grain to extend it, or from a free place for a new grain.")),
+    ("erase", N_("Erase"), N_("Draw over grains to free their voxels.")),
 )
+SIZE = NumberSpec(N_("Size"), N_("Diameter of the ball that paints and erases, in voxels"), 1, 30, limit=200)
+BRUSHED = ("paint", "erase")
+"""Tools whose mouse is a ball."""
 _DONE = {
     "merge": N_("{number}. Grains merged at {place}"),
     "delete": N_("{number}. Grain deleted at {place}"),
     "seeds": N_("{number}. Grain split by seeds at {place}"),
     "cut": N_("{number}. Grain split by a line at {place}"),
+    "fill": N_("{number}. Grain filled at {place}"),
+    "paint": N_("{number}. Voxels painted at {place}"),
+    "erase": N_("{number}. Voxels erased at {place}"),
 }
 
 
@@ -46,6 +68,9 @@ class EditsPanel(QWidget):
             self._group.addButton(made)
             self.tools[kind] = made
         self.tools[NO_TOOL].setChecked(True)
+        self.diameter = NumberSlider(SIZE)
+        self.diameter.field.setObjectName("edit_size")
+        self.diameter.setValue(6)
         self.hint = remark()
         self.list = QListWidget()
         self.list.setAccessibleName(tr("Corrections so far"))
@@ -69,6 +94,7 @@ class EditsPanel(QWidget):
         """Enable what can be done; `found` says whether there are grains."""
         for kind, made in self.tools.items():
             made.setEnabled(found or kind == NO_TOOL)
+        self.diameter.setEnabled(found)
         self.undo.setEnabled(can_undo)
         self.redo.setEnabled(can_redo)
 
@@ -89,8 +115,11 @@ class EditsPanel(QWidget):
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(heading(tr("Corrections by hand")))
-        for made in self.tools.values():
-            layout.addWidget(made)
+        grid = QGridLayout()
+        for number, made in enumerate(self.tools.values()):
+            grid.addWidget(made, number // 2, number % 2)
+        layout.addLayout(grid)
+        layout.addWidget(self.diameter)
         layout.addWidget(self.hint)
         layout.addWidget(self.list, 1)
         row = QHBoxLayout()

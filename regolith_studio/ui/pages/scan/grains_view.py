@@ -1,5 +1,7 @@
 """The grains of a segmentation in three dimensions, in the colours that they have in the slices."""
 
+from collections.abc import Set
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -49,13 +51,23 @@ class GrainsView:
         self.frame.set_texts(tr("Volume"), self._extent)
         self.frame.view.draw(lambda plotter: show_grains(plotter, None, _NONE, self._size))
 
-    def show(self, surface: LabelSurface, colours: NDArray[np.uint8]) -> None:
-        """Show grains; `colours` has RGBA for each label, shape (n_labels + 1, 4)."""
+    def show(
+        self, surface: LabelSurface, colours: NDArray[np.uint8], highlighted: Set[int] = frozenset()
+    ) -> None:
+        """Show grains.
+
+        Parameters
+        ----------
+        colours
+            RGBA for each label, shape (n_labels + 1, 4).
+        highlighted
+            Labels that are seen through all others; with none, all are opaque.
+        """
         labels = np.minimum(surface.labels, len(colours) - 1)
         rgb = np.ascontiguousarray(colours[labels, :3])
         count = len(np.unique(surface.labels))
         self.frame.set_texts(tr_count(N_("1 grain"), N_("{count} grains"), count), self._extent)
-        self.frame.view.draw(lambda plotter: show_grains(plotter, surface, rgb, self._size))
+        self.frame.view.draw(lambda plotter: show_grains(plotter, surface, rgb, self._size, highlighted))
 
     def release(self) -> None:
         """Give graphics memory back."""

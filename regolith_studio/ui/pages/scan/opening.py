@@ -77,6 +77,10 @@ class VolumeOpening(QObject):
         """Open the shipped scan."""
         self.read(VolumeInput(sample_file("grey")))
 
+    def open_gradient(self) -> None:
+        """Open the second shipped scan, which no threshold segments."""
+        self.read(VolumeInput(sample_file("grey", "gradient")))
+
     def read(self, volume: VolumeInput) -> None:
         """Read the region of interest of a volume."""
         region = self._controls.value().region

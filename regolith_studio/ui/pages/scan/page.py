@@ -83,6 +83,7 @@ class ScanPage(PageWidget):
             "open_volume": self.opening.ask_for_file,
             "open_slices": self.opening.ask_for_folder,
             "sample_volume": self.opening.open_sample,
+            "gradient_volume": self.opening.open_gradient,
             "open_settings": self.files.open_settings,
             "save_settings": self.save_settings,
             "find_grains": self.find_grains,
@@ -281,7 +282,9 @@ class ScanPage(PageWidget):
         self.opening.opened.connect(self._on_opened)
         self.preview.changed.connect(self._on_preview)
         self.controls.valueChanged.connect(self._on_settings)
-        self.controls.draw_box.toggled.connect(lambda on: self.slices.set_line_tool(BOX if on else None))
+        self.controls.draw_box.toggled.connect(
+            lambda on: self.slices.set_line_tool((lambda: BOX) if on else None)
+        )
         self.painting.trained.connect(self.controls.set_classifier)
         self.corrections.changed.connect(self._on_corrected)
         self.making.made.connect(self.workflow.set_particles)

@@ -41,6 +41,7 @@ class Painting(QObject):
         self.training: TrainingSet | None = None
         panel.paintingChanged.connect(self._set_painting)
         panel.overlayChanged.connect(slices.set_overlay)
+        panel.featuresChanged.connect(self._see_anew)
         panel.undoRequested.connect(self.undo)
         panel.clearRequested.connect(lambda: self._push(()))
         slices.strokeDrawn.connect(self._add)
@@ -108,13 +109,20 @@ class Painting(QObject):
         self._history.push(strokes)
         self._learn()
 
+    def _see_anew(self) -> None:
+        """Train again on the same strokes with other features."""
+        self._vectors = {}
+        if self.strokes:
+            self._learn()
+
     def _learn(self) -> None:
         """Train on the strokes in the background, then predict what is seen."""
         if self._volume is None:
             return
         self._slices.show_strokes(*painted_rows(self.strokes)[:2])
         self._context.stop("predict")
-        arguments = (self._volume, self.strokes, self._vectors, CLASSES, ClassifierSettings())
+        settings = ClassifierSettings(self._panel.features)
+        arguments = (self._volume, self.strokes, self._vectors, CLASSES, settings)
         self._context.start(tr("Training"), Job(train_on_strokes, arguments), self._take, lane="train")
         self._show_panel("")
 

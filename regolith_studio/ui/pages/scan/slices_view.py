@@ -1,6 +1,6 @@
 """Three slices through one voxel, the histogram, and the grains in three dimensions."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,8 +38,8 @@ class SlicesView(QWidget):
     """Other slices are shown."""
     strokeDrawn = Signal(int, int, object)  # noqa: N815
     """As of a :class:`SliceView`."""
-    picked = Signal(int, int, int)
-    """A voxel that was clicked, after its slices are shown."""
+    picked = Signal(int, int, int, int)
+    """A voxel that was clicked, after its slices are shown, and the axis of the slice that was clicked."""
     surfaceWanted = Signal(object)  # noqa: N815
     """Labels whose surfaces are to be made and given to :meth:`show_surface`."""
 
@@ -50,6 +50,7 @@ class SlicesView(QWidget):
         self.grains = GrainsView(views)
         self._surface: tuple[Volume, LabelSurface] | None = None
         self._class_colours: NDArray[np.uint8] | None = None
+        self._highlighted: set[int] = set()
         self.position = (0, 0, 0)
         self.box: Box = box_between((0, 0, 0), (1, 1, 1))
         self._scan: Scan | None = None
@@ -62,7 +63,7 @@ class SlicesView(QWidget):
         self._arrange()
         for view in self.views:
             view.placePicked.connect(lambda x, y, z: self.go_to((x, y, z)))
-            view.placePicked.connect(self.picked)
+            view.placePicked.connect(lambda x, y, z, axis=view.axis: self.picked.emit(x, y, z, axis))
             view.sliceChosen.connect(self._turn)
             view.strokeDrawn.connect(self.strokeDrawn)
 
@@ -81,7 +82,7 @@ class SlicesView(QWidget):
         self._show_boxes(scan.volume.kind == "grey")
         self.histogram.set_scanned(scan.histogram)
         self._stack.setCurrentIndex(1)
-        self._class_colours, self._surface = None, None
+        self._class_colours, self._surface, self._highlighted = None, None, set()
         self.grains.set_volume(scan.volume)
         if scan.volume.kind == "labels":
             self.surfaceWanted.emit(scan.volume)
@@ -143,7 +144,15 @@ class SlicesView(QWidget):
         self._surface = labels, surface
         highest = int(surface.labels.max(initial=0))
         colours = self._class_colours
-        self.grains.show(surface, colours_of_labels(np.arange(highest + 1)) if colours is None else colours)
+        if colours is None:
+            colours = colours_of_labels(np.arange(highest + 1))
+        self.grains.show(surface, colours, self._highlighted)
+
+    def highlight(self, labels: set[int]) -> None:
+        """Let grains stand out among all others in three dimensions; none for all alike."""
+        changed, self._highlighted = labels != self._highlighted, labels
+        if changed and self._surface is not None:
+            self.show_surface(*self._surface)
 
     def set_painting(self, panel: BrushPanel | None) -> None:
         """Let the mouse paint with the brush of a panel, or go back to choosing voxels."""
@@ -154,10 +163,10 @@ class SlicesView(QWidget):
         self._lay_over()
         self._show_painting()
 
-    def set_line_tool(self, brush: Brush | None) -> None:
+    def set_line_tool(self, brush: Callable[[], Brush] | None) -> None:
         """Let the mouse draw lines or boxes over the grains, or go back to choosing voxels."""
         for view in self.views:
-            view.brush = None if brush is None else lambda: brush
+            view.brush = brush
             view.canvas.setCursor(Qt.CursorShape.ArrowCursor if brush is None else Qt.CursorShape.CrossCursor)
 
     def set_overlay(self, overlay: str) -> None:
