@@ -24,6 +24,8 @@ from regolith_studio.ui.views.factory import best_kind
 
 FILLED_CHECK = 100
 """Milliseconds between two looks at whether the views of the first start are filled."""
+FIRST_PAGE = "explore"
+"""The page where the tour begins."""
 IDLE, BUSY = 3_000, 60_000
 """Milliseconds without work, and at most, after which hidden pages forget closed particles."""
 
@@ -38,7 +40,8 @@ def show_recovery_and_tour(window: MainWindow) -> None:
     def start_when_filled() -> None:
         if window.session.results.polyhedron is not None or not window.session.tasks:
             timer.stop()
-            window.show_tour()
+            if window.pages.current == FIRST_PAGE:  # else its user is at work already
+                window.show_tour()
 
     timer.timeout.connect(start_when_filled)
     timer.start()

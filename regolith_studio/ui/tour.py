@@ -55,6 +55,7 @@ class Tour(QWidget):
         self._steps, self._at = steps(), 0
         self._elsewhere = False
         self._spot = QRect()
+        self._watched: QWidget | None = None
         self._bubble = QFrame(window)
         self._bubble.setObjectName("tour_bubble")
         self._bubble.setProperty("role", "toast")
@@ -103,6 +104,7 @@ class Tour(QWidget):
     def finish(self) -> None:
         """End the tour, and remember that it was seen."""
         self._window.removeEventFilter(self)
+        self._watch(None)
         self._preferences.window = self._preferences.window | {TOUR_SEEN: True}
         self._preferences.save()
         for widget in (self._bubble, self):
@@ -110,7 +112,7 @@ class Tour(QWidget):
             widget.deleteLater()
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
-        if event.type() == QEvent.Type.Resize:
+        if event.type() == QEvent.Type.Resize and watched in (self._window, self._watched):
             self._place()
         if isinstance(event, QKeyEvent) and event.key() == Qt.Key.Key_Escape:
             self.finish()
@@ -134,6 +136,7 @@ class Tour(QWidget):
         self.hide()  # beside views that draw by themselves a frame that only moves leaves its trace behind
         self.setGeometry(self._window.rect())
         target = self.target()
+        self._watch(target)
         if target is None:
             self._spot = QRect(self.rect().center(), self.rect().center())
         else:
@@ -147,6 +150,15 @@ class Tour(QWidget):
         for widget in (self._bubble,) if self._elsewhere else (self, self._bubble):
             widget.show()
             widget.raise_()
+
+    def _watch(self, target: QWidget | None) -> None:
+        """Follow the size of what this stop is about: a tool bar above it may still change its height."""
+        if target is not self._watched:
+            if self._watched is not None:
+                self._watched.removeEventFilter(self)
+            if target is not None:
+                target.installEventFilter(self)
+            self._watched = target
 
     def _arrange(self) -> None:
         row = QHBoxLayout()

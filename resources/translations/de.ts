@@ -1025,7 +1025,7 @@
     </message>
     <message>
         <source>Closing</source>
-        <translation>Schließen</translation>
+        <translation>Schließung</translation>
     </message>
     <message>
         <source>Closing the window stops it.</source>
@@ -1257,7 +1257,7 @@
     </message>
     <message>
         <source>Correct</source>
-        <translation>Korrektur</translation>
+        <translation>Ändern</translation>
     </message>
     <message>
         <source>Correct for grain size</source>
@@ -3585,7 +3585,7 @@
     </message>
     <message>
         <source>Opening</source>
-        <translation>Öffnen</translation>
+        <translation>Öffnung</translation>
     </message>
     <message>
         <source>Openings in µm = shares between them; @volume behind it counts volume.</source>
@@ -3629,7 +3629,7 @@
     </message>
     <message>
         <source>Overlay</source>
-        <translation>Darüber</translation>
+        <translation>Überlagern</translation>
     </message>
     <message>
         <source>Own preset</source>

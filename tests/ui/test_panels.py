@@ -234,6 +234,8 @@ def test_that_a_task_appears_after_a_moment_and_can_be_stopped(shown, wait):
     assert panel.text.text() == IDLE
     wait(panel.bar.isVisible)
     assert "3 of 12" in panel.text.text()
+    panel.setValue([Task(7, "scan", "Separating touching grains", 283_404, 566_809)])
+    assert panel.text.text() == "Separating touching grains (50\N{NO-BREAK SPACE}%)"
     QTest.mouseClick(panel.stop, Qt.MouseButton.LeftButton)
     assert asked == [7]
     panel.setValue([])

@@ -23,7 +23,7 @@ from regolith_studio.session.preferences import Preferences
 from regolith_studio.session.project import Project
 from regolith_studio.session.tasks import Task
 from regolith_studio.ui.activity import TaskListPanel, time_left
-from regolith_studio.ui.app import open_window
+from regolith_studio.ui.app import FILLED_CHECK, open_window, show_recovery_and_tour
 from regolith_studio.ui.dialogs.closing import worth_asking
 from regolith_studio.ui.dialogs.command_palette import CommandPalette
 from regolith_studio.ui.dialogs.export import ExportDialog
@@ -423,3 +423,15 @@ def test_that_what_is_done_can_be_copied_as_command_and_as_python(window):
 def test_that_preferences_of_the_window_are_plain_json(window):
     window.close()
     assert json.loads(json.dumps(window.preferences.window)) == window.preferences.window
+
+
+@pytest.mark.slow
+def test_that_the_tour_does_not_take_its_user_away_from_another_page(shown, preferences, wait, settled):
+    window = shown(open_window(views="image", preferences=preferences))
+    window.go("scan")
+    show_recovery_and_tour(window)
+    wait(lambda: window.session.results.polyhedron is not None, 120.0)
+    settled(window, 120.0)
+    QTest.qWait(2 * FILLED_CHECK)
+    assert window.pages.current == "scan"
+    assert not window.findChildren(Tour)

@@ -11,10 +11,13 @@ from regolith_studio.session.tasks import Task
 from regolith_studio.ui.icons import icon
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import tr, translate
+from regolith_studio.ui.translation.numbers import number_text
 from regolith_studio.ui.widgets.labels import ElidedLabel
 
 SHOW_DELAY = 250
 """Milliseconds after which a running task is shown."""
+MANY = 500
+"""Steps of a task from which on its progress is shown in per cent."""
 IDLE = N_("Ready")
 
 
@@ -89,8 +92,7 @@ class TasksPanel(QWidget):
         first, others = seen[0], len(seen) - 1
         self.bar.setRange(0, first.total)
         self.bar.setValue(first.done)
-        steps = tr("{at} of {total}", at=first.done, total=first.total)
-        count = f" ({steps})" if first.total else ""
+        count = f" ({_progress(first)})" if first.total else ""
         message = f": {translate(first.message)}" if first.message else ""
         more = "   " + tr("and {count} more", count=others) if others else ""
         held = " – " + tr("paused") if first.paused else ""
@@ -99,3 +101,10 @@ class TasksPanel(QWidget):
     def _request(self) -> None:
         if self._tasks:
             self.cancelRequested.emit(self._tasks[0].id)
+
+
+def _progress(task: Task) -> str:
+    """How much is done: in steps, or in per cent where these are many."""
+    if task.total >= MANY:
+        return number_text(task.done / task.total, ".0%")
+    return tr("{at} of {total}", at=task.done, total=task.total)
