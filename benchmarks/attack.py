@@ -26,6 +26,7 @@ Ctrl+C ends it with the table of what ran.
 
 import argparse
 import hashlib
+import io
 import math
 import multiprocessing
 import os
@@ -315,9 +316,11 @@ def prepared(arena: Arena, name: str) -> Prepared:
     line, other = COMMANDS[name]
     words = arena.words(line)
     arena.reset(None)
-    with Path(os.devnull).open("w") as nowhere, redirect_stdout(nowhere), redirect_stderr(nowhere):
-        if entry.run([*words, *other.split()]):  # in this process, which loads the modules that it needs
-            raise SystemExit(f"{name} fails undisturbed")
+    said = io.StringIO()
+    with Path(os.devnull).open("w") as nowhere, redirect_stdout(nowhere), redirect_stderr(said):
+        code = entry.run([*words, *other.split()])  # in this process, which loads the modules that it needs
+    if code:
+        raise SystemExit(f"{name} fails undisturbed: {said.getvalue()}")
     earlier = arena.kept / name.replace(" ", "-")
     shutil.copytree(arena.place, earlier)
     begun = time.monotonic()
