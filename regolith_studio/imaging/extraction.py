@@ -36,9 +36,10 @@ from regolith_studio.messages import N_, count_message
 Surface = Literal["mask", "grey"]
 SURFACES: tuple[Surface, ...] = get_args(Surface)
 
-WIDE_NECK = 0.6
-"""Radius of the contact with a cut grain, over that of the ball of a label's volume, from which on the
-label is a piece of it."""
+WIDE_NECK = 0.7
+"""Diameter of the contact of two labels, over that of the ball of the smaller one's volume, from which on
+they are pieces of one grain. Of balls in packings 2 of 522 contacts are wider, of 30 lobes of agglutinates 29
+have one that is."""
 _COARSE, _OF_MASK = "Only", "The surface is that of the mask"
 _Made = tuple[int, Mesh, tuple[str, ...], Surface]
 
@@ -282,8 +283,9 @@ def pieces_of_cut_grains(
 ) -> list[int]:
     """Labels that a watershed has parted from a grain which the border cuts, in ascending order.
 
-    They touch a label at the border over a disc of more than :data:`WIDE_NECK` of their own radius. Whole
-    grains touch in points and blurred necks; the lobes of one grain over most of their width.
+    They touch a label at the border, or another piece, over a disc wider than :data:`WIDE_NECK` of the
+    smaller of the two. Whole grains touch in points and blurred necks; the lobes of one grain over most of
+    their width.
 
     Parameters
     ----------
@@ -294,12 +296,15 @@ def pieces_of_cut_grains(
     border
         Labels at the border.
     """
-    cut, found = set(border), set()
-    for pair, area in contacts.items():
-        inner = [label for label in pair if label not in cut]
-        if len(inner) == 1 and 2 * np.sqrt(area / np.pi) > WIDE_NECK * voxel_diameter(sizes[inner[0]]):
-            found.add(inner[0])
-    return sorted(found)
+    joined = {
+        pair
+        for pair, area in contacts.items()
+        if 2 * np.sqrt(area / np.pi) > WIDE_NECK * voxel_diameter(min(sizes[label] for label in pair))
+    }
+    cut = set(border)
+    while new := {label for pair in joined for label in pair if cut.intersection(pair)} - cut:
+        cut |= new
+    return sorted(cut.difference(border))
 
 
 def voxel_diameter(n_voxels: int) -> float:

@@ -282,4 +282,6 @@ def test_that_a_lobe_of_a_cut_grain_is_left_out_with_it_and_a_grain_that_touches
         found = extract_particles(cut, grey=grey)
         assert len(found.labels) == kept
         assert len(extract_particles(cut).labels) == 2  # labels that were given are taken as they are
-    assert pieces_of_cut_grains({(1, 2): 200.0}, {1: 900, 2: 3000}, [1]) == [2]
+    sizes = {1: 900, 2: 9000, 3: 900, 4: 9000}
+    necks = {(1, 2): 90.0, (2, 3): 90.0, (2, 4): 90.0}
+    assert pieces_of_cut_grains(necks, sizes, [1]) == [2, 3]  # discs of 10.7; balls of 12.0 and 25.8

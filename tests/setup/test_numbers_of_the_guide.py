@@ -85,6 +85,12 @@ def test_that_the_volume_of_touching_grains_is_within_a_percent() -> None:
     assert max(abs(row[0]) for row in rows.values()) <= 1.0
 
 
+def test_that_no_piece_of_a_cut_grain_is_kept_and_few_whole_ones_are_lost() -> None:
+    tables = RESULTS["segmentation"]
+    assert [row[4] for row in tables["h"]["rows"].values()] == [0.0] * 4
+    assert max(lost / whole for whole, lost in tables["spread of ln d"]["rows"].values()) < 0.02
+
+
 def test_that_the_stretch_by_unequal_voxels_is_the_one_that_is_told() -> None:
     rows = RESULTS["segmentation"]["voxels of"]["rows"].values()
     largest = max(abs(number) for row in rows for number in row[1:])
