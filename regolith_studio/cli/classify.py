@@ -139,6 +139,44 @@ def map_scan(
         typer.echo(f"Written to {output}.")
 
 
+@app.command("labels")
+@with_dataclass_options
+def painted_labels(
+    *,
+    scan: Scan,
+    classifier: Annotated[
+        Path, typer.Argument(metavar="CLASSIFIER", help="File of `classify train` or of the window.")
+    ],
+    output: Annotated[
+        Path,
+        typer.Option(
+            "--output",
+            "-o",
+            help="File for the painted voxels, as TIFF, NRRD, HDF5 or OME-Zarr.",
+            metavar="FILE",
+            parser=output_path,
+            callback=claim_labels,
+        ),
+    ],
+    contents: VolumeOptions,
+    json: Json = False,
+    seed: Seed = 0,
+) -> None:
+    """Write the painted voxels of a classifier as labels, which ilastik and `classify train` take."""
+    from regolith_studio.jobs.classifier_jobs import write_painted
+    from regolith_studio.jobs.extraction_settings import read_classifier
+
+    del seed  # taken by every command; nothing here is random
+    with usage_errors():
+        given, training = contents.of(scan), read_classifier(classifier)
+    run_with_progress(write_painted(given, training, output))
+    classes = {each.name: number for number, each in enumerate(training.classes, start=1)}
+    if json:
+        print_json({"labels": str(output), "classes": classes})
+    else:
+        typer.echo(f"Written to {output}: {', '.join(f'{k} {name}' for name, k in classes.items())}.")
+
+
 @app.command("objects")
 @with_dataclass_options
 def train_objects(

@@ -9,10 +9,11 @@ from numpy.typing import NDArray
 
 from regolith_studio.errors import InputError
 from regolith_studio.imaging.bounding_boxes import box_between
-from regolith_studio.imaging.label_files import write_probability_file
+from regolith_studio.imaging.label_files import write_label_file, write_probability_file
 from regolith_studio.imaging.segmentation.classifier_document import training_document
 from regolith_studio.imaging.segmentation.pixel_classifier import (
     ClassifierSettings,
+    PaintedLabels,
     PixelClass,
     PixelClassifier,
     TrainingSet,
@@ -93,6 +94,27 @@ def map_probabilities(scan: VolumeInput, training: TrainingSet, path: Path, scra
         yield Started(Message(N_("Writing {name}"), name=path.name))
         for done, total in write_probability_file(path, found):
             yield Progress(done, total)
+    return path
+
+
+def write_painted(scan: VolumeInput, training: TrainingSet, path: Path) -> Steps:
+    """Write the painted voxels of a classifier as a volume of labels; returns the path.
+
+    Parameters
+    ----------
+    path
+        TIFF, NRRD, HDF5 or OME-Zarr by its suffix.
+
+    Raises
+    ------
+    FileError
+        If the scan is no volume, or the file cannot be written.
+    InputError
+        If they were painted on a scan of other voxels.
+    """
+    yield Started(Message(N_("Writing {name}"), name=path.name))
+    for done, total in write_label_file(path, PaintedLabels(training, scan.opened()), len(training.classes)):
+        yield Progress(done, total)
     return path
 
 

@@ -61,6 +61,32 @@ def test_that_the_map_of_probabilities_is_taken_as_one(command, tmp_path: Path) 
     assert len(result.json["particles"]) == 2
 
 
+def test_that_painted_voxels_go_out_as_the_labels_that_came_in(command, tmp_path: Path) -> None:
+    scan, painted, balls = scan_of_two_minerals(tmp_path)
+    strokes, labels = tmp_path / "strokes.json", tmp_path / "labels.h5"
+    command("classify", "train", scan, painted, "-o", strokes, "--grain", "2,3", "--voxel-size", 2)
+    written = command("classify", "labels", scan, strokes, "-o", labels, "--voxel-size", 2, "--json")
+    assert written.code == 0, written.err
+    assert written.json["classes"]["label 2"] == 2
+    with h5py.File(labels) as file:
+        found = file["labels"][()]
+    assert np.array_equal(found[16], balls[16] + 1)
+    assert np.count_nonzero(found) == found[16].size
+    again = command(
+        "classify", "train", scan, labels, "-o", tmp_path / "again", "--grain", "2,3", "--voxel-size", 2
+    )
+    assert again.code == 0, again.err
+    assert (tmp_path / "again.json").read_bytes() == strokes.read_bytes()
+    other = command("classify", "labels", scan, strokes, "-o", tmp_path / "x.tif", "--voxel-size", 5)
+    assert "trained on voxels of 2 x 2 x 2 µm" in other.err
+    np.save(tmp_path / "small.npy", np.zeros((10, 32, 56), np.uint8))
+    small = command(
+        "classify", "labels", tmp_path / "small.npy", strokes, "-o", tmp_path / "x.tif", "--voxel-size", 2
+    )
+    assert "lie outside of small.npy" in small.err
+    assert not (tmp_path / "x.tif").exists()
+
+
 @pytest.mark.parametrize(
     ("options", "code", "sentence"),
     [

@@ -23,7 +23,7 @@ from regolith_studio.imaging.segmentation.pixel_features import (
     features_at,
     features_in,
 )
-from regolith_studio.imaging.volume import Volume
+from regolith_studio.imaging.volume import Origin, Volume, VolumeKind
 from regolith_studio.imaging.volume_slabs import (
     ScratchArrays,
     SliceSource,
@@ -202,6 +202,66 @@ def paint_from_labels(
     return TrainingSet(positions, labels, vectors, classes, sizes, scan, settings)
 
 
+@dataclass(frozen=True, eq=False)
+class PaintedLabels:
+    """The painted voxels of a training set as a volume of labels, read slab by slab: 1 for the first class.
+
+    Parameters
+    ----------
+    training
+        Holds the painted voxels.
+    scan
+        The volume that they were painted on.
+
+    Raises
+    ------
+    InputError
+        If the volume has voxels of another size than those that were painted, or ends before them.
+    """
+
+    training: TrainingSet
+    scan: SliceSource
+    kind: VolumeKind = "labels"
+
+    def __post_init__(self) -> None:
+        check_voxel_size(self.training.voxel_size, self.scan)
+        if not (self.training.positions < np.array(self.scan.shape)).all():
+            raise InputError(f"Painted voxels lie outside of {self.scan.name} of {self.scan.shape} voxels.")
+
+    @property
+    def shape(self) -> tuple[int, int, int]:
+        """Voxels along x, y and z."""
+        return self.scan.shape
+
+    @property
+    def dtype(self) -> np.dtype[Any]:
+        """Type of a voxel."""
+        return np.dtype(np.uint8)
+
+    @property
+    def voxel_size(self) -> FloatArray:
+        """Edges of a voxel along x, y and z in micrometres."""
+        return self.training.voxel_size
+
+    @property
+    def origin(self) -> Origin:
+        """That of the scan."""
+        return self.scan.origin
+
+    @property
+    def name(self) -> str:
+        """That of the scan."""
+        return self.scan.name
+
+    def read(self, z0: int, z1: int, /) -> NDArray[np.uint8]:
+        """The slices ``z0 <= z < z1``, shape (nx, ny, z1 - z0)."""
+        slab = np.zeros((*self.shape[:2], z1 - z0), np.uint8, order="F")
+        positions = self.training.positions
+        here = (positions[:, 2] >= z0) & (positions[:, 2] < z1)
+        slab[tuple((positions[here] - (0, 0, z0)).T)] = self.training.labels[here] + 1
+        return slab
+
+
 def _at_most(labels: IntArray, seed: int) -> IntArray:
     """Rows of at most :data:`MAX_PER_CLASS` voxels of each class, in their order."""
     rng, rows = np.random.default_rng(seed), []
@@ -287,9 +347,9 @@ def _pipeline(settings: ClassifierSettings) -> Any:
     return make_pipeline(StandardScaler(), model)
 
 
-def check_voxel_size(classifier: PixelClassifier, source: SliceSource) -> None:
-    """Raise an InputError unless a volume has voxels of the size that the classifier was trained at."""
-    own, other = classifier.voxel_size, np.ravel(np.asarray(source.voxel_size, dtype=np.float64))
+def check_voxel_size(own: FloatArray, source: SliceSource) -> None:
+    """Raise an InputError unless a volume has voxels of the size that a classifier was trained at."""
+    other = np.ravel(np.asarray(source.voxel_size, dtype=np.float64))
     if not np.allclose(own, other, rtol=0.02):
         raise InputError(
             f"The classifier was trained on voxels of {_edges(own)} µm, {source.name} has voxels of "
@@ -311,7 +371,7 @@ def probability_map(
     InputError
         If the volume has voxels of another size than the classifier was trained at.
     """
-    check_voxel_size(classifier, source)
+    check_voxel_size(classifier.voxel_size, source)
     found: NDArray[np.uint8] = scratch.zeros(source.shape, np.uint8)
     slabs = prediction_slabs(classifier, source)
     for done, slab in enumerate(slabs, start=1):

@@ -415,7 +415,7 @@ def part_of(
     settings = (settings or SegmentationSettings()).uncorrected
     if settings.classifier is not None:
         classifier = train(settings.classifier)
-        check_voxel_size(classifier, volume)
+        check_voxel_size(classifier.voxel_size, volume)
         part = box_probability(classifier, volume, box)
         return probability_volume(part, volume), replace(settings, classifier=None)
     if level is not None and settings.threshold.is_automatic:
