@@ -28,10 +28,8 @@ SWITCH_INTERVAL = 0.001
 
 Qt releases the interpreter at each call, so that the window waits for it often; Python's default is 5 ms.
 """
-M_MMAP_THRESHOLD, M_ARENA_MAX = -3, -8
-"""Numbers of these parameters in glibc's ``malloc.h``."""
-ARENAS = 2
-"""Heaps of all threads together, the main thread's among them."""
+M_MMAP_THRESHOLD = -3
+"""Number of this parameter in glibc's ``malloc.h``."""
 _WITHOUT_DISPLAY = ("offscreen", "minimal", "vnc", "linuxfb", "eglfs")
 _WIDTH, _HEIGHT, _MARK = 420, 170, 92
 _GROUND, _LETTERS, _QUIET = "#1d2126", "#e4e7eb", "#9aa4b0"
@@ -108,7 +106,7 @@ def make_application(arguments: Sequence[str]) -> QApplication:
     until a language is installed that writes them otherwise.
     """
     sys.setswitchinterval(SWITCH_INTERVAL)
-    limit_heaps()
+    map_large_blocks()
     QCoreApplication.setAttribute(Qt.ApplicationAttribute.AA_ShareOpenGLContexts)
     QCoreApplication.setAttribute(Qt.ApplicationAttribute.AA_UseStyleSheetPropagationInWidgetStyles)
     QSurfaceFormat.setDefaultFormat(surface_format())
@@ -138,16 +136,15 @@ def close_on_interrupt(app: QApplication) -> None:
     signal.signal(signal.SIGINT, lambda *_: QTimer.singleShot(0, app.quit))
 
 
-def limit_heaps() -> None:
-    """Let glibc keep few free blocks: large ones are returned to the system, small ones share two heaps.
+def map_large_blocks() -> None:
+    """Let glibc take blocks of 256 KiB and more from the system and return them when they are freed.
 
-    By default it keeps freed blocks of up to 32 MiB, and gives each working thread a heap of its own, up to
-    eight a core, whose holes serve no other. After 17,000 random acts with live views 1.6 GB were resident
-    instead of 1.2 where blocks of 256 KiB and more were not returned, and 120 MB were holes in 16 heaps.
+    By default it raises that threshold to 32 MiB as soon as blocks of that size are freed. Arrays and
+    pictures of a few megabytes then leave holes in the heaps of all threads: after 17,000 random acts with
+    live views 1.6 GB were resident instead of 1.2.
     """
     if platform.libc_ver()[0] == "glibc":
         ctypes.CDLL(None).mallopt(M_MMAP_THRESHOLD, 2**18)
-        ctypes.CDLL(None).mallopt(M_ARENA_MAX, ARENAS)
 
 
 def exit_timer(seconds: float = EXIT_TIMEOUT) -> threading.Timer:
