@@ -90,6 +90,7 @@ class Bindings(QObject):
             hidden.
         """
         beat = self._slow if slow else self._fast
+        beat.register(action)
         if keeps_particles:
             self._holders.append(partial(beat.run_now, action))
         for event in events.split():
@@ -144,11 +145,16 @@ class Bindings(QObject):
 
 
 class Throttle(QObject):
-    """Calls added functions, each at most once in `seconds`."""
+    """Calls added functions, each at most once in `seconds`; those due together in the order of registration.
+
+    A page that has been hidden would else show results first and then, in their place, the particle that they
+    are of.
+    """
 
     def __init__(self, seconds: float, parent: QObject, *, at_once: bool) -> None:
         super().__init__(parent)
         self._seconds, self._at_once = seconds, at_once
+        self._order: dict[Callable[[], None], int] = {}
         self._due: dict[Callable[[], None], float] = {}
         self._last: dict[Callable[[], None], float] = {}
         self._paused = False
@@ -159,6 +165,10 @@ class Throttle(QObject):
     def idle(self) -> bool:
         """Nothing is due, or nothing is called for the time being."""
         return self._paused or not self._due
+
+    def register(self, action: Callable[[], None]) -> None:
+        """Call `action` after all that are registered already, where they are due together."""
+        self._order.setdefault(action, len(self._order))
 
     def add(self, action: Callable[[], None]) -> None:
         """Call `action` at its next beat."""
@@ -195,8 +205,10 @@ class Throttle(QObject):
 
     def _run(self) -> None:
         now = time.monotonic() + 0.001
-        for action in [each for each, moment in self._due.items() if moment <= now]:
-            del self._due[action]
+        due = [each for each, moment in self._due.items() if moment <= now]
+        for action in sorted(due, key=lambda each: self._order.get(each, 0)):
+            if self._due.pop(action, None) is None:
+                continue
             action()
             self._last[action] = time.monotonic()
         self._wait()
