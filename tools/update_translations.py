@@ -17,6 +17,7 @@ from typing import Any
 
 from regolith_studio.coarsening.methods import METHODS
 from regolith_studio.coarsening.weights import presets
+from regolith_studio.dataset.exporters import EXPORTERS
 from regolith_studio.dem.engines import ENGINES
 from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.resources import resource
@@ -37,6 +38,7 @@ def table_texts() -> Iterator[str]:
     for card in materials().values():
         yield from (card.label, card.origin)
     yield from (row.formula for row in CATALOGUE.values())
+    yield from (exporter.label for exporter in EXPORTERS.values())
     kinds: tuple[Any, ...] = (*METHODS.values(), *MODELS.values(), *ENGINES.values())
     for kind in kinds:
         for field in dataclasses.fields(kind.Settings):

@@ -22,7 +22,7 @@ from regolith_studio.jobs.coarsening_jobs import CoarseningRequest
 from regolith_studio.jobs.dataset_jobs import DatasetOptions, build_dataset_folder
 from regolith_studio.jobs.events import Partial, Progress, Started, Step, Steps
 from regolith_studio.jobs.repose_jobs import PROGRESS_STEPS, ReposeRequest, simulate_repose
-from regolith_studio.messages import N_
+from regolith_studio.messages import N_, Message
 from regolith_studio.studies.repose import ReposeStudy, runs_from
 
 CASE_KEYS = ("shapes", "cohesion", "n_particles", "coarse_graining")
@@ -287,7 +287,7 @@ def _build_variant_dataset(study_request: ReposeStudyRequest, number: int, place
     options = DatasetOptions(name=f"{study_request.key} {value}", preset=preset, overwrite=True)
     for step in build_dataset_folder(study_request.particles, request, place, options):
         if isinstance(step, Progress):
-            yield Progress(number, len(study_request.values), f"dataset of {value}: {step.message}")
+            yield Progress(number, len(study_request.values), _dataset_message(value, step.message))
 
 
 def _with_shape_value(request: CoarseningRequest, key: str, value: float | str) -> CoarseningRequest:
@@ -300,3 +300,9 @@ def _with_shape_value(request: CoarseningRequest, key: str, value: float | str) 
     if not isinstance(value, int) or not 4 <= value <= 1000:
         raise InputError(f"A particle has between 4 and 1,000 facets, got {value}.")
     return replace(request, n_facets=value, largest_error=None)
+
+
+def _dataset_message(value: object, step: str) -> Message:
+    """What is done for the dataset of a value."""
+    known = step if isinstance(step, Message) else Message(step)
+    return Message(N_("dataset of {value}: {step}"), value=value, step=known)

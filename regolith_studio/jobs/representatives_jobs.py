@@ -19,7 +19,7 @@ from regolith_studio.geometry.particle import Particle
 from regolith_studio.jobs.events import Partial, Progress, Started, Steps
 from regolith_studio.jobs.executor import Executor
 from regolith_studio.jobs.particle_jobs import measure_sample
-from regolith_studio.messages import N_
+from regolith_studio.messages import N_, count_message
 
 
 @dataclass(frozen=True)
@@ -171,7 +171,8 @@ def measure_quality(population: MeasuredPopulation, request: RepresentativesRequ
             return curve
         done += 1
         yield Partial(point)
-        yield Progress(done, len(counts), f"{point.count} representatives")
+        found = count_message(N_("1 representative"), N_("{count} representatives"), point.count)
+        yield Progress(done, len(counts), found)
 
 
 def choose_particles(population: MeasuredPopulation, request: RepresentativesRequest) -> ChosenParticles:

@@ -476,6 +476,10 @@
         <translation>Ein Labelvolumen hat kein Histogramm der Grauwerte.</translation>
     </message>
     <message>
+        <source>ANSYS Rocky (script)</source>
+        <translation>ANSYS Rocky (Skript)</translation>
+    </message>
+    <message>
         <source>About Regolith Studio</source>
         <translation>Über Regolith Studio</translation>
     </message>
@@ -682,6 +686,10 @@
     <message>
         <source>Aspect ratio and overlap</source>
         <translation>Seitenverhältnis und Überdeckung</translation>
+    </message>
+    <message>
+        <source>Aspherix (convex templates)</source>
+        <translation>Aspherix (konvexe Vorlagen)</translation>
     </message>
     <message>
         <source>At most</source>
@@ -938,6 +946,10 @@
     <message>
         <source>Chosen weights</source>
         <translation>Gewählte Gewichte</translation>
+    </message>
+    <message>
+        <source>Chrono, DEM-Engine (OBJ, JSON)</source>
+        <translation>Chrono, DEM-Engine (OBJ, JSON)</translation>
     </message>
     <message>
         <source>Class</source>
@@ -1604,6 +1616,10 @@
         <translation>Tabelle &amp;exportieren …</translation>
     </message>
     <message>
+        <source>EDEM (STL, polyhedral particles)</source>
+        <translation>EDEM (STL, Polyederpartikel)</translation>
+    </message>
+    <message>
         <source>Each particle counts equally</source>
         <translation>Jedes Partikel zählt gleich</translation>
     </message>
@@ -1617,7 +1633,7 @@
     </message>
     <message>
         <source>Each with {fineness}; method: {method}; chosen on the page Explore.</source>
-        <translation>Jedes Polyeder mit {fineness}; Verfahren: {method}; gewählt auf der Seite Erkunden.</translation>
+        <translation>Jedes mit {fineness}; Verfahren: {method} (Seite Erkunden).</translation>
     </message>
     <message>
         <source>Earth</source>
@@ -2208,6 +2224,10 @@
         <translation>GSD kennt type_shapes konvexer Polyeder und von Vereinigungen von Kugeln, nicht von Vereinigungen von Polyedern.</translation>
     </message>
     <message>
+        <source>GSD, HOOMD-blue (shape JSON)</source>
+        <translation>GSD, HOOMD-blue (Form als JSON)</translation>
+    </message>
+    <message>
         <source>Gallery</source>
         <translation>Galerie</translation>
     </message>
@@ -2302,6 +2322,10 @@
     <message>
         <source>Guide</source>
         <translation>Handbuch</translation>
+    </message>
+    <message>
+        <source>Half-spaces (JSON, CSV)</source>
+        <translation>Halbräume (JSON, CSV)</translation>
     </message>
     <message>
         <source>Harmonics fit, {degree}</source>
@@ -2608,8 +2632,20 @@
         <translation>&amp;Protokoll</translation>
     </message>
     <message>
+        <source>LAMMPS (body rounded/polyhedron)</source>
+        <translation>LAMMPS (Körper rounded/polyhedron)</translation>
+    </message>
+    <message>
+        <source>LAMMPS (clumps of spheres)</source>
+        <translation>LAMMPS (Gruppen von Kugeln)</translation>
+    </message>
+    <message>
         <source>LAMMPS rounds edges; facets stay in their planes, corners are lost.</source>
         <translation>LAMMPS rundet Kanten; Facetten bleiben in ihren Ebenen, Ecken gehen verloren.</translation>
+    </message>
+    <message>
+        <source>LIGGGHTS (multi-sphere templates)</source>
+        <translation>LIGGGHTS (Multisphere-Vorlagen)</translation>
     </message>
     <message>
         <source>Labels of grains</source>
@@ -3064,12 +3100,20 @@
         <translation>Maus in den Ansichten</translation>
     </message>
     <message>
+        <source>MuJoCo (MJCF)</source>
+        <translation>MuJoCo (MJCF)</translation>
+    </message>
+    <message>
         <source>MuJoCo had no room for all contacts.</source>
         <translation>MuJoCo hatte keinen Platz für alle Kontakte.</translation>
     </message>
     <message>
         <source>Multi-Otsu, three classes</source>
         <translation>Multi-Otsu, drei Klassen</translation>
+    </message>
+    <message>
+        <source>Multi-sphere (x y z r)</source>
+        <translation>Multisphere (x y z r)</translation>
     </message>
     <message>
         <source>Name</source>
@@ -3638,6 +3682,10 @@
     <message>
         <source>P&amp;references …</source>
         <translation>&amp;Einstellungen …</translation>
+    </message>
+    <message>
+        <source>PFC3D (geometry, clump templates)</source>
+        <translation>PFC3D (Geometrie, Clump-Vorlagen)</translation>
     </message>
     <message>
         <source>PNG</source>
@@ -4240,6 +4288,10 @@
         <translation>Rechte oder mittlere Taste ziehen, Umschalt + Ziehen</translation>
     </message>
     <message>
+        <source>Rockable, exaDEM (.shp)</source>
+        <translation>Rockable, exaDEM (.shp)</translation>
+    </message>
+    <message>
         <source>Roll the view</source>
         <translation>Die Ansicht rollen</translation>
     </message>
@@ -4373,7 +4425,7 @@
     </message>
     <message>
         <source>SI; sizes are equivalent diameters in metres before coarse graining, which Rocky applies itself</source>
-        <translation>SI; Größen sind Äquivalentdurchmesser in Metern vor der Vergröberung, die Rocky selbst anwendet</translation>
+        <translation>SI; Größen sind Äquivalentdurchmesser in Metern vor dem Coarse-Graining, das Rocky selbst anwendet</translation>
     </message>
     <message>
         <source>Sa&amp;ve settings …</source>
@@ -6124,6 +6176,10 @@
         <translation>{name} wird geschrieben</translation>
     </message>
     <message>
+        <source>YADE (script)</source>
+        <translation>YADE (Skript)</translation>
+    </message>
+    <message>
         <source>Young&apos;s modulus</source>
         <translation>Elastizitätsmodul</translation>
     </message>
@@ -6420,6 +6476,10 @@
         <translation>dunkel | mittel</translation>
     </message>
     <message>
+        <source>dataset of {value}: {step}</source>
+        <translation>Datensatz für {value}: {step}</translation>
+    </message>
+    <message>
         <source>degree</source>
         <translation>Grad</translation>
     </message>
@@ -6610,6 +6670,10 @@
     <message>
         <source>from</source>
         <translation>von</translation>
+    </message>
+    <message>
+        <source>glTF (Blender)</source>
+        <translation>glTF (Blender)</translation>
     </message>
     <message>
         <source>grain {number}: {size:.3g} mm at {x:.3g}, {z:.3g} mm</source>

@@ -170,7 +170,7 @@ class ExportPanel(QWidget):
 
     def _box(self, key: str) -> QCheckBox:
         exporter = EXPORTERS[key]
-        box = QCheckBox(exporter.label)
+        box = QCheckBox(tr(exporter.label))
         box.setObjectName(f"dataset_to_{key}")
         lines = [
             tr("Contains: {what}", what="; ".join(map(tr, exporter.carries))),
@@ -192,11 +192,11 @@ class ExportPanel(QWidget):
         self.lossy.setEnabled(bool(altering))
         problem = ""
         if not self._allowed():
-            problem = f"{EXPORTERS[altering[0]].label}: {tr(EXPORTERS[altering[0]].alters)}"
+            problem = f"{tr(EXPORTERS[altering[0]].label)}: {tr(EXPORTERS[altering[0]].alters)}"
         elif refusing := self.refusing():
             problem = tr(
                 "{label} cannot hold the compounds of this dataset: {why}",
-                label=EXPORTERS[refusing[0]].label,
+                label=tr(EXPORTERS[refusing[0]].label),
                 why=tr(EXPORTERS[refusing[0]].convex_only),
             )
         self.export.setEnabled(getattr(self, "_ready", False) and bool(self.chosen()) and not problem)
@@ -250,7 +250,7 @@ class LossesLabel(QScrollArea):
             lost = "; ".join(map(tr, each.loses))
             lines.append(
                 "<p>"
-                + tr("<b>{label}</b> does not contain: {lost}.", label=each.label, lost=lost)
+                + tr("<b>{label}</b> does not contain: {lost}.", label=tr(each.label), lost=lost)
                 + changed
                 + "<br>"
                 + tr("Units: {units}", units=tr(each.units))
@@ -293,7 +293,7 @@ class ExportsList(QWidget):
         row = QWidget()
         line = QHBoxLayout(row)
         line.setContentsMargins(0, 0, 0, 0)
-        name = QLabel(EXPORTERS[one.key].label if one.key in EXPORTERS else one.key)
+        name = QLabel(tr(EXPORTERS[one.key].label) if one.key in EXPORTERS else one.key)
         name.setMinimumWidth(190)
         look, copy = QPushButton(tr("Open folder")), QPushButton(tr("Copy load command"))
         look.setObjectName(f"dataset_open_{one.key}")
