@@ -34,7 +34,7 @@ KEYS = ("volume", "sphericity", "min_diameter", "max_diameter", "aspect_ratio", 
 
 def main(result: Path, apollo: str, n: int, seed: int) -> None:
     """Add a row for each particle that is missing, and print a line for each and for each group."""
-    rows: dict[str, Any] = json.loads(result.read_text())["particles"] if result.exists() else {}
+    rows: dict[str, Any] = json.loads(result.read_text()).get("particles", {}) if result.exists() else {}
     coarsen(sample_particles()[0].mesh, FACETS, "compound")  # loads the kernels
     for group, name, mesh in particles(apollo, n, seed):
         if name not in rows:
