@@ -1632,7 +1632,7 @@
         <translation>Jeder Term allein</translation>
     </message>
     <message>
-        <source>Each with {fineness}; method: {method}; chosen on the page Explore.</source>
+        <source>Each with {fineness}; method: {method} (see Explore).</source>
         <translation>Jedes mit {fineness}; Verfahren: {method} (Seite Erkunden).</translation>
     </message>
     <message>

@@ -69,7 +69,7 @@ def coarsening_text(choices: Choices) -> str:
     """Description of how the shapes will be coarsened."""
     known = METHODS.get(choices.method)
     return tr(
-        "Each with {fineness}; method: {method}; chosen on the page Explore.",
+        "Each with {fineness}; method: {method} (see Explore).",
         fineness=facet_limit_text(choices),
         method=tr(known.label) if known else choices.method,
     )
