@@ -21,7 +21,8 @@ from benchmarks.heaps import tile
 from benchmarks.result_files import Rows, add_result, show_row
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.mesh import Mesh
-from regolith_studio.imaging.extraction import ExtractionSettings, extract_particles, touches
+from regolith_studio.imaging.bounding_boxes import touches
+from regolith_studio.imaging.extraction import ExtractionSettings, extract_particles
 from regolith_studio.imaging.label_table import label_table
 from regolith_studio.imaging.segmentation.segment import SegmentationSettings, segment
 from regolith_studio.imaging.volume import Volume

@@ -48,7 +48,7 @@ def main(path: str, seed: int, n: int, result: str) -> None:
         (f"pooled field, l_max = {FIELD_DEGREE}", card.field().draw(n, seed)),
         ("pooled field, all degrees", card.field(card.l_max).draw(n, seed)),
     ):
-        show_row(rows, name, far(table, measured(draws, KEYS)))
+        show_row(rows, name, far(table, measured(draws, KEYS)).tolist())
     print(card.judged, f"{len(card.model_dump_json()) / 1000:.0f} kB")
     add_result(result, "draws of a card", rows, seed=seed, particles=n)
 
