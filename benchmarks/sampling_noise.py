@@ -1,8 +1,9 @@
 """Sampling noise of representatives: what the program says of a part of a sample, and how far the rest is.
 
-    python -m benchmarks.sampling_noise [FIT.json] [SEED]
+    python -m benchmarks.sampling_noise [FIT.json] [SEED] [RESULT.json]
 
-Wasserstein distances in standard deviations, and the quality curve of all particles.
+Wasserstein distances in standard deviations, means of 20 random choices, and the quality curve of all
+particles with the mean over its descriptors.
 """
 
 import sys
@@ -10,37 +11,46 @@ import sys
 import numpy as np
 
 from benchmarks.populations import measured, realized, sample_from
+from benchmarks.result_files import Rows, add_result, show_row
 from regolith_studio.dataset.quality import quality_curve
 from regolith_studio.dataset.representatives import NEEDED, sampling_noise
 
-PARTS, CHOICES = (60, 150, 600), 20
+PARTS, CHOICES = (10, 60, 150, 600), 20
 COUNTS = (1, 5, 10, 20, 70, 200)
+COMPARED = ("aspect_ratio", "sphericity", "min_diameter")
 
 
-def main(path: str, seed: int) -> None:
+def main(path: str, seed: int, result: str) -> None:
     """Print both tables."""
     from scipy.stats import wasserstein_distance
 
     sample = sample_from(path)
     table = measured(realized(sample), NEEDED, 4)
     rows = [dict(zip(NEEDED, row, strict=True)) for row in table.tolist()]
-    compared = {key: table[:, NEEDED.index(key)] for key in ("aspect_ratio", "sphericity", "min_diameter")}
+    compared = table[:, [NEEDED.index(key) for key in COMPARED]]
     rng = np.random.default_rng(np.random.SeedSequence(seed))
+    parts: Rows = {}
     for n in PARTS:
-        said, found = dict.fromkeys(compared, 0.0), dict.fromkeys(compared, 0.0)
+        both = np.zeros((2, len(COMPARED)))
         for _ in range(CHOICES):
             order = rng.permutation(len(rows))
-            part, rest = order[:n], order[n:]
-            noise = sampling_noise([rows[i] for i in part])
-            for key, values in compared.items():
-                said[key] += noise[key] / CHOICES
-                found[key] += wasserstein_distance(values[part], values[rest]) / values.std() / CHOICES
-        pairs = (f"{key} said {said[key]:.3f} found {found[key]:.3f}" for key in compared)
-        print(f"{n:5} particles:", *pairs)
+            noise = sampling_noise([rows[i] for i in order[:n]])
+            both[0] += [noise[key] for key in COMPARED]
+            pairs = zip(compared[order[:n]].T, compared[order[n:]].T, compared.std(axis=0), strict=True)
+            both[1] += [wasserstein_distance(part, rest) / deviation for part, rest, deviation in pairs]
+        show_row(parts, str(n), (both.ravel() / CHOICES).tolist())
     curve = quality_curve(rows, COUNTS)
-    for errors in (*(point.errors for point in curve.points), curve.noise):
-        print(*(f"{key} {error:.3f}" for key, error in errors.items()))
+    distances: Rows = {}
+    for count, errors in (
+        *((str(point.count), point.errors) for point in curve.points),
+        ("noise", curve.noise),
+    ):
+        numbers = list(errors.values())
+        show_row(distances, count, [*numbers, float(np.mean(numbers))])
+    add_result(result, "particles", parts, seed=seed, choices=CHOICES)
+    add_result(result, "N", distances, particles=len(rows))
 
 
 if __name__ == "__main__":
-    main(sys.argv[1] if len(sys.argv) > 1 else "", int(sys.argv[2]) if len(sys.argv) > 2 else 7)
+    words = [*sys.argv[1:], *("", "7", "")[len(sys.argv) - 1 :]]
+    main(words[0], int(words[1]), words[2])

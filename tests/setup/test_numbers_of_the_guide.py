@@ -12,12 +12,13 @@ PAGES = {
     "shape_models": ("shape_model.md", "shape_model_quality.md"),
     "segmentation": ("segmentation.md", "grain_surfaces.md"),
     "harmonics": ("harmonics.md",),
+    "dataset": ("dataset.md",),
 }
 """Pages that hold the tables of a result file."""
 RESULTS: dict[str, dict[str, Any]] = {
     name: json.loads((ROOT / f"benchmarks/results/{name}.json").read_text("utf-8")) for name in PAGES
 }
-TABLES = [(file, name) for file, tables in RESULTS.items() for name in tables]
+TABLES = [(file, name) for file, tables in RESULTS.items() for name in tables if name != "particles"]
 POPULATIONS = ("cement", "ma165")
 KEYS = ("r_eq", "A", "AR", "S", "V/CH")
 
@@ -71,6 +72,17 @@ def test_that_only_draws_within_the_noise_are_set_in_bold() -> None:
 def test_that_new_draws_are_as_far_from_measured_particles_as_these_from_each_other() -> None:
     """Mirror images counted as the same; the aim is 0.9."""
     assert RESULTS["shape_models"]["novelty"]["rows"]["recombined"][1] >= 0.9
+
+
+def test_that_the_sentences_on_random_choices_have_the_results_of_their_benchmark() -> None:
+    rows = RESULTS["dataset"]["particles"]["rows"]
+    words = " ".join((ROOT / "docs/dataset.md").read_text("utf-8").split())
+    said, found = ("{:.2f}, {:.2f} and {:.2f}".format(*part) for part in (rows["150"][:3], rows["150"][3:]))
+    assert f"it says {said} in AR, S and Dmin, and those 150 are {found} from all the others" in words
+    assert (
+        "Ten random particles with equal weights give {:.2f} in AR and {:.2f} in S".format(*rows["10"][3:5])
+        in words
+    )
 
 
 def test_that_the_card_of_a_sample_is_within_two_floors_of_other_particles() -> None:
