@@ -1,10 +1,14 @@
 """One frame for a particle wherever it lies, and overlap by rays on needles."""
 
+from collections.abc import Callable
+
+import manifold3d
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
 from regolith_studio.coarsening.coarsen import coarsen
+from regolith_studio.coarsening.polyhedra import polyhedron_of
 from regolith_studio.coarsening.target import Target
 from regolith_studio.geometry.half_spaces import HalfSpaces
 from regolith_studio.geometry.mesh import Mesh
@@ -67,3 +71,29 @@ def test_that_exact_is_1_where_all_constraints_are_met_and_else_0(particle: Mesh
     cube = Mesh(np.vstack([np.eye(3), -np.eye(3)]), np.empty((0, 3), dtype=np.int64)).hull
     itself = coarsen(cube, 40)
     assert itself.steps["exact"] == float(max(itself.errors.values()) <= 1e-6)
+
+
+def bent(body: Mesh) -> Mesh:
+    x = body.vertices[:, :1]
+    return Mesh(body.vertices + np.hstack([0.0 * x, 0.01 * x**2, 1.2 * np.sin(0.5 * x)]), body.faces)
+
+
+@pytest.mark.parametrize("noise", [0.06, 0.12])
+@pytest.mark.parametrize("shape", [lambda body: body, bent], ids=["straight", "bent"])
+def test_that_rays_measure_rough_needles_as_a_boolean_does(
+    shape: Callable[[Mesh], Mesh], noise: float
+) -> None:
+    ball = rough_ball(noise)
+    target = Target.of(shape(Mesh(ball.vertices * (20.0, 1.0, 1.0), ball.faces)))
+    rng = np.random.default_rng(3)
+    directions = fibonacci_directions(20) * target.box.extents
+    normals = directions / np.linalg.norm(directions, axis=1)[:, None] @ target.box.axes
+    reach = np.abs(normals @ target.box.axes.T) @ target.box.extents
+    planes = HalfSpaces(normals, rng.uniform(0.25, 0.4, 20) * reach)
+    one, other = (
+        manifold3d.Manifold(manifold3d.Mesh64(np.array(each.vertices), np.array(each.faces, dtype=np.uint64)))
+        for each in (target.mesh, polyhedron_of(planes).mesh)
+    )
+    shared = (one ^ other).volume()
+    distance = 1.0 - shared / (one.volume() + other.volume() - shared)
+    assert target.jaccard_distance(planes) == pytest.approx(distance, abs=2e-3)

@@ -35,7 +35,7 @@ from regolith_studio.coarsening.exact.single_start import (
     search_and_project,
     single_start,
 )
-from regolith_studio.coarsening.exact.sliver_removal import COST, has_small_facets, remove_slivers
+from regolith_studio.coarsening.exact.sliver_removal import has_small_facets, most_cost, remove_slivers
 from regolith_studio.coarsening.exact.start_from_box import FEW_FACETS, solve_from_box
 from regolith_studio.coarsening.exact.start_from_fewer import DEPTHS, grown_from_fewer, relaxed_from_fewer
 from regolith_studio.coarsening.loss import LossFunction
@@ -55,16 +55,25 @@ from regolith_studio.geometry.half_spaces import HalfSpaces
 
 @dataclass(frozen=True)
 class Level:
-    """Effort: starts, polyhedra with few facets at each to grow many from, steps of each descent."""
+    """Effort: starts, polyhedra with few facets at each to grow many from, steps of each descent.
+
+    The best `continued` of what single starts led to descend by `further_steps` more.
+    """
 
     starts: int
     few_starts: int
     free_steps: int
     bound_steps: int
     sliver_steps: int
+    continued: int
+    further_steps: int
+
+    def starts_for(self, n_facets: int) -> int:
+        """Beyond 20 facets fewer, since each takes longer and they differ less."""
+        return max(1, round(self.starts * min(1.0, 20 / n_facets)))
 
 
-LEVELS = {"fast": Level(1, 2, 12, 16, 28), "best": Level(2, 3, 20, 40, 60)}
+LEVELS = {"fast": Level(1, 2, 12, 16, 40, 0, 0), "best": Level(7, 2, 12, 16, 120, 3, 120)}
 CHECK_ANGLES = (FINE_ANGLE, DENSE_ANGLE)
 """Of the searches for boxes that confirm a result."""
 RELAXATION_FACETS = (12, 20)
@@ -127,7 +136,7 @@ class Search:
         self._round_asked = bool(request.asked[SPHERICITY])
         wanted = target.descriptors["sphericity"]
         self._hopeless = self._round_asked and sphericity_reason(wanted, n_facets) is not None
-        self._most = [1 if self._hopeless else each.starts + retries for each in levels]
+        self._most = [1 if self._hopeless else each.starts_for(n_facets) + retries for each in levels]
         self._total = sum(self._most)
         self._numbers = (
             (n_facets,) if self._hopeless else numbers_to_grow_from(target, n_facets, self._round_asked)
@@ -143,7 +152,7 @@ class Search:
     def steps(self) -> Iterator[MethodStep]:
         """A step for each better polyhedron, level by level; the first is the first start itself.
 
-        A later level begins with what was found: the best polyhedron descends further.
+        A later level begins with what was found.
 
         Raises
         ------
@@ -155,11 +164,8 @@ class Search:
             self._level, self._tried_before = level, self._tried
             if even is not None:
                 yield from self._record.record_candidates(self._tried, [even])
-            best = self._record.best
-            if best is not None and best.exact:
-                further = descend_further(self._full, best, level.bound_steps)
-                yield from self._record.record_candidates(self._tried, further)
             yield from self._from_starts(most)
+            yield from self._continued()
             yield from self._relaxations()
         if self._fewer is not None and not self._as_good_as_fewer():
             yield from self._from_fewer(self._fewer)
@@ -184,6 +190,15 @@ class Search:
                 break
         if (self._misses or self._hopeless) and not self._record.met:
             yield from self._as_round_as_can_be()
+
+    def _continued(self) -> Iterator[MethodStep]:
+        """A step for each better polyhedron in longer descents from the best ends of single starts."""
+        most, steps = self._level.continued, self._level.further_steps
+        for number, found in self._record.best_ends(most):
+            further = descend_further(self._full, found, steps)
+            yield from self._record.record_candidates(number, further)
+        if most and self._record.met:
+            self._confirm()
 
     def _from_fewer(self, fewer: HalfSpaces) -> Iterator[MethodStep]:
         """A step for each better polyhedron that is cut out of one with fewer facets."""
@@ -271,9 +286,10 @@ class Search:
         best = self._record.best
         if best is None or not best.exact or not has_small_facets(best.normals, best.offsets):
             return None
-        even = remove_slivers(self._full, best, self._level.sliver_steps, min(COST, self._room(best)))
+        most = most_cost(best.jaccard_distance)
+        even = remove_slivers(self._full, best, self._level.sliver_steps, min(most, self._room(best)))
         even = confirmed(self._request, self._checks, even)
-        dear = even.jaccard_distance > best.jaccard_distance + COST or self._room(even) < 0.0
+        dear = even.jaccard_distance > best.jaccard_distance + most or self._room(even) < 0.0
         return even if even.exact and even.n_facets >= best.n_facets and not dear else None
 
     def _room(self, found: Candidate) -> float:
@@ -334,8 +350,13 @@ class Search:
         self._misses += [rounder[-1].worst] if rounder else []
 
     def _as_round_as_can_be(self) -> Iterator[MethodStep]:
-        """A step for each better polyhedron on the way to the roundest, which is kept in mind."""
+        """A step for each better polyhedron on the way to the roundest, which is kept in mind.
+
+        Where an earlier level missed by much, a later one does not try again.
+        """
         best, steps = self._record.best, self._level.bound_steps
+        if self._roundest[1] is not None and self._roundest[1].worst > OUT_OF_REACH:
+            return
         problems = self._full, self._rest
         for found in solve_round(self._target, problems, best, self._n_facets, self._rng, steps):
             rank = found.worst, self._judge.value(found.normals, found.offsets)
@@ -354,11 +375,12 @@ class Search:
     def _good_enough(self) -> bool:
         """Whether public descriptors say that all is met, with all facets or after enough starts for them."""
         best, tried = self._record.best, self._tried - self._tried_before
-        if tried < self._level.starts or best is None or not best.exact:
+        starts = self._level.starts_for(self._n_facets)
+        if tried < starts or best is None or not best.exact:
             return False
         best = self._confirm()
         satisfactory = best.n_facets == self._n_facets and not self._overlaps_poorly(best)
-        return best.exact and (satisfactory or tried >= self._level.starts + FURTHER_STARTS)
+        return best.exact and (satisfactory or tried >= starts + FURTHER_STARTS)
 
     def _overlaps_poorly(self, best: Candidate) -> bool:
         """Whether other starts may overlap much better; on rough particles the sphericity costs overlap."""

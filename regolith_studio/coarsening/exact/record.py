@@ -34,6 +34,7 @@ class Record:
         self.history: list[float] = []
         self.exact: list[Candidate] = []
         self.min_distance = np.inf
+        self._ends: dict[int, Candidate] = {}
         self._nearest: Candidate | None = None
         self._min_loss = np.inf
         self._judge = judge
@@ -51,6 +52,14 @@ class Record:
             return self.best
         return self._nearest or self.best
 
+    def best_ends(self, most: int) -> list[tuple[int, Candidate]]:
+        """The best of each step that meets all constraints, with its number; `most` of them, best first."""
+        rank = sorted(
+            self._ends.items(),
+            key=lambda end: (end[1].n_facets < len(end[1].offsets), end[1].jaccard_distance),
+        )
+        return rank[:most]
+
     def _value(self, found: Candidate) -> float:
         """Eq. 9; of one that nobody will confirm with the least box of all, not one that was tracked."""
         if found.exact:
@@ -65,6 +74,7 @@ class Record:
             self.min_distance = min(self.min_distance, found.jaccard_distance)
             if found.exact:
                 self.exact.append(found)
+                self._ends[step] = found if found.better_than(self._ends.get(step)) else self._ends[step]
             if worth:
                 self.best = found
             if not found.exact and not self.met and value < self._min_loss:

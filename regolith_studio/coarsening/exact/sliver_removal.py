@@ -36,10 +36,10 @@ SMALL = 0.01
 """Facets below this share of the mean area are worth the work."""
 MIN_SHARE = 0.05
 """Facets below this share of the mean area are pulled up."""
-WEIGHT = 5e-3
+WEIGHT = 0.05
 """Of the mean square of ln(:data:`MIN_SHARE` / share), beside the Jaccard distance."""
-COST = 1e-3
-"""By how much the Jaccard distance may rise."""
+COST, COST_SHARE = 1e-3, 0.02
+"""By how much the Jaccard distance may rise: so much, or that share of itself where this is more."""
 SHORTEST = 1e-5
 """Of a step, in units of the side of the cube of the particle's volume; shorter ones end the descent."""
 
@@ -60,7 +60,12 @@ def has_small_facets(normals: FloatArray, offsets: FloatArray) -> bool:
     return bool(areas.min() < SMALL * areas.mean())
 
 
-def remove_slivers(problem: Problem, begun: Candidate, steps: int, cost: float = COST) -> Candidate:
+def most_cost(jaccard_distance: float) -> float:
+    """By how much a Jaccard distance may rise for larger facets."""
+    return max(COST, COST_SHARE * jaccard_distance)
+
+
+def remove_slivers(problem: Problem, begun: Candidate, steps: int, cost: float) -> Candidate:
     """A polyhedron that meets the same constraints with larger small facets; `begun` where there is none.
 
     A projected quasi-Newton descent of the Jaccard distance plus a penalty of small facets; it has the
@@ -83,8 +88,11 @@ def remove_slivers(problem: Problem, begun: Candidate, steps: int, cost: float =
     def allowed(then: _Evaluation, before: _Evaluation) -> bool:
         return then.value < before.value and then.jaccard <= limit and count_facets(then.point) >= count
 
-    metric, radius, unverified = first_metric(problem, point), max_step(point) / 4, 0
+    metric, radius = first_metric(problem, point), max_step(point) / 4
+    unverified, patience = 0, UNVERIFIED
     for _ in range(steps):
+        if now.value == now.jaccard:  # no facet is small any more
+            break
         slope = now.gradient()
         step, lagrangian = tangent_step(now.point, slope, metric)
         size = float(np.abs(step).max())
@@ -101,11 +109,12 @@ def remove_slivers(problem: Problem, begun: Candidate, steps: int, cost: float =
         metric = bfgs_update(metric, share * step, after - lagrangian)
         radius = min(MAX_RADIUS, max(radius, 2.0 * share * size))
         now, unverified = then, unverified + 1
-        if unverified == UNVERIFIED:
+        if unverified >= patience:
             now, unverified = _verified(problem, now, metric, min_area), 0
-            if not allowed(now, verified):
-                return candidate_of(problem, verified.point)
-            verified = now
+            if allowed(now, verified):
+                verified = now
+            else:  # a box has come in: back, and verify each step
+                now, radius, patience = verified, SHRINK * min(radius, share * size), 1
     end = _verified(problem, now, metric, min_area)
     return candidate_of(problem, (end if allowed(end, verified) else verified).point)
 
