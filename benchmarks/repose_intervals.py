@@ -1,12 +1,14 @@
 """Bias of the angle of repose, and how often its 95 % interval holds the truth, on heaps of known angle.
 
-    python -m benchmarks.repose_intervals [HEAPS] [FIRST_SEED]
+    python -m benchmarks.repose_intervals [HEAPS] [FIRST_SEED] [RESULT.json]
 
 One line for each kind of heap and number of grains: HEAPS of each of four angles (20 to 40 degrees).
 """
 
+import json
 import sys
 from multiprocessing import Pool
+from pathlib import Path
 
 import numpy as np
 
@@ -30,8 +32,9 @@ def measured(case: Case) -> Array:
     return np.array([found.angle, *found.interval]) - angle
 
 
-def main(heaps: int, seed: int) -> None:
-    """Print a table."""
+def main(heaps: int, seed: int, result: str) -> None:
+    """Print a table, and write its rows."""
+    rows: list[str] = []
     print("| heaps | grains | bias | spread | half width | covered, % | refused |")
     print("| --- " * 7 + "|")
     with Pool() as pool:
@@ -40,8 +43,13 @@ def main(heaps: int, seed: int) -> None:
             for kind in KINDS:
                 cases = [(kind, n, angle, seed + k) for angle in ANGLES for k in range(heaps)]
                 every.append(np.array(pool.map(measured, cases)))
-                print(line(kind, n, every[-1]), flush=True)
-            print(line("all", n, np.concatenate(every)), flush=True)
+                rows.append(line(kind, n, every[-1]))
+                print(rows[-1], flush=True)
+            rows.append(line("all", n, np.concatenate(every)))
+            print(rows[-1], flush=True)
+    if result:
+        found = {"heaps": heaps, "first_seed": seed, "rows": rows}
+        Path(result).write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
 
 
 def line(name: str, n: int, found: Array) -> str:
@@ -56,4 +64,5 @@ def line(name: str, n: int, found: Array) -> str:
 
 
 if __name__ == "__main__":
-    main(*(int(word) for word in (*sys.argv[1:], *("8", "9000")[len(sys.argv) - 1 :])))
+    words = [*sys.argv[1:], *("8", "9000", "")[len(sys.argv) - 1 :]]
+    main(int(words[0]), int(words[1]), words[2])

@@ -162,12 +162,18 @@ def test_that_the_table_of_spheres_has_the_results_of_its_benchmark() -> None:
     assert min(row["area"] for row in found if row["asked"] == 20) > -0.045
 
 
+INTERVALS = json.loads((ROOT / "benchmarks/results/repose_intervals.json").read_text("utf-8"))
+
+
+def test_that_the_table_of_intervals_has_the_results_of_its_benchmark() -> None:
+    said = rows_of(REPOSE, "| heaps | grains | bias | spread | half width | covered, % | refused |")
+    assert said == [[cell.strip() for cell in row.strip("|").split("|")] for row in INTERVALS["rows"]]
+    first, heaps = INTERVALS["first_seed"], INTERVALS["heaps"]
+    assert f"seeds from {first:,} on, {len(ANGLES) * heaps} heaps a row" in one_line(REPOSE)
+
+
 @pytest.mark.slow
 def test_that_a_row_of_the_table_of_intervals_is_measured_again() -> None:
-    header = "| heaps | grains | bias | spread | half width | covered, % | refused |"
-    said = next(row for row in rows_of(REPOSE, header) if row[:2] == ["equal, clean", "300"])
-    cases = [("equal, clean", 300, angle, 9000 + k) for angle in ANGLES for k in range(8)]
-    found = line("equal, clean", 300, np.array([measured(case) for case in cases])).strip("|").split("|")
-    tolerances = (0.1, 0.1, 0.1, 4.0, 0.5)
-    for stated, again, tolerance in zip(said[2:], found[2:], tolerances, strict=True):
-        assert float(again) == pytest.approx(float(stated), abs=tolerance)
+    first, heaps = INTERVALS["first_seed"], INTERVALS["heaps"]
+    cases = [("equal, clean", 300, angle, first + k) for angle in ANGLES for k in range(heaps)]
+    assert line("equal, clean", 300, np.array([measured(case) for case in cases])) == INTERVALS["rows"][0]
