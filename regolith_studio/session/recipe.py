@@ -10,6 +10,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, create_model
 
 from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.errors import FileError, InputError, format_validation_error
+from regolith_studio.harmonics.io import MAX_TABLE_DEGREE
 from regolith_studio.jobs.particle_jobs import FIT_DEGREE
 from regolith_studio.readers.file_bytes import read_bytes
 from regolith_studio.session.choices import LEVEL_LIMITS, Choices, Scalar
@@ -88,7 +89,7 @@ class FilesEntry(Strict):
     files: list[str] = Field(min_length=1)
     unit: str
     repair: bool = True
-    l_max: int | None = Field(default=None, ge=1)
+    l_max: int | None = Field(default=None, ge=1, le=MAX_TABLE_DEGREE)
 
 
 class NamedParticle(Strict):
