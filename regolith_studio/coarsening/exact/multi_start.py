@@ -35,7 +35,7 @@ from regolith_studio.coarsening.exact.single_start import (
     search_and_project,
     single_start,
 )
-from regolith_studio.coarsening.exact.sliver_removal import has_small_facets, most_cost, remove_slivers
+from regolith_studio.coarsening.exact.sliver_removal import COST, has_small_facets, remove_slivers
 from regolith_studio.coarsening.exact.start_from_box import FEW_FACETS, solve_from_box
 from regolith_studio.coarsening.exact.start_from_fewer import DEPTHS, grown_from_fewer, relaxed_from_fewer
 from regolith_studio.coarsening.loss import LossFunction
@@ -73,7 +73,7 @@ class Level:
         return max(1, round(self.starts * min(1.0, 20 / n_facets)))
 
 
-LEVELS = {"fast": Level(1, 2, 12, 16, 40, 0, 0), "best": Level(7, 2, 12, 16, 120, 3, 120)}
+LEVELS = {"fast": Level(1, 2, 12, 16, 28, 0, 0), "best": Level(7, 2, 12, 16, 60, 3, 120)}
 CHECK_ANGLES = (FINE_ANGLE, DENSE_ANGLE)
 """Of the searches for boxes that confirm a result."""
 RELAXATION_FACETS = (12, 20)
@@ -286,10 +286,9 @@ class Search:
         best = self._record.best
         if best is None or not best.exact or not has_small_facets(best.normals, best.offsets):
             return None
-        most = most_cost(best.jaccard_distance)
-        even = remove_slivers(self._full, best, self._level.sliver_steps, min(most, self._room(best)))
+        even = remove_slivers(self._full, best, self._level.sliver_steps, min(COST, self._room(best)))
         even = confirmed(self._request, self._checks, even)
-        dear = even.jaccard_distance > best.jaccard_distance + most or self._room(even) < 0.0
+        dear = even.jaccard_distance > best.jaccard_distance + COST or self._room(even) < 0.0
         return even if even.exact and even.n_facets >= best.n_facets and not dear else None
 
     def _room(self, found: Candidate) -> float:

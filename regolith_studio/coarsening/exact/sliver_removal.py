@@ -36,10 +36,10 @@ SMALL = 0.01
 """Facets below this share of the mean area are worth the work."""
 MIN_SHARE = 0.05
 """Facets below this share of the mean area are pulled up."""
-WEIGHT = 0.05
+WEIGHT = 5e-3
 """Of the mean square of ln(:data:`MIN_SHARE` / share), beside the Jaccard distance."""
-COST, COST_SHARE = 1e-3, 0.02
-"""By how much the Jaccard distance may rise: so much, or that share of itself where this is more."""
+COST = 1e-3
+"""By how much the Jaccard distance may rise."""
 SHORTEST = 1e-5
 """Of a step, in units of the side of the cube of the particle's volume; shorter ones end the descent."""
 
@@ -58,11 +58,6 @@ def has_small_facets(normals: FloatArray, offsets: FloatArray) -> bool:
     """Whether a facet is below a hundredth of the mean."""
     areas = facet_areas(HalfSpaces(normals, offsets))
     return bool(areas.min() < SMALL * areas.mean())
-
-
-def most_cost(jaccard_distance: float) -> float:
-    """By how much a Jaccard distance may rise for larger facets."""
-    return max(COST, COST_SHARE * jaccard_distance)
 
 
 def remove_slivers(problem: Problem, begun: Candidate, steps: int, cost: float) -> Candidate:
