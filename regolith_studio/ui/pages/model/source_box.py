@@ -6,7 +6,6 @@ from math import exp
 from regolith_studio.errors import InputError
 from regolith_studio.jobs.model_jobs import ModelOrigin
 from regolith_studio.jobs.particle_jobs import FIT_DEGREE
-from regolith_studio.messages import join_messages
 from regolith_studio.readers.shape_files import ShapeSource
 from regolith_studio.session.session import Session
 from regolith_studio.shape_models.materials import MaterialCard, materials
@@ -65,8 +64,8 @@ class SourceBox:
         content = self._files[key].content if key in self._files else materials()[key]
         match content:
             case MaterialCard():
-                words: str = join_messages(filter(None, (content.origin, content.judged)))
-                return SourceKind(content.key, content.l_max, translate(words))
+                words = " ".join(filter(None, (tr(content.origin), translate(content.judged))))
+                return SourceKind(content.key, content.l_max, words)
             case Sample():
                 words = tr("{count} particles up to l = {degree}.", count=len(content), degree=content.l_max)
                 return SourceKind("", content.l_max, words)
