@@ -261,6 +261,7 @@ def _hidden_path(target: Path) -> Iterator[Path]:
     try:
         yield hidden
     finally:
+        remove_hidden(hidden)  # where an interruption came just before the caller's own removal
         _unfinished.discard(hidden)
 
 
