@@ -298,7 +298,7 @@ def test_that_the_outcome_of_a_judgement_is_told_in_german(opened, speaking):
     page.source.choose_source("ma165")
     assert page.source.source.currentText() == "Satz MA165 (synthetisch)"
     assert page.source.findings.text().startswith("Von Regolith Studio synthetisiert")
-    assert "6,261 Partikeln des veröffentlichten Mikro-CT-Satzes ma165" in page.source.findings.text()
+    assert "6.261 Partikeln des veröffentlichten Mikro-CT-Satzes ma165" in page.source.findings.text()
     take(page, rough_sample())
     page.source.fit.click()
     page.evaluation.setValue({"splits": 1, "repeats": 2, "all_models": False})
