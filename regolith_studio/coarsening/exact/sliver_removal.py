@@ -60,7 +60,7 @@ def has_small_facets(normals: FloatArray, offsets: FloatArray) -> bool:
     return bool(areas.min() < SMALL * areas.mean())
 
 
-def remove_slivers(problem: Problem, begun: Candidate, steps: int, cost: float) -> Candidate:
+def remove_slivers(problem: Problem, begun: Candidate, steps: int, cost: float = COST) -> Candidate:
     """A polyhedron that meets the same constraints with larger small facets; `begun` where there is none.
 
     A projected quasi-Newton descent of the Jaccard distance plus a penalty of small facets; it has the
@@ -83,11 +83,8 @@ def remove_slivers(problem: Problem, begun: Candidate, steps: int, cost: float) 
     def allowed(then: _Evaluation, before: _Evaluation) -> bool:
         return then.value < before.value and then.jaccard <= limit and count_facets(then.point) >= count
 
-    metric, radius = first_metric(problem, point), max_step(point) / 4
-    unverified, patience = 0, UNVERIFIED
+    metric, radius, unverified = first_metric(problem, point), max_step(point) / 4, 0
     for _ in range(steps):
-        if now.value == now.jaccard:  # no facet is small any more
-            break
         slope = now.gradient()
         step, lagrangian = tangent_step(now.point, slope, metric)
         size = float(np.abs(step).max())
@@ -104,12 +101,11 @@ def remove_slivers(problem: Problem, begun: Candidate, steps: int, cost: float) 
         metric = bfgs_update(metric, share * step, after - lagrangian)
         radius = min(MAX_RADIUS, max(radius, 2.0 * share * size))
         now, unverified = then, unverified + 1
-        if unverified >= patience:
+        if unverified == UNVERIFIED:
             now, unverified = _verified(problem, now, metric, min_area), 0
-            if allowed(now, verified):
-                verified = now
-            else:  # a box has come in: back, and verify each step
-                now, radius, patience = verified, SHRINK * min(radius, share * size), 1
+            if not allowed(now, verified):
+                return candidate_of(problem, verified.point)
+            verified = now
     end = _verified(problem, now, metric, min_area)
     return candidate_of(problem, (end if allowed(end, verified) else verified).point)
 
