@@ -9,7 +9,7 @@ from regolith_studio.cli.dataclass_options import with_dataclass_options
 from regolith_studio.cli.inputs import ReadingOptions, exit_code, start_reader
 from regolith_studio.cli.options import Jobs, Json, Meshes, Seed, claim_file, output_path
 from regolith_studio.cli.terminal import print_errors, print_json, print_table, run_with_progress
-from regolith_studio.harmonics.io import MAX_TABLE_DEGREE
+from regolith_studio.harmonics.fit_options import MAX_TABLE_DEGREE
 
 if TYPE_CHECKING:
     from regolith_studio.io.tables import Table

@@ -10,6 +10,8 @@ if TYPE_CHECKING:  # the command line makes its options of these fields, and mus
     from regolith_studio.geometry.mesh import Mesh
     from regolith_studio.harmonics.fit import HarmonicFit
 
+MAX_TABLE_DEGREE = 200
+"""Of tables of coefficients that are read instead of meshes."""
 AUTOMATIC = ""
 """The centre of mass or, where that is not inside, the point that hides the least volume."""
 

@@ -14,10 +14,10 @@ from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray, IntArray
 from regolith_studio.harmonics.coefficients import CONVENTION, ShCoefficients, degrees, orders
 from regolith_studio.harmonics.fit import HarmonicFit
+from regolith_studio.harmonics.fit_options import MAX_TABLE_DEGREE
 from regolith_studio.harmonics.reference_surface import Ellipsoid
 
 FORMAT = "regolith-studio fit"
-MAX_TABLE_DEGREE = 200
 SYMMETRY_TOLERANCE = 1e-4
 """Largest violation of a_{l,-m} = (-1)^m conj(a_lm), as a share of the largest coefficient."""
 

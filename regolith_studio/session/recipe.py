@@ -10,7 +10,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, create_model
 
 from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.errors import FileError, InputError, format_validation_error
-from regolith_studio.harmonics.io import MAX_TABLE_DEGREE
+from regolith_studio.harmonics.fit_options import MAX_TABLE_DEGREE
 from regolith_studio.jobs.particle_jobs import FIT_DEGREE
 from regolith_studio.readers.file_bytes import read_bytes
 from regolith_studio.session.choices import LEVEL_LIMITS, Choices, Scalar
