@@ -19,6 +19,9 @@ app = typer.Typer(
     no_args_is_help=True,
     rich_markup_mode=None,
 )
+ClassifierFile = Annotated[
+    Path, typer.Argument(metavar="CLASSIFIER", help="File of `classify train` or of the window.")
+]
 Scan = Annotated[Path, typer.Argument(metavar="SCAN", help="Volume of grey values.")]
 
 
@@ -107,9 +110,7 @@ def train(
 def map_scan(
     *,
     scan: Scan,
-    classifier: Annotated[
-        Path, typer.Argument(metavar="CLASSIFIER", help="File of `classify train` or of the window.")
-    ],
+    classifier: ClassifierFile,
     output: Annotated[
         Path,
         typer.Option(
@@ -144,9 +145,7 @@ def map_scan(
 def painted_labels(
     *,
     scan: Scan,
-    classifier: Annotated[
-        Path, typer.Argument(metavar="CLASSIFIER", help="File of `classify train` or of the window.")
-    ],
+    classifier: ClassifierFile,
     output: Annotated[
         Path,
         typer.Option(
