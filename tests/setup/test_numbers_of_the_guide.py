@@ -11,7 +11,7 @@ ROOT = Path(__file__).parents[2]
 PAGES = {
     "shape_models": ("shape_model.md", "shape_model_quality.md"),
     "segmentation": ("segmentation.md", "grain_surfaces.md"),
-    "harmonics": ("harmonics.md",),
+    "harmonics": ("harmonics.md", "harmonics_quality.md"),
     "dataset": ("dataset.md",),
 }
 """Pages that hold the tables of a result file."""
