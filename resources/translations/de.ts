@@ -2268,12 +2268,20 @@
         <translation>Körner sind dunkler als das, was zwischen ihnen ist.</translation>
     </message>
     <message>
+        <source>Grains at other h</source>
+        <translation>Körner bei anderen h</translation>
+    </message>
+    <message>
         <source>Grains cut by the border of the scan were left out, large ones more often than small ones. The others have larger weights in return (Miles-Lantuéjoul).</source>
         <translation>Körner, die der Rand des Scans schneidet, fielen weg, große öfter als kleine. Die übrigen haben dafür größere Gewichte (Miles-Lantuéjoul).</translation>
     </message>
     <message>
         <source>Grains fill most of the frame and are connected. Tick Grains are dark if they are; otherwise change the level or reduce h.</source>
         <translation>Körner füllen das meiste des Rahmens und hängen zusammen. Haken Sie „Körner sind dunkel“ an, wenn sie es sind; sonst ändern Sie den Schwellwert oder verkleinern h.</translation>
+    </message>
+    <message>
+        <source>Grains in the frame by h: {counts}</source>
+        <translation>Körner im Rahmen je nach h: {counts}</translation>
     </message>
     <message>
         <source>Grains of fewer voxels are left out; below 12 voxels in diameter shapes are coarse.</source>

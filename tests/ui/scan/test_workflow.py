@@ -1,5 +1,7 @@
 """The page "Scan" as a new user goes through it: look, move the threshold, find, make particles."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from PySide6.QtCore import QPoint, Qt
@@ -7,7 +9,7 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QDialogButtonBox, QFileDialog
 
 from regolith_studio.imaging.sample_volumes import sample_volume
-from regolith_studio.imaging.segmentation.segment import segment
+from regolith_studio.imaging.segmentation.segment import preview, segment
 from regolith_studio.jobs.extraction_settings import (
     GrainSettings,
     VolumeInput,
@@ -64,6 +66,28 @@ def test_that_a_dragged_threshold_is_a_manual_one_and_changes_the_preview(page, 
     assert page.preview.found.level == 130.0
     page.controls.threshold.setCurrentIndex(0)
     wait(lambda: page.preview.found.level < 110.0, SECONDS)
+
+
+def test_that_the_preview_says_how_many_grains_other_values_of_h_give(page, part, wait):
+    page.controls.h_maxima.field.setValue(8.0)
+    page.opening.read(VolumeInput(part, 2.3, kind="grey"))
+    wait(lambda: page.controls.heights.isVisibleTo(page), SECONDS)
+    settings = page.controls.value().segmentation
+    level = page.scan.level(settings)
+    counts = [
+        preview(
+            page.scan.volume,
+            page.slices.box,
+            replace(settings, splitting=replace(settings.splitting, h_maxima=h)),
+            level,
+        ).n_grains
+        for h in (4.0, 8.0, 16.0, 32.0)
+    ]
+    assert counts[0] > counts[3]
+    shown = page.controls.heights.text().replace("\N{NO-BREAK SPACE}", " ")
+    assert shown == "Grains in the frame by h: 4 → {} · 8 → {} · 16 → {} · 32 → {}".format(*counts)
+    page.controls.split.setChecked(False)
+    wait(lambda: not page.controls.heights.isVisibleTo(page), SECONDS)
 
 
 def test_that_h_and_the_frame_change_the_preview_and_settings_undo_what_was_found(

@@ -12,11 +12,12 @@ from regolith_studio.errors import InputError
 from regolith_studio.imaging.extraction import voxel_diameter
 from regolith_studio.imaging.segmentation.morphology import CleaningSettings
 from regolith_studio.imaging.segmentation.pixel_classifier import TrainingSet
-from regolith_studio.imaging.segmentation.segment import SegmentationSettings
+from regolith_studio.imaging.segmentation.segment import GrainsAtHeight, SegmentationSettings
 from regolith_studio.jobs.extraction_settings import GrainSettings
 from regolith_studio.messages import N_
 from regolith_studio.readers.volumes.region import RegionSettings
 from regolith_studio.ui.translation import tr, translate
+from regolith_studio.ui.translation.numbers import number_text
 from regolith_studio.ui.widgets.forms import SettingsForm
 from regolith_studio.ui.widgets.labels import heading, remark
 from regolith_studio.ui.widgets.number_fields import DecimalField
@@ -112,7 +113,7 @@ class SegmentationControls(QWidget):
         self.draw_box.setObjectName("draw_region")
         self.draw_box.setCheckable(True)
         self.draw_box.setToolTip(tr("Draw a box in a slice; what is outside of it is left out."))
-        self.diameter, self.region_error = remark(), remark()
+        self.diameter, self.region_error, self.heights = remark(), remark(), remark()
         self._arrange()
         self._connect()
         self.setValue(self._recipe)
@@ -222,6 +223,15 @@ class SegmentationControls(QWidget):
         if level is not None and self.threshold.currentData() in ("otsu", "multi-otsu"):
             self._show_level(level)
 
+    def show_heights(self, found: Sequence[GrainsAtHeight]) -> None:
+        """Show how many grains the preview has at some values of h; nothing for none."""
+        self.heights.setVisible(bool(found))
+        counts = (
+            f"{number_text(each.h_maxima, 'g')}\N{NO-BREAK SPACE}→\N{NO-BREAK SPACE}{each.n_grains}"
+            for each in found
+        )
+        self.heights.setText(tr("Grains in the frame by h: {counts}", counts=" · ".join(counts)))
+
     def set_kind(self, kind: str) -> None:
         """Disable the settings of the segmentation for a volume of labels."""
         for part in (
@@ -327,6 +337,8 @@ class SegmentationControls(QWidget):
         layout.addWidget(heading(tr("Separation of grains")))
         layout.addWidget(self.split)
         layout.addWidget(self.h_maxima)
+        layout.addWidget(self.heights)
+        self.heights.hide()
         layout.addSpacing(10)
         layout.addWidget(heading(tr("Selection of grains")))
         layout.addWidget(self.border)

@@ -1,12 +1,11 @@
-"""Preview: the grains in the frame, segmented anew shortly after every change."""
-
-from typing import Any
+"""Preview: the grains in the frame, segmented anew shortly after every change, and how many other h give."""
 
 from PySide6.QtCore import QObject, QTimer, Signal
 
-from regolith_studio.imaging.segmentation.segment import Segmentation
+from regolith_studio.imaging.bounding_boxes import Box
+from regolith_studio.imaging.segmentation.segment import Segmentation, SegmentationSettings
 from regolith_studio.jobs.events import Job
-from regolith_studio.jobs.volume_jobs import Scan, preview_part
+from regolith_studio.jobs.volume_jobs import Scan, preview_heights, preview_part
 from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.pages.scan.controls import SegmentationControls
 from regolith_studio.ui.pages.scan.slices_view import SlicesView
@@ -35,26 +34,49 @@ class FramePreview(QObject):
         """Segment the frame soon, if the scan has grey values."""
         if scan is not None and scan.volume.kind == "grey":
             self._scan = scan
+            self._controls.show_heights(())
             self._timer.start()
 
     def stop(self) -> None:
         """Stop what was scheduled or has begun."""
         self._timer.stop()
-        self._context.stop("preview")
+        self._stop_jobs()
 
     def forget(self) -> None:
         """Stop, and forget the grains."""
         self.stop()
         self.found = None
 
+    def _stop_jobs(self) -> None:
+        for lane in ("preview", "heights"):
+            self._context.stop(lane)
+
     def _start(self) -> None:
         if self._scan is None:
             return
-        settings, box = self._controls.value().segmentation, self._slices.box
-        job = Job(preview_part, (self._scan.volume, box, settings, self._scan.level(settings)))
-        self._context.start(tr("Preview"), job, lambda found: self._take(found, box), lane="preview")
+        scan, settings, box = self._scan, self._controls.value().segmentation, self._slices.box
+        job = Job(preview_part, (scan.volume, box, settings, scan.level(settings)))
+        self._stop_jobs()
+        self._context.start(
+            tr("Preview"), job, lambda found: self._take(found, scan, settings, box), lane="preview"
+        )
 
-    def _take(self, found: Segmentation | None, box: Any) -> None:
+    def _take(self, found: Segmentation | None, scan: Scan, settings: SegmentationSettings, box: Box) -> None:
         self.found = found
         self._slices.show_preview(found, box)
         self.changed.emit()
+        if found is not None and settings.splitting.enabled:
+            arguments = (
+                scan.volume,
+                box,
+                settings,
+                found.level,
+                compared_heights(settings.splitting.h_maxima),
+            )
+            job = Job(preview_heights, arguments)
+            self._context.start(tr("Grains at other h"), job, self._controls.show_heights, lane="heights")
+
+
+def compared_heights(h: float) -> tuple[float, ...]:
+    """h, half of it, twice and four times as much; from a small step on for 0."""
+    return (h / 2, h, 2 * h, 4 * h) if h > 0 else (0.0, 0.4, 0.8, 1.6)
