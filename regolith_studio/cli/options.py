@@ -190,7 +190,15 @@ Target = Annotated[
         metavar="T",
     ),
 ]
-Preset = Annotated[str, typer.Option("--preset", help="Preset of loss weights.", metavar="NAME")]
+Preset = Annotated[
+    str,
+    typer.Option(
+        "--preset",
+        help="Preset of loss weights: quadric, descriptors, volume_sphericity_aspect_ratio, "
+        "aspect_ratio_overlap, overlap, all, size, hull or shape_first.",
+        metavar="NAME",
+    ),
+]
 Weights = Annotated[
     list[str] | None,
     typer.Option(

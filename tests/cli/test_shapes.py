@@ -10,6 +10,7 @@ import tifffile
 import trimesh
 from PIL import Image
 
+from regolith_studio.coarsening.weights import presets
 from regolith_studio.geometry.sphere_points import icosphere
 
 
@@ -29,6 +30,12 @@ def test_that_a_fit_holds_the_mean_radius_of_a_ball(command, tmp_path: Path) -> 
     assert document["particles"][0]["wadell_roundness"] == pytest.approx(1.0, abs=2e-3)
     assert len(document["spectrum"]["values"]) == 7
     assert "orthonormal" in document["convention"]
+
+
+def test_that_the_help_of_coarsen_names_every_preset(command) -> None:
+    text = " ".join(command("coarsen", "--help").out.split())
+    named = text.partition("Preset of loss weights: ")[2].partition(".")[0]
+    assert named.replace(" or ", ", ").split(", ") == list(presets())
 
 
 def test_that_the_surface_of_a_fit_is_a_solid_with_the_volume_of_its_particle(
