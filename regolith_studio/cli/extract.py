@@ -8,11 +8,13 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from regolith_studio.cli.dataclass_options import with_dataclass_options
+from regolith_studio.cli.executor_options import Address, Runner, Tls, chosen_executor
 from regolith_studio.cli.options import Jobs, Json, OptionalFolder, Seed, claim_labels, usage_errors
 from regolith_studio.cli.terminal import print_errors, print_json, print_table, run_with_progress
 from regolith_studio.cli.volume_options import MAX_H, GrainOptions, VolumeOptions
 
 if TYPE_CHECKING:
+    from regolith_studio.jobs.executor import Executor
     from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput
 
 
@@ -75,7 +77,7 @@ def _settings(grains: GrainOptions, recipe: Path | None) -> "GrainSettings":
 
 
 def _extract_groups(
-    scans: "Sequence[tuple[VolumeInput, GrainSettings]]", output: Path, jobs: int, as_json: bool
+    scans: "Sequence[tuple[VolumeInput, GrainSettings]]", output: Path, executor: "Executor", as_json: bool
 ) -> None:
     """Extract several volumes, each into a folder of its own, and print what became of them.
 
@@ -88,7 +90,7 @@ def _extract_groups(
     from regolith_studio.session.batch.scan_groups import extract_groups
 
     output.mkdir(parents=True, exist_ok=True)
-    done = run_with_progress(extract_groups(scans, output, jobs), logged=True)
+    done = run_with_progress(extract_groups(scans, output, executor), logged=True)
     print_errors(sentence for _, sentence in done.problems)
     if done.comparison is not None and as_json:
         typer.echo(json_text(done.comparison), nl=False)
@@ -147,6 +149,9 @@ def extract(
     ] = None,
     json: Json = False,
     jobs: Jobs = 1,
+    runner: Runner = "processes",
+    address: Address = "",
+    tls: Tls = None,
     seed: Seed = 0,
 ) -> None:
     """Turn the grains of a CT volume into particle meshes (section 2.1).
@@ -176,13 +181,16 @@ def extract(
         return
     if output is None:
         raise typer.BadParameter("Name a folder to write with -o, or values for --preview-h.")
-    if several:
-        _extract_groups(_settings_of_scans(scans, contents, grains, recipe, settings), output, jobs, json)
-        return
-    with staged_folder(output, "extract") as stage:
-        folder = ExtractionFolder(stage)
-        done = run_with_progress(extract_measured(given, chosen, output.parent, folder.add, jobs, labels))
-        document = folder.finish(given, chosen, done)
+    with chosen_executor(runner, jobs, address, tls) as executor:
+        if several:
+            groups = _settings_of_scans(scans, contents, grains, recipe, settings)
+            _extract_groups(groups, output, executor, json)
+            return
+        with staged_folder(output, "extract") as stage:
+            folder = ExtractionFolder(stage)
+            steps = extract_measured(given, chosen, output.parent, folder.add, executor, labels)
+            done = run_with_progress(steps)
+            document = folder.finish(given, chosen, done)
     if done.facts is not None and done.facts.n_not_finite:
         print_errors(
             [

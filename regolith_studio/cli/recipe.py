@@ -1,16 +1,13 @@
 """``run``: a recipe, as the window saves it."""
 
-import contextlib
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
-from regolith_studio.cli.options import MAX_SEED, Folder, Jobs, Json, usage_errors
+from regolith_studio.cli.executor_options import Address, Runner, Tls, chosen_executor
+from regolith_studio.cli.options import MAX_SEED, Folder, Jobs, Json
 from regolith_studio.cli.terminal import print_errors, print_json, run_with_progress
-
-if TYPE_CHECKING:
-    from regolith_studio.jobs.executor import Executor, ExecutorSettings
 
 
 def run(
@@ -34,30 +31,9 @@ def run(
             show_default=False,
         ),
     ] = None,
-    runner: Annotated[
-        str,
-        typer.Option(
-            "--runner", help="Executor: processes (of this machine) or dask (a cluster).", metavar="NAME"
-        ),
-    ] = "processes",
-    address: Annotated[
-        str,
-        typer.Option(
-            "--address",
-            help="Dask scheduler, tcp://HOST:8786 or tls://HOST:8786; a local one is started if omitted.",
-            metavar="URL",
-            show_default=False,
-        ),
-    ] = "",
-    tls: Annotated[
-        Path | None,
-        typer.Option(
-            "--tls",
-            help="Folder with ca.pem, cert.pem and key.pem for a tls:// address.",
-            metavar="DIR",
-            show_default=False,
-        ),
-    ] = None,
+    runner: Runner = "processes",
+    address: Address = "",
+    tls: Tls = None,
     seed: Annotated[
         int | None,
         typer.Option(
@@ -70,16 +46,13 @@ def run(
     ] = None,
 ) -> None:
     """Run a recipe: descriptors, fits, meshes, dataset, studies and summary."""
-    from regolith_studio.jobs.executor import ExecutorSettings
     from regolith_studio.session.recipe import read_recipe
     from regolith_studio.session.run_recipe import run_recipe
 
     wish = read_recipe(recipe)
     if seed is not None:
         wish = wish.model_copy(update={"seed": seed})
-    with usage_errors():
-        settings = ExecutorSettings(runner, jobs, address, tls)
-    with contextlib.closing(_open_executor(settings)) as executor:
+    with chosen_executor(runner, jobs, address, tls) as executor:
         done = run_with_progress(
             run_recipe(wish, recipe.parent, output, executor, resume, chunk), logged=True
         )
@@ -89,13 +62,3 @@ def run(
     else:
         typer.echo(f"{len(done.files)} files in {output}")
     raise typer.Exit(1 if done.problems else 0)
-
-
-def _open_executor(settings: "ExecutorSettings") -> "Executor":
-    """Who is to work."""
-    with usage_errors():
-        executor = settings.open()
-    print_errors(
-        [f"{executor.workers} workers; dashboard {executor.dashboard}"] if executor.dashboard else []
-    )
-    return executor

@@ -14,10 +14,9 @@ from dataclasses import dataclass
 from typing import Literal, get_args
 
 import numpy as np
-from numpy.typing import NDArray
 
 from regolith_studio.errors import InputError
-from regolith_studio.geometry.arrays import BoolArray
+from regolith_studio.geometry.arrays import BoolArray, FloatArray
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle, Source
 from regolith_studio.imaging.bounding_boxes import Box, box_between, grown, touches, within
@@ -30,7 +29,8 @@ from regolith_studio.imaging.label_table import (
     label_masks,
     label_table,
 )
-from regolith_studio.imaging.volume_slabs import SliceSource
+from regolith_studio.imaging.volume import Origin
+from regolith_studio.imaging.volume_slabs import ParallelMap, SliceSource
 from regolith_studio.messages import N_, count_message
 
 Surface = Literal["mask", "grey"]
@@ -191,6 +191,7 @@ def extraction_steps(
     source: Source | None = None,
     collect: bool = True,
     grey: SliceSource | None = None,
+    run: ParallelMap = map,
 ) -> Generator[ExtractionProgress, None, Extraction]:
     """Make a particle of each label, telling after each how far it is.
 
@@ -205,6 +206,8 @@ def extraction_steps(
         samples need that are larger than the memory.
     grey
         The grey values that the labels were found in; surfaces are of the masks without them.
+    run
+        Applies :func:`surface_of_label` to what is cut out of the volume.
 
     Raises
     ------
@@ -216,7 +219,8 @@ def extraction_steps(
     chosen = select_labels(volume, settings, grey is not None)
     boxes, sizes, wanted = chosen.boxes, chosen.sizes, chosen.wanted
     found: list[ExtractedParticle] = []
-    made = _surfaces(volume, grey if settings.surface == "grey" else None, wanted, settings)
+    cuts = _cuts(volume, grey if settings.surface == "grey" else None, wanted, settings)
+    made = run(surface_of_label, cuts)
     for done, (label, mesh, notes, surface) in enumerate(made, start=1):
         weight = border_weight(boxes[label], volume.shape) if settings.exclude_border else 1.0
         particle = Particle(chosen.name_of(label), mesh, group, source, notes, weight)
@@ -330,65 +334,70 @@ def border_weight(box: Box, shape: tuple[int, int, int]) -> float:
     return float(1.0 / np.prod(np.maximum(1.0 - (lengths + 1.0) / size, 1.0 / size)))
 
 
-def _surfaces(
+@dataclass(frozen=True, eq=False)
+class LabelCut:
+    """A label cut out of its volume: all that its surface follows from; picklable.
+
+    Parameters
+    ----------
+    label
+        Its number.
+    found
+        Its mask, or what lies about it.
+    box, wider
+        Box of the label, and what `found` covers.
+    voxel_size, origin
+        Of the volume.
+    """
+
+    label: int
+    found: BoolArray | GrainCrop
+    box: Box
+    wider: Box
+    voxel_size: FloatArray
+    origin: Origin
+    settings: ExtractionSettings
+
+    def placed(self, mesh: Mesh, box: Box) -> Mesh:
+        """A mesh in voxels of `box` at its place in the volume, in micrometres."""
+        corner = np.array([side.start for side in box]) + np.array(self.origin)
+        return Mesh((mesh.vertices + corner) * self.voxel_size, mesh.faces)
+
+    def mask_surface(self, body: BoolArray) -> Mesh:
+        """Surface of a mask in the box."""
+        return self.placed(mask_mesh(body, self.settings.iterations, self.settings.pass_band), self.box)
+
+
+def _cuts(
     volume: SliceSource, grey: SliceSource | None, boxes: Mapping[int, Box], settings: ExtractionSettings
-) -> Iterator[_Made]:
-    """Label, mesh in micrometres, notes and origin of each surface."""
-    if grey is None:
-        for label, mask in label_masks(volume, boxes):
-            yield label, *mask_surface(mask, boxes[label], volume, settings), "mask"
-        return
+) -> Iterator[LabelCut]:
+    """Each label of `boxes`, in the order in which the slabs complete them."""
     whole = box_between((0, 0, 0), volume.shape)
-    wider = {label: grown(box, MARGIN, whole) for label, box in boxes.items()}
-    for label, crop in grain_crops(volume, grey, wider):
-        yield label, *grey_surface(crop, boxes[label], wider[label], volume, settings)
+    wider = {label: grown(box, MARGIN if grey else 0, whole) for label, box in boxes.items()}
+    cuts = label_masks(volume, boxes) if grey is None else grain_crops(volume, grey, wider)
+    voxel_size = np.asarray(volume.voxel_size, dtype=np.float64)
+    for label, found in cuts:
+        yield LabelCut(label, found, boxes[label], wider[label], voxel_size, volume.origin, settings)
 
 
-def mask_surface(
-    mask: NDArray[np.bool_], box: Box, volume: SliceSource, settings: ExtractionSettings
-) -> tuple[Mesh, tuple[str, ...]]:
-    """Surface of one label's mask at its place in the volume, in micrometres, and notes on it.
+def surface_of_label(cut: LabelCut) -> _Made:
+    """Label, surface in micrometres, notes on it, and what it was taken from.
 
-    Parameters
-    ----------
-    mask, box
-        The label in its box, and the box.
-    volume
-        What they lie in; not read.
+    It is of the grey values where they are at hand and tell it, else of the mask.
     """
-    body, notes = _one_body(mask, settings)
-    return _placed(mask_mesh(body, settings.iterations, settings.pass_band), box, volume), tuple(notes)
-
-
-def grey_surface(
-    crop: GrainCrop, box: Box, wider: Box, volume: SliceSource, settings: ExtractionSettings
-) -> tuple[Mesh, tuple[str, ...], Surface]:
-    """As :func:`mask_surface`, of the grey values about the grain if they tell it, else of its mask.
-
-    Parameters
-    ----------
-    crop, box, wider
-        What lies about the grain, the box of the grain and that of the crop.
-    """
-    part = within(box, wider)
+    if not isinstance(cut.found, GrainCrop):
+        body, notes = _one_body(cut.found, cut.settings)
+        return cut.label, cut.mask_surface(body), tuple(notes), "mask"
+    crop, settings = cut.found, cut.settings
+    part = within(cut.box, cut.wider)
     body, notes = _one_body(crop.own[part], settings)
     padding = [(a.start, n - a.stop) for a, n in zip(part, crop.own.shape, strict=True)]
-    edges = np.asarray(volume.voxel_size, float)
-    cubic = float(np.ptp(edges)) <= 1e-3 * float(edges.max())
+    cubic = float(np.ptp(cut.voxel_size)) <= 1e-3 * float(cut.voxel_size.max())
     mesh = grey_mesh(crop, np.pad(body, padding), settings.iterations, settings.pass_band, cubic)
     if isinstance(mesh, str):
         notes.append(f"{_OF_MASK}: {mesh}.")
-        return (
-            _placed(mask_mesh(body, settings.iterations, settings.pass_band), box, volume),
-            tuple(notes),
-            "mask",
-        )
-    return _placed(mesh, wider, volume), tuple(notes), "grey"
-
-
-def _placed(mesh: Mesh, box: Box, volume: SliceSource) -> Mesh:
-    corner = np.array([side.start for side in box]) + np.array(volume.origin)
-    return Mesh((mesh.vertices + corner) * np.asarray(volume.voxel_size, float), mesh.faces)
+        return cut.label, cut.mask_surface(body), tuple(notes), "mask"
+    return cut.label, cut.placed(mesh, cut.wider), tuple(notes), "grey"
 
 
 def _one_body(mask: BoolArray, settings: ExtractionSettings) -> tuple[BoolArray, list[str]]:

@@ -8,7 +8,7 @@ import math
 import shutil
 import tempfile
 import weakref
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
@@ -20,6 +20,8 @@ from numpy.typing import ArrayLike, DTypeLike, NDArray
 from regolith_studio.errors import MissingRequirement
 from regolith_studio.imaging.volume import Origin, VolumeKind
 
+ParallelMap = Callable[[Callable[[Any], Any], Iterable[Any]], Iterable[Any]]
+"""As the built-in ``map``, lazily and in order; others apply picklable functions in several processes."""
 SLAB_VOXELS = 2**24
 """Voxels that are worked on at a time, unless a few slices are more."""
 _MIN_SLICES = 8

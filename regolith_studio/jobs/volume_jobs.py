@@ -39,7 +39,7 @@ from regolith_studio.imaging.segmentation.thresholding import Histogram, histogr
 from regolith_studio.imaging.slice_images import SliceImages, coarse_copy
 from regolith_studio.imaging.sparse_slices import sparse_slices
 from regolith_studio.imaging.volume import Volume, VolumeKind
-from regolith_studio.imaging.volume_slabs import ScratchArrays, SliceSource, slab_ranges
+from regolith_studio.imaging.volume_slabs import ParallelMap, ScratchArrays, SliceSource, slab_ranges
 from regolith_studio.jobs.events import Job, Partial, Progress, Started, Step, Steps
 from regolith_studio.jobs.executor import Executor, open_executor, value_of
 from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput
@@ -349,10 +349,17 @@ def extract_file(given: VolumeInput, recipe: GrainSettings, scratch: Path | None
 
 
 def extract_each(
-    given: VolumeInput, recipe: GrainSettings, scratch: Path | None, sink: Callable[[ExtractedParticle], None]
+    given: VolumeInput,
+    recipe: GrainSettings,
+    scratch: Path | None,
+    sink: Callable[[ExtractedParticle], None],
+    run: ParallelMap = map,
 ) -> Steps:
-    """As :func:`extract_file`, but each particle is passed to `sink` and not kept, in the order of slabs."""
-    return (yield from _extract(given, recipe, scratch, partial(_pass_on, sink=sink)))
+    """As :func:`extract_file`, but each particle is passed to `sink` and not kept, in the order of slabs.
+
+    `run` applies what is done to slabs, bodies and labels.
+    """
+    return (yield from _extract(given, recipe, scratch, partial(_pass_on, sink=sink), run=run))
 
 
 def extract_measured(
@@ -370,19 +377,25 @@ def extract_measured(
     sink
         Called in this process with each particle in the order of slabs.
     workers
-        Processes that measure.
+        Processes, or an executor, that denoise slabs, part bodies, make surfaces and measure.
     labels_file
         Where to write the label volume, if anywhere (:func:`~regolith_studio.jobs.label_jobs.write_labels`).
     """
-    consume = partial(_measure_and_pass_on, sink=sink, workers=workers)
-    return (yield from _extract(given, recipe, scratch, consume, labels_file=labels_file))
+    with open_executor(workers) as executor:
+        consume = partial(_measure_and_pass_on, sink=sink, executor=executor)
+        return (
+            yield from _extract(given, recipe, scratch, consume, labels_file=labels_file, run=executor.map)
+        )
 
 
 def segment_volume(
-    source: SliceSource, settings: SegmentationSettings, scratch: ScratchArrays | None = None
+    source: SliceSource,
+    settings: SegmentationSettings,
+    scratch: ScratchArrays | None = None,
+    run: ParallelMap = map,
 ) -> Steps:
-    """Find the grains in grey values; returns a ``Segmentation``."""
-    return (yield from reported(segmentation_steps(source, settings, scratch)))
+    """Find the grains in grey values; returns a ``Segmentation``. `run` as in :func:`segmentation_steps`."""
+    return (yield from reported(segmentation_steps(source, settings, scratch, run)))
 
 
 def reported(steps: Generator[SegmentationProgress, None, _Result]) -> Generator[Step, None, _Result]:
@@ -440,6 +453,7 @@ def _extract(
     *,
     collect: bool = False,
     labels_file: Path | None = None,
+    run: ParallelMap = map,
 ) -> Steps:
     yield Started(Message(N_("Reading {name}"), name=given.path.name))
     volume = recipe.region.of(given.opened())
@@ -449,16 +463,16 @@ def _extract(
         facts: SegmentationSummary | None = None
         labels: SliceSource = volume
         if volume.kind == "grey":
-            segmentation: Segmentation = yield from segment_volume(volume, recipe.segmentation, scratch)
+            found = segment_volume(volume, recipe.segmentation, scratch, run)
+            segmentation: Segmentation = yield from found
             facts, labels = _summary_of(segmentation), segmentation.labels
             del segmentation
         grey = volume if volume.kind == "grey" else None
         if labels_file is not None:
             yield from write_labels(labels, recipe.extraction, labels_file, grey is not None)
         yield Started(N_("Extracting particles"))
-        steps = extraction_steps(
-            labels, recipe.extraction, given.group or given.path.stem, source, collect, grey
-        )
+        group = given.group or given.path.stem
+        steps = extraction_steps(labels, recipe.extraction, group, source, collect, grey, run)
         extraction = yield from consume(steps)
     if not extraction.n_found:
         raise InputError(_no_particle_message(given.path, extraction))
@@ -485,7 +499,7 @@ def _collect(steps: _Extraction) -> Generator[Step, None, Extraction]:
 
 
 def _measure_and_pass_on(
-    steps: _Extraction, sink: ParticleCallback, workers: int | Executor
+    steps: _Extraction, sink: ParticleCallback, executor: Executor
 ) -> Generator[Step, None, Extraction]:
     """Measure particles by other processes while the next ones are extracted."""
     waiting: deque[ExtractionProgress] = deque()
@@ -501,13 +515,12 @@ def _measure_and_pass_on(
             waiting.append(step)
             yield Job(measure_one, (step.extracted.particle,))
 
-    with open_executor(workers) as executor:
-        for result in executor.results(jobs()):
-            if result is None:
-                continue
-            step = waiting.popleft()
-            sink(step.extracted, value_of(result))
-            yield Progress(step.done, step.total, step.extracted.particle.name)
+    for result in executor.results(jobs()):
+        if result is None:
+            continue
+        step = waiting.popleft()
+        sink(step.extracted, value_of(result))
+        yield Progress(step.done, step.total, step.extracted.particle.name)
     return ended[0]
 
 

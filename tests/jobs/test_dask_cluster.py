@@ -11,14 +11,20 @@ from collections.abc import Iterator
 from contextlib import closing, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from regolith_studio.errors import InputError, MissingRequirement
+from regolith_studio.imaging.extraction import ExtractedParticle
+from regolith_studio.imaging.sample_volumes import sample_file
 from regolith_studio.jobs.events import Progress
 from regolith_studio.jobs.executor import Executor
+from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput
+from regolith_studio.jobs.particle_jobs import MeasuredParticle
 from regolith_studio.jobs.runners import dask_cluster
 from regolith_studio.jobs.runners.dask_cluster import TlsFiles
+from regolith_studio.jobs.volume_jobs import extract_measured
 from regolith_studio.session.recipe import Recipe, recipe_of
 from regolith_studio.session.run_recipe import run_recipe
 
@@ -172,6 +178,24 @@ def test_that_an_encrypted_cluster_works_and_lets_no_stranger_in(
             assert done(tmp_path / "out", executor) == alone
         with pytest.raises(MissingRequirement, match="No cluster answers"):
             dask_cluster.DaskRunner(there.address, tls=strangers)
+
+
+@pytest.mark.slow
+def test_that_a_cluster_finds_the_grains_that_one_process_finds() -> None:
+    given = VolumeInput(sample_file("grey"), kind="grey")
+    seen: list[list[tuple[str, str]]] = []
+    with closing(Executor.on_cluster(workers=2)) as cluster:
+        for executor in (cluster, Executor(1)):
+            found: list[tuple[str, str]] = []
+
+            def keep(extracted: ExtractedParticle, _: MeasuredParticle, found: list[Any] = found) -> None:
+                found.append((extracted.particle.name, extracted.particle.mesh.content_hash))
+
+            for _ in extract_measured(given, GrainSettings(), None, keep, executor):
+                pass
+            seen.append(found)
+    assert len(seen[1]) == 46
+    assert seen[0] == seen[1]
 
 
 @pytest.mark.slow

@@ -117,6 +117,20 @@ def test_that_measured_particles_are_handed_over_and_not_kept(part: VolumeInput)
 
 
 @pytest.mark.slow
+def test_that_two_processes_make_the_particles_that_one_makes(part: VolumeInput) -> None:
+    seen: dict[int, list[tuple[str, str, object]]] = {1: [], 2: []}
+    for workers, found in seen.items():
+
+        def keep(extracted, facts, found=found):
+            particle = extracted.particle
+            found.append((particle.name, particle.mesh.content_hash, facts.descriptors))
+
+        played(extract_measured(part, QUICK, None, keep, workers=workers))
+    assert len(seen[1]) > 3
+    assert seen[1] == seen[2]
+
+
+@pytest.mark.slow
 def test_that_segmentation_and_extraction_can_be_run_one_after_the_other() -> None:
     _, segmentation = played(segment_volume(sample_volume("grey"), QUICK.segmentation))
     _, extraction = played(extract_labels(segmentation.labels, ExtractionSettings(), sample_file("grey")))

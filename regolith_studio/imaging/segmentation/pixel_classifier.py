@@ -8,7 +8,7 @@ IoU of a hundred trees and predicts many times faster.
 import warnings
 from collections.abc import Generator, Iterator
 from dataclasses import dataclass, field
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import Any, Literal, get_args
 
 import numpy as np
@@ -25,6 +25,7 @@ from regolith_studio.imaging.segmentation.pixel_features import (
 )
 from regolith_studio.imaging.volume import Origin, Volume, VolumeKind
 from regolith_studio.imaging.volume_slabs import (
+    ParallelMap,
     ScratchArrays,
     SliceSource,
     ThickSlab,
@@ -362,9 +363,14 @@ def _edges(sizes: FloatArray) -> str:
 
 
 def probability_map(
-    classifier: PixelClassifier, source: SliceSource, scratch: ScratchArrays
+    classifier: PixelClassifier, source: SliceSource, scratch: ScratchArrays, run: ParallelMap = map
 ) -> Generator[tuple[int, int], None, Volume]:
     """Probability of each voxel to be grain, 0 to 255; tells how many of how many slabs are done.
+
+    Parameters
+    ----------
+    run
+        Applies the classifier to slabs.
 
     Raises
     ------
@@ -373,10 +379,12 @@ def probability_map(
     """
     check_voxel_size(classifier.voxel_size, source)
     found: NDArray[np.uint8] = scratch.zeros(source.shape, np.uint8)
-    slabs = prediction_slabs(classifier, source)
-    for done, slab in enumerate(slabs, start=1):
-        found[:, :, slab.first : slab.stop] = slab_probability(classifier, slab, source.shape)
-        yield done, len(_prediction_ranges(source.shape))
+    ranges = _prediction_ranges(source.shape)
+    predict = partial(slab_probability, classifier, shape=source.shape)
+    slabs = run(predict, prediction_slabs(classifier, source))
+    for done, ((first, stop), values) in enumerate(zip(ranges, slabs, strict=True), start=1):
+        found[:, :, first:stop] = values
+        yield done, len(ranges)
     return probability_volume(found, source)
 
 

@@ -6,6 +6,7 @@ whole: give a :class:`~regolith_studio.imaging.volume_slabs.ScratchArrays` in a 
 
 from collections.abc import Generator, Iterable, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -44,7 +45,14 @@ from regolith_studio.imaging.segmentation.thresholding import (
     span,
 )
 from regolith_studio.imaging.volume import Volume
-from regolith_studio.imaging.volume_slabs import ScratchArrays, SliceSource, slab_ranges, thick_slabs
+from regolith_studio.imaging.volume_slabs import (
+    ParallelMap,
+    ScratchArrays,
+    SliceSource,
+    ThickSlab,
+    slab_ranges,
+    thick_slabs,
+)
 from regolith_studio.io.tables import Column, Table
 from regolith_studio.messages import N_, Message, Number
 
@@ -178,6 +186,7 @@ def segmentation_steps(
     source: SliceSource,
     settings: SegmentationSettings | None = None,
     scratch: ScratchArrays | None = None,
+    run: ParallelMap = map,
 ) -> Steps:
     """Find the grains in grey values, telling after each step how far it is.
 
@@ -187,6 +196,8 @@ def segmentation_steps(
         The grey values, or the probabilities of voxels to be grain.
     scratch
         Where arrays as large as the volume lie, the result among them; in memory by default.
+    run
+        Applies what is done to slabs and to bodies; the result does not depend on it.
 
     Raises
     ------
@@ -194,8 +205,8 @@ def segmentation_steps(
         If the volume is too uniform for an automatic threshold, or no grain is found.
     """
     settings, scratch = settings or SegmentationSettings(), scratch or ScratchArrays()
-    found = yield from _found_bodies(source, settings, scratch)
-    sizes, n_parts = yield from _parted(found.numbers, found, settings)
+    found = yield from _found_bodies(source, settings, scratch, run)
+    sizes, n_parts = yield from _parted(found.numbers, found, settings, run)
     least = settings.cleaning.min_voxels
     if not len(sizes):
         raise InputError(
@@ -354,12 +365,12 @@ class _FoundBodies:
 
 
 def _found_bodies(
-    source: SliceSource, settings: SegmentationSettings, scratch: ScratchArrays
+    source: SliceSource, settings: SegmentationSettings, scratch: ScratchArrays, run: ParallelMap = map
 ) -> Generator[SegmentationProgress, None, _FoundBodies]:
     """Connected bodies with their provisional numbers, before they are parted."""
     if settings.classifier is not None:
-        source = yield from _predicted(source, settings.classifier, scratch)
-    values, seen, n_not_finite = yield from _denoised(source, settings, scratch)
+        source = yield from _predicted(source, settings.classifier, scratch, run)
+    values, seen, n_not_finite = yield from _denoised(source, settings, scratch, run)
     level = level_of(seen, settings.threshold, source.dtype)
     numbers: NDArray[np.int32] = scratch.zeros(source.shape, np.int32)
     bodies = yield from _numbered(values, level, settings, numbers)
@@ -368,17 +379,17 @@ def _found_bodies(
 
 
 def _predicted(
-    source: SliceSource, training: TrainingSet, scratch: ScratchArrays
+    source: SliceSource, training: TrainingSet, scratch: ScratchArrays, run: ParallelMap
 ) -> Generator[SegmentationProgress, None, Volume]:
     """The map of probabilities that a classifier makes of grey values."""
     yield SegmentationProgress(N_("Training the classifier"), 0, 1)
-    steps = probability_map(train(training), source, scratch)
+    steps = probability_map(train(training), source, scratch, run)
     found: Volume = yield from _staged(N_("Predicting grains"), steps)
     return found
 
 
 def _parted(
-    numbers: NDArray[np.int32], found: _FoundBodies, settings: SegmentationSettings
+    numbers: NDArray[np.int32], found: _FoundBodies, settings: SegmentationSettings, run: ParallelMap = map
 ) -> Generator[SegmentationProgress, None, tuple[IntArray, int]]:
     """Turn provisional numbers into labels, in place; voxels of each grain, and parts before small ones were
     dropped."""
@@ -386,7 +397,7 @@ def _parted(
     splitter = GrainSplitter(
         numbers, found.bodies, found.edges, settings.splitting, settings.cleaning.fill_pores, settings.tiles
     )
-    for done, total in splitter.steps(least):
+    for done, total in splitter.steps(least, run):
         yield SegmentationProgress(N_("Separating touching grains"), done, total)
     return (yield from _renumbered(numbers, splitter.n_grains, least)), splitter.n_grains
 
@@ -427,24 +438,35 @@ def part_of(
 _Values = Generator[SegmentationProgress, None, tuple[SliceSource, Histogram, int]]
 
 
-def _denoised(source: SliceSource, settings: SegmentationSettings, scratch: ScratchArrays) -> _Values:
+def _denoised(
+    source: SliceSource, settings: SegmentationSettings, scratch: ScratchArrays, run: ParallelMap
+) -> _Values:
     """Grey values without noise (probabilities as they are), their histogram, and how many are not finite."""
     how = settings.denoise
     ranges = slab_ranges(source.shape)
     edges, noise, n_not_finite = _first_look(source)
-    keep = how.method == "none" or settings.threshold.method == "probability"
-    values = None if keep else scratch.zeros(source.shape, source.dtype)
     seen = Histogram(np.zeros(len(edges) - 1, dtype=np.int64), edges)
-    for done, slab in enumerate(thick_slabs(source, ranges, 0 if keep else how.margin), start=1):
-        smooth = slab.values
-        if values is not None:
-            smooth = denoised(slab.values, how, noise)[:, :, slab.inner]
-            values[:, :, slab.first : slab.stop] = smooth
-        seen = seen + histogram(smooth, edges)
-        yield SegmentationProgress(N_("Denoising"), done, len(ranges))
-    if values is None:
+    if how.method == "none" or settings.threshold.method == "probability":
+        for done, (first, stop) in enumerate(ranges, start=1):
+            seen = seen + histogram(source.read(first, stop), edges)
+            yield SegmentationProgress(N_("Denoising"), done, len(ranges))
         return source, seen, n_not_finite
+    values = scratch.zeros(source.shape, source.dtype)
+    smooth = partial(_smooth_slab, how=how, noise=noise, edges=edges)
+    slabs = run(smooth, thick_slabs(source, ranges, how.margin))
+    for done, ((first, stop), (slab, counts)) in enumerate(zip(ranges, slabs, strict=True), start=1):
+        values[:, :, first:stop] = slab
+        seen = seen + counts
+        yield SegmentationProgress(N_("Denoising"), done, len(ranges))
     return Volume(values, np.asarray(source.voxel_size), "grey", source.name), seen, n_not_finite
+
+
+def _smooth_slab(
+    slab: ThickSlab, how: DenoiseSettings, noise: float, edges: FloatArray
+) -> tuple[NDArray[Any], Histogram]:
+    """A slab without noise and without its margins, and its histogram."""
+    values = denoised(slab.values, how, noise)[:, :, slab.inner]
+    return values, histogram(values, edges)
 
 
 def _first_look(source: SliceSource) -> tuple[FloatArray, float, int]:

@@ -22,6 +22,7 @@ from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray
 from regolith_studio.imaging.bounding_boxes import Box, box_between, grown, n_voxels, within
 from regolith_studio.imaging.connected_components import ConnectedComponents, pores_filled
 from regolith_studio.imaging.segmentation.watershed import WatershedBasins, find_basins
+from regolith_studio.imaging.volume_slabs import ParallelMap
 
 OpenEnds = tuple[tuple[bool, bool], ...]
 """For each axis, whether a mask goes on beyond the array at its low and its high end."""
@@ -121,8 +122,62 @@ class TileSettings:
     margin: int = 40
 
 
+@dataclass(frozen=True, eq=False)
+class Tile:
+    """A body, or a tile of one with its margin: all that its grains follow from; picklable.
+
+    Parameters
+    ----------
+    mask
+        Voxels of the body, shape (nx, ny, nz).
+    core
+        Where the tile is in the mask: grains whose peak lies there are the tile's own.
+    edges, settings, continued
+        As in :func:`split`.
+    ends
+        Where the mask cuts the body.
+    final
+        Whether grains that are cut are taken as they are.
+    """
+
+    mask: BoolArray
+    core: Box
+    edges: FloatArray
+    settings: SplittingSettings
+    continued: OpenEnds
+    ends: OpenEnds
+    final: bool
+
+
+def grains_of_tile(tile: Tile) -> NDArray[np.int32] | None:
+    """A tile's own grains, 1 to n, and 0 elsewhere, shape of its mask; ``None`` if one is cut by its ends."""
+    grains, sites = split(tile.mask, tile.edges, tile.settings, tile.continued)
+    own = _inside(sites, tile.core)
+    if not tile.final and own[_touching(grains, tile.ends) - 1].any():
+        return None
+    number = np.zeros(len(own) + 1, dtype=np.int32)
+    number[1:][own] = 1 + np.arange(np.count_nonzero(own))
+    return number[grains]
+
+
+@dataclass(frozen=True)
+class _Piece:
+    """A core of a body, and the body's box."""
+
+    body: int
+    box: Box
+    core: Box
+
+    def outer(self, margin: int) -> Box:
+        """The core with a margin within the body's box."""
+        return grown(self.core, margin, self.box)
+
+
 class GrainSplitter:
     """Parts bodies into grains, in place.
+
+    Pores are filled first and grains written down last, so that no tile depends on what another has found,
+    and tiles can be parted by several processes.
 
     Parameters
     ----------
@@ -150,54 +205,80 @@ class GrainSplitter:
         self._numbers, self._bodies, self._edges = numbers, bodies, edges
         self._settings, self._fill = settings, fill_pores
         self._tiles = tiles or TileSettings()
+        self._body_of_grain = np.zeros(1024, dtype=np.int64)
         self.n_grains = 0
 
-    def steps(self, min_voxels: int = 0) -> Iterator[tuple[int, int]]:
-        """Part all bodies of at least `min_voxels`; yields voxels done and voxels in all after each piece."""
-        wanted = np.flatnonzero(self._bodies.sizes >= min_voxels) + 1
-        total, done = int(self._bodies.sizes[wanted - 1].sum()), 0
-        for body in wanted.tolist():
-            size = int(self._bodies.sizes[body - 1])
-            for share in self._part(body, self._bodies.box(body)):
-                yield done + int(size * share), total
-            done += size
+    def steps(self, min_voxels: int = 0, run: ParallelMap = map) -> Iterator[tuple[int, int]]:
+        """Part all bodies of at least `min_voxels`; yields pieces done and pieces in all after each.
 
-    def _part(self, body: int, box: Box) -> Iterator[float]:
-        """Part one body; yields the share of it that is done."""
-        before, cores = self.n_grains, self._cores(box)
-        for done, core in enumerate(cores, start=1):
-            self._find_grains(body, box, core, before, whole=len(cores) == 1)
-            yield done / len(cores)
-        if len(cores) > 1:
-            for core in cores:
-                self._give_away_rest(body, grown(core, 1, box))
+        Parameters
+        ----------
+        run
+            Applies :func:`grains_of_tile` to tiles.
+        """
+        wanted = (np.flatnonzero(self._bodies.sizes >= min_voxels) + 1).tolist()
+        pieces = [piece for body in wanted for piece in self._pieces(body)]
+        total, done = len(pieces), 0
+        for piece in pieces if self._fill else ():
+            self._fill_pores(piece)
+            yield 0, total
+        left = pieces
+        for attempt in range(_ATTEMPTS):
+            trying, left = left, []
+            tiles = (self._tile(piece, attempt) for piece in trying)
+            for piece, found in zip(trying, run(grains_of_tile, tiles), strict=True):
+                if found is None:
+                    left.append(piece)
+                    continue
+                self._write(piece, self._numbers[self._outer(piece, attempt)], found)
+                done += 1
+                yield done, total
+        for piece in pieces:
+            if piece.core != piece.box:
+                self._give_away_rest(piece)
 
-    def _cores(self, box: Box) -> list[Box]:
+    def _pieces(self, body: int) -> list[_Piece]:
+        """The whole body, or tiles that hold some of it."""
+        box, step = self._bodies.box(body), self._tiles.core
         if n_voxels(box) <= self._tiles.largest or not self._settings.enabled:
-            return [box]
-        step = self._tiles.core
+            return [_Piece(body, box, box)]
         corners = product(*(range(side.start, side.stop, step) for side in box))
         high = [side.stop for side in box]
-        return [box_between(low, np.minimum(np.add(low, step), high).tolist()) for low in corners]
+        cores = (box_between(low, np.minimum(np.add(low, step), high).tolist()) for low in corners)
+        return [_Piece(body, box, core) for core in cores if self._is_body(self._numbers[core], body).any()]
 
-    def _find_grains(self, body: int, box: Box, core: Box, before: int, whole: bool) -> None:
-        """Find the grains whose peak lies in `core` and write them down."""
-        for attempt in range(_ATTEMPTS):
-            outer = box if whole else grown(core, self._tiles.margin * 2**attempt, box)
-            region = self._numbers[outer]
-            own = np.ascontiguousarray(self._is_body(region, body) | (region < -before))
-            if not own[within(core, outer)].any():
-                return
-            mask = own | (pores_filled(own) & (region == 0)) if self._fill else own
-            grains, sites = split(mask, self._edges, self._settings, self._continued(outer, box))
-            owned = _inside(sites, within(core, outer))
-            cut = _touching(grains, _ends(outer, box))
-            if outer == box or not owned[cut - 1].any():
-                break
-        self._write(region, grains, owned)
+    def _outer(self, piece: _Piece, attempt: int) -> Box:
+        return piece.outer(self._tiles.margin * 2**attempt)
+
+    def _fill_pores(self, piece: _Piece) -> None:
+        """Give pores the number of a voxel of their body."""
+        region = self._numbers[self._outer(piece, 0)]
+        own = np.ascontiguousarray(self._is_body(region, piece.body))
+        pores = pores_filled(own) & (region == 0)
+        if pores.any():
+            region[pores] = region[own][0]
+
+    def _tile(self, piece: _Piece, attempt: int) -> Tile:
+        outer = self._outer(piece, attempt)
+        region = self._numbers[outer]
+        mask = np.ascontiguousarray(self._is_body(region, piece.body) | self._is_grain_of(region, piece.body))
+        return Tile(
+            mask,
+            within(piece.core, outer),
+            self._edges,
+            self._settings,
+            self._continued(outer, piece.box),
+            _ends(outer, piece.box),
+            outer == piece.box or attempt == _ATTEMPTS - 1,
+        )
 
     def _is_body(self, region: NDArray[np.int32], body: int) -> BoolArray:
+        """Voxels of a body that belong to no grain yet."""
         return np.asarray(self._bodies.body_of[np.maximum(region, 0)] == body)
+
+    def _is_grain_of(self, region: NDArray[np.int32], body: int) -> BoolArray:
+        """Voxels of a body's grains."""
+        return np.asarray(self._body_of_grain[np.maximum(-region, 0)] == body)
 
     def _continued(self, outer: Box, box: Box) -> OpenEnds:
         """Ends at which grains may go on: the border of the scan, and where a tile cuts the body."""
@@ -209,20 +290,23 @@ class GrainSplitter:
         )
         return x, y, z
 
-    def _write(self, region: NDArray[np.int32], grains: IntArray, owned: BoolArray) -> None:
-        number = np.zeros(len(owned) + 1, dtype=np.int32)
-        number[1:][owned] = self.n_grains + 1 + np.arange(np.count_nonzero(owned))
-        new = number[grains]
-        free = (new > 0) & (region >= 0)
-        region[free] = -new[free]
-        self.n_grains += int(np.count_nonzero(owned))
+    def _write(self, piece: _Piece, region: NDArray[np.int32], grains: NDArray[np.int32]) -> None:
+        count = int(grains.max(initial=0))
+        stop = self.n_grains + count + 1
+        if stop > len(self._body_of_grain):
+            self._body_of_grain = np.concatenate([self._body_of_grain, np.zeros(stop, dtype=np.int64)])
+        self._body_of_grain[self.n_grains + 1 : stop] = piece.body
+        free = (grains > 0) & (region >= 0)
+        region[free] = -(grains[free] + self.n_grains)
+        self.n_grains += count
 
-    def _give_away_rest(self, body: int, box: Box) -> None:
-        """Voxels that no tile claimed go to the nearest grain."""
-        region = self._numbers[box]
-        rest = self._is_body(region, body)
+    def _give_away_rest(self, piece: _Piece) -> None:
+        """Voxels that no tile claimed go to the body's nearest grain."""
+        region = self._numbers[piece.outer(1)]
+        rest = self._is_body(region, piece.body)
         if rest.any():
-            nearest = _expand_labels(np.maximum(-region, 0), distance=float(self._tiles.core))
+            grains = np.where(self._is_grain_of(region, piece.body), -region, 0)
+            nearest = _expand_labels(grains, distance=float(self._tiles.core))
             region[rest] = -nearest[rest]
 
 

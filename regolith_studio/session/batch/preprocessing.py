@@ -95,7 +95,7 @@ def prepare_inputs(
     """
     volumes = []
     for entry in recipe.volumes:
-        volumes.append((yield from _extract_grains(entry, base, root, finished)))
+        volumes.append((yield from _extract_grains(entry, base, root, finished, executor)))
     model, problems = None, ()
     if recipe.population is not None and not is_card(recipe.population, base):
         model, problems = yield from _fit_population_model(recipe, recipe.population, base, root, executor)
@@ -156,7 +156,7 @@ def clear_prepared_inputs(prepared: PreparedInputs) -> None:
             path.unlink()
 
 
-def _extract_grains(entry: VolumeEntry, base: Path, root: Path, finished: bool) -> Steps:
+def _extract_grains(entry: VolumeEntry, base: Path, root: Path, finished: bool, executor: Executor) -> Steps:
     volume, settings = _volume_input(entry, base), _settings(entry, base)
     if not volume.path.exists():
         raise InputError(f"There is no volume {volume.path}.")
@@ -170,7 +170,7 @@ def _extract_grains(entry: VolumeEntry, base: Path, root: Path, finished: bool) 
         def keep(extracted: ExtractedParticle) -> None:
             rows[extracted.label] = _store_grain(stage, extracted)
 
-        done = yield from extract_each(volume, settings, root.parent, keep)
+        done = yield from extract_each(volume, settings, root.parent, keep, executor.map)
         (stage / RECIPE).write_bytes(json_bytes(recipe_document(volume, settings, done)))
         (stage / INDEX).write_bytes(json_bytes([rows[label] for label in sorted(rows)]))
     return folder
