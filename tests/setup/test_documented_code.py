@@ -21,6 +21,7 @@ from regolith_studio.session.recipe import Recipe
 ROOT = Path(__file__).resolve().parents[2]
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
 BLOCK = re.compile(r"^```(\w*)\n(.*?)^```", re.DOTALL | re.MULTILINE)
+INDENTED = re.compile(r"(?:^    regolith-studio .*\n)+", re.MULTILINE)
 SPAN = re.compile(r"`regolith-studio ([a-z][^`]*)`")
 ELSEWHERE = ("SLURMCluster", "on_cluster", ">>> ")
 """Code that needs a cluster, and the exercises, which are tested by themselves."""
@@ -31,9 +32,12 @@ LONG = ("study", "demo", "run")
 
 def blocks(kind: str) -> Iterator[tuple[str, str]]:
     for page in PAGES:
-        for language, text in BLOCK.findall(page.read_text(encoding="utf-8")):
+        content = page.read_text(encoding="utf-8")
+        for language, text in BLOCK.findall(content):
             if language == kind:
                 yield page.name, text
+        if not kind:
+            yield from ((page.name, text) for text in INDENTED.findall(content))
 
 
 def commands() -> list[tuple[str, list[str]]]:
