@@ -12,6 +12,8 @@ from regolith_studio.io.json_text import UNPRINTABLE
 
 Cell = str | int | float | None
 """What a table may hold; ``None`` and NaN stand for a missing value."""
+PLAIN_NUMBERS = 1e7
+"""Numbers below this are shown without an exponent of ten."""
 
 
 @dataclass(frozen=True)
@@ -145,4 +147,7 @@ def _plain(cell: object) -> Cell:
 def _printed(cell: Cell, digits: int) -> str:
     if cell is None:
         return ""
-    return f"{cell:.{digits}g}" if isinstance(cell, float) else str(cell)
+    if not isinstance(cell, float):
+        return str(cell)
+    text = f"{cell:.{digits}g}"
+    return f"{float(text):.0f}" if "e+" in text and abs(cell) < PLAIN_NUMBERS else text

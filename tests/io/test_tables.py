@@ -44,6 +44,11 @@ def test_that_numbers_are_printed_short(table):
     assert rows_as_text(table)[1] == ["cement, no. 1", "20", "0.125"]
 
 
+def test_that_only_very_large_numbers_have_an_exponent():
+    numbers = Table("volumes", (Column("a"), Column("b"), Column("c")), ((26_994.4, -1.5e4, 2.5e9),))
+    assert rows_as_text(numbers, digits=4)[1] == ["26990", "-15000", "2.5e+09"]
+
+
 @pytest.mark.parametrize(
     ("columns", "rows"),
     [("aa", ()), ("ab", ((1,),)), ("a", (([1],),))],

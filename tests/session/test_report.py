@@ -26,11 +26,13 @@ from regolith_studio.jobs.executor import Executor
 from regolith_studio.readers.particles import sample_particles
 from regolith_studio.resources import resource
 from regolith_studio.session.choices import Choices
+from regolith_studio.session.outputs.summary import html_table
 from regolith_studio.session.recipe import VolumeEntry, recipe_of
 from regolith_studio.session.report import heap_sections, write
 from regolith_studio.session.report.draft import ReportDraft, SectionSteps
 from regolith_studio.session.report.inputs import load_recipe_particles
 from regolith_studio.session.report.page import MAX_TRIANGLES, report_page
+from regolith_studio.session.report.pdf import column_groups
 from regolith_studio.session.report.sections import ReportFigure, ReportSection, error_table, interval_text
 from regolith_studio.session.report.settings import ReportSettings
 from regolith_studio.session.report.write import DOCUMENT, PAGE, PDF, WrittenReport, write_report
@@ -125,6 +127,24 @@ def test_that_the_page_needs_no_other_file(small: WrittenReport) -> None:
     assert "url(" not in text
     assert "3 particles &amp; more" in text
     assert "&lt;two&gt;" in text
+
+
+def test_that_text_stands_at_the_left_of_its_column_and_numbers_at_the_right() -> None:
+    rows = [["a", "x-1.stl", "4.07 (3.03 to 4.97)", "not given"], ["b", "x-2.stl", "0", "3"]]
+    table = html_table(["name", "file", "error", "paper"], [*rows, ["c", "", "-1e-05", "12, 13"]])
+    assert re.findall(r'<th class="text">(\w+)</th>', table) == ["name", "file"]
+    assert table.count('<td class="text">') == 6
+
+
+@pytest.mark.parametrize("letters", [30, 44, 200])
+def test_that_a_wide_table_of_the_pdf_is_cut_into_groups_of_whole_columns(letters: int) -> None:
+    widths = [10, 12, 4, 16, 8]
+    groups = column_groups(widths, letters)
+    assert [column for group in groups for column in group[1:]] == [1, 2, 3, 4]
+    for group in groups:
+        assert group[0] == 0
+        assert sum(widths[column] for column in group) + 2 * (len(group) - 1) <= letters
+    assert len(groups) == {30: 3, 44: 2, 200: 1}[letters]
 
 
 def test_that_page_and_document_name_settings_versions_and_hashes(

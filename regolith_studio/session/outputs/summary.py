@@ -1,6 +1,7 @@
 """The one-page summary of a run as HTML, with tables and pictures."""
 
 import math
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from html import escape
@@ -20,7 +21,7 @@ body { font: 15px/1.5 system-ui, sans-serif; max-width: 62rem; margin: 2rem auto
   padding: 0 1rem; color: #222 }
 table { border-collapse: collapse; margin: 0.5rem 0 1.5rem; font-variant-numeric: tabular-nums }
 th, td { border-bottom: 1px solid #ddd; padding: 0.2rem 0.7rem; text-align: right }
-th:first-child, td:first-child { text-align: left }
+th:first-child, td:first-child, .text { text-align: left }
 img { max-width: 100% } figure { margin: 1rem 0 2rem } figcaption { color: #555 }
 """
 _SHOWN = ("equivalent_radius", "surface_area", "sphericity", "min_diameter", "max_diameter", "aspect_ratio")
@@ -217,8 +218,21 @@ def _provenance(recipe: Recipe) -> str:
     )
 
 
+_NUMBER = re.compile(r"[-+]?[\d.,]+(e[-+]?\d+)?%?")
+
+
+def _is_text(cells: Sequence[str]) -> bool:
+    """Whether most cells that hold something do not begin with a number."""
+    words = [cell.split()[0] for cell in cells if cell.strip()]
+    return 2 * sum(_NUMBER.fullmatch(word) is not None for word in words) < len(words)
+
+
 def html_table(header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
-    """A table; the first column is text."""
-    head = "".join(f"<th>{escape(cell)}</th>" for cell in header)
-    body = "\n".join("<tr>" + "".join(f"<td>{escape(cell)}</td>" for cell in row) + "</tr>" for row in rows)
+    """A table; the first column, and others that are mostly no numbers, stand at the left."""
+    columns = zip(*rows, strict=True) if rows else [()] * len(header)
+    marks = [' class="text"' if _is_text(column) else "" for column in columns]
+    head = "".join(f"<th{mark}>{escape(cell)}</th>" for mark, cell in zip(marks, header, strict=True))
+    lines = [zip(marks, row, strict=True) for row in rows]
+    cells = ["".join(f"<td{mark}>{escape(cell)}</td>" for mark, cell in line) for line in lines]
+    body = "\n".join(f"<tr>{line}</tr>" for line in cells)
     return f"<table><thead><tr>{head}</tr></thead><tbody>\n{body}\n</tbody></table>"

@@ -5,12 +5,13 @@ from typing import Any
 
 import numpy as np
 
-from regolith_studio.coarsening.weights import JACCARD
+from regolith_studio.coarsening.methods import METHODS
+from regolith_studio.coarsening.weights import presets
 from regolith_studio.dataset.parameters import PAPER_COARSE_GRAINING, PAPER_FILL_HEIGHT
 from regolith_studio.dem.angle_of_repose import ReposeMeasurement
 from regolith_studio.dem.case import PreparedCase, ReposeCase, prepare
 from regolith_studio.dem.run_io import TIMES
-from regolith_studio.descriptors.catalogue import LOSS_KEYS
+from regolith_studio.descriptors.catalogue import CATALOGUE, LOSS_KEYS
 from regolith_studio.errors import InputError
 from regolith_studio.io.tables import Column, Table, write_table
 from regolith_studio.jobs.dataset_jobs import DatasetBuildResult, DatasetOptions, build_dataset_folder
@@ -62,7 +63,8 @@ def draw_polyhedra(draft: ReportDraft, title: str) -> SectionSteps:
 def _method(draft: ReportDraft) -> str:
     if draft.settings.method == "annealing":
         return "the simulated annealing of section 2.4"
-    return f"the method {draft.settings.method} in place of the annealing of section 2.4"
+    label = METHODS[draft.settings.method].label
+    return f"the method {label} in place of the annealing of section 2.4"
 
 
 def compare_losses(draft: ReportDraft, title: str) -> SectionSteps:
@@ -83,7 +85,11 @@ def compare_losses(draft: ReportDraft, title: str) -> SectionSteps:
             *([f"Requests that could not be met exactly, by loss: {unmet}."] if unmet else []),
             *(f"{name} was left out: {reason}" for name, reason in study.failures),
         ),
-        (ReportFigure(png_of(files, "coarsening_rmsre"), "RMSRE in percent for each set of weights."),),
+        (
+            ReportFigure(
+                png_of(files, "coarsening_rmsre"), "RMSRE in percent for each set of weights; IoU is J."
+            ),
+        ),
         (table,),
     )
 
@@ -113,9 +119,9 @@ def make_dataset(draft: ReportDraft, title: str) -> SectionSteps:
         (
             f"{len(built.dataset)} particles stand for all {len(draft.particles):,} (section 2.5), each as a "
             f"convex polyhedron of unit volume with a weight and the sizes of those that it stands for. They "
-            f"are coarsened with the weights of {settings.preset}; the largest relative error of a "
-            f"descriptor (Eq. 8) is {worst[0]:.2g}, of {worst[1]}. The folder {DATASET} holds them "
-            "as STL and JSON.",
+            f"are coarsened with the preset {presets()[settings.preset].label}; the largest relative error "
+            f"of a descriptor (Eq. 8) is {worst[0]:.2g}, of the {CATALOGUE[worst[1]].label.lower()}. The "
+            f"folder {DATASET} holds them as STL and JSON.",
         ),
         tables=(representatives_table(built),),
     )
@@ -136,8 +142,8 @@ def representatives_table(built: DatasetBuildResult) -> Table:
         for each in built.dataset.representatives
     )
     names = ("name", "weight", "particles")
-    columns = (*map(Column, names), Column("diameter", "um"), *map(Column, ("facets", "triangles", JACCARD)))
-    return Table("Representative particles; diameters of the mean volume", columns, rows)
+    columns = (*map(Column, names), Column("diameter", "um"), *map(Column, ("facets", "triangles", "J")))
+    return Table("Representatives: diameters of the mean volume, and Jaccard distances J", columns, rows)
 
 
 def show_parameters(draft: ReportDraft, title: str) -> SectionSteps:

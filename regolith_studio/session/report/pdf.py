@@ -18,10 +18,14 @@ PAGE = (8.27, 11.69)
 MARGIN = 0.8
 POINT = 1 / 72
 LEADING = 1.4
-TEXT_SIZE, HEADING_SIZE, TITLE_SIZE, TABLE_SIZE = 9.0, 13.0, 18.0, 7.5
+LINE = PAGE[0] - 2 * MARGIN
+"""Width of the text in inches."""
+TEXT_SIZE, HEADING_SIZE, TITLE_SIZE, TABLE_SIZE, MIN_TABLE_SIZE = 9.0, 13.0, 18.0, 7.5, 6.5
 """In points."""
 LETTER, MONO_LETTER = 0.55, 0.605
 """Mean width of a letter as a share of the size of the type."""
+GAP = "  "
+"""Between the columns of a table."""
 MAX_PICTURE = 6.0
 """Height of a picture in inches."""
 
@@ -44,6 +48,26 @@ def write_report_pdf(sections: Sequence[ReportSection], path: Path) -> None:
         flow.close()
 
 
+def column_groups(widths: Sequence[int], letters: int) -> list[list[int]]:
+    """Columns of a table that fit beside each other; each group begins with the first column.
+
+    Parameters
+    ----------
+    widths
+        Of the columns in letters.
+    letters
+        Width of a line; a column that is too wide for it even alone gets a group of its own.
+    """
+    groups, used = [[0]], widths[0]
+    for column, width in enumerate(widths[1:], start=1):
+        if used + len(GAP) + width > letters and len(groups[-1]) > 1:
+            groups.append([0])
+            used = widths[0]
+        groups[-1].append(column)
+        used += len(GAP) + width
+    return groups
+
+
 class _PageFlow:
     """Fills pages from top to bottom."""
 
@@ -58,28 +82,29 @@ class _PageFlow:
 
     def text(self, text: str, size: float, keep: float = 0.0) -> None:
         """Wrapped lines; with `keep` on a new page where so many inches do not follow on this one."""
-        width = int((PAGE[0] - 2 * MARGIN) / (LETTER * size * POINT))
+        width = int(LINE / (LETTER * size * POINT))
         self._make_room(keep)
         for line in textwrap.wrap(text, width):
             self._line(line, size)
         self._used += 0.5 * size * POINT
 
     def table(self, table: Table) -> None:
-        """Columns in a fixed-width type, as large as fits."""
+        """Columns in a fixed-width type, one group of columns below the other where they do not fit."""
         lines = rows_as_text(table)
         widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
-        shown = ["  ".join(c.ljust(w) for c, w in zip(line, widths, strict=True)) for line in lines]
-        widest = (PAGE[0] - 2 * MARGIN) / (MONO_LETTER * POINT * max(map(len, shown)))
         self.text(table.title, TEXT_SIZE, keep=1.0)
-        for line in shown:
-            self._line(line, min(TABLE_SIZE, widest), family="monospace")
-        self._used += TEXT_SIZE * POINT
+        for part in column_groups(widths, int(LINE / (MONO_LETTER * MIN_TABLE_SIZE * POINT))):
+            shown = [GAP.join(line[k].ljust(widths[k]) for k in part) for line in lines]
+            size = min(TABLE_SIZE, LINE / (MONO_LETTER * POINT * max(map(len, shown))))
+            for line in shown:
+                self._line(line, size, family="monospace")
+            self._used += TEXT_SIZE * POINT
 
     def picture(self, figure: ReportFigure) -> None:
         """A picture and its caption, on one page."""
         image = imread(figure.file)
         height, width = (pixels / DOTS_PER_INCH for pixels in image.shape[:2])
-        scale = min(1.0, (PAGE[0] - 2 * MARGIN) / width, MAX_PICTURE / height)
+        scale = min(1.0, LINE / width, MAX_PICTURE / height)
         height, width = scale * height, scale * width
         self._make_room(height + 0.6)
         bottom = PAGE[1] - self._used - height

@@ -24,7 +24,7 @@ from regolith_studio.session.report.sections import (
     png_of,
     selected_columns,
 )
-from regolith_studio.shape_models.models import DEFAULT_MODEL
+from regolith_studio.shape_models.models import DEFAULT_MODEL, MODELS
 from regolith_studio.studies.lmax import DEFAULT_DEGREES, enough_degrees, rmsre_table
 from regolith_studio.studies.population_distances import CONFIDENCE
 from regolith_studio.studies.population_tables import PAPERS_MODEL, PAPERS_PAIRS, distance_table
@@ -96,10 +96,16 @@ def draw_degrees(draft: ReportDraft, title: str) -> SectionSteps:
 
     picture, _ = write_degrees(surfaces, draft.folder / "degrees")
     rows = tuple((d, (d + 1) ** 2, 100 * fit.truncated(d).radial_error) for d in degrees)
-    columns = (Column("l_max"), Column("coefficients"), Column("radial_error", "%"))
+    columns = (Column("l_max"), Column("coefficients"), Column("error", "%"))
     table = Table("Error of the radius, root mean square over all directions", columns, rows)
     write_table(table, draft.folder / "degrees", "degrees")
     hidden = fit.hidden_surface_share
+    seen = (
+        f"{hidden:.1%} of the surface cannot be seen from the star point; there the radius keeps the volume "
+        "and not the form."
+        if hidden
+        else "The whole surface can be seen from the star point."
+    )
     turned = {particle.name: particle.mesh, f"l_max = {draft.settings.l_max}": cut[draft.settings.l_max]}
     return ReportSection(
         title,
@@ -107,8 +113,7 @@ def draw_degrees(draft: ReportDraft, title: str) -> SectionSteps:
             f"The distance of the surface of {particle.name} from its star point is expanded in real "
             f"spherical harmonics (Eq. 3) up to degree {FIT_DEGREE} and cut at l_max (Eq. 4). At l_max = "
             f"{draft.settings.l_max} the radius is off by "
-            f"{fit.truncated(draft.settings.l_max).radial_error:.1%} of its mean. {hidden:.1%} of the "
-            "surface cannot be seen from the star point; there the radius keeps the volume and not the form.",
+            f"{fit.truncated(draft.settings.l_max).radial_error:.1%} of its mean. {seen}",
             *fit.notes,
         ),
         (ReportFigure(picture, f"{particle.name} and its expansion cut at several degrees l_max."),),
@@ -164,27 +169,16 @@ def compare_population(draft: ReportDraft, title: str) -> SectionSteps:
         seed=settings.seed,
     )
     files = STUDIES["population_study"].write(study, draft.folder / "population")
-    names = (
-        "model",
-        "weighting",
-        "descriptor",
-        "wasserstein",
-        "wasserstein_low",
-        "wasserstein_high",
-        "floor",
-    )
-    table = selected_columns(
-        distance_table(study), names, "Wasserstein distances of drawn from measured particles, of the mean"
-    )
+    table = shown_distances(distance_table(study))
     return ReportSection(
         title,
         (
             f"Two models are fitted to random halves of {len(study.measured):,} particles (number of halves: "
             f"{settings.splits}), and {study.n_draws:,} particles with l_max = {settings.l_max} are drawn "
-            f"from each fit and compared with the other half: {PAPERS_MODEL} is the Gaussian random field of "
-            f"section 2.3, {DEFAULT_MODEL} is matched to the sample. Distances are shares of the measured "
-            "mean; the floor is the distance between random halves of the sample, below which nothing can be "
-            "told apart.",
+            f"from each fit and compared with the other half: {MODELS[PAPERS_MODEL].label} is the Gaussian "
+            f"random field of section 2.3, {MODELS[DEFAULT_MODEL].label} is matched to the sample. Distances "
+            "are shares of the measured mean; the floor is the distance between random halves of the sample, "
+            "below which nothing can be told apart.",
             _nearest(table),
             *source.notes,
         ),
@@ -200,11 +194,33 @@ def compare_population(draft: ReportDraft, title: str) -> SectionSteps:
     )
 
 
+def shown_distances(table: Table) -> Table:
+    """The distances with the names of models and descriptors that the figures have."""
+    names = (
+        "model",
+        "weighting",
+        "descriptor",
+        "wasserstein",
+        "wasserstein_low",
+        "wasserstein_high",
+        "floor",
+    )
+    chosen = selected_columns(table, names, "")
+    rows = tuple(
+        (MODELS[str(model)].label, by, CATALOGUE[str(key)].label, *values)
+        for model, by, key, *values in chosen.rows
+    )
+    columns = map(Column, ("model", "by", "descriptor"))
+    numbers = (Column(name, "%") for name in ("distance", "low", "high", "floor"))
+    title = "Wasserstein distances of drawn from measured particles, of the mean"
+    return Table(title, (*columns, *numbers), rows)
+
+
 def _nearest(table: Table) -> str:
     """The distances of the aspect ratio by number, in a sentence."""
     found = [
         f"{interval_text(mean, low, high)} % for {model}"
-        for model, weighting, key, mean, low, high, _ in table.rows
-        if (weighting, key) == ("number", "aspect_ratio")
+        for model, by, label, mean, low, high, _ in table.rows
+        if (by, label) == ("number", CATALOGUE["aspect_ratio"].label)
     ]
     return f"The distance of the aspect ratio, by number, is {' and '.join(found)}."
