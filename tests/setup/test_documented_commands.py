@@ -36,16 +36,17 @@ NAMES = {
     "resources/samples/ct/synthetic-grey.tif": str(ROOT / "resources/samples/ct/synthetic-grey.tif"),
 } | {f"{name}.txm": f"{name}.tif" for name in ("scan", "a", "b", "c")}
 """Words of the pages, and what stands for them here."""
-FEWER = {"-n": "8", "--particles": "150", "--representatives": "3"}
+FEWER = {"-n": "8", "--particles": "300", "--representatives": "3"}
 """Numbers of options that would take minutes."""
 MORE = {
     "report": ["--heap", "0", "--study-particles", "3", "--splits", "1", "--drawn", "1"],
-    "repose run": ["--coarse-graining", "12"],
     "study population": ["--splits", "1"],
 }
 """Options that make a command quick."""
 CROWD = ("report", "study population")
 """Commands that want 20 particles."""
+SAMPLES = ("grains", "grains/", "sample", "sample.json")
+"""What they are given on the pages."""
 FIRST = {
     "exporters.md": "dataset build grains -o SET",
     "segmentation.md": "extract scan.tif -o balls --labels labels.nrrd",
@@ -93,7 +94,7 @@ def adapted(words: list[str]) -> list[str]:
     done = [NAMES.get(word, word) for word in words]
     said = " ".join(done)
     if said.startswith(CROWD):
-        done = ["crowd" if word.rstrip("/").removesuffix(".json") == "grains" else word for word in done]
+        done = ["crowd" if word in SAMPLES else word for word in done]
     for option, number in FEWER.items():
         if option in done:
             done[done.index(option) + 1] = number
