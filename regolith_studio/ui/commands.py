@@ -3,7 +3,10 @@
 import dataclasses
 from collections.abc import Callable, Sequence
 from pathlib import Path
+from shutil import rmtree
+from tempfile import mkdtemp
 from typing import TypeVar
+from weakref import finalize
 
 from PySide6.QtCore import QObject
 from PySide6.QtGui import QGuiApplication
@@ -30,6 +33,7 @@ from regolith_studio.session.provenance import (
     VolumeSource,
 )
 from regolith_studio.session.recipe import DatasetRequest, Recipe, read_recipe
+from regolith_studio.session.results import ParticleEntry
 from regolith_studio.session.session import Session
 from regolith_studio.session.verdict import cost_of_imitating_the_fit
 from regolith_studio.ui.dialogs.add_or_replace import ADD, REPLACE, ask_add_or_replace
@@ -89,6 +93,7 @@ class Commands(QObject):
         self.openers: dict[FileKind, Callable[[Path], object]] = {FileKind.RECIPE: self._open_recipe}
         self._export: ExportDialog | None = None
         self._export_task = 0
+        self._models: Path | None = None
         self._before: Recipe | None = None
         self._after: Recipe | None = None
 
@@ -166,8 +171,8 @@ class Commands(QObject):
             for each in entries
         ]
         moved = [dataclasses.replace(each, ref=ref) for each, ref in zip(entries, refs, strict=True)]
-        kept = SessionRecipe.of(moved, self._session.choices)
-        if kept.without_source or kept.model:
+        recipe = self._to_reopen(moved)
+        if recipe is None:
             self._toast.problem(
                 tr("Close the particles that came from no file first: they cannot be reopened.")
             )
@@ -176,7 +181,7 @@ class Commands(QObject):
             self._preferences.add_recent(path, unit)
         self._preferences.save()
         self._remember_open()
-        self._try(lambda: self._session.open_recipe(kept.recipe, Path.cwd(), keep_selected=True))
+        self._try(lambda: self._session.open_recipe(recipe, Path.cwd(), keep_selected=True))
 
     def save_recipe(self) -> None:
         """Ask for a file and write the present choices into it."""
@@ -229,7 +234,7 @@ class Commands(QObject):
         if self._session.can_undo or self._before is None:
             self._session.undo()
             return
-        before, self._before, self._after = self._before, None, self._reopening()
+        before, self._before, self._after = self._before, None, self._to_reopen(self._session.particles)
         self._reopen(before)
 
     def redo(self) -> None:
@@ -237,7 +242,7 @@ class Commands(QObject):
         if self._session.can_redo or not self.can_redo:
             self._session.redo()
             return
-        after, self._after, self._before = self._after, None, self._reopening()
+        after, self._after, self._before = self._after, None, self._to_reopen(self._session.particles)
         self._reopen(after)
 
     @property
@@ -253,12 +258,23 @@ class Commands(QObject):
     def _remember_open(self) -> None:
         """Keep how to reopen the particles that are about to be closed."""
         if self._session.particles:
-            self._before, self._after = self._reopening(), None
+            self._before, self._after = self._to_reopen(self._session.particles), None
 
-    def _reopening(self) -> Recipe | None:
-        """How to reopen the open particles; ``None`` where some came from no file."""
-        kept = SessionRecipe.of(self._session.particles, self._session.choices)
-        return None if kept.without_source or kept.model else kept.recipe
+    def _to_reopen(self, entries: Sequence[ParticleEntry]) -> Recipe | None:
+        """How to reopen these particles; ``None`` where some came neither from a file nor from a model."""
+        kept = SessionRecipe.of(entries, self._session.choices)
+        return None if kept.without_source else self._try(lambda: self._with_model(kept))
+
+    def _with_model(self, kept: SessionRecipe) -> Recipe:
+        """A recipe whose model, if it has one, has been written into a temporary folder."""
+        if kept.model is None:
+            return kept.recipe
+        if self._models is None:
+            self._models = Path(mkdtemp(prefix="regolith-studio-"))
+            finalize(self, rmtree, self._models, ignore_errors=True)
+        recipe, models = kept.files_for(self._models / "open.json", absolute_path=True)
+        write_files(models)
+        return recipe
 
     def _reopen(self, recipe: Recipe | None) -> None:
         if recipe is not None:

@@ -2088,6 +2088,10 @@
         <translation>Fits</translation>
     </message>
     <message>
+        <source>Fits the model first where that has not been done.</source>
+        <translation>Passt das Modell zuerst an, wenn das noch nicht geschehen ist.</translation>
+    </message>
+    <message>
         <source>Fits, models and material cards (*.json);;All files (*)</source>
         <translation>Fits, Modelle und Materialkarten (*.json);;Alle Dateien (*)</translation>
     </message>
@@ -5680,8 +5684,8 @@
         <translation>Es gibt keine Partikel zur Auswahl: öffnen Sie zuerst welche.</translation>
     </message>
     <message>
-        <source>There are no representatives yet: press Find representatives first.</source>
-        <translation>Es gibt noch keine Repräsentanten: drücken Sie zuerst „Repräsentanten finden“.</translation>
+        <source>There are too few particles to choose from: open two or more.</source>
+        <translation>Es gibt zu wenige Partikel zur Auswahl: öffnen Sie zwei oder mehr.</translation>
     </message>
     <message>
         <source>There is a folder {folder} already. Replace the dataset in it?</source>

@@ -106,6 +106,22 @@ def test_that_a_new_user_gets_to_a_rocky_script_and_a_yade_run(chosen, wait, tmp
     assert chosen.session.dataset_folder == folder
 
 
+def test_that_building_finds_the_representatives_first(page, wait, tmp_path, monkeypatch) -> None:
+    monkeypatch.setattr(FolderDialog, "ask", lambda *_: str(tmp_path))
+    page.session.adopt(grains())
+    wait(lambda: page.folder.build.isEnabled())
+    page.representatives.count.setValue(3)
+    page.sizes.set_text("classes:abc, -5")
+    assert not page.folder.build.isEnabled()
+    page.sizes.set_text("measured")
+    QTest.mouseClick(page.folder.build, Qt.MouseButton.LeftButton)
+    wait(lambda: page.targets.export.isEnabled())
+    assert len(read_dataset(tmp_path / "regolith")) == 3
+    QTest.mouseClick(page.representatives.start, Qt.MouseButton.LeftButton)
+    wait(lambda: not all(one.coarsened for one in page.gallery.shown))
+    assert not list((tmp_path / "regolith").glob("*.tmp")), "finding them again builds nothing"
+
+
 def test_that_the_curve_falls_and_the_slider_chooses_among_its_points(chosen, wait) -> None:
     means = [point.mean for point in chosen.quality.points]
     assert len(means) == 7
@@ -232,13 +248,14 @@ def test_that_other_particles_forget_the_choice(chosen, wait) -> None:
     chosen.session.adopt(grains(5, first=30))
     wait(lambda: not chosen.gallery.shown)
     assert chosen.quality.is_empty()
-    assert not chosen.folder.build.isEnabled()
     assert chosen.representatives.count.slider.maximum() == 5
 
 
 def test_that_a_page_without_particles_says_what_to_do(page) -> None:
     assert "No particles are open" in page.representatives.population.text()
     assert not page.representatives.start.isEnabled()
+    assert not page.folder.build.isEnabled()
+    assert "open two or more" in page.folder.build.toolTip()
     page.find_representatives()
     page.build_dataset()
     page.export()

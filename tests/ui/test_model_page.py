@@ -10,6 +10,8 @@ from PySide6.QtWidgets import QFileDialog, QWidget
 
 from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.descriptors.distributions import Distribution
+from regolith_studio.geometry.particle import Particle
+from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.harmonics.coefficients import degrees
 from regolith_studio.jobs.runners.run_job import InlineRunner
 from regolith_studio.messages import Message
@@ -151,6 +153,41 @@ def test_that_particles_are_drawn_in_the_range_shown_and_taken_over(page, wait):
     wait(lambda: page.source.source.itemText(0) == "Open particles (4)")
 
 
+def test_that_drawing_fits_the_selected_source_first_and_goes_on_after_its_draws_are_opened(page):
+    page.source.choose_source("ma165")
+    page.drawing.setValue({"n": 4})
+    page.drawing.draw.click()
+    assert (page._fitted.source.name, len(page._drawn.draws)) == ("ma165", 4)
+    fitted = page._fitted
+    page.drawing.setValue({"n": 3, "seed": 5})
+    page.drawing.draw.click()
+    assert page._fitted is fitted, "number and seed ask for no other fit"
+    take(page, rough_sample())
+    page.drawing.draw.click()
+    assert (page._fitted.source.name, page._fitted.n_fitted) == ("rough", 30)
+    page.source.half.setChecked(True)
+    page.drawing.draw.click()
+    assert page._fitted.n_fitted == 15
+
+
+def test_that_particles_drawn_from_open_ones_and_opened_are_not_fitted_instead_of_them(page, wait):
+    session = page._context.session
+    session.adopt([Particle(f"ball-{n}", icosphere(2).moved(scale=10.0 + n)) for n in range(3)])
+    page.source.choose_source("open")
+    page.drawing.setValue({"n": 2})
+    wait(page.drawing.draw.isEnabled)
+    page.drawing.draw.click()
+    fitted = page._fitted
+    page._context.commands.adopt = lambda made, origin: session.adopt(made, origin=origin) or True
+    page.drawing.adopt.click()
+    wait(lambda: page.source.source.itemText(0) == "Open particles (2)")
+    page.drawing.draw.click()
+    assert page._fitted is fitted
+    session.adopt([Particle(f"egg-{n}", icosphere(2).moved(scale=10.0 + n)) for n in range(4)])
+    page.drawing.draw.click()
+    assert page._fitted.n_fitted == 4
+
+
 @pytest.mark.slow
 def test_that_models_are_judged_on_the_sample_that_was_fitted(page):
     take(page, rough_sample())
@@ -218,7 +255,7 @@ def test_that_what_cannot_be_done_is_said(page):
     page.commands()["save_card"]()
     assert [sentence.split(":")[0] for sentence in said] == [
         "No particle is open",
-        "There is no model to draw from",
+        "No particle is open",
         "There are no drawn particles yet",
         "Models are evaluated on measured particles",
         "There is no model to save",

@@ -126,18 +126,19 @@ class Newcomer:
         self.press(next(each for each in buttons if each.isVisible() and each.text().startswith(words)))
 
     def answer(self, path, act):
-        """Do what asks for a file, paste its path and accept: two interactions more."""
+        """Do what asks for a file, paste its path (``None`` for the suggested one) and accept."""
         timer, written = QTimer(interval=50), []
 
         def look():
             dialog = next((each for each in self._dialogs() if isinstance(each, QFileDialog)), None)
             if dialog is not None and not written:
                 written.append(path)
-                line = dialog.findChild(QLineEdit)
-                line.selectAll()
-                QApplication.clipboard().setText(str(path))
-                QTest.keySequence(line, "Ctrl+V")
-                self.done()
+                if path is not None:
+                    line = dialog.findChild(QLineEdit)
+                    line.selectAll()
+                    QApplication.clipboard().setText(str(path))
+                    QTest.keySequence(line, "Ctrl+V")
+                    self.done()
                 box = dialog.findChild(QDialogButtonBox)
                 self.press(next(each for each in box.buttons() if each.isDefault()))
             unit = next((each for each in self._dialogs() if isinstance(each, UnitDialog)), None)
@@ -306,15 +307,31 @@ def test_that_a_lesson_plays_its_steps_with_their_formulas(newcomer):
 @pytest.mark.slow
 def test_that_ten_shapes_are_exported_for_two_programs(newcomer, tmp_path):
     newcomer.click(QWidget, "page_dataset")
-    newcomer.click(QPushButton, "dataset_find")
-    newcomer.rest()
     newcomer.answer(tmp_path, lambda: newcomer.click(QPushButton, "dataset_build"))
     newcomer.rest()
-    newcomer.answer(tmp_path, lambda: newcomer.click(QPushButton, "dataset_export"))
+    newcomer.answer(None, lambda: newcomer.click(QPushButton, "dataset_export"))
     newcomer.rest()
     folder = newcomer.window.session.dataset_folder
     assert folder.parent == tmp_path
     assert len(read_dataset(folder)) == 10
     assert list(validate_dataset(folder)) == []
     assert len(list((tmp_path / "rocky" / "meshes").glob("*.stl"))) == 10
+    assert list((tmp_path / "yade").glob("*.py"))
+
+
+@pytest.mark.slow
+def test_that_drawn_particles_are_exported_for_two_programs(newcomer, tmp_path):
+    newcomer.click(QWidget, "page_model")
+    newcomer.click(QPushButton, "model_draw")
+    newcomer.rest()
+    newcomer.click(QPushButton, "model_adopt")
+    newcomer.rest()
+    newcomer.click(QWidget, "page_dataset")
+    newcomer.answer(tmp_path, lambda: newcomer.click(QPushButton, "dataset_build"))
+    newcomer.rest()
+    newcomer.answer(None, lambda: newcomer.click(QPushButton, "dataset_export"))
+    newcomer.rest()
+    dataset = read_dataset(newcomer.window.session.dataset_folder)
+    assert sum(one.n_members for one in dataset.representatives) == 100
+    assert list((tmp_path / "rocky").glob("*.py"))
     assert list((tmp_path / "yade").glob("*.py"))

@@ -10,10 +10,13 @@ from PySide6.QtWidgets import QApplication, QDialog, QWidget
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.io.stl import stl_bytes
+from regolith_studio.jobs.model_jobs import GenerationRequest, draw_shapes, fit_shapes, make_particles
 from regolith_studio.jobs.runners.run_job import InlineRunner
+from regolith_studio.readers.shape_files import ShapeSource
 from regolith_studio.resources import guide_folder
-from regolith_studio.session.provenance import SampleSource
+from regolith_studio.session.provenance import SampleSource, VirtualSource
 from regolith_studio.session.session import Session
+from regolith_studio.shape_models.sample import Sample
 from regolith_studio.ui.commands import Commands
 from regolith_studio.ui.dialogs.guide import PAGES, as_markdown
 from regolith_studio.ui.dialogs.unit import UnitDialog
@@ -133,6 +136,41 @@ def test_that_particles_of_a_page_ask_before_they_replace_those_of_a_file_and_ca
     commands.adopt([Particle("drawn", icosphere(1))], origin)
     assert commands.adopt([Particle("again", icosphere(1))], origin)  # nothing is asked: no file is closed
     assert names(session) == ["again"]
+
+
+def drawn(n=3):
+    """Particles drawn from a fitted model, and their origin, as the page Shape model hands them over."""
+    rng = np.random.default_rng(0)
+    rows = rng.normal(size=(12, 9)) * 0.05
+    rows[:, 0] = 10 * np.sqrt(4 * np.pi)
+    request = GenerationRequest(n=n, l_max=2)
+    fitted = outcome(fit_shapes(ShapeSource(Sample(rows), "rough", "0" * 64), request))
+    found = outcome(draw_shapes(fitted.model, request))
+    origin = VirtualSource.of(found, fitted, 3)
+    return outcome(make_particles(found.draws, found.model, origin.population.name, 3)), origin
+
+
+def outcome(steps):
+    while True:
+        try:
+            next(steps)
+        except StopIteration as end:
+            return end.value
+
+
+def test_that_drawn_particles_that_were_replaced_come_back_by_undo(opening, tmp_path):
+    commands, session, _ = opening
+    made, origin = drawn()
+    session.adopt(made, origin=origin)
+    press("opening_replace")
+    commands.open_paths([write_ball(tmp_path / "b" / "two.stl", 30.0)], "mm")
+    assert names(session) == ["two"]
+    commands.undo()
+    assert names(session) == [each.name for each in made]
+    for entry, particle in zip(session.particles, made, strict=True):
+        np.testing.assert_array_equal(entry.particle.mesh.vertices, particle.mesh.vertices)
+    commands.redo()
+    assert names(session) == ["two"]
 
 
 def test_that_a_unit_is_changed_afterwards_and_undo_goes_back(opening, monkeypatch, tmp_path):

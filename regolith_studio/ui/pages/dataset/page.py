@@ -77,6 +77,7 @@ class DatasetPage(PageWidget):
         self._folder: Path | None = None
         self._exports: list[ExportResult] = []
         self._opened: DatasetRequest | None = None
+        self._to_build: tuple[Path, bool] | None = None
 
     def build(self) -> None:
         self.representatives, self.sizes = RepresentativesPanel(), SizesPanel()
@@ -140,10 +141,14 @@ class DatasetPage(PageWidget):
 
     def find_representatives(self) -> None:
         """Choose representatives for many numbers, and draw the curve."""
+        self._find()
+
+    def _find(self, to_build: tuple[Path, bool] | None = None) -> None:
+        """Choose representatives; then build their dataset in a folder, if one is given."""
         if not self._particles:
             self._context.toast.problem(tr("There are no particles to choose from: open some first."))
             return
-        self._points = []
+        self._points, self._to_build = [], to_build
         known = self._survey.population if self._survey else None
         job = Job(survey_representatives, (self._particles, self.representatives.request(), known))
         self._context.start(
@@ -167,9 +172,12 @@ class DatasetPage(PageWidget):
         self.build_in(folder, replaced)
 
     def build_in(self, folder: Path, overwrite: bool = False) -> None:
-        """Coarsen the representatives and write the dataset into `folder`."""
+        """Coarsen the representatives, which are found where there are none, and write the dataset."""
         session, survey_now = self._context.session, self._survey
-        if self._chosen is None or survey_now is None or self.sizes.sizing() is None:
+        if self.sizes.sizing() is None:
+            return
+        if self._chosen is None or survey_now is None:
+            self._find(to_build=(folder, overwrite))
             return
         preset = None if session.choices.preset_modified else session.choices.preset
         options = DatasetOptions(
@@ -260,11 +268,12 @@ class DatasetPage(PageWidget):
     def _show_particles(self) -> None:
         now = tuple(entry.particle for entry in self._context.session.particles)
         if now != self._particles:
-            self._particles, self._survey, self._chosen = now, None, None
+            self._particles, self._survey, self._chosen, self._to_build = now, None, None, None
             self._context.stop(FIND)
             self.quality.show_curve(None)
             self._show_chosen()
         self.representatives.show_population(len(now))
+        self._enable_build()
 
     def _show_point(self, point: QualityPoint) -> None:
         self._points.append(point)
@@ -295,6 +304,9 @@ class DatasetPage(PageWidget):
     def _take_chosen(self, chosen: ChosenParticles) -> None:
         self._chosen = chosen
         self._show_chosen()
+        to_build, self._to_build = self._to_build, None
+        if to_build is not None:
+            self.build_in(*to_build)
 
     def _show_chosen(self) -> None:
         self._dataset = None
@@ -318,8 +330,8 @@ class DatasetPage(PageWidget):
     def _enable_build(self) -> None:
         """Let the dataset be built, or say at the button why it cannot."""
         reason = self.sizes.reason()
-        if self._chosen is None:
-            reason = tr("There are no representatives yet: press Find representatives first.")
+        if not self.representatives.start.isEnabled():
+            reason = tr("There are too few particles to choose from: open two or more.")
         self.folder.build.setEnabled(not reason)
         self.folder.build.setToolTip(reason)
 

@@ -195,7 +195,7 @@ class DrawControls(QWidget):
         self.draw.clicked.connect(self.drawRequested)
         self.adopt.clicked.connect(self.adoptRequested)
         self._limit(False)
-        self.set_ready(model=False, drawn=False)
+        self.set_ready(source=False, drawn=False)
         self.show_names(())
 
     def show_names(self, names: tuple[str, ...]) -> None:
@@ -208,9 +208,9 @@ class DrawControls(QWidget):
         names = tuple(name.strip() for name in self.names.text().split(",") if name.strip())
         self.namesChanged.emit(names)
 
-    def set_ready(self, *, model: bool, drawn: bool) -> None:
-        """Set whether there is a model, and whether particles have been drawn."""
-        self.draw.setEnabled(model)
+    def set_ready(self, *, source: bool, drawn: bool) -> None:
+        """Set whether there is something to fit a model to, and whether particles have been drawn."""
+        self.draw.setEnabled(source)
         self.adopt.setEnabled(drawn)
 
     def value(self) -> dict[str, Any]:
@@ -265,6 +265,7 @@ class DrawControls(QWidget):
         self.names.setToolTip(
             tr("Constituents of the mixture, separated by commas, the most numerous first.")
         )
+        self.draw.setToolTip(tr("Fits the model first where that has not been done."))
         self.adopt.setToolTip(tr("Open the drawn particles: to be coarsened and made a dataset."))
 
     def _place(self) -> None:

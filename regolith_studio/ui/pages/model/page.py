@@ -35,7 +35,7 @@ from regolith_studio.ui.pages.model.controls import DrawControls, SourceControls
 from regolith_studio.ui.pages.model.distributions import DistributionsPanel
 from regolith_studio.ui.pages.model.evaluation_panel import EvaluationPanel
 from regolith_studio.ui.pages.model.files import save_card, save_model
-from regolith_studio.ui.pages.model.source_box import SourceBox, usual_sizes
+from regolith_studio.ui.pages.model.source_box import OPEN_PARTICLES, SourceBox, usual_sizes
 from regolith_studio.ui.pages.model.views import LiveShape, ShapeGallery
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import tr
@@ -60,6 +60,7 @@ class ModelPage(PageWidget):
         self._sources = SourceBox(context.session)
         self._fitted: ModelFitResult | None = None
         self._model: FittedModel | None = None
+        self._fitted_to: tuple[object, ...] = ()
         self._drawn: GenerationResult | None = None
         self._live_seed = 0
         self._following = LatestJob(context, tr("Drawing particles"), "live")
@@ -141,7 +142,7 @@ class ModelPage(PageWidget):
         self._try(self._fit)
 
     def draw(self) -> None:
-        """Draw the particles."""
+        """Draw the particles; fit the model first unless it is fitted to what is selected."""
         self._try(self._draw)
 
     def another(self) -> None:
@@ -195,15 +196,33 @@ class ModelPage(PageWidget):
 
     # --- work ----------------------------------------------------------------------------------
 
-    def _fit(self) -> None:
-        origin = self._sources.origin(self.source.value()["source"])
-        request = self._request()
-        job = Job(fit_shapes, (origin, request, bool(self.source.value()["half"])))
-        self._context.start(tr("Fitting a model of shapes"), job, self._show_fitted, lane="fit")
+    def _fit(self, then: Callable[[], None] = lambda: None) -> None:
+        origin, fitted_to = self._sources.origin(self.source.value()["source"]), self._to_fit()
+        job = Job(fit_shapes, (origin, self._request(), bool(self.source.value()["half"])))
+
+        def show(fitted: ModelFitResult) -> None:
+            self._fitted_to = fitted_to
+            self._show_fitted(fitted)
+            then()
+
+        self._context.start(tr("Fitting a model of shapes"), job, show, lane="fit")
+
+    def _to_fit(self) -> tuple[object, ...]:
+        """What a fit depends on; drawn particles that are open count as those that they were drawn from."""
+        chosen, request = self.source.value(), self._request()
+        seed = request.seed if chosen["half"] else 0
+        entries = self._context.session.particles if chosen["source"] == OPEN_PARTICLES else ()
+        drawn = bool(entries) and all(e.ref and isinstance(e.ref.origin, VirtualSource) for e in entries)
+        particles = self._fitted_to[-1:] if drawn else (tuple(entry.particle for entry in entries),)
+        return chosen["source"], chosen["half"], replace(request, n=1, size_range=None, seed=seed), *particles
 
     def _draw(self) -> None:
-        if self._model is None:
-            raise InputError(tr("There is no model to draw from: fit one first."))
+        if self._model is None or self._fitted_to != self._to_fit():
+            self._fit(then=lambda: self._try(self._draw_fitted))
+        else:
+            self._draw_fitted()
+
+    def _draw_fitted(self) -> None:
         job = Job(draw_shapes, (self._model, self._request()))
         self._context.start(tr("Drawing particles"), job, self._show_drawn, lane="draw")
 
@@ -314,7 +333,8 @@ class ModelPage(PageWidget):
         self._show_state()
 
     def _show_state(self) -> None:
-        self.drawing.set_ready(model=self._model is not None, drawn=self._drawn is not None)
+        known = self.source.value()["source"] != OPEN_PARTICLES or bool(self._context.session.particles)
+        self.drawing.set_ready(source=known, drawn=self._drawn is not None)
         missing = tr("Fit a model to a sample of 20 particles or more.")
         self.evaluation.set_ready("" if self._sample() else missing)
 
