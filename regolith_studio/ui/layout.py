@@ -26,7 +26,7 @@ class Splitter(QSplitter):
     Attributes
     ----------
     fit
-        Where given, places the borders for the present size, until the user moves one.
+        Where given, places the borders for the present size and letters, until the user moves one.
     moved
         Whether the user has moved a border.
     """
@@ -56,8 +56,13 @@ class Splitter(QSplitter):
 
     def event(self, event: QEvent) -> bool:
         done = super().event(event)
-        if event.type() == QEvent.Type.LayoutRequest and self._scaled and self.fit is None:
-            self._place(self._scaled)  # the parts learn their minimum sizes some time after the letters
+        if (
+            event.type() == QEvent.Type.LayoutRequest
+        ):  # the parts learn their sizes some time after the letters
+            if self.fit is not None and not self.moved:
+                self.fit()
+            elif self._scaled:
+                self._place(self._scaled)
         return done
 
     def restore_standard(self) -> None:
@@ -73,6 +78,8 @@ class Splitter(QSplitter):
 
         They take at most :data:`MAX_FIXED` of the room, where they did so before.
         """
+        if self.fit is not None and not self.moved:
+            return
         points, sizes = self._unscaled = self._unscaled or (before, self.sizes())
         factor = after / points
         if (fixed := sum(s for number, s in enumerate(sizes) if not self._stretches(number))) < sum(sizes):
@@ -138,8 +145,8 @@ def scrolled_column(panels: Sequence[QWidget], least: int = CONTROLS_WIDTH - 30)
     """Panels below each other, with a scroll bar where they do not fit; at least so many pixels wide."""
     inside = QWidget()
     column = QVBoxLayout(inside)
-    column.setSpacing(20)
-    column.setContentsMargins(4, 10, 12, 10)
+    column.setSpacing(14)
+    column.setContentsMargins(4, 8, 12, 6)
     for panel in panels:
         column.addWidget(panel)
     column.addStretch(1)

@@ -2,7 +2,7 @@
 
 import pytest
 from PySide6.QtCore import QSize, Qt
-from PySide6.QtWidgets import QHBoxLayout, QLineEdit, QSplitter, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QLineEdit, QScrollArea, QSplitter, QWidget
 
 from regolith_studio.jobs.runners.run_job import InlineRunner
 from regolith_studio.session.choices import Choices
@@ -190,7 +190,9 @@ def test_that_bodies_are_framed_again_when_the_window_or_a_border_is_moved(shown
 
 
 @pytest.mark.usefixtures("usual_letters")
-@pytest.mark.parametrize("letters", [100, pytest.param(200, marks=pytest.mark.slow)])
+@pytest.mark.parametrize(
+    "letters", [100, pytest.param(150, marks=pytest.mark.slow), pytest.param(200, marks=pytest.mark.slow)]
+)
 @pytest.mark.parametrize("width", [1280, pytest.param(1920, marks=pytest.mark.slow)])
 def test_that_boxes_and_legends_of_explore_are_whole(shown, preferences, settled, app, letters, width):
     preferences.window = preferences.window | {LETTERS: letters}
@@ -208,7 +210,7 @@ def test_that_boxes_and_legends_of_explore_are_whole(shown, preferences, settled
     for _ in range(3):
         app.processEvents()
     boxes = (page.coarsening.target, page.coarsening.method, page.loss.preset, page.plots.section.direction)
-    partners = [frame.partner for frame in page.three_views.frames.values()] if letters == 100 else []
+    partners = [frame.partner for frame in page.three_views.frames.values()] if letters <= 150 else []
     for box in (*boxes, *partners):
         metrics = box.fontMetrics()
         assert all(metrics.horizontalAdvance(box.itemText(at)) <= text_room(box) for at in range(box.count()))
@@ -219,6 +221,17 @@ def test_that_boxes_and_legends_of_explore_are_whole(shown, preferences, settled
         entries = plain_text(legend.text()).replace("\xa0", "_").split()
         assert entries
         assert max(map(legend.fontMetrics().horizontalAdvance, entries)) <= legend.width()
+
+
+def test_that_explore_does_not_scroll_on_a_small_screen_below_a_title_bar(shown, preferences, settled):
+    session = Session(InlineRunner(), Choices(method="quadric"))
+    window = shown(MainWindow(session, preferences, "image"))
+    session.open_sample()
+    window.resize(1280, 800 - FRAME)
+    settled(window)
+    controls = window.page.findChild(QScrollArea, "controls")
+    bars = [each.verticalScrollBar() for each in (controls, *window.pages.scroll_areas)]
+    assert [bar.maximum() for bar in bars] == [0, 0]
 
 
 def test_that_plots_stand_behind_each_other_only_where_two_have_no_room(shown, preferences):

@@ -53,7 +53,7 @@ class LossPanel(QWidget):
         self._own = UserPresets("weights")
         self._preset = self._chosen = next(iter(presets()))
         self._known: dict[str, Preset] = {}
-        self.bar = PresetBar("preset", tr("Preset of weights"))
+        self.bar = PresetBar("preset", tr("Preset of weights"), heading(tr("Weights of the loss (Eq. 9)")))
         self.preset, self.reset = self.bar.box, self.bar.reset
         self.reset.setObjectName("reset_weights")
         self.sliders = {key: NumberSlider(weight_spec(key)) for key in WEIGHT_KEYS}
@@ -144,7 +144,6 @@ class LossPanel(QWidget):
         align_labels(self.sliders.values())
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
-        layout.addWidget(heading(tr("Weights of the loss (Eq. 9)")))
         layout.addWidget(self.bar)
         layout.addLayout(grid)
         layout.addWidget(FixedHeightText((self.origin,)))

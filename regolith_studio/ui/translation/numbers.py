@@ -19,7 +19,7 @@ def localized(text: str) -> str:
     """
     locale = QLocale()
     text = text.translate({ord("."): locale.decimalPoint(), ord(","): locale.groupSeparator()})
-    return re.sub(r"(?<=\d)%", "\N{NO-BREAK SPACE}%", text)
+    return re.sub(r"(?<=\d) ?%", "\N{NO-BREAK SPACE}%", text)
 
 
 def number_text(value: float | Real, form: str) -> str:

@@ -15,6 +15,8 @@ from regolith_studio.ui.widgets.labels import ElidedLabel
 from regolith_studio.ui.widgets.plots.export import plain_text
 
 _PADDING = 9
+_BESIDE = 8
+"""Pixels of the frame and beside the box of partners."""
 
 
 class ViewFrame(QFrame):
@@ -94,6 +96,10 @@ class ViewFrame(QFrame):
     def set_comparing(self, comparing: bool) -> None:
         """Offer the box of partners, or not."""
         self.partner.setVisible(comparing and self.partner.count() > 1)
+
+    def whole_width(self) -> int:
+        """Width at which the box of partners elides no label."""
+        return self.partner.whole_width() + 2 * _PADDING + _BESIDE
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)

@@ -14,6 +14,7 @@ from regolith_studio.session.preferences import UserPresets
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.combo_box import ComboBoxRow, ElidedComboBox
 from regolith_studio.ui.widgets.forms import ParameterForm
+from regolith_studio.ui.widgets.wrapping_row import WrappingRow
 
 MODIFIED = N_("{preset} (modified)")
 SHIPPED = "paper"
@@ -47,6 +48,8 @@ class PresetBar(QWidget):
         Object name of the list, and prefix of those of the buttons.
     accessible
         Accessible name of the list.
+    title
+        A heading to which the buttons are added, with the list below; else they stand behind the list.
     """
 
     chosen = Signal(str)
@@ -54,7 +57,7 @@ class PresetBar(QWidget):
     saveRequested = Signal(str)  # noqa: N815
     deleteRequested = Signal(str)  # noqa: N815
 
-    def __init__(self, name: str, accessible: str) -> None:
+    def __init__(self, name: str, accessible: str, title: QWidget | None = None) -> None:
         super().__init__()
         self._entries: tuple[PresetEntry, ...] = ()
         self.box = ElidedComboBox(Qt.TextElideMode.ElideMiddle)  # the mark at the end must be seen
@@ -71,10 +74,13 @@ class PresetBar(QWidget):
         self.more.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
         self.more.setMenu(self._menu())
         self._make_room()
-        self._row = ComboBoxRow(self.box, (self.reset, self.more))
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
-        layout.addWidget(self._row)
+        buttons = (self.reset, self.more)
+        self._row = None if title else ComboBoxRow(self.box, buttons)
+        if title is not None:
+            layout.addWidget(WrappingRow((title,), buttons, (0, 0, 0, 0)))
+        layout.addWidget(self._row or self.box)
         self.box.activated.connect(lambda _: self.chosen.emit(self.current()))
         self.reset.clicked.connect(self.resetRequested)
 
@@ -92,7 +98,7 @@ class PresetBar(QWidget):
             for row, entry in enumerate(self._entries):
                 self.box.addItem(entry.label, entry.key)
                 self.box.setItemData(row, entry.tip, Qt.ItemDataRole.ToolTipRole)
-        self._row.refold()
+        self._refold()
 
     def show_state(self, key: str, modified: bool) -> None:
         """Select the preset of the values, and mark whether they are modified."""
@@ -110,6 +116,10 @@ class PresetBar(QWidget):
         super().changeEvent(event)
         if event.type() in (QEvent.Type.FontChange, QEvent.Type.StyleChange):
             self._make_room()
+            self._refold()
+
+    def _refold(self) -> None:
+        if self._row is not None:
             self._row.refold()
 
     def _make_room(self) -> None:

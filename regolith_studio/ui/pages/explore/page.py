@@ -26,10 +26,8 @@ from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.views.three_views import ThreeViews
 
-LIST_WIDTH = 40
-"""Initial width of the particle list in digits."""
-LIST_ROOM, NAMES_WIDTH = 320, 22
-"""Maximum width of the particle list in pixels, and its minimum in digits."""
+LIST_WIDTH, NAMES_WIDTH = 38, 16
+"""Initial and least width of the particle list in digits."""
 CONTROLS_LETTERS = 32
 """Minimum width of the controls in digits."""
 VIEWS_SHARE, PLOTS_SHARE = 0.4, 0.38
@@ -103,14 +101,21 @@ class ExplorePage(PageWidget):
         controls = scrolled_column([self.fit, self.coarsening, self.loss])
         self._list = padded(self.particles, 10, 10, 2, 8)
         parts = [self._list, padded(middle, 2, 10, 2, 8), controls]
-        digits = [self.fontMetrics().horizontalAdvance("0" * count) for count in (LIST_WIDTH, NAMES_WIDTH)]
-        wide_enough = max(min(digits[0], LIST_ROOM), digits[1])
-        controls_wide = max(WIDE_CONTROLS, self.fontMetrics().horizontalAdvance("0" * CONTROLS_LETTERS))
-        columns = side_by_side(parts, [wide_enough, 900, controls_wide], stretch=1)
+        self._controls = controls
+        columns = self._columns = side_by_side(parts, [300, 900, WIDE_CONTROLS], stretch=1)
         columns.setObjectName("explore_columns")
+        columns.fit = self._fit_columns
         layout = QHBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(columns)
+
+    def _fit_columns(self) -> None:
+        """Make list and controls as wide as letters need; the list gives way to the views' combo boxes."""
+        width, digit = sum(self._columns.sizes()), self.fontMetrics().horizontalAdvance("0")
+        controls = max(WIDE_CONTROLS, CONTROLS_LETTERS * digit, self._controls.minimumSizeHint().width())
+        least = 0 if self._list.isHidden() else max(NAMES_WIDTH * digit, self._list.minimumSizeHint().width())
+        names = max(least, min(LIST_WIDTH * digit, width - controls - self.three_views.whole_width()))
+        self._columns.setSizes([names, width - names - controls, controls])
 
     def _fit_rows(self) -> None:
         """Make the views as high as they are wide, where the plots have enough."""
