@@ -23,6 +23,11 @@ from typing import Any
 class RegolithError(Exception):
     """Base of everything that reaches the user as one sentence."""
 
+    def __str__(self) -> str:
+        """The sentence; where it was made as one, a ``Message``, which the window translates."""
+        first = self.args[0] if self.args else ""
+        return first if isinstance(first, str) else str(first)
+
 
 class InputError(RegolithError):
     """A value or a setting that cannot be used."""

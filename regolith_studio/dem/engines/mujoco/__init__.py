@@ -53,7 +53,7 @@ class MujocoEngine:
                 return Availability(version(package))
             except PackageNotFoundError:
                 continue
-        return Availability(problem="MuJoCo is not installed; install the package mujoco-core.")
+        return Availability(problem=N_("MuJoCo is not installed; install the package mujoco-core."))
 
     def seconds(self, prepared: PreparedCase, settings: MujocoSettings) -> float:
         """From the cost of a step and the expected length of the phases."""

@@ -47,7 +47,7 @@ class RapierEngine:
         try:
             return Availability(version("rapier3d"))
         except PackageNotFoundError:
-            return Availability(problem="Rapier is not installed; install the package rapier3d.")
+            return Availability(problem=N_("Rapier is not installed; install the package rapier3d."))
 
     def seconds(self, prepared: PreparedCase, settings: RapierSettings) -> float:
         """From the cost of a step and the expected length of the phases."""

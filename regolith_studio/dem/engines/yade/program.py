@@ -85,7 +85,7 @@ def expected_duration(prepared: PreparedCase) -> float:
     return float(FALL + SETTLE + lift + REST)
 
 
-MISSING = "YADE is not installed; install the package yade of your Linux distribution."
+MISSING = N_("YADE is not installed; install the package yade of your Linux distribution.")
 NAMES = ("yade", "yadedaily")
 VERSION = re.compile(r"'(20\d\d\.\d+\w*)'")
 _HIDDEN = ("LD_LIBRARY_PATH", "PYTHONPATH", "PYTHONHOME", "VIRTUAL_ENV", "DISPLAY", "WAYLAND_DISPLAY")

@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Any
 
-from PySide6.QtGui import QGuiApplication
+from PySide6.QtGui import QGuiApplication, QResizeEvent
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QTabWidget, QVBoxLayout
 
 from regolith_studio.jobs.events import Failed, Job
@@ -20,8 +20,8 @@ from regolith_studio.ui.theme import Theme, current_theme, ensure_polished, lett
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.combo_box import ChoiceBox
 
-LETTERS = 1.35
-"""Initial font size relative to the other pages."""
+LETTERS, FEW_LINES, LETTERS_OF_FEW = 1.35, 54, 1.1
+"""Initial font size relative to other pages; below so many of their lines in height, a smaller one."""
 SMALLEST, LARGEST, STEP = 0.8, 2.4, 1.12
 LESSONS = ("annealing", "degrees", "field")
 
@@ -34,7 +34,7 @@ class LecturePage(PageWidget):
         self.setObjectName("lecture")
         self._context, self._session = context, context.session
         self._shown_size = 0.0
-        self._letters = float(context.recall("letters", LETTERS))
+        self._letters: float | None = context.recall("letters")
         self._made_for: dict[str, tuple[Any, ...]] = {}
         self._seed = 0
 
@@ -124,7 +124,7 @@ class LecturePage(PageWidget):
 
     def scale_letters(self, factor: float) -> None:
         """Change the font size, which is remembered."""
-        self._letters = min(max(self._letters * factor, SMALLEST), LARGEST)
+        self._letters = min(max(self._magnification() * factor, SMALLEST), LARGEST)
         self._context.remember("letters", self._letters)
         self._show_letters()
 
@@ -254,7 +254,17 @@ class LecturePage(PageWidget):
 
     def _size(self) -> float:
         """Font size in points; a larger font of the whole window is not enlarged again."""
-        return QGuiApplication.font().pointSizeF() * self._letters / min(letters_share(), LETTERS)
+        return QGuiApplication.font().pointSizeF() * self._magnification() / min(letters_share(), LETTERS)
+
+    def _magnification(self) -> float:
+        """As chosen, or such that all formulas of a step are seen."""
+        low = self.height() < FEW_LINES * self.fontMetrics().height()
+        return self._letters or (LETTERS_OF_FEW if low else LETTERS)
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        if self._shown_size not in (0.0, self._size()):
+            self._show_letters()
 
     def _place(self) -> None:
         titles = (tr("Annealing"), tr("Degrees of the fit"), tr("Random field"))

@@ -45,15 +45,19 @@ def terms_of(weights: LossWeights, found: Evaluation) -> dict[str, float]:
 
 
 def loss_lines(weights: LossWeights, found: Evaluation) -> tuple[str, ...]:
-    """Eq. 9, and Eq. 9 with its numbers."""
+    """Eq. 9, and Eq. 9 with its numbers; a weight of 1 is not written, nor an error that rounds to 0."""
     values = {JACCARD: found.jaccard_distance, **found.errors}
     parts = [
-        rf"{_in_formula(weights[key])}\cdot{_number(values[key])}_{{\,{symbol(key)}}}"
+        rf"{_factor(weights[key])}{_number(values[key])}_{{\,{symbol(key)}}}"
         for key in TERMS
-        if weights[key]
-    ]
+        if weights[key] and _number(values[key]) != "0"
+    ] or ["0"]
     pieces = [f"$L={parts[0]}$", *(f"$+{part}$" for part in parts[1:]), rf"$={_number(found.loss)}$"]
     return (GENERAL_LOSS, BREAK.join(pieces))
+
+
+def _factor(weight: float) -> str:
+    return "" if weight == 1.0 else rf"{_in_formula(weight)}\cdot "
 
 
 def temperature_line(settings: AnnealingSettings, k: int) -> str:

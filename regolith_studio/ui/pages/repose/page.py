@@ -34,6 +34,7 @@ from regolith_studio.jobs.repose_jobs import (
     remeasure,
     simulate_repose,
 )
+from regolith_studio.messages import N_
 from regolith_studio.ui.dialogs.folder import FolderDialog
 from regolith_studio.ui.layout import padded, scrolled_column, side_by_side, stacked, tabs
 from regolith_studio.ui.page import PageContext, PageWidget
@@ -145,7 +146,7 @@ class ReposePage(PageWidget):
             self._context.toast.problem(tr("No particles are open; open some, or the shipped sample."))
             return
         folder = self._folder / "datasets" / "open-particles"
-        options = DatasetOptions(name="open particles", preset=session.choices.preset, overwrite=True)
+        options = DatasetOptions(name=N_("open particles"), preset=session.choices.preset, overwrite=True)
         job = Job(build_dataset_folder, (particles, session.choices.coarsening_request, folder, options))
         self._context.start(
             tr("Building a dataset"), job, lambda built: self.setup.set_dataset(built.folder), lane=BUILD
@@ -278,7 +279,7 @@ class ReposePage(PageWidget):
         self.player.show_moment(
             pile,
             tr("Before the lift"),
-            tr("{count:,} particles of {name}", count=len(pile), name=prepared.dataset_name),
+            tr("{count:,} particles of {name}", count=len(pile), name=translate(prepared.dataset_name)),
         )
 
     # --- a run ---------------------------------------------------------------------------------

@@ -42,7 +42,7 @@ STATES = (
 )
 """States of a run, and why a heap has no angle."""
 HEADINGS = (
-    N_("Run"),
+    N_("Name of the run"),
     N_("Angle"),
     N_("Interval"),
     "N",
@@ -105,7 +105,7 @@ class RunsPanel(QWidget):
             for row, run in enumerate(runs):
                 for column, text in enumerate(_cells(run)):
                     item = QTableWidgetItem(text)
-                    item.setToolTip(_explained(run))
+                    item.setToolTip(explanation(run))
                     if column:
                         item.setTextAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
                     self.table.setItem(row, column, item)
@@ -170,7 +170,7 @@ def _cells(run: RunSummary) -> tuple[str, ...]:
     )
 
 
-def _explained(run: RunSummary) -> str:
+def explanation(run: RunSummary) -> str:
     """Why there is no angle, and the problems of the checks."""
     measurement = run.document.get("measurement") or {}
     checks = run.document.get("checks") or {}

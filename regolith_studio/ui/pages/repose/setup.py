@@ -27,7 +27,7 @@ from regolith_studio.errors import InputError
 from regolith_studio.jobs.repose_jobs import ReposeRequest
 from regolith_studio.jobs.runners.process_pool import cores
 from regolith_studio.messages import N_
-from regolith_studio.ui.translation import tr
+from regolith_studio.ui.translation import tr, translate
 from regolith_studio.ui.translation.numbers import number_text
 from regolith_studio.ui.widgets.collapsible import Collapsible
 from regolith_studio.ui.widgets.combo_box import ElidedComboBox
@@ -59,7 +59,7 @@ class SetupPanel(QWidget):
         self.setObjectName("repose_setup")
         self._dataset: Path | None = None
         self._running = False
-        self.dataset_label = ElidedLabel(tr("No dataset yet"))
+        self.dataset_label = ElidedLabel(tr("No dataset yet"), elide=Qt.TextElideMode.ElideMiddle)
         self.open_button = _button(tr("Open …"), "repose_open", tr("Choose a dataset folder"))
         self.sample_button = _button(
             tr("From open particles"), "repose_sample", tr("Coarsen the open particles first")
@@ -153,7 +153,7 @@ class SetupPanel(QWidget):
     def show_consequences(self, sentences: list[str], problem: str = "") -> None:
         """Show the scaling report of the values, or why they are invalid."""
         self.scaling_report.setText("<br>".join(sentences))
-        self.problem.setText(problem)
+        self.problem.setText(translate(problem))
         self.problem.setVisible(bool(problem))
         self._enable_run()
 
@@ -317,7 +317,8 @@ class EnginePanel(QTableWidget):
         self.setHorizontalHeaderLabels([row["label"] for row in rows])
         self.setVerticalHeaderLabels([tr("Found"), *map(tr, CAPABILITY_LABELS.values())])
         for column, row in enumerate(rows):
-            texts = [row["version"] or row["problem"], *(tr(row[key]) for key in CAPABILITY_LABELS)]
+            found = row["version"] or translate(row["problem"])
+            texts = [found, *(tr(row[key]) for key in CAPABILITY_LABELS)]
             for at, text in enumerate(texts):
                 item = QTableWidgetItem(text)
                 item.setTextAlignment(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignTop)

@@ -1,6 +1,7 @@
 """Panel of a study: varied parameter, start and stop, and a plot that is updated after every run."""
 
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -20,9 +21,12 @@ from PySide6.QtWidgets import (
 )
 
 from regolith_studio.coarsening.weights import presets
+from regolith_studio.dem.run_io import RunSummary
 from regolith_studio.jobs.repose_study import SHAPE_KEYS, values_in
 from regolith_studio.messages import N_
 from regolith_studio.studies.repose import ReposeStudy, ReposeStudyRun
+from regolith_studio.ui.layout import equal_parts
+from regolith_studio.ui.pages.repose.runs import explanation
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.translation.numbers import localized, number_text
@@ -160,7 +164,7 @@ class StudyPanel(QWidget):
         self.plot.set_curves(
             [
                 PlotCurve(tr("mean"), theme.fit, *_columns(means), line=numeric),
-                PlotCurve("run", theme.polyhedron, *_columns(found), markers=True, line=False),
+                PlotCurve(tr("run"), theme.polyhedron, *_columns(found), markers=True, line=False),
             ]
             if found
             else []
@@ -199,9 +203,9 @@ class StudyPanel(QWidget):
         column.addStretch(1)
         row = QHBoxLayout(self)
         row.setContentsMargins(0, 0, 0, 0)
-        row.addWidget(left, 3)
-        row.addWidget(self.plot, 4)
-        row.addWidget(self.table, 3)
+        parts = equal_parts(Qt.Orientation.Horizontal, (left, self.plot, self.table))
+        parts.setObjectName("repose_study_parts")
+        row.addWidget(parts)
 
     def _connect(self) -> None:
         self.key.currentIndexChanged.connect(lambda *_: self._propose())
@@ -232,7 +236,7 @@ def _cells(run: ReposeStudyRun) -> tuple[str, ...]:
     measurement = run.document.get("measurement") or {"status": run.document["state"]}
     interval = measurement.get("interval_deg")
     value = number_text(run.value, "g") if isinstance(run.value, int | float) else run.value
-    angle = str(measurement["status"]) if run.angle is None else localized(f"{run.angle:.1f}°")
+    angle = tr(str(measurement["status"])) if run.angle is None else localized(f"{run.angle:.1f}°")
     return value, str(run.seed), angle, _interval(interval)
 
 
@@ -241,6 +245,5 @@ def _interval(ends: Sequence[float] | None) -> str:
 
 
 def _why(run: ReposeStudyRun) -> str:
-    measurement = run.document.get("measurement") or {}
-    said = [run.document.get("problem"), measurement.get("reason"), tr("Choose it to see the run.")]
-    return "\n".join(str(each) for each in said if each)
+    said = [explanation(RunSummary(Path(run.folder), run.document)), tr("Choose it to see the run.")]
+    return "\n".join(each for each in said if each)
