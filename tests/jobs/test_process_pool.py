@@ -2,6 +2,8 @@
 
 import os
 import signal
+import subprocess
+import sys
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -42,6 +44,23 @@ def test_that_a_batch_answers_in_the_order_of_the_questions(workers: int) -> Non
         again = list(executor.map(abs, [-1, 2, -3]))
     assert results == [Finished(x * x) for x in range(7)]
     assert again == [1, 2, 3]
+
+
+def test_that_a_script_without_a_guarded_part_ends_with_a_sentence(tmp_path: Path) -> None:
+    script = tmp_path / "unguarded.py"
+    script.write_text(
+        "from regolith_studio.jobs.executor import Executor\nprint(list(Executor(2).map(abs, [-1, 2])))\n"
+    )
+    ended = subprocess.run([sys.executable, script], capture_output=True, text=True, timeout=60, check=False)
+    assert ended.returncode == 1
+    assert (
+        ended.stderr.rstrip()
+        .splitlines()[-1]
+        .endswith(
+            "A worker process died at its start. Worker processes import the script that starts them: "
+            'what it does must stand below `if __name__ == "__main__":`.'
+        )
+    )
 
 
 def test_that_a_crew_that_was_lent_is_not_dismissed(pool: ProcessPoolRunner) -> None:

@@ -25,6 +25,11 @@ _MIN_MEMORY, _MAX_MEMORY, _MEMORY_FRACTION = 768 * 1024**2, 2 * 1024**3, 0.6
 _CLOSE_SECONDS = 1.0
 """Seconds after which a closing pool kills what has not ended: jobs between two steps, then processes."""
 
+_GUARD = (
+    "Worker processes import the script that starts them: what it does must stand below "
+    '`if __name__ == "__main__":`.'
+)
+
 
 def cores() -> int:
     """Cores that this process may use."""
@@ -215,6 +220,9 @@ class ProcessPoolRunner:
                     Failed(f"A worker process could not be started ({error.strerror}).", repr(error))
                 )
                 continue
+            except RuntimeError as error:  # multiprocessing's, in a process that is itself being started
+                handle.finish(Failed(_GUARD, repr(error)))
+                continue
             idle.handle, idle.started = handle, False
             with contextlib.suppress(OSError):  # it died while idle, which its pipe reports next
                 idle.pipe.send_bytes(handle.message)
@@ -267,7 +275,8 @@ class ProcessPoolRunner:
         if handle is None:
             return
         if handle.is_retry:
-            handle.finish(Failed("A worker process died of it; it may have run out of memory."))
+            died = "A worker process died of it; it may have run out of memory."
+            handle.finish(Failed(died if worker.started else f"A worker process died at its start. {_GUARD}"))
             return
         handle.is_retry = True
         with self._lock:
