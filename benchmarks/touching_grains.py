@@ -3,26 +3,33 @@
     python -m benchmarks.touching_grains [SEED] [REPEATS] [RESULT.json]
 
 Balls of 22 voxels in diameter, turned lattices at random places, partial volumes, a blur of 0.8 voxels,
-noise of 3 %; segmented and extracted as a user does. Then single ellipsoids in voxels of 1:1:2, 1:1:3 and
-2:3:5, with a blur of the same length along all axes: volume, and extents along the axes of the voxels.
+noise of 3 %; segmented and extracted as a user does. Then single grains in voxels of 1:1:2, 1:1:3 and 2:3:5,
+six times as many, with a blur of the same length along all axes: volume, extents along the axes of the
+voxels, and area.
 """
 
 import sys
-from collections.abc import Callable
+from dataclasses import replace
+from itertools import product
 
 import numpy as np
 from scipy import ndimage
 from scipy.spatial.transform import Rotation
 
+from benchmarks.grain_surfaces import shape_of
 from benchmarks.result_files import Rows, add_result, show_row
-from regolith_studio.geometry.arrays import BoolArray, FloatArray
+from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.imaging.extraction import extract_particles
-from regolith_studio.imaging.segmentation.segment import segment
+from regolith_studio.imaging.segmentation.segment import SegmentationSettings, segment
+from regolith_studio.imaging.segmentation.splitting import SplittingSettings
 from regolith_studio.imaging.volume import Volume
+from regolith_studio.imaging.voxelize import coverage
 
-Inside = Callable[[FloatArray], BoolArray]
 RADIUS, BLUR, NOISE = 11.0, 0.8, 0.03
-SUPERSAMPLING = 4
+UNPARTED = replace(SegmentationSettings(), splitting=SplittingSettings(enabled=False))
+COLUMNS = 6
+"""Columns along the edge of a voxel by which its coverage is measured."""
 LATTICES = {
     "single": (np.eye(3) * 9, 0),
     "pair": (np.eye(3), 1),
@@ -30,7 +37,7 @@ LATTICES = {
     "close": (np.array([[0, 1, 1], [1, 0, 1], [1, 1, 0]]) / np.sqrt(2), 12),
 }
 SPACINGS = ((1.0, 1.0, 1.0), (1.0, 1.0, 2.0), (1.0, 1.0, 3.0), (2.0, 3.0, 5.0))
-AXES = np.array([14.0, 11.0, 9.0])
+GRAINS = ("ellipsoids", "polyhedra of 14 faces")
 
 
 def centres(name: str, rng: np.random.Generator, gap: float = 0.0) -> FloatArray:
@@ -43,19 +50,6 @@ def centres(name: str, rng: np.random.Generator, gap: float = 0.0) -> FloatArray
     points = points[np.argsort(np.linalg.norm(points, axis=1), kind="stable")]
     points = points[:2] if name == "pair" else points
     return points @ Rotation.random(random_state=rng).as_matrix().T + rng.random(3)
-
-
-def coverage(inside: Inside, shape: tuple[int, int, int], voxel: FloatArray) -> FloatArray:
-    """Share of each voxel in a body given by a function of positions (n, 3), its origin in the middle one."""
-    fine = [n * SUPERSAMPLING for n in shape]
-    axes = [(np.arange(n) + 0.5) / SUPERSAMPLING - 0.5 - m // 2 for n, m in zip(fine, shape, strict=True)]
-    covered = np.empty(shape, dtype=np.float32)
-    for i in range(shape[0]):
-        x = axes[0][i * SUPERSAMPLING : (i + 1) * SUPERSAMPLING]
-        places = np.stack(np.meshgrid(x, axes[1], axes[2], indexing="ij"), axis=-1) * voxel
-        block = inside(places.reshape(-1, 3)).reshape(SUPERSAMPLING, shape[1], SUPERSAMPLING, shape[2], -1)
-        covered[i] = block.mean(axis=(0, 2, 4))
-    return covered
 
 
 def scan(covered: FloatArray, voxel: FloatArray, rng: np.random.Generator) -> Volume:
@@ -81,26 +75,22 @@ def balls(name: str, rng: np.random.Generator) -> tuple[float, float]:
     return 100 * (mesh.volume / true[0] - 1), 100 * (mesh.surface_area / true[1] - 1)
 
 
-def extents(spacing: tuple[float, float, float], rng: np.random.Generator) -> FloatArray:
-    """Errors of an ellipsoid's volume and extents along x, y and z, in percent, shape (4,)."""
+def extents(name: str, spacing: tuple[float, float, float], rng: np.random.Generator) -> FloatArray:
+    """Errors of a single grain's volume, extents along x, y and z, and area, in percent, shape (5,)."""
     voxel = np.array(spacing)
-    axes = AXES * np.cbrt(voxel.prod())
-    turn = Rotation.random(random_state=rng).as_matrix()
-    centre = rng.random(3) * voxel
-    half = np.ceil(axes.max() / voxel).astype(int) + 9
+    body = shape_of(name, rng)
+    body = body.moved(shift=-body.centroid, scale=float(np.cbrt(voxel.prod())))
+    half = np.ceil(np.abs(body.vertices).max(axis=0) / voxel).astype(int) + 9
+    places = body.vertices / voxel + half + rng.uniform(-0.5, 0.5, 3)
     nx, ny, nz = (2 * half + 1).tolist()
-    covered = coverage(
-        lambda at: np.linalg.norm((at - centre) @ turn / axes, axis=1) < 1.0, (nx, ny, nz), voxel
-    )
-    volume = scan(covered, voxel, rng)
-    mesh = extract_particles(segment(volume).labels, grey=volume).found[0].particle.mesh
-    true = 2 * np.linalg.norm(turn * axes, axis=1)
-    ratio = [mesh.volume / (4 / 3 * np.pi * axes.prod()), *(np.ptp(mesh.vertices, axis=0) / true)]
-    return 100 * (np.array(ratio) - 1)
+    volume = scan(coverage(Mesh(places, body.faces), (nx, ny, nz), COLUMNS), voxel, rng)
+    mesh = extract_particles(segment(volume, UNPARTED).labels, grey=volume).found[0].particle.mesh
+    seen, true = ([each.volume, *np.ptp(each.vertices, axis=0), each.surface_area] for each in (mesh, body))
+    return 100 * (np.array(seen) / true - 1)
 
 
 def main(seed: int, repeats: int, result: str) -> None:
-    """Print both tables: means and largest errors; and volume and extents along x, y and z."""
+    """Print both tables: means and largest errors; and means of volume, extents and area."""
     rng = np.random.default_rng(np.random.SeedSequence(seed))
     touching: Rows = {}
     for name, (_, contacts) in LATTICES.items():
@@ -109,10 +99,11 @@ def main(seed: int, repeats: int, result: str) -> None:
         show_row(touching, str(contacts), both.T.ravel(), 1)
     add_result(result, "contacts", touching, seed=seed, repeats=repeats)
     stretched: Rows = {}
-    for spacing in SPACINGS:
-        found = np.array([extents(spacing, rng) for _ in range(repeats)])
-        show_row(stretched, " : ".join(f"{edge:g}" for edge in spacing), found.mean(axis=0), 1)
-    add_result(result, "voxels of", stretched, seed=seed, repeats=repeats)
+    for name, spacing in product(GRAINS, SPACINGS):
+        found = np.array([extents(name, spacing, rng) for _ in range(6 * repeats)])
+        title = f"{' : '.join(f'{edge:g}' for edge in spacing)}, {name}"
+        show_row(stretched, title, found.mean(axis=0), 1)
+    add_result(result, "voxels of", stretched, seed=seed, repeats=6 * repeats)
 
 
 if __name__ == "__main__":
