@@ -179,7 +179,7 @@ def test_that_a_field_cut_at_a_degree_draws_the_first_degrees_of_the_same_partic
         )
     assert np.isfinite(whole.truncated(12).draw(5, 1).coefficients).all()
     for degree in (9, 14):
-        with pytest.raises(InputError, match=f"from l = 10 to 13, got l_max = {degree}"):
+        with pytest.raises(InputError, match=f"with l_max from 10 to 13, got l_max = {degree}"):
             whole.truncated(degree)
 
 

@@ -1,3 +1,5 @@
+import json
+import re
 from collections.abc import Callable
 from functools import partial
 from multiprocessing.pool import ThreadPool
@@ -144,6 +146,23 @@ def test_that_the_card_of_a_sample_fills_its_hulls_as_the_particles_do_with_all_
 def test_that_a_degree_that_the_card_lacks_is_refused(l_max: int) -> None:
     with pytest.raises(InputError, match="reaches from l = 1 to 30"):
         materials()["ma165"].model(l_max)
+
+
+@pytest.mark.parametrize("l_max", [5, 20])
+def test_that_a_degree_that_the_hull_field_of_a_card_lacks_is_refused_with_the_right_one(l_max: int) -> None:
+    with pytest.raises(InputError, match=f"drawn with l_max = 10 only, got l_max = {l_max}"):
+        materials()["lunar_soil"].model(l_max)
+
+
+def test_that_a_card_of_a_spectrum_says_how_far_its_draws_are_from_the_material() -> None:
+    """Against the benchmark that the sentence is taken from."""
+    file = Path(__file__).parents[2] / "benchmarks/results/shape_models.json"
+    rows = json.loads(file.read_text("utf-8"))["draws of a card"]["rows"]
+    _, _, *measured = rows["pooled field, l_max = 10"]
+    said = re.search(r"about (\d+) % in AR, (\d+) % in S and (\d+) % in V/CH", materials()["ma165"].judged)
+    assert said is not None
+    np.testing.assert_allclose([float(number) for number in said.groups()], measured, atol=1.0)
+    assert materials()["lunar_soil"].judged == ""
 
 
 @pytest.mark.parametrize(

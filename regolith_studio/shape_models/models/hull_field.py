@@ -151,8 +151,8 @@ class HullField(SizedSampler):
             If `l_max` is beyond the field, or below the degree of what is moved to its hull.
         """
         if not self._base <= l_max <= self.l_max:
-            reach = f"from l = {self._base} to {self.l_max}" if self.fine else f"to l = {self.l_max}"
-            raise InputError(f"This field drawn to its hull reaches {reach}, got l_max = {l_max}.")
+            right = f"from {self._base} to {self.l_max}" if self.fine else f"= {self.l_max} only"
+            raise InputError(f"This hull field is drawn with l_max {right}, got l_max = {l_max}.")
         if l_max == self.l_max or self.fine is None:
             return self
         fine = self.fine.first(l_max - self._base) if l_max > self._base else None

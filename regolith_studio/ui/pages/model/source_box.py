@@ -64,7 +64,7 @@ class SourceBox:
         content = self._files[key].content if key in self._files else materials()[key]
         match content:
             case MaterialCard():
-                words = " ".join(filter(None, (tr(content.origin), translate(content.judged))))
+                words = " ".join(filter(None, (translate(content.judged), tr(content.origin))))
                 return SourceKind(content.key, content.l_max, words)
             case Sample():
                 words = tr("{count} particles up to l = {degree}.", count=len(content), degree=content.l_max)
