@@ -6,7 +6,8 @@ into a temporary folder (one grain a cell of 51 voxels: 1,000 grains at 512 voxe
 ``--packed --chunk 64`` one of cubic chunks),
 then makes its particles, each forgotten once it is made, in a process of its own whose private memory
 (RLIMIT_DATA) is limited. Reported are seconds by the clock and by the processor, and the peak of resident
-memory; pages of files count in the latter.
+memory; pages of files count in the latter. With ``--jobs N`` the work is shared out among N processes, whose
+seconds together and largest peak are reported too.
 """
 
 import argparse
@@ -31,6 +32,7 @@ from regolith_studio.imaging.sample_volumes import sample_volume
 from regolith_studio.imaging.segmentation.denoising import DenoiseSettings
 from regolith_studio.imaging.segmentation.segment import SegmentationSettings, segmentation_steps
 from regolith_studio.imaging.volume_slabs import ScratchArrays
+from regolith_studio.jobs.executor import open_executor
 from regolith_studio.jobs.extraction_settings import VolumeInput
 
 CELL = 51
@@ -99,25 +101,30 @@ def _scanned(labels: NDArray[np.uint16], generator: np.random.Generator) -> NDAr
     return np.asarray(np.clip(seen, 0, 255), dtype=np.uint8)
 
 
-def extract(path: Path, grey: bool, memory: float) -> dict[str, float]:
-    """Make all particles in this process, of limited memory, and say what it took."""
+def extract(path: Path, grey: bool, memory: float, jobs: int) -> dict[str, float]:
+    """Make all particles in this process, of limited memory, and those that it starts; say what it took."""
     if memory:
         limit = int(memory * 2**30)
         resource.setrlimit(resource.RLIMIT_DATA, (limit, limit))
     stages: dict[str, float] = {}
     begin, values = time.monotonic(), None
     volume = VolumeInput(path, 2.3, kind="grey" if grey else "labels").opened()
-    with ScratchArrays(path.parent) as scratch:
+    with ScratchArrays(path.parent) as scratch, open_executor(jobs) as executor:
+        run = executor.map
         if grey:
-            steps = segmentation_steps(volume, SegmentationSettings(DenoiseSettings("gaussian")), scratch)
-            volume, values = _timed(steps, stages).labels, volume
-        made = extraction_steps(volume, ExtractionSettings(), collect=False, grey=values)
+            how = SegmentationSettings(DenoiseSettings("gaussian"))
+            volume, values = _timed(segmentation_steps(volume, how, scratch, run), stages).labels, volume
+        made = extraction_steps(volume, ExtractionSettings(), collect=False, grey=values, run=run)
         extraction = _timed(made, stages)
+        seconds = time.monotonic() - begin
+    others = resource.getrusage(resource.RUSAGE_CHILDREN)
     return {
         "particles": extraction.n_found,
-        "seconds": time.monotonic() - begin,
+        "seconds": seconds,
         "processor_seconds": time.process_time(),
         "peak_gib": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20,
+        "processor_seconds_of_others": others.ru_utime + others.ru_stime,
+        "peak_gib_of_others": others.ru_maxrss / 2**20,
         **{f"seconds: {name}": value for name, value in stages.items()},
     }
 
@@ -146,11 +153,12 @@ def main() -> int:
     options.add_argument("--packed", action="store_true", help="compressed HDF5 instead of NPY")
     options.add_argument("--chunk", type=int, help="edge of a chunk of --packed, instead of 8 x 512 x 512")
     options.add_argument("--memory", type=float, default=0.0, help="limit of private memory, in GiB")
+    options.add_argument("--jobs", type=int, default=1)
     options.add_argument("--folder", type=Path, default=None)
     options.add_argument("--child", type=Path, help=argparse.SUPPRESS)
     wish = options.parse_args()
     if wish.child:
-        print(json.dumps(extract(wish.child, wish.grey, wish.memory)))
+        print(json.dumps(extract(wish.child, wish.grey, wish.memory, wish.jobs)))
         return 0
     with tempfile.TemporaryDirectory(dir=wish.folder) as folder:
         path = Path(folder) / ("volume.h5" if wish.packed else "volume.npy")
@@ -160,7 +168,10 @@ def main() -> int:
         call = [sys.executable, "-m", "benchmarks.imaging", "--child", str(path)]
         call += ["--grey"] if wish.grey else []
         done = subprocess.run(
-            [*call, "--memory", str(wish.memory)], check=True, stdout=subprocess.PIPE, env=os.environ
+            [*call, "--memory", str(wish.memory), "--jobs", str(wish.jobs)],
+            check=True,
+            stdout=subprocess.PIPE,
+            env=os.environ,
         )
         for name, value in json.loads(done.stdout).items():
             print(f"  {name:<36}{value:>10.2f}")
