@@ -315,7 +315,8 @@ def set_up(extra: str) -> None:
     if not usable_venv():
         make_venv()
     UNFINISHED.touch()
-    say("installing the Python packages into .venv (1.8 GB on disk, about a minute)")
+    size = "2.6" if extra else "1.8"
+    say("installing the Python packages into .venv (" + size + " GB on disk, about a minute)")
     target = ".[" + extra + "]" if extra else "."
     command = [*install, "-c", "constraints.txt", "-e", target]
     failed = subprocess.call(command, cwd=str(ROOT), env=dict(os.environ, PIP_USER="0"))

@@ -32,11 +32,12 @@ NAMES = {
     "particle.stl": "grain.stl",
     "stones/": "grains",
     "grains/*.anm": "grain.anm",
+    "basalt,glass": "basalt",
     "512,512,600": "64,64,64",
     "resources/samples/ct/synthetic-grey.tif": str(ROOT / "resources/samples/ct/synthetic-grey.tif"),
 } | {f"{name}.txm": f"{name}.tif" for name in ("scan", "a", "b", "c")}
 """Words of the pages, and what stands for them here."""
-FEWER = {"-n": "8", "--particles": "300", "--representatives": "3"}
+FEWER = {"-n": "8", "--particles": "200", "--representatives": "3"}
 """Numbers of options that would take minutes."""
 MORE = {
     "report": ["--heap", "0", "--study-particles", "3", "--splits", "1", "--drawn", "1"],
@@ -102,6 +103,7 @@ def adapted(words: list[str]) -> list[str]:
 
 
 @pytest.mark.slow
+@pytest.mark.timeout(1200)
 @pytest.mark.parametrize("page", PAGES)
 @pytest.mark.usefixtures("here")
 def test_that_the_commands_of_a_page_run_one_after_the_other(

@@ -35,6 +35,8 @@ SURFACE_LEVEL = 4
 """Icosphere level of the surfaces of Fig. 2."""
 SMALL_ERROR = 0.05
 """RMSRE that the smallest sufficient l_max is named for."""
+MIN_HIDDEN = 5e-4
+"""Share of the surface that is said to be hidden; less is shown as 0.0%."""
 N_RESAMPLES = 1000
 DESCRIPTORS = ("equivalent_radius", "surface_area", *LOSS_KEYS)
 
@@ -103,7 +105,7 @@ def draw_degrees(draft: ReportDraft, title: str) -> SectionSteps:
     seen = (
         f"{hidden:.1%} of the surface cannot be seen from the star point; there the radius keeps the volume "
         "and not the form."
-        if hidden
+        if hidden >= MIN_HIDDEN
         else "The whole surface can be seen from the star point."
     )
     turned = {particle.name: particle.mesh, f"l_max = {draft.settings.l_max}": cut[draft.settings.l_max]}
