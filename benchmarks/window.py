@@ -5,8 +5,9 @@
 method, ``samples`` opens drawn particles and then the shipped ones again; all three print the megabytes
 at each look and their slope with its standard error. ``cancel`` stops each kind of work and prints how
 long the window did not answer, ``blocks`` goes through all pages and prints what kept it from answering
-for more than 50 ms; ``sliders`` times the way from a move to the painted view, ``rest`` what a window
-takes that nobody touches. ``acts`` clicks, types and drags at random and prints the memory each minute.
+for more than 50 ms; ``sliders`` times the way from a move to the painted view, ``releases`` that from
+the end of a drag to the polyhedron, ``rest`` what a window takes that nobody touches. ``acts`` clicks,
+types and drags at random and prints the memory each minute.
 ``--views live`` needs a display.
 """
 
@@ -17,11 +18,11 @@ from benchmarks.window_blocks import blocks
 from benchmarks.window_cancel import stops
 from benchmarks.window_driving import opened
 from benchmarks.window_growth import coarsened_and_drawn, samples_opened, slider_moves
-from benchmarks.window_response import responses, rest
+from benchmarks.window_response import releases, responses, rest
 from benchmarks.window_start import starts
 
 GROWING = {"moves": slider_moves, "cycles": coarsened_and_drawn, "samples": samples_opened}
-LISTING = {"cancel": stops, "blocks": blocks, "sliders": responses}
+LISTING = {"cancel": stops, "blocks": blocks, "sliders": responses, "releases": releases}
 
 
 def main() -> None:

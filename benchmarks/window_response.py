@@ -1,4 +1,4 @@
-"""How soon a slider that is dragged is seen, and what the window takes at rest."""
+"""How soon a slider that is dragged is seen and its polyhedron follows, and what the window takes at rest."""
 
 import time
 from collections.abc import Callable, Iterator
@@ -16,6 +16,8 @@ SECONDS = 4.0
 """Of one drag."""
 STEPS = 20
 """Single moves whose way to the screen is timed."""
+DEGREES = (6, 14, 9, 20, 10, 26, 12)
+"""At which drags of l_max end."""
 AT_REST = 10.0
 """Seconds without work."""
 
@@ -60,6 +62,39 @@ def responses(window: Any) -> Iterator[Response]:
         slider.setValue(usual)
         settle(window)
         yield Response(name, tuple(delays), tuple(pauses))
+
+
+def releases(window: Any) -> Iterator[str]:
+    """Seconds from the end of a drag of l_max to its painted polyhedron, and frames of an annealing run."""
+    from PySide6.QtWidgets import QSlider
+
+    slider = window.page.findChild(QSlider, "l_max_slider")
+    with _painted(window.page.three_views.views["polyhedron"]) as times:
+        waits = [_after_release(window, slider, times, degree) for degree in DEGREES]
+        each = ", ".join(f"{degree}: {wait:.2f}" for degree, wait in zip(DEGREES, waits, strict=True))
+        yield f"polyhedron {median(waits):.2f} s after a drag of l_max, at most {max(waits):.2f} ({each})"
+        times.clear()
+        window.session.choose(method="annealing")
+        until(lambda: window.session.results.coarsened is not None)
+        until(lambda: not window.page.replay.playing)
+        settle(window)
+        yield f"annealing: {len(times)} frames in {times[-1] - times[0]:.1f} s"
+
+
+def _after_release(window: Any, slider: Any, times: list[float], degree: int) -> float:
+    settle(window)
+    slider.setSliderDown(True)
+    for place in range(slider.value(), degree, 1 if degree > slider.value() else -1):
+        slider.setValue(place)
+        spin(MOVE)
+    slider.setValue(degree)
+    slider.setSliderDown(False)
+    began = time.perf_counter()
+    until(lambda: window.session.results.coarsened is None)
+    until(lambda: window.session.results.coarsened is not None)
+    done = time.perf_counter()
+    until(lambda: any(each >= done for each in times))
+    return next(each for each in times if each >= done) - began
 
 
 def rest(window: Any) -> str:

@@ -6101,7 +6101,7 @@
     </message>
     <message>
         <source>Weights of the loss (Eq. 9)</source>
-        <translation>Gewichte der Verlustfunktion (Gl. 9)</translation>
+        <translation>Gewichte (Gl. 9)</translation>
     </message>
     <message>
         <source>Weights of the loss, open particles</source>
@@ -7084,6 +7084,10 @@
         <translation>Ruhe</translation>
     </message>
     <message>
+        <source>result</source>
+        <translation>Ergebnis</translation>
+    </message>
+    <message>
         <source>right flank: {z:.3g} mm, {angle:.1f}°</source>
         <translation>rechte Flanke: {z:.3g} mm, {angle:.1f}°</translation>
     </message>
@@ -7332,8 +7336,8 @@
         <translation>die Partikel beim Abbruch</translation>
     </message>
     <message>
-        <source>the surface of the spherical-harmonics fit at l&lt;sub&gt;max&lt;/sub&gt; = {l_max}</source>
-        <translation>die Oberfläche des Fits mit Kugelflächenfunktionen bei l&lt;sub&gt;max&lt;/sub&gt; = {l_max}</translation>
+        <source>the surface of the spherical-harmonics fit at l&lt;sub&gt;max&lt;/sub&gt;&amp;nbsp;=&amp;nbsp;{l_max}</source>
+        <translation>die Oberfläche des Fits mit Kugelflächenfunktionen bei l&lt;sub&gt;max&lt;/sub&gt;&amp;nbsp;=&amp;nbsp;{l_max}</translation>
     </message>
     <message>
         <source>to</source>

@@ -13,7 +13,7 @@ from PySide6.QtWidgets import QWidget
 
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
-from regolith_studio.jobs.lecture_jobs import trace_degrees
+from regolith_studio.jobs.lecture_jobs import DegreeStep, trace_degrees
 from regolith_studio.jobs.runners.run_job import InlineRunner
 from regolith_studio.scene.lecture_scenes import FACET_OLD, FRAME_NEW
 from regolith_studio.session.session import Session
@@ -335,3 +335,10 @@ def test_that_all_plots_of_a_lesson_are_seen_at_once_in_a_small_window(page, pla
     assert plots
     for each in plots:
         assert each.visibleRegion().boundingRect().size() == each.size(), each.objectName()
+
+
+def test_that_german_nouns_keep_their_capitals_within_a_sentence(speaking):
+    speaking("de")
+    assert texts.in_a_sentence("Volume") == "Volumen"
+    sentence = texts.degree_sentence(DegreeStep(3, icosphere(0), {"volume": 0.2}, 0.1, 1.0))
+    assert sentence.endswith("Volumen 20,0\N{NO-BREAK SPACE}%.")

@@ -1,6 +1,7 @@
 """Each panel keeps its promise: what is written is read back, and only the user's changes are announced."""
 
 from dataclasses import dataclass, field
+from types import SimpleNamespace
 
 import numpy as np
 import pyqtgraph as pg
@@ -297,6 +298,18 @@ def test_that_the_loss_has_no_steps_before_the_first(shown, wait, steps):
     first, last = view.viewRange()[0]
     assert -0.5 <= first <= 0.0, "the first step can be seen, and nothing before it"
     assert last < 1.2 * steps + 1.0
+
+
+def test_that_the_curve_of_the_loss_ends_at_the_result_and_names_no_better_one(shown):
+    panel = shown(LossCurvePanel())
+    history = ((0, 0.9), (1, 0.6), (2, 0.65))
+    panel.show_results(Results(loss_history=history, coarsened=SimpleNamespace(loss=0.66)))
+    assert [(curve.label, curve.y[-1]) for curve in panel.plot.curves] == [
+        ("current", 0.65),
+        ("result", 0.66),
+    ]
+    panel.show_results(Results(loss_history=history, coarsened=SimpleNamespace(loss=0.6)))
+    assert [curve.label for curve in panel.plot.curves] == ["current", "best so far", "result"]
 
 
 def test_that_the_losses_of_two_starts_are_not_joined_by_a_line(shown):

@@ -58,7 +58,8 @@ def summary(count: int, choices: Choices, cost: str = "") -> list[tuple[str, str
     target = tr("the particle itself")
     if choices.target == "fit":
         target = tr(
-            "the surface of the spherical-harmonics fit at l<sub>max</sub> = {l_max}", l_max=choices.l_max
+            "the surface of the spherical-harmonics fit at l<sub>max</sub>&nbsp;=&nbsp;{l_max}",
+            l_max=choices.l_max,
         )
         if cost:
             target += f"<br>{choices.selected}: {cost}"

@@ -39,6 +39,11 @@ class LossCurvePanel(QWidget):
             PlotCurve(tr("current"), theme.polyhedron, steps, losses, markers=len(steps) < 40),
             PlotCurve(tr("best so far"), theme.muted, steps, lowest, dash=True),
         ]
+        if (done := results.coarsened) is not None:
+            if done.loss > 1.0000001 * rows[-1][2]:
+                del curves[1]  # of a step that did not meet the conditions
+            end = (steps[-1:], (done.loss,))
+            curves.append(PlotCurve(tr("result"), theme.text, *end, markers=True, line=False))
         self.plot.set_curves(curves)
         progress = results.coarsening_progress
         running = results.coarsened is None and progress is not None

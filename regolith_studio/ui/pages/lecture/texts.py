@@ -179,7 +179,7 @@ def degree_sentence(step: DegreeStep) -> str:
     names = {0: tr("a sphere"), 1: tr("a slightly displaced sphere"), 2: tr("nearly an ellipsoid")}
     shape = names.get(step.l_max, tr("finer details"))
     errors = ", ".join(
-        f"{in_a_sentence(tr(CATALOGUE[key].label))} {number_text(value, '.1%')}"
+        f"{in_a_sentence(CATALOGUE[key].label)} {number_text(value, '.1%')}"
         for key, value in step.errors.items()
     )
     return tr(
