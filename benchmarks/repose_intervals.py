@@ -3,6 +3,7 @@
     python -m benchmarks.repose_intervals [HEAPS] [FIRST_SEED] [RESULT.json]
 
 One line for each kind of heap and number of grains: HEAPS of each of four angles (20 to 40 degrees).
+Hyperbolic heaps have two: against the asymptotes, and against the hyperbola itself between the cuts.
 """
 
 import json
@@ -12,9 +13,9 @@ from pathlib import Path
 
 import numpy as np
 
-from benchmarks.heaps import KINDS, Array, heap
+from benchmarks.heaps import KINDS, SOLID_FRACTION, Array, heap
 from regolith_studio.dem.angle_of_repose import measure_repose
-from regolith_studio.dem.evaluation.settings import NotAPileError
+from regolith_studio.dem.evaluation.settings import EvaluationSettings, NotAPileError
 
 ANGLES = (20, 27, 34, 40)
 GRAINS = (300, 1000, 5000)
@@ -45,11 +46,37 @@ def main(heaps: int, seed: int, result: str) -> None:
                 every.append(np.array(pool.map(measured, cases)))
                 rows.append(line(kind, n, every[-1]))
                 print(rows[-1], flush=True)
+                if KINDS[kind].blunt:
+                    flank = np.repeat([flank_angle(angle, n, KINDS[kind].blunt) for angle in ANGLES], heaps)
+                    rows.append(
+                        line(
+                            "the same, of its flank",
+                            n,
+                            every[-1] - (flank - np.repeat(ANGLES, heaps))[:, None],
+                        )
+                    )
+                    print(rows[-1], flush=True)
             rows.append(line("all", n, np.concatenate(every)))
             print(rows[-1], flush=True)
     if result:
         found = {"heaps": heaps, "first_seed": seed, "rows": rows}
         Path(result).write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
+
+
+def flank_angle(angle: float, n: int, blunt: float) -> float:
+    """Of the least-squares line through a hyperbola of `n` grains where that line lies between the cuts, in
+    degrees; the cuts are those of the evaluation."""
+    settings, slope = EvaluationSettings(), np.tan(np.radians(angle))
+    radius = (n / (2 * SOLID_FRACTION * slope)) ** (1 / 3)  # of a cone of grains of diameter 1
+    run = np.linspace(0.0, 1.0, 10_001)
+    height = slope * (1.0 - np.hypot(run, blunt))
+    low = max(settings.cut_bottom * height[0], settings.toe / radius)
+    fitted = height
+    for _ in range(6):
+        used = (fitted >= low) & (fitted < (1.0 - settings.cut_top) * height[0])
+        fall, top = np.polyfit(run[used], height[used], 1)
+        fitted = fall * run + top
+    return float(np.degrees(np.arctan(-fall)))
 
 
 def line(name: str, n: int, found: Array) -> str:

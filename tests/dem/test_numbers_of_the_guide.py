@@ -8,8 +8,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy import stats
 
-from benchmarks.repose_intervals import ANGLES, line, measured
+from benchmarks.heaps import KINDS
+from benchmarks.repose_intervals import ANGLES, flank_angle, line, measured
 from regolith_studio.dataset.export import ExportOptions
 from regolith_studio.dataset.multisphere import COUNTS
 from regolith_studio.dataset.parameters import ContactParameters, LiftingCylinderTest
@@ -170,6 +172,35 @@ def test_that_the_table_of_intervals_has_the_results_of_its_benchmark() -> None:
     assert said == [[cell.strip() for cell in row.strip("|").split("|")] for row in INTERVALS["rows"]]
     first, heaps = INTERVALS["first_seed"], INTERVALS["heaps"]
     assert f"seeds from {first:,} on, {len(ANGLES) * heaps} heaps a row" in one_line(REPOSE)
+
+
+def test_that_a_hyperbola_of_many_grains_is_as_much_flatter_as_the_guide_says() -> None:
+    blunt = KINDS["hyperbolic tip, a = .08 R"].blunt
+    flatter = [angle - flank_angle(angle, 10**6, blunt) for angle in ANGLES]
+    assert f"{min(flatter):.2f} to {max(flatter):.2f} degrees flatter than its asymptotes" in one_line(REPOSE)
+    assert [flank_angle(angle, 10**6, 0.0) for angle in ANGLES] == pytest.approx(ANGLES)
+
+
+def test_that_the_table_of_refused_heaps_has_the_results_of_its_benchmark() -> None:
+    found = json.loads((ROOT / "benchmarks/results/repose_refusals.json").read_text("utf-8"))
+    refused: dict[str, list[str]] = {}
+    for row in found["rows"]:
+        refused.setdefault(row["heap"], []).append(str(row["refused"]))
+    said = rows_of(REPOSE, "| heap, height over radius | 300 grains | 1,000 | 3,000 |")
+    assert {name: counts for name, *counts in said} == refused
+    assert {row["heaps"] for row in found["rows"]} == {4}
+    assert f"seeds from {found['first_seed']:,} on (`python -m benchmarks.repose_refusals`)" in one_line(
+        REPOSE
+    )
+
+
+def test_that_the_mean_of_four_fillings_has_student_s_interval() -> None:
+    found = [run for run in results("repose_rapier.json") if run["engine"] == "mujoco"]
+    angles = np.array([run["angle_deg"] for run in found if run["particles"] == 1000 and run["seed"] < 5])
+    low, high = stats.ttest_1samp(angles, 0.0).confidence_interval(0.95)
+    *first, last = [f"{angle:.1f}" for angle in angles]
+    said = f"{', '.join(first)} and {last} degrees: {angles.mean():.1f} ± {(high - low) / 2:.1f} in the mean"
+    assert said in one_line(REPOSE)
 
 
 @pytest.mark.slow
