@@ -154,10 +154,10 @@ def test_that_the_memory_for_contacts_grows_with_the_number_and_not_with_its_squ
     assert 100_000 * 2000 < large < 1e9
 
 
-def friction_of_sliding_grains(boxes: Dataset, degrees: float) -> tuple[float, set[float]]:
+def friction_of_sliding_grains(boxes: Dataset, degrees: float, seed: int = 2) -> tuple[float, set[float]]:
     """Mean of tan(slope) - a / (g cos(slope)) over 12 time units of 40 boxes on the tilted plate; steps."""
     test = LiftingCylinderTest(mass=0.003, plate_friction=0.8)
-    prepared = prepare(boxes, ReposeCase(test, n_particles=40, seed=2))
+    prepared = prepare(boxes, ReposeCase(test, n_particles=40, seed=seed))
     solver = simulation.MujocoSolver(prepared, MujocoSettings())
     half = np.array([shape[:, 2].max() for shape in prepared.shapes])[prepared.class_index]
     rows = solver.data.qpos.reshape(-1, 7)
@@ -182,11 +182,11 @@ def test_that_grains_which_slide_fast_feel_the_friction_that_is_set(
     boxes: Dataset, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Coulomb's law on a slope of 50 degrees; with one step for all speeds they bounce and feel less."""
-    felt, steps = friction_of_sliding_grains(boxes, 50.0)
-    assert felt == pytest.approx(0.8, abs=0.03)
-    assert min(steps) < max(steps) == MujocoSettings().time_step
+    felt, steps = zip(*(friction_of_sliding_grains(boxes, 50.0, seed) for seed in (2, 3, 4)), strict=True)
+    assert np.mean(felt) == pytest.approx(0.8, abs=0.03)
+    assert all(min(each) < max(each) == MujocoSettings().time_step for each in steps)
     monkeypatch.setattr(simulation, "MAX_MOVE", 1.0)
-    assert friction_of_sliding_grains(boxes, 50.0)[0] < 0.77
+    assert np.mean([friction_of_sliding_grains(boxes, 50.0, seed)[0] for seed in (2, 3, 4)]) < 0.75
 
 
 def test_that_a_run_says_which_steps_it_took(boxes: Dataset) -> None:
