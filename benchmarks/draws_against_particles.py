@@ -5,7 +5,8 @@
         [--level 4] [--name NAME] [-o RESULT.json]
 
 Wasserstein distances in percent of the mean, by number, of as many draws as the half fitted to has
-particles; means over the splits, and processor seconds of a fit and of 2,000 draws. SAMPLE is a fit, or
+particles; means over the splits and over up to five such parts of 2,000 draws, and processor seconds of a fit
+and of 2,000 draws. SAMPLE is a fit, or
 tables of complex coefficients. With ``--l-max`` its particles are cut at that degree first, with ``--odd``
 only every second one is taken, from the second on; ``--level`` is that of the meshes. Set
 OPENBLAS_NUM_THREADS=1 for seconds that compare.
@@ -27,7 +28,7 @@ from regolith_studio.shape_models.sample import Sample
 from regolith_studio.studies.population import KEYS, MESH_LEVEL, N_FLOOR_SPLITS
 
 CUTS = (10, 20)
-N_DRAWS = 2000
+N_DRAWS, N_PARTS = 2000, 5
 MODEL_KEYS = ("recombined", "hull_field", "sample_matched")
 
 
@@ -39,16 +40,25 @@ def far(one: FloatArray, two: FloatArray) -> FloatArray:
 
 
 def judged(
-    key: str, sample: Sample, table: FloatArray, halves: list[tuple[IntArray, IntArray]], level: int
+    key: str,
+    sample: Sample,
+    table: FloatArray,
+    halves: list[tuple[IntArray, IntArray]],
+    level: int,
+    seed: int,
 ) -> FloatArray:
     """Distances of a model's draws from the halves that it has not seen, and processor seconds."""
     found = []
     for number, (train, test) in enumerate(halves):
         begin = time.process_time()
         model = MODELS[key]
-        draws = model.fit(sample.chosen(train), model.Settings(l_max=sample.l_max)).draw(N_DRAWS, number)
+        draws = model.fit(sample.chosen(train), model.Settings(l_max=sample.l_max)).draw(
+            N_DRAWS, seed + number
+        )
         spent = time.process_time() - begin
-        found.append([*far(table[test], measured(draws.chosen(range(len(train))), KEYS, level)), spent])
+        n, parts = len(train), min(N_PARTS, N_DRAWS // len(train))
+        drawn = measured(draws.chosen(range(parts * n)), KEYS, level).reshape(parts, n, -1)
+        found.append([*np.mean([far(table[test], part) for part in drawn], axis=0), spent])
     return np.mean(found, axis=0)
 
 
@@ -67,7 +77,7 @@ def table_of(sample: Sample, seed: int, n_splits: int, keys: Sequence[str], leve
         cut = measured(realized(sample.truncated(degree)), KEYS, level)
         show_row(rows, f"cut at l = {degree}", far(table, cut))
     for key in keys:
-        show_row(rows, key, judged(key, sample, table, halves[:n_splits], level))
+        show_row(rows, key, judged(key, sample, table, halves[:n_splits], level, seed))
     return rows
 
 

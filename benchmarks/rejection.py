@@ -1,6 +1,6 @@
-"""What throwing draws away does to a Gaussian field of the radius, fitted to a sample and to all cards.
+"""What throwing draws away does to a Gaussian field of the radius, of a sample and of cards of spectra.
 
-    python -m benchmarks.rejection [FIT.json] [RESULT.json]
+    python -m benchmarks.rejection [FIT.json] [SEED] [RESULT.json]
 
 Percent of draws thrown away, and by how much the mean radius and the power of the second degree of those
 kept are above the field's, at l_max = 10.
@@ -19,18 +19,19 @@ from regolith_studio.shape_models.sample import Sample
 PARTICLES = 1000
 
 
-def main(path: str, result: str) -> None:
+def main(path: str, seed: int, result: str) -> None:
     """Print a row for each sample."""
     samples = {"cement": sample_from(path)} if path else {}
-    for name, card in materials().items():
-        draws = card.field(CARD_DEGREE).draw(PARTICLES, 2)
+    for name, card in ((name, card) for name, card in materials().items() if card.hull_field is None):
+        draws = card.field(CARD_DEGREE).draw(PARTICLES, seed)
         samples[name] = Sample(np.stack([draws.particle(i).values for i in range(PARTICLES)]))
     rows: Rows = {}
     for name, sample in samples.items():
         bias = MODEL.fit(sample).rejection_bias()
         show_row(rows, name, 100 * np.array([bias.rejected, bias.mean_radius, bias.second_degree]), 1)
-    add_result(result, "field of", rows, particles=PARTICLES)
+    add_result(result, "field of", rows, seed=seed, particles=PARTICLES)
 
 
 if __name__ == "__main__":
-    main(*(*sys.argv[1:], "", "")[:2])
+    words = [*sys.argv[1:], *("", "2", "")[len(sys.argv) - 1 :]]
+    main(words[0], int(words[1]), words[2])
