@@ -9,6 +9,7 @@ import subprocess
 import sys
 import threading
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -19,11 +20,14 @@ from regolith_studio.jobs.events import Progress, Started, Steps
 from regolith_studio.jobs.progress_rate import ProgressRate, format_duration
 from regolith_studio.messages import N_, Message
 
-TASKS = {"read": 9, "fit": 27, "describe": 31, "quadric": 18, "annealing": 12, "exact": 75, "compound": 12}
+TASKS = {"read": 10, "fit": 27, "describe": 33, "quadric": 18, "annealing": 12, "exact": 75, "compound": 12}
+TASKS |= {"degrees": 3, "model": 7, "scan": 10, "representatives": 3}
 """What can be compiled, in the order in which the window needs it, and the files of machine code that each
-adds to those of the tasks before it. Annealing has no kernel that the exact method does not need too."""
+adds to those of the tasks before it. Annealing has no kernel that the exact method does not need too.
+The second line is for single pages. What is compiled in the window instead keeps 2 MB a kernel there."""
 
-_PARTS = {"read": "geometry", "fit": "harmonics", "describe": "geometry"}
+_PARTS = {"read": "geometry", "fit": "harmonics", "describe": "geometry", "degrees": "harmonics"}
+_PARTS |= {"model": "shape_models", "scan": "imaging", "representatives": "dataset"}
 """Part of the program in whose folder of machine code a task is marked as done; else ``coarsening``."""
 
 _POLL_SECONDS = 0.1
@@ -78,12 +82,14 @@ def compile_first(*tasks: str) -> Steps:
 def run_task(name: str) -> None:
     """Call every kernel of one of :data:`TASKS` in this process."""
     from regolith_studio.coarsening.coarsen import coarsen
+    from regolith_studio.descriptors.catalogue import CATALOGUE
     from regolith_studio.descriptors.describe import describe
+    from regolith_studio.geometry.hole_filling import fill_holes
     from regolith_studio.geometry.mesh import Mesh
     from regolith_studio.geometry.mesh_health import inspect
     from regolith_studio.geometry.sphere_points import icosphere
     from regolith_studio.harmonics.fit import fit_harmonics
-    from regolith_studio.harmonics.surface import reconstruct
+    from regolith_studio.harmonics.surface import gallery, reconstruct
     from regolith_studio.harmonics.visibility import star_point_visibility
     from regolith_studio.readers.particles import sample_particles
 
@@ -92,17 +98,60 @@ def run_task(name: str) -> None:
     along = 0.5 + sphere.vertices[:, 0] ** 2
     if name == "read":
         list(sample_particles())
+        fill_holes(mesh.vertices, mesh.faces[9:])
     elif name == "fit":
         reconstruct(fit_harmonics(mesh, 4, sampling_degree=8), 2, level=1)
     elif name == "describe":
         inspect(mesh)
-        describe(mesh)
+        describe(mesh, tuple(CATALOGUE))
         star_point_visibility(mesh)
+    elif name == "degrees":
+        list(gallery(fit_harmonics(mesh, 4, sampling_degree=8), (2, 3), level=1))
+        reconstruct(fit_harmonics(mesh, 4, sampling_degree=8, reference="ellipsoid"), 2, level=1)
+    elif name in _PAGES:
+        _PAGES[name]()
     elif name == "compound":
         waist = Mesh(mesh.vertices * np.column_stack([np.ones(len(along)), along, along]), mesh.faces)
         coarsen(waist, 12, name, settings={"parts": 2})
     else:
         coarsen(mesh, 12, name)
+
+
+def _draw_particles() -> None:
+    """Fit the models of measured surfaces to the shipped particles, and draw from each."""
+    from regolith_studio.harmonics.fit import fit_harmonics
+    from regolith_studio.readers.particles import sample_particles
+    from regolith_studio.readers.shape_files import radius_of
+    from regolith_studio.shape_models.models import MODELS, model_settings
+    from regolith_studio.shape_models.sample import Sample
+
+    sample = Sample.of([radius_of(fit_harmonics(particle.mesh, 8)) for particle in sample_particles()])
+    for key in ("recombined", "sample_matched"):
+        MODELS[key].fit(sample, replace(model_settings(key), l_max=4)).draw(2, 0)
+
+
+def _extract_two_balls() -> None:
+    """Segment two touching balls, and extract them from their labels and from their grey values."""
+    from regolith_studio.imaging.extraction import ExtractionSettings, extract_particles
+    from regolith_studio.imaging.segmentation.segment import segment
+    from regolith_studio.imaging.volume import Volume
+
+    places = np.indices((68, 44, 44)) - 21.5
+    places[0] = np.minimum(np.abs(places[0]), np.abs(places[0] - 25.0))
+    depth = 13.0 - np.linalg.norm(places, axis=0)
+    grey = Volume(np.clip(200 + 80 * depth, 40, 200).astype(np.uint8), np.ones(3), "grey", "balls")
+    labels = segment(grey).labels
+    for values in (None, grey):
+        extract_particles(labels, ExtractionSettings(), grey=values)
+
+
+def _choose_medoids() -> None:
+    from regolith_studio.dataset.k_medoids import k_medoids
+
+    k_medoids(np.arange(12.0).reshape(6, 2) ** 2, 2)
+
+
+_PAGES = {"model": _draw_particles, "scan": _extract_two_balls, "representatives": _choose_medoids}
 
 
 def _mark(task: str) -> Path | None:
@@ -111,7 +160,7 @@ def _mark(task: str) -> Path | None:
 
 
 def _count_files() -> int:
-    folders = {machine_code_folder(part) for part in ("harmonics", "geometry", "coarsening")}
+    folders = {machine_code_folder(part) for part in {*_PARTS.values(), "coarsening"}}
     return sum(1 for folder in folders if folder for _ in folder.rglob("*.nbc"))
 
 

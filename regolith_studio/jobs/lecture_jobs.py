@@ -28,7 +28,7 @@ from regolith_studio.harmonics.fit import HarmonicFit
 from regolith_studio.harmonics.surface import gallery
 from regolith_studio.harmonics.synthesis import radii_on_icosphere
 from regolith_studio.jobs.coarsening_jobs import CoarseningRequest
-from regolith_studio.jobs.compile_kernels import compile_first_for
+from regolith_studio.jobs.compile_kernels import compile_first, compile_first_for
 from regolith_studio.jobs.events import Partial, Progress, Started, Steps
 from regolith_studio.messages import N_
 from regolith_studio.shape_models.materials import materials
@@ -218,6 +218,7 @@ class DegreeStep:
 
 def trace_degrees(mesh: Mesh, fit: HarmonicFit, level: int = 4) -> Steps:
     """The fit at every degree from 0 on; partial results and the result are tuples of :class:`DegreeStep`."""
+    yield from compile_first("describe", "degrees")
     degrees = range(fit.l_max + 1)
     yield Started(N_("Fitting degree by degree"), len(degrees))
     truth = describe(mesh, LOSS_KEYS)
@@ -284,5 +285,6 @@ def draw_field(material: str, amplitudes: FloatArray, seed: int, level: int = 4)
 
 def draw_field_later(material: str, amplitudes: FloatArray, seed: int) -> Steps:
     """:func:`draw_field` as a job; returns :class:`DrawnField`."""
+    yield from compile_first("fit")
     yield Started("Drawing a field", 1)
     return draw_field(material, amplitudes, seed)

@@ -8,6 +8,7 @@ import numpy as np
 
 from regolith_studio.descriptors.distributions import Distribution
 from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.jobs.compile_kernels import compile_first
 from regolith_studio.jobs.events import Partial, Progress, Started, Step, Steps
 from regolith_studio.jobs.study_jobs import study_population
 from regolith_studio.messages import N_
@@ -127,6 +128,7 @@ def compare_distributions(sample: Sample | None, draws: Realizations) -> Steps:
         rows = sample.coefficients[:MAX_COMPARED]
         kinds.append(Realizations(rows, "radius", "measured", draws.seed, sample.unit))
     total = sum(len(each) for each in kinds)
+    yield from compile_first("describe")
     yield Started(N_("Comparing distributions"), total)
     tables, done = [], 0
     for each in kinds:

@@ -14,6 +14,7 @@ from regolith_studio.geometry.particle import Particle
 from regolith_studio.harmonics.fit import HarmonicFit
 from regolith_studio.harmonics.surface import level_for, reconstruct
 from regolith_studio.io.stl import stl_bytes
+from regolith_studio.jobs.compile_kernels import compile_first
 from regolith_studio.jobs.events import Job, Progress, Started, Steps
 from regolith_studio.jobs.executor import Executor, open_executor, value_of
 from regolith_studio.jobs.particle_jobs import (
@@ -130,6 +131,7 @@ def fit_model(source: ShapeSource, request: GenerationRequest) -> Steps:
         If source and request do not go together, or the model cannot be fitted.
     """
     content = source.content
+    yield from compile_first("model")
     yield Started(N_("Fitting the model"))
     if isinstance(content, MaterialCard):
         return _model_of_card(content, request)
@@ -150,6 +152,7 @@ def make_card(sample: Sample, name: str, label: str, origin: str) -> Steps:
     InputError
         As :meth:`~regolith_studio.shape_models.materials.MaterialCard.of`.
     """
+    yield from compile_first("model")
     yield Started(N_("Making a material card"))
     return MaterialCard.of(sample, name, label, origin)
 
@@ -163,6 +166,7 @@ def draw(model: FittedModel, request: GenerationRequest) -> Steps:
         If the particles need more memory than there is, or as the model's ``draw_chunks``.
     """
     check_draws(request.n, model.l_max)
+    yield from compile_first("model")
     yield Started(N_("Drawing"), request.n)
     parts: list[Realizations] = []
     for part in model.draw_chunks(request.n, request.seed, request.size_range):
@@ -367,6 +371,7 @@ def draw_shapes(model: FittedModel, request: GenerationRequest) -> Steps:
 
 def draw_live(model: FittedModel, seed: int) -> Steps:
     """:func:`live_mesh` as a job; returns the mesh."""
+    yield from compile_first("model")
     yield Started("Drawing a particle", 1)
     return live_mesh(model, seed)
 

@@ -16,6 +16,7 @@ from regolith_studio.dataset.size_distributions import Weighting
 from regolith_studio.descriptors.describe import Descriptors
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.particle import Particle
+from regolith_studio.jobs.compile_kernels import compile_first
 from regolith_studio.jobs.events import Partial, Progress, Started, Steps
 from regolith_studio.jobs.executor import Executor
 from regolith_studio.jobs.particle_jobs import measure_sample
@@ -153,6 +154,7 @@ def _problem_of(descriptors: Descriptors) -> str:
 
 def measure_quality(population: MeasuredPopulation, request: RepresentativesRequest) -> Steps:
     """Errors over the number of representatives; partial results are points, returns ``QualityCurve``."""
+    yield from compile_first("representatives")
     counts = curve_counts(len(population.kept), request.count)
     yield Started(N_("Choosing representatives"), len(counts))
     steps = quality_steps(
@@ -218,5 +220,6 @@ def survey_representatives(
 
 def choose_job(population: MeasuredPopulation, request: RepresentativesRequest) -> Steps:
     """As :func:`choose_particles`, for a runner."""
+    yield from compile_first("representatives")
     yield Started(N_("Choosing representatives"))
     return choose_particles(population, request)

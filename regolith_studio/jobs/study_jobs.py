@@ -43,7 +43,7 @@ def study_lmax(
     options
         Further ones of :func:`~regolith_studio.studies.lmax.lmax_study`: degrees, level, keys ...
     """
-    yield from compile_first("fit", "describe")
+    yield from compile_first("fit", "describe", "degrees")
     yield Started(N_("RMSRE against l_max"), len(particles))
     if answers is not None:
         answers.open("lmax", (seed, sorted(options.items())), hash_of_particles(particles))
@@ -72,6 +72,7 @@ def study_population(
     options
         Further ones of :func:`~regolith_studio.studies.population.population_study`.
     """
+    yield from compile_first("describe", "model")
     yield Started(N_("Evaluating models"), 0)
     if answers is not None:
         inputs = hash_of_rows(sample.coefficients, (*sample.names, sample.unit))

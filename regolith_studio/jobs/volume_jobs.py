@@ -40,6 +40,7 @@ from regolith_studio.imaging.slice_images import SliceImages, coarse_copy
 from regolith_studio.imaging.sparse_slices import sparse_slices
 from regolith_studio.imaging.volume import Volume, VolumeKind
 from regolith_studio.imaging.volume_slabs import ParallelMap, ScratchArrays, SliceSource, slab_ranges
+from regolith_studio.jobs.compile_kernels import compile_first
 from regolith_studio.jobs.events import Job, Partial, Progress, Started, Step, Steps
 from regolith_studio.jobs.executor import Executor, open_executor, value_of
 from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput
@@ -174,6 +175,7 @@ def read_scan(given: VolumeInput, region: RegionSettings | None = None) -> Steps
 
 def find_grains(scan: Scan, settings: SegmentationSettings) -> Steps:
     """Segment a volume, a large one in temporary files; returns :class:`GrainSegmentation`."""
+    yield from compile_first("scan")
     large = scan.volume.array.size * (_LABEL_BYTES + scan.volume.dtype.itemsize) > IN_MEMORY
     scratch = ScratchArrays(scratch_folder() if large else None)
     try:
@@ -208,6 +210,7 @@ def read_sample_scan(kind: SampleVolume = "grey", region: RegionSettings | None 
 
 def preview_part(volume: Volume, box: Box, settings: SegmentationSettings, level: float | None) -> Steps:
     """Segment a small part; returns a ``Segmentation``, or ``None`` where no grain is in it."""
+    yield from compile_first("scan")
     yield Started(N_("Preview"))
     try:
         found: Segmentation = preview(volume, box, settings, level)
@@ -223,6 +226,7 @@ def preview_heights(
 
     `level` takes the place of an automatic threshold, as in :func:`preview_part`.
     """
+    yield from compile_first("scan")
     part, chosen = part_of(volume, box, settings, level)
     return (yield from reported(grains_over_heights(part, heights, chosen)))
 
@@ -237,6 +241,7 @@ def count_over_heights(
     InputError
         If it holds labels, which are grains already.
     """
+    yield from compile_first("scan")
     yield Started(Message(N_("Reading {name}"), name=given.path.name))
     volume = settings.region.of(given.opened())
     if volume.kind != "grey":
@@ -420,6 +425,7 @@ def extract_labels(
 
     They are what :func:`extract_file` makes of the file, if it held the values `grey`.
     """
+    yield from compile_first("scan")
     yield Started(N_("Extracting particles"))
     source = _source_of(path, labels)
     return (yield from _collect(extraction_steps(labels, settings, path.stem, source, grey=grey)))
@@ -455,6 +461,7 @@ def _extract(
     labels_file: Path | None = None,
     run: ParallelMap = map,
 ) -> Steps:
+    yield from compile_first("scan")
     yield Started(Message(N_("Reading {name}"), name=given.path.name))
     volume = recipe.region.of(given.opened())
     sizes = tuple(float(edge) for edge in np.ravel(np.asarray(volume.voxel_size)))
