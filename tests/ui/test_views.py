@@ -77,6 +77,21 @@ def test_that_a_view_shows_what_is_drawn_and_forgets_what_is_cleared(make):
     assert differs(empty, view.picture()) < 1
 
 
+def test_that_a_hidden_view_holds_no_graphics_memory_and_shows_the_same_picture_again(make, kind):
+    view = make()
+    view.draw(lambda plotter: surfaces.show_particle(plotter, BALL))
+    view.set_pose(framing_pose(BALL.vertices))
+    before = view.picture()
+    view.widget.hide()
+    if kind == "live":
+        assert not view._canvas.render_window.GetInitialized()
+    view.draw(lambda plotter: surfaces.show_fit(plotter, EGG))
+    view.widget.show()
+    assert differs(before, view.picture()) > 5
+    view.draw(lambda plotter: surfaces.show_particle(plotter, BALL))
+    assert differs(before, view.picture()) == 0
+
+
 def test_that_dragging_turns_the_camera_and_tells_it(make):
     view, heard = make(), []
     view.draw(lambda plotter: surfaces.show_particle(plotter, EGG))
