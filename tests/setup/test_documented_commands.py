@@ -68,8 +68,8 @@ def write_scans(folder: Path) -> None:
     metadata = {"axes": "ZYX", "unit": "um", "spacing": 50.0}
     (folder / "simulants").mkdir()
     for name in ("scan", "a", "b", "c", "simulants/a", "simulants/b"):
-        stated = {"imagej": True, "resolution": (1 / 50, 1 / 50), "metadata": metadata}
-        tifffile.imwrite(folder / f"{name}.tif", balls(), **stated)
+        path, pixel = folder / f"{name}.tif", (1 / 50, 1 / 50)
+        tifffile.imwrite(path, balls(), imagej=True, resolution=pixel, metadata=metadata)
     (folder / "scans.csv").write_text("scan,h-maxima\nsimulants/a.tif,1.2\nsimulants/b.tif,\n")
     (folder / "scan.raw").write_bytes(balls().astype("<u2").tobytes())
     with h5py.File(folder / "scan.h5", "w") as file:

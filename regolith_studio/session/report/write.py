@@ -169,7 +169,7 @@ def _provenance(draft: ReportDraft) -> ReportSection:
     return ReportSection(
         "How it was made",
         (
-            "The same files, settings and versions give the same bytes.",
+            "The same files, settings and versions give the same bytes on one kind of processor.",
             f"SHA-256 of all particles, as read: {hash_of_particles(draft.particles)}.{more}",
         ),
         tables=(
