@@ -39,7 +39,7 @@ FIELD_DEGREE = 10
 N_JUDGED = 1000
 JUDGED = ("equivalent_radius", "aspect_ratio", "sphericity", "convexity")
 SPECTRUM_ALONE = N_(
-    "Draws differ from their material, those of a card of cement by about 7 % in AR, 9 % in S and 5 % in "
+    "Draws differ from their material, those of a card of cement by about 6 % in AR, 9 % in S and 4 % in "
     "V/CH (l_max = 10): the card has a power spectrum and no phases."
 )
 Amplitude = Annotated[float, Field(ge=0.0, le=1.0)]
