@@ -4,7 +4,8 @@
 
 Shapes of 24 voxels in diameter at random places, turned at random, partial volumes, a blur of 0.8 voxels,
 noise of 5 % of the contrast, segmented by median and the true mid-level. Masks are those of the truth, in
-where half of a voxel is covered. Errors in percent, mean and largest, each against the shape itself.
+where half of a voxel is covered. Errors in percent, mean and largest, each against the shape itself; then
+means of what is wrong before: the area of the mask's contour, and the volume of the mask by the threshold.
 """
 
 import sys
@@ -16,7 +17,7 @@ from scipy.spatial import ConvexHull, HalfspaceIntersection
 from benchmarks.result_files import Rows, add_result, show_row
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.sphere_points import icosphere
-from regolith_studio.imaging.grain_surface import grey_mesh, mask_mesh
+from regolith_studio.imaging.grain_surface import contour, grey_mesh, mask_mesh
 from regolith_studio.imaging.label_table import GrainCrop
 from regolith_studio.imaging.voxelize import coverage
 from tools.make_samples.grains import even_sphere, random_rotation
@@ -24,6 +25,7 @@ from tools.make_samples.random_fields import SphereField, power_law
 
 DIAMETER, EDGE, BLUR, NOISE, CONTRAST = 24.0, 53, 0.8, 0.05, 76
 FACES = (40, 14, 8)
+BEFORE = "area of contours, volume of thresholds"
 AXES = np.array([1.5, 1.1, 0.6])
 
 
@@ -54,7 +56,8 @@ def polyhedron(n_faces: int, rng: np.random.Generator) -> Mesh:
 
 
 def errors(truth: Mesh, rng: np.random.Generator) -> list[float]:
-    """Errors of volume and area in percent: of the mask, then from grey values."""
+    """Errors in percent: of volume and area of the mask, then from grey values; of the area of the mask's
+    contour; of the volume of the mask that the threshold leaves."""
     share = coverage(truth, (EDGE,) * 3, 8)
     seen = ndimage.gaussian_filter(share, BLUR) + NOISE * rng.standard_normal(share.shape)
     grey = np.round(62 + CONTRAST * seen)
@@ -65,22 +68,27 @@ def errors(truth: Mesh, rng: np.random.Generator) -> list[float]:
         sys.exit(f"The grey values did not tell: {found}")
     meshes = mask_mesh(share >= 0.5), found
     true = truth.volume, truth.surface_area
-    return [
+    made = [
         100 * (value / wanted - 1)
         for mesh in meshes
         for value, wanted in zip((mesh.volume, mesh.surface_area), true, strict=True)
     ]
+    steps = contour((share >= 0.5).astype(np.float32), 0.5, (1.0, 1.0, 1.0)).surface_area
+    return [*made, 100 * (steps / true[1] - 1), 100 * (np.count_nonzero(own) / true[0] - 1)]
 
 
 def main(seed: int, repeats: int, result: str) -> None:
     """Print a row for each kind of shape: mean and largest error of each number."""
     rng = np.random.default_rng(np.random.SeedSequence(seed))
     rows: Rows = {}
+    before: Rows = {}
     for name in ("balls", "ellipsoids", *(f"polyhedra of {n} faces" for n in FACES), "rough grains"):
         found = np.array([errors(shape_of(name, rng), rng) for _ in range(repeats)])
-        both = np.array([found.mean(axis=0), np.abs(found).max(axis=0)])
+        both = np.array([found[:, :4].mean(axis=0), np.abs(found[:, :4]).max(axis=0)])
         show_row(rows, name, both.T.ravel())
+        show_row(before, name, found[:, 4:].mean(axis=0))
     add_result(result, "shape", rows, seed=seed, repeats=repeats)
+    add_result(result, BEFORE, before, seed=seed, repeats=repeats)
 
 
 if __name__ == "__main__":
