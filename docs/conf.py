@@ -12,6 +12,7 @@ from regolith_studio import __version__
 from regolith_studio.cli.commands import app
 
 project = "Regolith Studio"
+project_copyright = "the Regolith Studio developers"
 release = __version__
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx.ext.mathjax"]
 myst_enable_extensions = ["dollarmath"]
