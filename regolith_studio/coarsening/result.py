@@ -128,8 +128,8 @@ class CoarseningResult:
             return Message(
                 N_(
                     "The particle has tunnels (genus {particle}), the union of the convex parts has genus"
-                    " {union}: no condition keeps tunnels, so what they let through is closed or moved. More"
-                    " parts may keep them."
+                    " {union}: no condition preserves tunnels, which may be closed or moved. More parts may"
+                    " preserve them."
                 ),
                 particle=self.genus[0],
                 union=self.genus[1],

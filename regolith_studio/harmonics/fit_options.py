@@ -18,7 +18,7 @@ AUTOMATIC = ""
 
 @dataclass(frozen=True)
 class FitOptions:
-    """How radii are taken; picklable.
+    """How the radius function is obtained from a mesh; picklable.
 
     Parameters
     ----------

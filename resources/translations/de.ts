@@ -492,6 +492,10 @@
         <translation>Trefferquote eines Klassifikators von gezogenen und gemessenen Partikeln: bei 0,5 sind sie nicht zu unterscheiden</translation>
     </message>
     <message>
+        <source>Action on them</source>
+        <translation>Aktion für sie</translation>
+    </message>
+    <message>
         <source>Activity</source>
         <translation>Vorgänge</translation>
     </message>
@@ -936,10 +940,6 @@
         <translation>Wählen Sie zuerst die Zeilen, die bleiben sollen.</translation>
     </message>
     <message>
-        <source>Choose what is to be written.</source>
-        <translation>Wählen Sie, was geschrieben werden soll.</translation>
-    </message>
-    <message>
         <source>Choosing representatives</source>
         <translation>Repräsentanten werden gewählt</translation>
     </message>
@@ -1216,6 +1216,10 @@
         <translation>Enthält: {what}</translation>
     </message>
     <message>
+        <source>Content of the volume</source>
+        <translation>Inhalt des Volumens</translation>
+    </message>
+    <message>
         <source>Contents</source>
         <translation>Inhalt</translation>
     </message>
@@ -1442,6 +1446,14 @@
     <message>
         <source>Details …</source>
         <translation>Einzelheiten …</translation>
+    </message>
+    <message>
+        <source>Detect from the values</source>
+        <translation>Aus den Werten erkennen</translation>
+    </message>
+    <message>
+        <source>Detected: {looks}</source>
+        <translation>Erkannt: {looks}</translation>
     </message>
     <message>
         <source>Deviation in ln r_eq.</source>
@@ -2024,8 +2036,8 @@
         <translation>Genügende Anzahl suchen</translation>
     </message>
     <message>
-        <source>Finding bodies</source>
-        <translation>Körper werden gesucht</translation>
+        <source>Finding connected bodies</source>
+        <translation>Zusammenhängende Körper werden gesucht</translation>
     </message>
     <message>
         <source>Finding grains</source>
@@ -2430,10 +2442,6 @@
     <message>
         <source>How many facets</source>
         <translation>Wie viele Facetten</translation>
-    </message>
-    <message>
-        <source>How many grains it stands for, since large ones were lost at the border of the scan</source>
-        <translation>Für wie viele Körner es steht, weil am Rand des Scans große verloren gingen</translation>
     </message>
     <message>
         <source>How much detail: l_max</source>
@@ -3124,12 +3132,12 @@
         <translation>MuJoCo (MJCF)</translation>
     </message>
     <message>
-        <source>MuJoCo had no room for all contacts.</source>
-        <translation>MuJoCo hatte keinen Platz für alle Kontakte.</translation>
-    </message>
-    <message>
         <source>MuJoCo is not installed; install the package mujoco-core.</source>
         <translation>MuJoCo ist nicht installiert; installieren Sie das Paket mujoco-core.</translation>
+    </message>
+    <message>
+        <source>MuJoCo&apos;s memory for contacts was full.</source>
+        <translation>MuJoCos Speicher für Kontakte war voll.</translation>
     </message>
     <message>
         <source>Multi-Otsu, three classes</source>
@@ -3358,6 +3366,10 @@
     <message>
         <source>Number of facets of each polyhedron.</source>
         <translation>Anzahl der Facetten jedes Polyeders.</translation>
+    </message>
+    <message>
+        <source>Number of grains that it represents: large ones are more often cut by the border of the scan</source>
+        <translation>Anzahl der Körner, für die es steht: Große schneidet der Rand des Scans öfter an</translation>
     </message>
     <message>
         <source>Number of particles</source>
@@ -3922,6 +3934,10 @@
     <message>
         <source>Predicting grains</source>
         <translation>Körner werden vorhergesagt</translation>
+    </message>
+    <message>
+        <source>Prediction shown</source>
+        <translation>Gezeigte Vorhersage</translation>
     </message>
     <message>
         <source>Preferences</source>
@@ -4728,6 +4744,10 @@
         <translation>Wählen Sie ein Format, um zu sehen, was seine Dateien nicht enthalten.</translation>
     </message>
     <message>
+        <source>Select at least one result to write.</source>
+        <translation>Wählen Sie mindestens ein Ergebnis zum Schreiben.</translation>
+    </message>
+    <message>
         <source>Selection of grains</source>
         <translation>Auswahl der Körner</translation>
     </message>
@@ -5140,8 +5160,8 @@
         <translation>Ende bei</translation>
     </message>
     <message>
-        <source>Stop what is running</source>
-        <translation>Abbrechen, was in Arbeit ist</translation>
+        <source>Stop the running task</source>
+        <translation>Laufende Aufgabe abbrechen</translation>
     </message>
     <message>
         <source>Stopped</source>
@@ -5388,10 +5408,6 @@
         <translation>Die Exporte sind in {folder}.</translation>
     </message>
     <message>
-        <source>The fewest facets are sought whose weighted descriptors are all off by no more than this; of V and CH, which cannot both be met, beyond what none can avoid.</source>
-        <translation>Gesucht werden die wenigsten Facetten, deren gewichtete Deskriptoren alle höchstens um so viel abweichen; bei V und CH, die nicht beide zu treffen sind, über das Unvermeidliche hinaus.</translation>
-    </message>
-    <message>
         <source>The field on the sphere</source>
         <translation>Das Feld auf der Kugel</translation>
     </message>
@@ -5552,7 +5568,7 @@
         <translation>Das Partikel</translation>
     </message>
     <message>
-        <source>The particle has tunnels (genus {particle}), the union of the convex parts has genus {union}: no condition keeps tunnels, so what they let through is closed or moved. More parts may keep them.</source>
+        <source>The particle has tunnels (genus {particle}), the union of the convex parts has genus {union}: no condition preserves tunnels, which may be closed or moved. More parts may preserve them.</source>
         <translation>Das Partikel hat Tunnel (Geschlecht {particle}), die Vereinigung der konvexen Teile hat das Geschlecht {union}: keine Bedingung erhält Tunnel, sie werden geschlossen oder verlegt. Mehr Teile können sie erhalten.</translation>
     </message>
     <message>
@@ -5646,6 +5662,10 @@
     <message>
         <source>The slices state no positions; they were ordered by their numbers.</source>
         <translation>Die Schichten nennen keine Positionen; sie wurden nach ihren Nummern geordnet.</translation>
+    </message>
+    <message>
+        <source>The smallest number of facets is sought at which no weighted descriptor has a larger error. V and CH cannot both be met: of their errors only what exceeds the lower bound counts.</source>
+        <translation>Gesucht wird die kleinste Zahl von Facetten, bei der kein gewichteter Deskriptor einen größeren Fehler hat. V und CH sind nicht beide einzuhalten: Von ihren Fehlern zählt nur, was über der unteren Schranke liegt.</translation>
     </message>
     <message>
         <source>The smallest radius must be below the largest, got {low:g} and {high:g}.</source>
@@ -6110,26 +6130,6 @@
     <message>
         <source>What has been exported is listed here, with the command that loads it.</source>
         <translation>Was exportiert wurde, steht hier, mit dem Befehl, der es lädt.</translation>
-    </message>
-    <message>
-        <source>What is done with them</source>
-        <translation>Was mit ihnen geschieht</translation>
-    </message>
-    <message>
-        <source>What it looks like: {looks}</source>
-        <translation>Wonach es aussieht: {looks}</translation>
-    </message>
-    <message>
-        <source>What the prediction shows</source>
-        <translation>Was die Vorhersage zeigt</translation>
-    </message>
-    <message>
-        <source>What the volume holds</source>
-        <translation>Was das Volumen enthält</translation>
-    </message>
-    <message>
-        <source>Whatever it looks like</source>
-        <translation>Wonach es aussieht</translation>
     </message>
     <message>
         <source>Wheel</source>
@@ -6936,8 +6936,8 @@
         <translation>keine</translation>
     </message>
     <message>
-        <source>none besides what edges and faces do</source>
-        <translation>keines außer dem, was Kanten und Flächen bewirken</translation>
+        <source>none besides that of edges and faces</source>
+        <translation>keiner außer dem von Kanten und Flächen</translation>
     </message>
     <message>
         <source>none of these</source>

@@ -56,7 +56,7 @@ def test_that_a_grey_file_tells_its_stages_and_gives_particles() -> None:
     assert titles[0] == "Reading synthetic-grey.tif"
     assert titles[1:] == [
         "Denoising",
-        "Finding bodies",
+        "Finding connected bodies",
         "Separating touching grains",
         "Numbering grains",
         "Extracting particles",

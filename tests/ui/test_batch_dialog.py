@@ -118,7 +118,7 @@ def test_that_an_address_is_judged_while_it_is_typed(dialog, address, sentence):
 def test_that_nothing_to_write_nowhere_to_write_and_no_recipe_are_said(dialog, tmp_path):
     for box in dialog.results.values():
         box.setChecked(False)
-    assert "what is to be written" in dialog.state.text()
+    assert "at least one result" in dialog.state.text()
     dialog.results["dataset"].setChecked(True)
     dialog.folder.setValue(None)
     assert "folder" in dialog.state.text()

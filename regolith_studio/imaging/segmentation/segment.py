@@ -491,7 +491,7 @@ def _numbered(
     for done, slab in enumerate(thick_slabs(values, ranges, settings.cleaning.margin), start=1):
         mask = cleaned(grain_voxels(slab.values, level, settings.threshold), settings.cleaning)
         numbers[:, :, slab.first : slab.stop] = counter.numbered(mask[:, :, slab.inner], slab.first)
-        yield SegmentationProgress(N_("Finding bodies"), done, len(ranges))
+        yield SegmentationProgress(N_("Finding connected bodies"), done, len(ranges))
     return counter.finish()
 
 

@@ -102,7 +102,7 @@ class BatchDialog(RunDialog):
             raise InputError(tr("Enter a folder for the results."))
         outputs = Outputs(**{key: box.isChecked() for key, box in self.results.items()})
         if self.source.value() is None and not any(box.isChecked() for box in self.results.values()):
-            raise InputError(tr("Choose what is to be written."))
+            raise InputError(tr("Select at least one result to write."))
         source, workers = self.source.checked(), self.workers.value()
         resume = is_unfinished(folder) and self.resume.isChecked()
         if is_unfinished(folder) and not resume:

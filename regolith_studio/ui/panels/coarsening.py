@@ -54,8 +54,8 @@ ERROR = NumberSpec(
     limit=50.0,
     suffix=" %",
     tip=N_(
-        "The fewest facets are sought whose weighted descriptors are all off by no more than this; of V and"
-        " CH, which cannot both be met, beyond what none can avoid."
+        "The smallest number of facets is sought at which no weighted descriptor has a larger error. V and CH"
+        " cannot both be met: of their errors only what exceeds the lower bound counts."
     ),
 )
 TARGET_LABELS = {"fit": N_("Spherical-harmonics fit"), "particle": N_("Particle")}

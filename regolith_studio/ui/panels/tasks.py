@@ -41,7 +41,7 @@ class TasksPanel(QWidget):
         self.stop = QToolButton()
         self.stop.setObjectName("tasks_stop")
         self.stop.setAccessibleName(tr("Stop"))
-        self.stop.setToolTip(tr("Stop what is running"))
+        self.stop.setToolTip(tr("Stop the running task"))
         self.stop.setAutoRaise(True)
         layout = QHBoxLayout(self)
         layout.setContentsMargins(6, 1, 6, 1)

@@ -90,7 +90,7 @@ class MujocoSolver:
     def problems(self) -> list[str]:
         full = (mujoco.mjtWarning.mjWARN_CONTACTFULL, mujoco.mjtWarning.mjWARN_CNSTRFULL)
         crowded = any(self.data.warning[each].number for each in full)
-        return [Message(N_("MuJoCo had no room for all contacts."))] if crowded else []
+        return [Message(N_("MuJoCo's memory for contacts was full."))] if crowded else []
 
     def notes(self, times: dict[float, float]) -> list[str]:
         shares = {step: time / sum(times.values()) for step, time in sorted(times.items(), reverse=True)}

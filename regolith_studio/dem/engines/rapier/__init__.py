@@ -25,7 +25,7 @@ REPRESENTS = EngineCapabilities(
     normal=N_("unilateral constraint with restitution; penetration is reported, stiffness is not used"),
     tangential=N_("Coulomb friction of each patch of contact, one coefficient (the static one)"),
     cohesion=N_("none"),
-    rolling=N_("none besides what edges and faces do"),
+    rolling=N_("none besides that of edges and faces"),
     coarse_graining=N_("by size"),
     missing=N_("Hertz and Mindlin stiffness, cohesion, rolling resistance; single precision"),
 )

@@ -17,7 +17,7 @@ REPRESENTS = EngineCapabilities(
     normal=N_("force in proportion to the overlapping volume: neither Hertz nor restitution"),
     tangential=N_("Coulomb friction while sliding, one coefficient (the static one), no memory at rest"),
     cohesion=N_("none"),
-    rolling=N_("none besides what edges and faces do"),
+    rolling=N_("none besides that of edges and faces"),
     coarse_graining=N_("by size"),
     missing=N_("Hertz, Mindlin, restitution, cohesion, rolling resistance: qualitative; some 200 particles"),
 )

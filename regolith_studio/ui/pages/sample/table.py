@@ -74,7 +74,9 @@ def columns() -> tuple[SampleColumn, ...]:
         SampleColumn(
             WEIGHT,
             tr("weight"),
-            tr("How many grains it stands for, since large ones were lost at the border of the scan"),
+            tr(
+                "Number of grains that it represents: large ones are more often cut by the border of the scan"
+            ),
             lambda entry: entry.particle.weight,
             lambda entry: number_text(entry.particle.weight, ".3g"),
         ),

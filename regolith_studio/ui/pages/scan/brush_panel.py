@@ -72,7 +72,7 @@ class BrushPanel(QWidget):
         self.diameter = NumberSlider(SIZE)
         self.diameter.field.setObjectName("brush_size")
         self.diameter.setValue(4)
-        self.overlay = choice("brush_overlay", tr("What the prediction shows"), OVERLAYS)
+        self.overlay = choice("brush_overlay", tr("Prediction shown"), OVERLAYS)
         self.sigmas = NumbersLine(", ".join(f"{each:g}" for each in FeatureSettings().sigmas))
         self.sigmas.setObjectName("brush_sigmas")
         self.sigmas.setAccessibleName(tr("Widths of the features"))

@@ -44,7 +44,7 @@ class ObjectsPanel(QWidget):
         self.kind = choice("objects_class", tr("Class of the next example"), tuple(enumerate(_CLASS_NAMES)))
         rows = tuple(zip(OBJECT_ACTIONS, _ACTION_NAMES, strict=True))
         self.action_boxes = tuple(
-            choice(f"objects_action_{number}", tr("What is done with them"), rows)
+            choice(f"objects_action_{number}", tr("Action on them"), rows)
             for number in range(len(OBJECT_CLASSES))
         )
         self.counts = tuple(QLabel() for _ in OBJECT_CLASSES)

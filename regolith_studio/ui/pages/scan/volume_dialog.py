@@ -33,7 +33,7 @@ AXES = (
 )
 ORDERS = (("little", N_("little endian")), ("big", N_("big endian")))
 KINDS = (
-    (None, N_("Whatever it looks like")),
+    (None, N_("Detect from the values")),
     ("grey", N_("Grey values")),
     ("labels", N_("Labels of grains")),
 )
@@ -77,7 +77,7 @@ class VolumeDialog(QDialog):
         self.dtype = choice("dtype", tr("Type of a voxel"), [(name, name) for name in _TYPES])
         self.order = choice("byte_order", tr("Byte order"), ORDERS)
         self.offset = _count("offset", tr("Bytes before the first voxel"), least=0)
-        self.kind = choice("kind", tr("What the volume holds"), KINDS)
+        self.kind = choice("kind", tr("Content of the volume"), KINDS)
         self.axes = choice("axes", tr("Order of the array's axes"), AXES)
         self._said = tr("A raw file has no header. Enter the number of voxels and their type.")
         self.verdict, self.facts = remark(), remark()
@@ -134,7 +134,7 @@ class VolumeDialog(QDialog):
                 field.setValue(edge)
             self.unit.setCurrentIndex(max(0, self.unit.findData(header.unit or "um")))
         appearance = tr("labels of grains") if header.kind == "labels" else tr("grey values")
-        self.kind.setItemText(0, tr("What it looks like: {looks}", looks=appearance))
+        self.kind.setItemText(0, tr("Detected: {looks}", looks=appearance))
         for entry in header.datasets:
             self.dataset.addItem(
                 f"{entry.name}, {' × '.join(map(str, entry.shape))}, {entry.dtype}", entry.name
