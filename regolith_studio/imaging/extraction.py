@@ -36,10 +36,10 @@ from regolith_studio.messages import N_, count_message
 Surface = Literal["mask", "grey"]
 SURFACES: tuple[Surface, ...] = get_args(Surface)
 
-WIDE_NECK = 0.7
+WIDE_NECK, WIDE_NECK_OF_REST = 0.65, 0.75
 """Diameter of the contact of two labels, over that of the ball of the smaller one's volume, from which on
-they are pieces of one grain. Of 6,415 contacts of balls in packings 50 are wider, and of lobes of
-agglutinates nearly all have one that is (``benchmarks/agglutinate_scans.py``)."""
+they are pieces of one grain; the second where the smaller one is what the border has left of a grain. Chosen
+on scans of ``benchmarks/agglutinate_scans.py``, of lobes and of balls in packings."""
 _COARSE, _OF_MASK = "Only", "The surface is that of the mask"
 _Made = tuple[int, Mesh, tuple[str, ...], Surface]
 
@@ -288,8 +288,8 @@ def pieces_of_cut_grains(
     """Labels that a watershed has parted from a grain which the border cuts, in ascending order.
 
     They touch a label at the border, or another piece, over a disc wider than :data:`WIDE_NECK` of the
-    smaller of the two. Whole grains touch in points and blurred necks; the lobes of one grain over most of
-    their width.
+    smaller of the two, or :data:`WIDE_NECK_OF_REST` where they are the larger one. Whole grains touch in
+    points and blurred necks; the lobes of one grain over most of their width.
 
     Parameters
     ----------
@@ -300,13 +300,18 @@ def pieces_of_cut_grains(
     border
         Labels at the border.
     """
-    joined = {
-        pair
-        for pair, area in contacts.items()
-        if 2 * np.sqrt(area / np.pi) > WIDE_NECK * voxel_diameter(min(sizes[label] for label in pair))
-    }
     cut = set(border)
-    while new := {label for pair in joined for label in pair if cut.intersection(pair)} - cut:
+    necks = {
+        pair: 2 * np.sqrt(area / np.pi) / voxel_diameter(min(sizes[label] for label in pair))
+        for pair, area in contacts.items()
+    }
+    while new := {
+        piece
+        for pair, neck in necks.items()
+        for piece, other in (pair, pair[::-1])
+        if piece not in cut and other in cut
+        if neck > (WIDE_NECK if sizes[piece] <= sizes[other] else WIDE_NECK_OF_REST)
+    }:
         cut |= new
     return sorted(cut.difference(border))
 
