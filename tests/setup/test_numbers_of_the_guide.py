@@ -63,13 +63,6 @@ def test_that_models_with_all_degrees_lie_within_twice_the_distance_of_halves(na
         assert far == [], model
 
 
-@pytest.mark.parametrize("name", POPULATIONS)
-def test_that_a_model_without_measured_particles_lies_within_the_noise_of_halves(name: str) -> None:
-    rows = RESULTS["shape_models"][name]["rows"]
-    pairs = zip(rows["hull_field"], rows["floor, 95th percentile"], strict=False)
-    assert [key for key, (found, limit) in zip(KEYS, pairs, strict=False) if found > limit] == []
-
-
 def test_that_only_draws_within_the_noise_are_set_in_bold() -> None:
     text = (ROOT / "docs/shape_model_quality.md").read_text("utf-8")
     for name in (*POPULATIONS, "cement cut at l = 10"):
