@@ -1,4 +1,4 @@
-"""How well overlapping spheres stand for the polyhedra of a dataset, as a table of docs/exporters.md.
+"""How well overlapping spheres stand for the polyhedra of a dataset, as a table of docs/changed_shapes.md.
 
     python -m benchmarks.clumps DATASET [RESULT.json]
 

@@ -161,7 +161,11 @@ def test_that_the_table_of_spheres_has_the_results_of_its_benchmark() -> None:
             else:
                 assert worst < 1e-3
     assert np.abs([row["volume"] for row in found]).max() < 1e-4
-    assert min(row["area"] for row in found if row["asked"] == 20) > -0.045
+    twenty = [row for row in found if row["asked"] == 20]
+    assert min(row["area"] for row in twenty) > -0.045
+    assert all(row["jaccard"] < row["mss"] for row in twenty)
+    low, high = (f"{bound(row['mss'] for row in twenty):.3f}".lstrip("0") for bound in (min, max))
+    assert f"has {low} to {high} with 20 spheres" in one_line(EXPORTERS)
 
 
 INTERVALS = json.loads((ROOT / "benchmarks/results/repose_intervals.json").read_text("utf-8"))
