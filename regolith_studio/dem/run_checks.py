@@ -80,15 +80,22 @@ PARALLEL = 1e-9
 """Edges with a smaller cross product of unit directions are parallel."""
 
 
-def overlap_depths(prepared: PreparedCase, particles: ParticleState) -> FloatArray:
+def overlap_depths(prepared: PreparedCase, particles: ParticleState, rounding: float = 0.0) -> FloatArray:
     """Depth of every pair of particles that overlap, in metres, shape (m,).
 
     By the separating axis theorem: the minimum overlap of the projections on the normals of both polyhedra
     and on the cross products of their edges.
+
+    Parameters
+    ----------
+    rounding
+        Radius of a ball that is added to every polyhedron, in equivalent diameters. The depth is then an
+        upper bound where corners meet corners or edges.
     """
     forms = [_normals_and_edges(shape) for shape in prepared.shapes]
     turns = Rotation.from_quat(particles.orientations, scalar_first=True)
-    reach, scales = enclosing_radii(prepared), prepared.scales
+    radii, scales = rounding * particles.diameters, prepared.scales
+    reach = enclosing_radii(prepared) + radii
     pairs = cKDTree(particles.points).query_pairs(2.0 * float(reach.max()), output_type="ndarray")
     apart = np.linalg.norm(particles.points[pairs[:, 0]] - particles.points[pairs[:, 1]], axis=1)
     pairs = pairs[apart < reach[pairs].sum(axis=1)]
@@ -99,8 +106,17 @@ def overlap_depths(prepared: PreparedCase, particles: ParticleState) -> FloatArr
         corners = turns[k].apply(prepared.shapes[kind] * scales[k]) + particles.points[k]
         return corners, turns[k].apply(normals), turns[k].apply(edges)
 
-    depths = [depth for a, b in pairs.tolist() if (depth := _depth(placed(a), placed(b))) > 0.0]
-    return np.array(depths)
+    found = (_depth(placed(a), placed(b), radii[a] + radii[b]) for a, b in pairs.tolist())
+    return np.array([depth for depth in found if depth > 0.0])
+
+
+def lowest_corners(prepared: PreparedCase, particles: ParticleState) -> FloatArray:
+    """Height of the lowest corner of every particle above the plate, in metres, shape (n,)."""
+    downwards = Rotation.from_quat(particles.orientations, scalar_first=True).as_matrix()[:, 2]
+    lowest = [
+        (prepared.shapes[kind] @ way).min() for kind, way in zip(prepared.class_index, downwards, strict=True)
+    ]
+    return np.asarray(particles.points[:, 2] + prepared.scales * np.array(lowest))
 
 
 def _normals_and_edges(corners: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -116,16 +132,19 @@ def _normals_and_edges(corners: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def _depth(
-    one: tuple[FloatArray, FloatArray, FloatArray], other: tuple[FloatArray, FloatArray, FloatArray]
+    one: tuple[FloatArray, FloatArray, FloatArray],
+    other: tuple[FloatArray, FloatArray, FloatArray],
+    radii: float,
 ) -> float:
-    """Of two polyhedra given by vertices, normals and edges; 0 or less if they are separate."""
-    rough = _min_overlap(one[0], other[0], np.vstack([one[1], other[1]]))
+    """Of two polyhedra given by vertices, normals and edges, and the sum of the radii of the balls that are
+    added to them; 0 or less if they are separate."""
+    rough = radii + _min_overlap(one[0], other[0], np.vstack([one[1], other[1]]))
     if rough <= 0.0:
         return rough
     crossed = np.cross(one[2][:, None, :], other[2][None, :, :]).reshape(-1, 3)
     length = np.linalg.norm(crossed, axis=1)
     crossed = crossed[length > PARALLEL] / length[length > PARALLEL][:, None]
-    return min(rough, _min_overlap(one[0], other[0], crossed))
+    return min(rough, radii + _min_overlap(one[0], other[0], crossed))
 
 
 def _min_overlap(one: FloatArray, other: FloatArray, directions: FloatArray) -> float:

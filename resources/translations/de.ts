@@ -7312,8 +7312,8 @@
         <translation>die konvexen Polyeder selbst</translation>
     </message>
     <message>
-        <source>the convex polyhedra, their edges rounded by a fiftieth of the diameter</source>
-        <translation>die konvexen Polyeder, ihre Kanten mit einem Fünfzigstel des Durchmessers gerundet</translation>
+        <source>the convex polyhedra, their edges rounded by 0.5 % of the diameter</source>
+        <translation>die konvexen Polyeder, ihre Kanten mit 0,5 % des Durchmessers gerundet</translation>
     </message>
     <message>
         <source>the fewest facets with all errors below {limit} %</source>

@@ -142,6 +142,18 @@ def test_that_the_table_of_mujoco_and_rapier_has_the_results_of_its_runs() -> No
     assert f"as much as 1,000: N to the power {power:.2f}" in one_line(REPOSE)
 
 
+def test_that_the_sentence_on_rapier_s_edges_has_the_results_of_its_runs() -> None:
+    few, many = results("repose_rapier_edges.json")
+    for run, sentence in (
+        (many, "seed 1 stands at {} degrees ({} to {})"),
+        (few, "filling of 300 at {} ({} to {})"),
+    ):
+        numbers = (f"{each:.1f}" for each in (run["angle_deg"], *run["interval_deg"]))
+        assert sentence.format(*numbers) in one_line(REPOSE)
+        assert run["problems"] == []
+        assert run["max_overlap"] < MAX_OVERLAP
+
+
 def test_that_the_table_of_spheres_has_the_results_of_its_benchmark() -> None:
     found = results("clumps.json")
     counts = (8, 12, 20, 50)

@@ -8,7 +8,7 @@ from scipy.spatial.transform import Rotation
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.parameters import LiftingCylinderTest
 from regolith_studio.dem.case import PreparedCase, ReposeCase, prepare
-from regolith_studio.dem.run_checks import overlap_depths
+from regolith_studio.dem.run_checks import lowest_corners, overlap_depths
 from regolith_studio.dem.snapshot import ParticleState
 
 
@@ -52,3 +52,21 @@ def test_that_bodies_that_are_apart_have_no_depth(boxes: Dataset) -> None:
     prepared = pair(boxes)
     points = np.array([[0, 0, 0], [2.0 * prepared.scales.max(), 0, 0]])
     assert len(overlap_depths(prepared, placed(prepared, points, Rotation.identity(2)))) == 0
+
+
+def test_that_rounded_boxes_overlap_by_both_radii_less_their_distance(boxes: Dataset) -> None:
+    """Two boxes above each other, facet to facet, a twentieth of a diameter apart."""
+    prepared = pair(boxes)
+    halves = [prepared.shapes[prepared.class_index[k]][:, 2].max() * prepared.scales[k] for k in (0, 1)]
+    gap = 0.05 * prepared.diameters[:2].mean()
+    pile = placed(prepared, np.array([[0, 0, 0], [0, 0, sum(halves) + gap]]), Rotation.identity(2))
+    assert len(overlap_depths(prepared, pile, 0.02)) == 0
+    expected = 0.03 * prepared.diameters[:2].sum() - gap
+    assert overlap_depths(prepared, pile, 0.03) == pytest.approx([expected])
+
+
+def test_that_the_lowest_corner_is_the_lowest_of_all(boxes: Dataset) -> None:
+    prepared = pair(boxes)
+    pile = placed(prepared, np.array([[0, 0, 0.01], [0, 0, -0.02]]), Rotation.random(2, random_state=4))
+    expected = [corners(prepared, pile, k)[:, 2].min() for k in range(10)]
+    assert lowest_corners(prepared, pile) == pytest.approx(expected)

@@ -21,7 +21,7 @@ SECONDS_PER_PARTICLE_AND_STEP = {"polyhedra": 10e-6, "spheres": 3e-6}
 """Of processor time; that of polyhedra measured at 1,000 particles of 20 facets, on a busy machine."""
 
 REPRESENTS = EngineCapabilities(
-    shape=N_("the convex polyhedra, their edges rounded by a fiftieth of the diameter"),
+    shape=N_("the convex polyhedra, their edges rounded by 0.5 % of the diameter"),
     normal=N_("unilateral constraint with restitution; penetration is reported, stiffness is not used"),
     tangential=N_("Coulomb friction of each patch of contact, one coefficient (the static one)"),
     cohesion=N_("none"),

@@ -1,6 +1,7 @@
 """Rapier as a solver of the lifting-cylinder test: plate, a ring of boxes, free convex bodies."""
 
 import os
+from dataclasses import replace
 
 import numpy as np
 import rapier3d as rapier
@@ -11,7 +12,8 @@ from regolith_studio.dem.engine import ENGINE_THREADS
 from regolith_studio.dem.engines.rapier.settings import RapierSettings
 from regolith_studio.dem.initial_packing import enclosing_radii, loose_column
 from regolith_studio.dem.lifting_cylinder import Units, lift_speed
-from regolith_studio.dem.snapshot import PHASES
+from regolith_studio.dem.run_checks import lowest_corners, overlap_depths
+from regolith_studio.dem.snapshot import PHASES, ParticleState
 from regolith_studio.errors import RegolithError
 from regolith_studio.geometry.arrays import FloatArray
 
@@ -19,9 +21,12 @@ N_WALLS = 32
 WALL_THICKNESS = 2.0
 PLATE_WIDTH = 12.0
 """In diameters of the cylinder; a box, since contacts of a half-space with polyhedra get lost."""
-ROUNDING = 0.02
-"""Radius of the edges in equivalent diameters. With sharp ones the solver finds overlaps that are none (0.6
-diameters deep at rest), and heaps never come to rest."""
+ROUNDING = 0.005
+"""Radius of the edges in equivalent diameters. The solver loses contacts beside edges, the more the larger it
+is: with 0.02, three of 1,600 contacts of a heap at rest overlap by more than 2 %, and the sharp polyhedra,
+whose corners stand out of the rounded ones, by up to 7 %. Heaps of hulls without a radius go on moving."""
+UNIT_DIAMETER = (6 / np.pi) ** (1 / 3)
+"""Equivalent diameter of a shape of unit volume."""
 REPEATABLE = "Equal seeds give equal bytes on one machine, with any number of threads."
 MAX_SPEED = 400.0
 """Limit of the solver where none is set."""
@@ -71,9 +76,22 @@ class RapierSolver:
         return float(self.masses @ heights), float(sum(body.kinetic_energy() for body in self.particles))
 
     def overlaps(self) -> FloatArray:
-        pairs = self.world.narrow_phase.contact_pairs()
-        points = (point for pair in pairs for each in pair.manifolds for point in each.points)
-        return np.array([-point.dist for point in points if point.dist < 0.0])
+        """Of the rounded polyhedra with each other and with the plate, from where they are.
+
+        The solver's own depths miss contacts and keep old ones: it may say 0.022 where 0.014 is the deepest.
+        """
+        if self.prepared.case.shapes == "spheres":
+            pairs = self.world.narrow_phase.contact_pairs()
+            points = (point for pair in pairs for each in pair.manifolds for point in each.points)
+            return np.array([-point.dist for point in points if point.dist < 0.0])
+        prepared, length = self.prepared, self.unit_length
+        cores = tuple(inner_parallel_body(shape, ROUNDING * UNIT_DIAMETER) for shape in prepared.shapes)
+        cased = replace(prepared, shapes=cores)
+        heap = ParticleState(
+            self.points * length, prepared.diameters, self.orientations, prepared.class_index
+        )
+        below = ROUNDING * prepared.diameters - lowest_corners(cased, heap)
+        return np.concatenate([overlap_depths(cased, heap, ROUNDING), below[below > 0.0]]) / length
 
     def begin(self, phase: str) -> None:
         self.phase = phase
@@ -146,10 +164,10 @@ def _build(world: rapier.PhysicsWorld, prepared: PreparedCase) -> float:
 def _form(prepared: PreparedCase, kind: int, size: float) -> tuple[rapier.SharedShape, rapier.MassProperties]:
     """Shape and mass of a particle, shared by all of a kind and size, which saves memory."""
     if prepared.case.shapes == "spheres":
-        ball = rapier.SharedShape.ball(size / (np.pi / 6) ** (1 / 3) / 2)
+        ball = rapier.SharedShape.ball(size * UNIT_DIAMETER / 2)
         return ball, ball.compute_mass_properties(1.0)
     sharp = prepared.shapes[kind] * size
-    edge = ROUNDING * size / (np.pi / 6) ** (1 / 3)
+    edge = ROUNDING * size * UNIT_DIAMETER
     rounded = rapier.SharedShape.round_convex_hull(inner_parallel_body(sharp, edge), edge)
     return rounded, rapier.SharedShape.convex_hull(sharp).compute_mass_properties(1.0)
 
