@@ -19,7 +19,7 @@ from regolith_studio.coarsening.core.box_gradient import (
     fill_extent_gradients,
     gradient_workspace,
 )
-from regolith_studio.coarsening.core.box_search import LocalBoxes, local_boxes, same_boxes
+from regolith_studio.coarsening.core.box_search import LocalBoxes, local_boxes
 from regolith_studio.coarsening.core.intersection import FINE
 from regolith_studio.coarsening.core.plane_coordinates import (
     fill_gradient,
@@ -180,19 +180,10 @@ def _boxes(
         n = len(compound.areas)
         boxes, lost = track_boxes(compound.vertices, compound.triples, n, near)
         if lost is None or not lost[0]:
-            return _distinct(boxes)
+            return boxes
     solid = hull_solid(hull, compound.vertices)
     boxes = local_boxes(solid, MARGIN, problem.sample_angle, _EVERYWHERE)
     return _wanted_first(problem, boxes) if len(boxes.volumes) else None
-
-
-def _distinct(boxes: LocalBoxes) -> LocalBoxes:
-    """The first box and those that are not the same."""
-    if len(boxes.volumes) == 1:
-        return boxes
-    again = same_boxes(boxes, boxes.selected(np.zeros(1, dtype=np.int64)))
-    again[0] = False
-    return boxes.selected(~again)
 
 
 def _wanted_first(problem: CompoundProblem, boxes: LocalBoxes) -> LocalBoxes:

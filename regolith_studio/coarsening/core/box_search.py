@@ -357,10 +357,7 @@ def sampled(  # type: ignore[no-untyped-def]
 def kept(count: int, boxes: LocalBoxes, volume: float, touch: Touch) -> int:
     """Add a box unless the same one is there; the new number of boxes."""
     for i in range(count):
-        if (
-            abs(boxes.volumes[i] - volume) < SAME_VOLUME * volume
-            and likeness_of(boxes.frames[i], touch.frame) > SAME_FRAME
-        ):
+        if is_same_box(boxes, i, volume, touch.frame):
             return count
     at = count
     if count == MAX_BOXES:
@@ -374,6 +371,13 @@ def kept(count: int, boxes: LocalBoxes, volume: float, touch: Touch) -> int:
         for c in range(3):
             boxes.frames[at, a, c] = touch.frame[a, c]
     return count + 1
+
+
+@kernel_noalloc
+def is_same_box(boxes: LocalBoxes, i: int, volume: float, frame: FloatArray) -> bool:
+    """Whether box `i` has the same volume and axes."""
+    near = abs(boxes.volumes[i] - volume) < SAME_VOLUME * volume
+    return near and likeness_of(boxes.frames[i], frame) > SAME_FRAME
 
 
 @kernel_noalloc

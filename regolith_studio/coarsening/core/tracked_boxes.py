@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from regolith_studio.coarsening.core.box_contacts import VERTICES, pose_of, walk_to_minimum
-from regolith_studio.coarsening.core.box_search import LocalBoxes, same_boxes
+from regolith_studio.coarsening.core.box_search import LocalBoxes, is_same_box, same_boxes
 from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray
 from regolith_studio.geometry.kernels import kernel_noalloc
 from regolith_studio.geometry.vectors import along, mixed, row
@@ -45,18 +45,17 @@ def track_boxes(
 ) -> tuple[LocalBoxes, BoolArray | None]:
     """The tracked boxes on the changed polyhedron, and which of them are lost, shape (k,); ``None`` for none.
 
-    A box is lost if no local minimum is found near by.
+    A box is lost if no local minimum is found near by. Where several end at one minimum, the first is kept.
     """
     k = len(tracked.frames)
-    volumes, extents, lost = np.empty(k), np.empty((k, 3)), np.empty(k, dtype=np.bool_)
+    volumes, extents = np.empty(k), np.empty((k, 3))
+    kept, lost = np.empty(k, dtype=np.bool_), np.empty(k, dtype=np.bool_)
     frames, contacts = tracked.frames.copy(), tracked.contacts.copy()
     owner, points = np.empty((n_planes, n_planes), dtype=np.int64), np.empty((9, 3))
     start = np.empty((3, 3))
-    n_lost = _track(
-        vertices, triples, tracked.planes, owner, points, start, frames, contacts, volumes, extents, lost
-    )
     boxes = LocalBoxes(volumes, frames, extents, contacts)
-    return (boxes.selected(~lost), lost) if n_lost else (boxes, None)
+    n_lost, n_kept = _track(vertices, triples, tracked.planes, owner, points, start, boxes, kept, lost)
+    return boxes if n_kept == k else boxes.selected(kept), lost if n_lost else None
 
 
 @kernel_noalloc
@@ -67,18 +66,17 @@ def _track(
     owner: IntArray,
     points: FloatArray,
     start: FloatArray,
-    frames: FloatArray,
-    contacts: IntArray,
-    volumes: FloatArray,
-    extents: FloatArray,
+    boxes: LocalBoxes,
+    kept: BoolArray,
     lost: BoolArray,
-) -> int:
-    """Number of lost boxes; fills the others. Scratch: `owner` (n, n), `points` (9, 3), `start` (3, 3)."""
+) -> tuple[int, int]:
+    """Numbers of lost and of kept boxes; fills the latter. Scratch: `owner` (n, n), `points`, `start`."""
+    volumes, frames, extents, contacts = boxes
     owner[:] = -1
     for v in range(len(triples)):
         for k in range(3):
             owner[triples[v, k], triples[v, (k + 1) % 3]] = v
-    n_lost = 0
+    n_lost, n_kept = 0, 0
     for k in range(len(frames)):
         contact, frame = contacts[k], frames[k]
         update_vertex_ids(vertices, contact, frame, planes[k], owner, triples)
@@ -86,11 +84,15 @@ def _track(
         for axis in range(3):
             lost[k] = lost[k] or along(frame, axis, row(start, axis)) < ALIKE
         n_lost += lost[k]
+        kept[k] = not lost[k]
         if not lost[k]:
             pose = pose_of(points, contact, frame)
             volumes[k] = pose.extents[0] * pose.extents[1] * pose.extents[2]
             extents[k, 0], extents[k, 1], extents[k, 2] = pose.extents
-    return n_lost
+            for i in range(k):
+                kept[k] = kept[k] and not (kept[i] and is_same_box(boxes, i, volumes[k], frame))
+        n_kept += kept[k]
+    return n_lost, n_kept
 
 
 @kernel_noalloc

@@ -119,6 +119,22 @@ def test_that_tracked_boxes_are_those_that_a_search_finds(seed: int) -> None:
     assert (np.diff(both.volumes) >= 0.0).all()
 
 
+@pytest.mark.parametrize("seed", [2, 11, 33])
+def test_that_tracked_boxes_that_end_at_one_minimum_become_one(seed: int) -> None:
+    normals, offsets = random_planes(20, seed)
+    solid, triples = solid_of(normals, offsets)
+    boxes = found_on(solid, 0.05)
+    rng = np.random.default_rng(seed)
+    turns = normals + 2e-2 * rng.normal(size=normals.shape)
+    turns /= np.linalg.norm(turns, axis=1, keepdims=True)
+    then, corners = solid_of(turns, offsets * (1.0 + 2e-2 * rng.normal(size=len(offsets))))
+    tracked = select_boxes(boxes, np.arange(len(boxes.volumes)), triples)
+    kept, _ = track_boxes(then.vertices, corners, len(offsets), tracked)
+    alike = likeness(kept.frames, kept.frames) > 1.0 - 1e-9
+    assert 0 < len(kept.volumes) < len(boxes.volumes)
+    assert alike.sum() == len(kept.volumes)
+
+
 def test_that_compiled_contacts_are_their_python_reference() -> None:
     solid, _ = solid_of(*random_planes(20, 2))
     boxes = found_on(solid, 0.02)
