@@ -61,7 +61,8 @@ class Target:
     ----------
     mesh
         Closed, outward-oriented, unit volume, centroid at the origin, principal axes along x, y, z.
-        Coordinates are rounded to 2^-26, so that unit, place and orientation do not matter.
+        Coordinates are rounded to 2^-26, vertices and triangles sorted by them, so that unit, place,
+        orientation and the order in which a file lists them do not matter.
     centre
         Centroid in the particle's own frame, shape (3,).
     axes
@@ -90,7 +91,8 @@ class Target:
         """
         unit, centre, scale = _normalised(mesh)
         axes = principal_axes(unit)
-        aligned = Mesh(np.round(unit.vertices @ axes.T / COORDINATE_STEP) * COORDINATE_STEP, unit.faces)
+        rounded = np.round(unit.vertices @ axes.T / COORDINATE_STEP) * COORDINATE_STEP
+        aligned = _in_order(rounded, unit.faces)
         facts = ShapeCache(aligned)
         descriptors = Descriptors({key: CATALOGUE[key].compute(facts) for key in DEFAULT_KEYS})
         target = cls(aligned, centre, axes, scale, descriptors, facts.box)
@@ -159,6 +161,17 @@ def principal_axes(mesh: Mesh) -> FloatArray:
     axes *= np.where(tails < 0.0, -1.0, 1.0)[:, None]
     axes[2] = np.cross(axes[0], axes[1])
     return np.asarray(axes, dtype=np.float64)
+
+
+def _in_order(vertices: FloatArray, faces: IntArray) -> Mesh:
+    """The mesh with sorted vertices; triangles begin with their first one and are sorted, too."""
+    order = np.lexsort(vertices.T[::-1])
+    place = np.empty(len(order), dtype=np.int64)
+    place[order] = np.arange(len(order))
+    faces = place[faces]
+    turned = (faces.argmin(axis=1)[:, None] + np.arange(3)) % 3
+    faces = np.take_along_axis(faces, turned, axis=1)
+    return Mesh(vertices[order], faces[np.lexsort(faces.T[::-1])])
 
 
 @kernel

@@ -44,6 +44,18 @@ def test_that_a_moved_turned_and_scaled_particle_has_the_same_polyhedron(particl
     assert there.half_spaces.points == pytest.approx(points, abs=1e-9)
 
 
+def test_that_the_order_of_vertices_and_triangles_does_not_matter(particle: Mesh) -> None:
+    rng = np.random.default_rng(6)
+    order = rng.permutation(len(particle.vertices))
+    faces = np.argsort(order)[particle.faces][rng.permutation(len(particle.faces))]
+    shuffled = Mesh(particle.vertices[order], np.roll(faces, 1, axis=1))
+    here, there = coarsen(particle, 12), coarsen(shuffled, 12)
+    assert there.jaccard_distance == here.jaccard_distance
+    assert there.half_spaces is not None
+    assert here.half_spaces is not None
+    assert there.half_spaces.points == pytest.approx(here.half_spaces.points, rel=1e-9)
+
+
 @pytest.mark.parametrize("noise", [0.06, 0.12])
 def test_that_the_overlap_of_a_rough_needle_is_that_of_the_ball_that_it_was(noise: float) -> None:
     ball, stretch = rough_ball(noise), np.array([20.0, 1.0, 1.0])
