@@ -31,7 +31,7 @@ MAX_RADIUS, RESTART_RADIUS = 0.25, 0.02
 SHRINK = 0.35
 MIN_GAIN = 1e-7
 """A descent of the Jaccard distance ends where a step brings less."""
-CURVATURE = 0.1
+CURVATURE = 0.03
 
 
 def overlap_objective(problem: Problem, point: ConstrainedPoint) -> tuple[float, Callable[[], FloatArray]]:
