@@ -63,6 +63,13 @@ def test_that_models_with_all_degrees_lie_within_twice_the_distance_of_halves(na
         assert far == [], model
 
 
+def test_that_the_sentence_on_the_model_of_the_paper_has_the_results_of_its_benchmark() -> None:
+    rows = RESULTS["shape_models"]["cement cut at l = 10"]["rows"]
+    ratios = [rows["gaussian_field"][2] / rows[key][2] for key in ("recombined", "sample_matched")]
+    assert ratios == pytest.approx([5.0, 5.0], abs=0.5)
+    assert "about five times nearer" in (ROOT / "docs/shape_model_quality.md").read_text("utf-8")
+
+
 def test_that_only_draws_within_the_noise_are_set_in_bold() -> None:
     text = (ROOT / "docs/shape_model_quality.md").read_text("utf-8")
     for name in (*POPULATIONS, "cement cut at l = 10"):
