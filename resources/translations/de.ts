@@ -244,6 +244,18 @@
         <translation>* im Artikel nicht angegeben: eine Annahme, die sich ändern lässt</translation>
     </message>
     <message>
+        <source>+ fit</source>
+        <translation>+ Fit</translation>
+    </message>
+    <message>
+        <source>+ particle</source>
+        <translation>+ Partikel</translation>
+    </message>
+    <message>
+        <source>+ polyhedron</source>
+        <translation>+ Polyeder</translation>
+    </message>
+    <message>
         <source>, one that bounds no facet at the moment</source>
         <translation>, eine, die gerade keine Facette begrenzt</translation>
     </message>
@@ -7462,18 +7474,6 @@
     <message>
         <source>where the particles come from (dataset.json has it)</source>
         <translation>woher die Partikel kommen (steht in dataset.json)</translation>
-    </message>
-    <message>
-        <source>with fit</source>
-        <translation>mit Fit</translation>
-    </message>
-    <message>
-        <source>with particle</source>
-        <translation>mit Partikel</translation>
-    </message>
-    <message>
-        <source>with polyhedron</source>
-        <translation>mit Polyeder</translation>
     </message>
     <message>
         <source>without noise</source>

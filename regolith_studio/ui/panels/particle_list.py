@@ -141,6 +141,7 @@ class ParticleListPanel(QWidget):
         self._selected = ""
         self._quiet = False
         self.title = heading(tr("Particles"))
+        self.title.setWordWrap(True)
         self.hint = remark(tr("Drop mesh files or folders anywhere in the window to open them."))
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)

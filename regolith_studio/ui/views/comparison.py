@@ -20,7 +20,7 @@ from regolith_studio.ui.views.view_frame import ViewFrame
 
 PARTNERS = {PARTICLE: "", FIT: PARTICLE, POLYHEDRON: PARTICLE}
 """What each body is compared with at first."""
-WITH = {PARTICLE: N_("with particle"), FIT: N_("with fit"), POLYHEDRON: N_("with polyhedron")}
+WITH = {PARTICLE: N_("+ particle"), FIT: N_("+ fit"), POLYHEDRON: N_("+ polyhedron")}
 COMPARE = {
     PARTICLE: N_("Compare the particle with"),
     FIT: N_("Compare the fit with"),

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from PySide6.QtCore import QSize
+from PySide6.QtCore import QSize, Qt
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QBoxLayout, QComboBox, QHBoxLayout, QWidget
 
@@ -30,6 +30,7 @@ class WrappingRow(QWidget):
                 row.addWidget(each, int(isinstance(each, QComboBox)))
         self._box.addLayout(self._parts[0], 1)
         self._box.addLayout(self._parts[1])
+        self._box.setAlignment(self._parts[1], Qt.AlignmentFlag.AlignLeft)
 
     def minimumSizeHint(self) -> QSize:
         least, margins = [part.minimumSize().width() for part in self._parts], self._box.contentsMargins()
