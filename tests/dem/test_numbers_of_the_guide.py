@@ -142,6 +142,19 @@ def test_that_the_table_of_mujoco_and_rapier_has_the_results_of_its_runs() -> No
     assert f"as much as 1,000: N to the power {power:.2f}" in one_line(REPOSE)
 
 
+def test_that_the_sentence_on_two_more_runs_of_lammps_has_their_results() -> None:
+    runs = results("repose_lammps.json")
+    heights, angles = ([run[key] for run in runs] for key in ("fill_height_cm", "angle_deg"))
+    deepest = [100 * run["max_overlap"] for run in runs]
+    for sentence in (
+        f"(seeds {runs[0]['seed']} and {runs[1]['seed']}) went through at once",
+        f"filled to {heights[0]:.2f} and {heights[1]:.2f} cm, {angles[0]:.1f} and {angles[1]:.1f} degrees",
+        f"deepest overlaps of {deepest[0]:.1f} (a check that fails) and {deepest[1]:.1f} %",
+    ):
+        assert sentence in one_line(REPOSE)
+    assert not any("flew apart" in note for run in runs for note in run["notes"])
+
+
 def test_that_the_sentence_on_rapier_s_edges_has_the_results_of_its_runs() -> None:
     few, many = results("repose_rapier_edges.json")
     for run, sentence in (
