@@ -51,7 +51,7 @@ def _own(values: ArrayLike, kind: type[np.float64] | type[np.int64]) -> NDArray[
         flags = values.flags
         if flags.owndata and flags.c_contiguous and not flags.writeable:
             return values
-    return np.array(values, dtype=kind)
+    return np.array(values, dtype=kind, order="C")  # kernels are compiled ahead for this order
 
 
 def _check_shape(array: NDArray[Any], shape: tuple[int | None, ...], name: str) -> None:

@@ -3,7 +3,7 @@
 import numpy as np
 from numba import int64
 
-from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray
+from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray, locked_integers
 from regolith_studio.geometry.kernels import kernel
 
 MOST_CELLS = 1 << 21
@@ -29,6 +29,7 @@ def crossing_pairs(vertices: FloatArray, faces: IntArray) -> tuple[int, BoolArra
     """As `count_self_intersections`, with the triangles that cross another, shape (m,)."""
     if len(faces) < 2:
         return 0, np.zeros(len(faces), dtype=np.bool_)
+    faces = locked_integers(faces, (None, 3), "faces")  # one kind of array, which is compiled ahead
     corners = np.ascontiguousarray(vertices[faces])
     low, high = corners.min(axis=1), corners.max(axis=1)
     origin, size = low.min(axis=0), (high.max(axis=0) - low.min(axis=0)).max()

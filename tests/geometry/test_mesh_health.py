@@ -8,7 +8,7 @@ import trimesh
 
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.mesh_health import MeshHealth, inspect
-from regolith_studio.geometry.self_intersection import count_self_intersections
+from regolith_studio.geometry.self_intersection import count_self_intersections, mark_crossings
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.geometry.topology import edge_table, find_bodies, genus, label_bodies, neighbours
 from tests.filling import filled
@@ -232,6 +232,13 @@ def test_that_crossing_triangles_are_counted_as_a_plain_search_counts_them():
 
 def test_that_closed_convex_meshes_do_not_cross_themselves():
     assert count_self_intersections(icosphere(4).vertices, icosphere(4).faces) == 0
+
+
+def test_that_locked_and_other_arrays_of_faces_need_one_compiled_search():
+    ball = icosphere(2)
+    for faces in (ball.faces, ball.faces.copy()):
+        assert count_self_intersections(ball.vertices, faces) == 0
+    assert len({arguments[1] for arguments in mark_crossings.signatures}) == 1
     assert inspect(torus()).self_intersections == 0
 
 
