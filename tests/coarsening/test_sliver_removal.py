@@ -63,7 +63,7 @@ def test_that_facet_areas_change_as_differences_by_scipy(seed: int) -> None:
 @pytest.mark.slow
 def test_that_small_facets_grow_and_nothing_is_lost(n_facets: int, monkeypatch: pytest.MonkeyPatch) -> None:
     small = {True: [], False: []}
-    for seed in range(3):
+    for seed in range(6):
         target = Target.of(pebble(seed))
         found = {}
         for evens in (True, False):
@@ -81,7 +81,7 @@ def test_that_small_facets_grow_and_nothing_is_lost(n_facets: int, monkeypatch: 
         values = measured(planes.normals, planes.offsets, 2.0)
         for key in ("volume", "sphericity", "min_diameter", "max_diameter"):
             assert values[key] == pytest.approx(target.descriptors[key], rel=1e-6)
-    assert sum(small[True]) < 0.7 * sum(small[False]) or sum(small[False]) == 0.0
+    assert sum(small[True]) < 0.5 * sum(small[False])
 
 
 def test_that_the_polyhedron_with_larger_facets_is_the_last_step(
