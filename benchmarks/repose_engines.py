@@ -45,11 +45,12 @@ def cost_of(command: list[str]) -> dict[str, float]:
 def summary(document: dict[str, Any]) -> dict[str, Any]:
     """Numbers of a run for the tables."""
     checks, measured = document["checks"], document["measurement"]
+    angle, interval = measured["angle_deg"], measured["interval_deg"]
     return {
         "fill_height_cm": round(100 * checks["fill_height"], 2),
         "solid_fraction": round(checks["solid_fraction"], 3),
-        "angle_deg": round(measured["angle_deg"], 2),
-        "interval_deg": [round(each, 2) for each in measured["interval_deg"]],
+        "angle_deg": None if angle is None else round(angle, 2),
+        "interval_deg": None if interval is None else [round(each, 2) for each in interval],
         "max_overlap": round(checks["max_overlap"], 4),
         "problems": checks["problems"],
         "steps": document["run"]["steps"],

@@ -156,19 +156,19 @@ def test_that_the_sentence_on_two_more_runs_of_lammps_has_their_results() -> Non
 
 
 def test_that_the_sentence_on_rapier_s_edges_has_the_results_of_its_runs() -> None:
-    few, many, most = results("repose_rapier_edges.json")
-    sentences = {
-        "seed 1 stands at {} degrees ({} to {})": many,
-        "filling of 300 at {} ({} to {})": few,
-        "the heap stands at {} degrees ({} to {})": most,
-    }
-    for sentence, run in sentences.items():
-        numbers = (f"{each:.1f}" for each in (run["angle_deg"], *run["interval_deg"]))
-        assert sentence.format(*numbers) in one_line(REPOSE)
-        assert (run["max_overlap"] < MAX_OVERLAP) == (run["problems"] == []) == (run is not most)
-    seconds = [f"{run['processor_s']:.0f}" for run in (few, many, most)]
-    assert f"took {seconds[0]}, {seconds[1]} and {seconds[2]} s of processor time" in one_line(REPOSE)
-    assert f"contacts are up to {100 * most['max_overlap']:.1f} % deep" in one_line(REPOSE)
+    few, many = results("repose_rapier_edges.json")
+    assert (few["particles"], many["particles"]) == (1000, 3000)
+    angles = [
+        f"{run['angle_deg']:.1f} degrees ({run['interval_deg'][0]:.1f} to {run['interval_deg'][1]:.1f})"
+        for run in (few, many)
+    ]
+    depths = [f"{run['max_overlap']:.1%}".replace("%", " %") for run in (few, many)]
+    assert (
+        f"1,000 particles (seed 1) stand at {angles[0]} with contacts up to {depths[0]} deep, "
+        f"and 3,000 at {angles[1]} with {depths[1]}"
+    ) in one_line(REPOSE)
+    assert f"{few['processor_s']:.0f} and {many['processor_s']:.0f} s of processor time" in one_line(REPOSE)
+    assert all(run["max_overlap"] > MAX_OVERLAP and len(run["problems"]) == 1 for run in (few, many))
 
 
 def test_that_the_table_of_spheres_has_the_results_of_its_benchmark() -> None:

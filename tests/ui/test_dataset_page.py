@@ -130,7 +130,7 @@ def test_that_the_curve_falls_and_the_slider_chooses_among_its_points(chosen, wa
     wait(lambda: len(chosen.gallery.shown) == 5)
     slide(chosen.representatives.count, 7)
     wait(lambda: len(chosen.gallery.shown) == 7)
-    shares = [float(one.caption.split(" ")[0]) for one in chosen.gallery.shown]
+    shares = [float(one.caption.split()[0]) for one in chosen.gallery.shown]
     assert sum(shares) == pytest.approx(100, abs=0.5)
     assert shares == sorted(shares, reverse=True)
     assert chosen.representatives.count.slider.maximum() == 8

@@ -64,7 +64,7 @@ def test_that_the_report_tells_the_mesh_as_it_came_and_as_it_is(panel):
     assert found["V [µm³]"][0].startswith("-")
     area = BALL.face_areas[0]
     assert found["Filled [µm²]"][1].startswith(f"{area:.2g}"[:4])
-    assert found["Left out"][1] == "11 %"  # a ball of half the size: 1 of 9 parts
+    assert found["Left out"][1] == "11\N{NO-BREAK SPACE}%"  # a ball of half the size: 1 of 9 parts
     assert found["Hidden surface"] == ("", "0 %")
     assert "Filled 1 hole" in panel.words.text()
     assert "point inwards" in panel.words.text()

@@ -366,8 +366,7 @@ def test_that_the_standard_layout_acts_at_once_and_stays(window, monkeypatch):
     window.menus.by_name["standard_layout"].trigger()
     assert columns.sizes() == standard
     window.window_state.keep(window)
-    assert window.preferences.window["layout"]["explore_columns"] == standard
-    assert "explore_rows" not in window.preferences.window["layout"]  # they follow the size of the window
+    assert not window.preferences.window["layout"].keys() & {"explore_columns", "explore_rows"}  # they follow
     try:  # larger letters and back leave the borders where they were
         window.appearance.choose(letters=150)
         assert columns.sizes()[2] >= standard[2]
