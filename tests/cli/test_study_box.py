@@ -18,7 +18,7 @@ def test_that_only_the_exact_box_is_kept_to_rounding(command, grains: Path, tmp_
         rows = [row for row in csv.DictReader(file) if "min_diameter" in row.values()]
     assert rows
     least = min(float(value) for row in rows for key, value in row.items() if "rmsre" in key.lower())
-    assert (least < 1e-4) == met
+    assert (least < 1e-6) == met
 
 
 def test_that_an_unknown_box_is_bad_use(command, grains: Path, tmp_path: Path) -> None:

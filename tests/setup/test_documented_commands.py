@@ -37,7 +37,7 @@ NAMES = {
     "resources/samples/ct/synthetic-grey.tif": str(ROOT / "resources/samples/ct/synthetic-grey.tif"),
 } | {f"{name}.txm": f"{name}.tif" for name in ("scan", "a", "b", "c")}
 """Words of the pages, and what stands for them here."""
-FEWER = {"-n": "8", "--particles": "200", "--representatives": "3"}
+FEWER = {"-n": "8", "--particles": "400", "--representatives": "3"}
 """Numbers of options that would take minutes."""
 MORE = {
     "report": ["--heap", "0", "--study-particles", "3", "--splits", "1", "--drawn", "1"],

@@ -334,7 +334,7 @@ def test_that_the_outcome_of_a_judgement_is_told_in_german(opened, speaking):
     page = opened()
     page.source.choose_source("ma165")
     assert page.source.source.currentText() == "Satz MA165 (synthetisch)"
-    assert page.source.findings.text().startswith("Von Regolith Studio synthetisiert")
+    assert "Von Regolith Studio synthetisiert" in page.source.findings.text()
     assert "6.261 Partikeln des veröffentlichten Mikro-CT-Satzes ma165" in page.source.findings.text()
     take(page, rough_sample())
     page.source.fit.click()

@@ -344,6 +344,7 @@ def test_that_the_borders_between_parts_are_remembered(window, shown, wait):
     columns = window.page.findChild(QSplitter, "explore_columns")
     total = sum(columns.sizes())
     columns.setSizes([total // 3, total // 3, total // 3])
+    columns.splitterMoved.emit(total // 3, 1)
     wanted = columns.sizes()
     window.close()
     kept = Preferences.load()

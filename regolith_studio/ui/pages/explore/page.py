@@ -30,8 +30,8 @@ LIST_WIDTH, NAMES_WIDTH = 38, 16
 """Initial and least width of the particle list in digits."""
 CONTROLS_LETTERS = 32
 """Minimum width of the controls in digits."""
-VIEWS_WIDTH = 0.45
-"""Share of the width that the views have at least where the list can give way."""
+LIST_SHARE = 0.225
+"""Largest share of the width for the list where that is more than 300 pixels: larger letters leave room."""
 VIEWS_SHARE, PLOTS_SHARE = 0.4, 0.38
 """Minimum shares of the height for the views and for what is below them."""
 WIDE_CONTROLS = 330
@@ -116,8 +116,8 @@ class ExplorePage(PageWidget):
         width, digit = sum(self._columns.sizes()), self.fontMetrics().horizontalAdvance("0")
         controls = max(WIDE_CONTROLS, CONTROLS_LETTERS * digit, self._controls.minimumSizeHint().width())
         least = 0 if self._list.isHidden() else max(NAMES_WIDTH * digit, self._list.minimumSizeHint().width())
-        views = max(self.three_views.whole_width(), round(VIEWS_WIDTH * width))
-        names = max(least, min(LIST_WIDTH * digit, width - controls - views))
+        most = min(LIST_WIDTH * digit, max(300, round(LIST_SHARE * width)))
+        names = max(least, min(most, width - controls - self.three_views.whole_width()))
         self._columns.setSizes([names, width - names - controls, controls])
 
     def _fit_rows(self) -> None:

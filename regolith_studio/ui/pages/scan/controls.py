@@ -18,6 +18,7 @@ from regolith_studio.messages import N_
 from regolith_studio.readers.volumes.region import RegionSettings
 from regolith_studio.ui.translation import tr, translate
 from regolith_studio.ui.translation.numbers import number_text
+from regolith_studio.ui.widgets.fixed_height_text import FixedHeightText
 from regolith_studio.ui.widgets.forms import SettingsForm
 from regolith_studio.ui.widgets.labels import heading, remark
 from regolith_studio.ui.widgets.number_fields import DecimalField
@@ -337,7 +338,7 @@ class SegmentationControls(QWidget):
         layout.addWidget(heading(tr("Separation of grains")))
         layout.addWidget(self.split)
         layout.addWidget(self.h_maxima)
-        layout.addWidget(self.heights)
+        layout.addWidget(FixedHeightText((self.heights,)))
         self.heights.hide()
         layout.addSpacing(10)
         layout.addWidget(heading(tr("Selection of grains")))
