@@ -11,6 +11,7 @@ import threading
 import time
 from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -20,7 +21,10 @@ from regolith_studio.jobs.events import Progress, Started, Steps
 from regolith_studio.jobs.progress_rate import ProgressRate, format_duration
 from regolith_studio.messages import N_, Message
 
-TASKS = {"read": 10, "fit": 27, "describe": 33, "quadric": 18, "annealing": 12, "exact": 72, "compound": 12}
+if TYPE_CHECKING:
+    from regolith_studio.geometry.mesh import Mesh
+
+TASKS = {"read": 10, "fit": 27, "describe": 33, "quadric": 18, "annealing": 12, "exact": 76, "compound": 12}
 TASKS |= {"degrees": 3, "model": 7, "scan": 10, "representatives": 3}
 """What can be compiled, in the order in which the window needs it, and the files of machine code that each
 adds to those of the tasks before it. Annealing has no kernel that the exact method does not need too.
@@ -115,6 +119,19 @@ def run_task(name: str) -> None:
         coarsen(waist, 12, name, settings={"parts": 2})
     else:
         coarsen(mesh, 12, name)
+        if name == "exact":
+            _insert_facet(mesh)
+
+
+def _insert_facet(mesh: "Mesh") -> None:
+    """Put a half-space that bounds no facet of a cube back to work, as only some particles need."""
+    from regolith_studio.coarsening.core.facet_insertion import insert_lost_facets
+    from regolith_studio.coarsening.target import Target
+
+    rays = Target.of(mesh).rays
+    normals = np.vstack([np.eye(3), -np.eye(3), np.full((1, 3), 1 / np.sqrt(3))])
+    offsets = np.array([0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 2.0])
+    insert_lost_facets(normals, offsets, rays.directions, rays.first, rays.distance, 0.3)
 
 
 def _draw_particles() -> None:
