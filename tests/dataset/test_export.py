@@ -20,7 +20,7 @@ from regolith_studio.io.output_lock import leftovers
 OPTIONS = ExportOptions(n_particles=12, n_spheres=4)
 EXPECTED = {
     "aspherix", "chrono", "edem", "gltf", "half-spaces", "hoomd", "lammps", "lammps-clumps", "liggghts",
-    "mujoco", "multi-sphere", "pfc", "rockable", "rocky", "yade",
+    "mfix", "mujoco", "multi-sphere", "musen", "pfc", "rockable", "rocky", "yade",
 }  # fmt: skip
 
 
