@@ -73,7 +73,7 @@ def _component_spheres(
 
 
 def _inertia_error(shape: Polyhedron, spheres: FloatArray) -> float:
-    """Largest difference of a moment of inertia as MFiX adds it up, at equal mass, over the largest moment."""
+    """Largest difference of a moment of inertia as MFiX adds it up, at equal mass, over the largest."""
     mass = spheres[:, 3] ** 3 / (spheres[:, 3] ** 3).sum() * shape.volume
     squares = spheres[:, :3] ** 2
     summed = mass @ (squares.sum(axis=1, keepdims=True) - squares + 0.4 * spheres[:, 3:] ** 2)

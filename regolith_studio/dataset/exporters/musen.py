@@ -12,7 +12,7 @@ from regolith_studio.dataset.multisphere import fit_spheres_by, sphere_fit_error
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.messages import N_
 
-_NOTE = """shapes.madb: open it as the database of agglomerates and multispheres. Each shape is a multisphere of
+_NOTE = """shapes.madb: open it as the database of agglomerates and multispheres. Each shape is one, of
 the median size of its class in metres (coarse graining applied); other sizes, of sizes.csv, by the scaling
 factor of the package generator. Its spheres name a compound of the shape's own.
 MUSEN adds up overlapping spheres as if none overlapped: give each compound the density below, with which a
