@@ -5,9 +5,9 @@ Functions for notebooks, each imported from the folder of its name when first us
     import regolith_studio as rs
 
     particle = rs.read_mesh("grain.stl", unit="um")
-    rs.describe(particle.mesh)["sphericity"]
-    fit = rs.fit_harmonics(particle.mesh)
-    coarse = rs.coarsen(particle.mesh, n_facets=20)
+    rs.describe(particle)["sphericity"]
+    fit = rs.fit_harmonics(particle)
+    coarse = rs.coarsen(particle, n_facets=20)
     rs.write_dataset("grains", rs.build_dataset([(particle, coarse)]))
 """
 

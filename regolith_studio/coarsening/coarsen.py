@@ -23,6 +23,7 @@ from regolith_studio.geometry.convex_compound import ConvexCompound, Polyhedron
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.half_spaces import HalfSpaces
 from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.particle import Particle, solid_of
 from regolith_studio.geometry.topology import genus
 
 DEFAULT_METHOD = "exact"
@@ -32,7 +33,7 @@ FACETS_LIMITS = (5, 200)
 
 
 def coarsen(
-    mesh: Mesh | Target,
+    particle: Particle | Mesh | Target,
     n_facets: int = 20,
     method: str = DEFAULT_METHOD,
     weights: LossWeights | None = None,
@@ -40,12 +41,12 @@ def coarsen(
     settings: Any = None,
     fewer: HalfSpaces | None = None,
 ) -> CoarseningResult:
-    """The polyhedron with `n_facets` facets that stands for `mesh` (section 2.4), convex but for `compound`.
+    """The polyhedron with `n_facets` facets for `particle` (section 2.4), convex but for `compound`.
 
     Parameters
     ----------
-    mesh
-        Closed surface of the particle in any unit, or a :class:`Target` that was made from one.
+    particle
+        Or its closed surface in any unit, or a :class:`Target` that was made from one.
     n_facets
         Facets of the polyhedron, 5 to 200.
     method
@@ -67,7 +68,7 @@ def coarsen(
     GeometryError
         If the mesh is open, flat or encloses no volume.
     """
-    _, run = _prepare(mesh, n_facets, method, weights, seed, settings, fewer)
+    _, run = _prepare(particle, n_facets, method, weights, seed, settings, fewer)
     while True:
         try:
             next(run)
@@ -77,7 +78,7 @@ def coarsen(
 
 
 def coarsening_steps(
-    mesh: Mesh | Target,
+    particle: Particle | Mesh | Target,
     n_facets: int = 20,
     method: str = DEFAULT_METHOD,
     weights: LossWeights | None = None,
@@ -86,7 +87,7 @@ def coarsening_steps(
     fewer: HalfSpaces | None = None,
 ) -> Generator[CoarseningProgress, None, CoarseningResult]:
     """As :func:`coarsen`, yielding each step; the first one has a polyhedron and comes at once."""
-    target, run = _prepare(mesh, n_facets, method, weights, seed, settings, fewer)
+    target, run = _prepare(particle, n_facets, method, weights, seed, settings, fewer)
     while True:
         try:
             step = next(run)
@@ -102,7 +103,7 @@ def coarsening_steps(
 
 
 def _prepare(
-    mesh: Mesh | Target,
+    particle: Particle | Mesh | Target,
     n_facets: int,
     method: str,
     weights: LossWeights | None,
@@ -114,7 +115,7 @@ def _prepare(
     chosen = _method(method)
     weights = LossWeights.from_preset(DEFAULT_PRESET) if weights is None else weights
     _check(n_facets, chosen, weights, seed)
-    target = mesh if isinstance(mesh, Target) else Target.of(mesh)
+    target = particle if isinstance(particle, Target) else Target.of(solid_of(particle))
     random, chosen_settings = np.random.SeedSequence(seed), settings_of(method, settings)
     if fewer is not None and isinstance(chosen, GrowingMethod):
         few = target.in_unit_frame(fewer)

@@ -8,6 +8,7 @@ from regolith_studio.descriptors.shape_cache import ShapeCache
 from regolith_studio.geometry.convex_compound import ConvexCompound
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.particle import Particle
 
 
 class Descriptors(Mapping[str, float]):
@@ -49,7 +50,7 @@ class Descriptors(Mapping[str, float]):
 
 
 def describe(
-    solid: Mesh | ConvexPolyhedron | ConvexCompound,
+    solid: Particle | Mesh | ConvexPolyhedron | ConvexCompound,
     keys: Iterable[str] | None = None,
     box_metric: str = "exact",
 ) -> Descriptors:
@@ -73,7 +74,7 @@ def describe(
     """
     wanted = DEFAULT_KEYS if keys is None else tuple(keys)
     _check_keys(wanted)
-    facts = ShapeCache(solid.mesh if isinstance(solid, ConvexCompound) else solid, box_metric)
+    facts = ShapeCache(solid.mesh if isinstance(solid, Particle | ConvexCompound) else solid, box_metric)
     return Descriptors({key: CATALOGUE[key].compute(facts) for key in wanted})
 
 

@@ -1,7 +1,7 @@
 """A measured particle: its mesh with what is known about where it came from."""
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.mesh import Mesh
@@ -10,6 +10,8 @@ from regolith_studio.messages import N_
 
 if TYPE_CHECKING:
     from regolith_studio.geometry.repair import Repair
+
+Solid = TypeVar("Solid")
 
 
 @dataclass(frozen=True)
@@ -77,6 +79,11 @@ class Particle:
     def title(self) -> str:
         """What it is called above a picture of it."""
         return N_("Synthetic particle") if self.is_synthetic else N_("Particle")
+
+
+def solid_of(particle: Particle | Solid) -> Mesh | Solid:
+    """The mesh of a particle; a mesh or another solid as it is."""
+    return particle.mesh if isinstance(particle, Particle) else particle
 
 
 def defect_triangles(particle: Particle) -> dict[str, FloatArray]:

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 from regolith_studio.errors import GeometryError, InputError
 from regolith_studio.geometry.arrays import FloatArray, locked_floats
 from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.particle import Particle, solid_of
 from regolith_studio.harmonics.coefficients import ShCoefficients, checked_degree
 from regolith_studio.harmonics.radius_function import (
     DEFAULT_RULE,
@@ -123,7 +124,7 @@ class HarmonicFit:
 
 
 def fit_harmonics(
-    mesh: Mesh,
+    mesh: Particle | Mesh,
     l_max: int = 30,
     star_point: ArrayLike | str | None = None,
     sampling_degree: int = SAMPLING_DEGREE,
@@ -156,7 +157,7 @@ def fit_harmonics(
     if reference not in REFERENCES:
         raise InputError(f"The reference must be one of {', '.join(REFERENCES)}, got {reference!r}.")
     rays = ray_grid(sampling_degree)
-    solid = require_solid(mesh)
+    solid = require_solid(solid_of(mesh))
     radius, notes = _sampled(solid, star_point, rays, rule)
     ellipsoid = REFERENCES[reference](solid)
     fit = expand_radius(radius, rays, l_max, ellipsoid)
