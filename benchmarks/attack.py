@@ -125,6 +125,10 @@ COMMANDS = {
         f"repose study IN/dataset -o OUT/t --vary plate_friction=0.8 {QUICK}",
         "--measure confidence=0.8",
     ),
+    "repose calibrate": (
+        f"repose calibrate IN/dataset -o OUT/c --angle 25 --runs 2 {QUICK}",
+        "--angle 26",
+    ),
 }
 """What is run, and what its earlier run had instead."""
 TO_ALL = {signal.SIGINT, signal.SIGHUP}

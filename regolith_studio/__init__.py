@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from regolith_studio.descriptors.describe import describe
     from regolith_studio.harmonics.fit import fit_harmonics
     from regolith_studio.harmonics.surface import reconstruct
+    from regolith_studio.jobs.repose_calibration import calibrate_repose
     from regolith_studio.readers.particles import read_mesh, read_particles, sample_particles
     from regolith_studio.shape_models.models.gaussian_field import GaussianRadiusModel
     from regolith_studio.web.notebook import show
@@ -33,6 +34,7 @@ __all__ = [
     "LossWeights",
     "__version__",
     "build_dataset",
+    "calibrate_repose",
     "coarsen",
     "describe",
     "fit_harmonics",
@@ -50,6 +52,7 @@ _LAZY_EXPORTS = {
     "GaussianRadiusModel": "shape_models.models.gaussian_field:GaussianRadiusModel",
     "LossWeights": "coarsening.weights:LossWeights",
     "build_dataset": "dataset.build:build_dataset",
+    "calibrate_repose": "jobs.repose_calibration:calibrate_repose",
     "coarsen": "coarsening.coarsen:coarsen",
     "describe": "descriptors.describe:describe",
     "fit_harmonics": "harmonics.fit:fit_harmonics",

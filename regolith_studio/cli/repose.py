@@ -14,9 +14,9 @@ from regolith_studio.cli.options import (
     claim_folder,
     output_path,
     usage_errors,
-    values,
 )
-from regolith_studio.cli.repose_options import CaseOptions, Particles, evaluation_settings
+from regolith_studio.cli.repose_calibrate import calibrate
+from regolith_studio.cli.repose_options import CaseOptions, Particles, evaluation_settings, varied_values
 from regolith_studio.cli.terminal import (
     CommandGroup,
     print_errors,
@@ -70,6 +70,9 @@ Diameter = Annotated[
         metavar="D",
     ),
 ]
+
+
+app.command("calibrate")(calibrate)
 
 
 @app.command("engines")
@@ -246,7 +249,7 @@ def study(
     from regolith_studio.studies.repose import repose_table
 
     del jobs  # one run after the other, so that what is there already is known
-    key, points = _varied(vary)
+    key, points = varied_values(vary)
     request = how.request(n_particles=particles, seed=seed)
     rows = []
     for folder in datasets:
@@ -261,16 +264,6 @@ def study(
         print_json({"folder": str(output), "files": files})
     else:
         print_table(repose_table(done))
-
-
-def _varied(text: str) -> tuple[str, list[Any]]:
-    """Name and values of ``KEY=V1,V2``."""
-    if not text:
-        return "", []
-    key, equals, points = text.partition("=")
-    if not equals or not all(point.strip() for point in points.split(",")):
-        raise typer.BadParameter(f"Write what varies as KEY=V1,V2, got {text!r}.")
-    return key, [values([f"{key}={point}"], "value")[key] for point in points.split(",")]
 
 
 def in_words(document: dict[str, Any]) -> str:

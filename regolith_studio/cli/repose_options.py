@@ -75,6 +75,16 @@ class CaseOptions:
         )
 
 
+def varied_values(text: str) -> tuple[str, list[Any]]:
+    """Name and values of ``KEY=V1,V2``; nothing of an empty text."""
+    if not text:
+        return "", []
+    key, equals, points = text.partition("=")
+    if not equals or not all(point.strip() for point in points.split(",")):
+        raise typer.BadParameter(f"Write what varies as KEY=V1,V2, got {text!r}.")
+    return key, [values([f"{key}={point}"], "value")[key] for point in points.split(",")]
+
+
 def evaluation_settings(entries: list[str] | None) -> "EvaluationSettings":
     """Settings of the evaluation from KEY=VALUE entries; a wrong one is a usage error."""
     from regolith_studio.dem.evaluation.settings import EvaluationSettings

@@ -3,7 +3,7 @@
 import contextlib
 import os
 import shutil
-from collections.abc import Generator, Sequence
+from collections.abc import Callable, Generator, Sequence
 from dataclasses import asdict, dataclass, fields, replace
 from pathlib import Path
 from typing import Any
@@ -70,19 +70,19 @@ def study_repose(rows: Sequence[ReposeVariant], folder: Path, repeats: int = 1) 
     for number, (row, seed) in enumerate(plan):
         request = replace(row.request, case=replace(row.request.case, seed=seed), overwrite=True)
         name = f"{row.varied}_{row.value}_seed{seed}".replace("/", "-").replace(" ", "-")
-        document = _finished_run(study_place(folder, name), row.dataset, request)
+        document = finished_run(study_place(folder, name), row.dataset, request)
         if document is None:
             place = folder / JOURNAL / STUDY / name
-            document = yield from _study_run(row, request, place, number, len(plan))
+            document = yield from study_run(row, request, place, number, len(plan))
         done.append((row.varied, row.value, name, document))
         yield Progress(PROGRESS_STEPS * (number + 1), PROGRESS_STEPS * len(plan), name)
         yield Partial(runs_from(done))
     return runs_from(done)
 
 
-def study_place(folder: Path, name: str) -> Path:
+def study_place(folder: Path, name: str, kind: str = STUDY) -> Path:
     """Where a study in `folder` has a run of this name: in the journal until the study is written."""
-    unfinished = folder / JOURNAL / STUDY / name
+    unfinished = folder / JOURNAL / kind / name
     return unfinished if unfinished.is_dir() else folder / name
 
 
@@ -98,11 +98,22 @@ def write_study(study: ReposeStudy, folder: Path) -> list[str]:
     """
     from regolith_studio.studies.figures.repose import write_repose_study  # matplotlib
 
-    journal = folder / JOURNAL / STUDY
-    with staged_folder(folder, STUDY) as stage:
-        files = write_repose_study(study, stage, STUDY)
+    return write_with_runs(folder, STUDY, lambda stage: write_repose_study(study, stage, STUDY))
+
+
+def write_with_runs(folder: Path, kind: str, write: Callable[[Path], Sequence[Path]]) -> list[str]:
+    """Let `write` write files into `folder` in one step with the runs of the journal; names of the files.
+
+    Raises
+    ------
+    FileError
+        If the folder cannot be written.
+    """
+    journal = folder / JOURNAL / kind
+    with staged_folder(folder, kind) as stage:
+        files = write(stage)
         for place in _runs_and_datasets(folder) | _runs_and_datasets(journal):
-            shutil.copytree(study_place(folder, place), stage / place, copy_function=_link)
+            shutil.copytree(study_place(folder, place, kind), stage / place, copy_function=_link)
     remove_quietly(journal)
     with contextlib.suppress(OSError):  # it holds the journal of another study
         journal.parent.rmdir()
@@ -123,9 +134,10 @@ def _link(source: str, target: str) -> None:
         shutil.copy2(source, target)
 
 
-def _study_run(
+def study_run(
     row: ReposeVariant, request: ReposeRequest, place: Path, number: int, total: int
 ) -> Generator[Step, None, dict[str, Any]]:
+    """Simulate the run of this `number` of `total` in `place`; returns its document, even if it failed."""
     steps = simulate_repose(row.dataset, place, request)
     try:
         while True:
@@ -142,7 +154,7 @@ def _study_run(
         steps.close()
 
 
-def _finished_run(place: Path, dataset: Path, request: ReposeRequest) -> dict[str, Any] | None:
+def finished_run(place: Path, dataset: Path, request: ReposeRequest) -> dict[str, Any] | None:
     """The document of a finished run of the same case on the same dataset, if there is one."""
     try:
         document = read_run(place).document

@@ -97,6 +97,7 @@ WITHIN_TEXT = [
     ("repose run", "--contact", "density={}"),
     ("repose run", "--set", "stiffness={}"),
     ("repose study", "--vary", "n_particles={}"),
+    ("repose calibrate", "--parameter", "static_friction=0.1,{}"),
     ("repose measure", "--set", "azimuths={}"),
 ]
 

@@ -32,6 +32,7 @@ COMMANDS = (
     "dataset sample MESH -n 2",
     "repose run MESH",
     "repose study MESH",
+    "repose calibrate MESH --angle 30",
     "repose measure MESH",
 )
 

@@ -20,6 +20,7 @@ ELSEWHERE = {
     "plugins.md": "needs the plug-ins of the page; test_plugins_page.py installs and runs them",
     "objects.md": "needs examples marked in a scan; tests/cli/test_classify_objects.py has some",
     "pixel_classifier.md": "needs a painted scan; tests/cli/test_classify.py has one",
+    "calibration.md": "heaps of minutes; tests/dem/test_repose_calibration.py has quick ones",
     "repose.md": "heaps of minutes; tests/dem has smaller ones",
 }
 """Pages whose commands run in other tests, besides those of :data:`SHORT`."""

@@ -1,0 +1,105 @@
+"""Are the intervals of a calibration honest, and what do its runs gain? docs/calibration.md.
+
+    python -m benchmarks.calibration [CASES] [FIRST_SEED] [RESULT.json]
+
+Surrogates of heaps with a known answer: random smooth curves of the angle of repose over one parameter, with
+the noise of a heap of 1,000 particles. Runs are proposed one after the other, or equally spaced.
+"""
+
+import sys
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from benchmarks.result_files import Rows, add_result, show_row
+from regolith_studio.studies.calibration import (
+    CONFIDENCE,
+    CalibrationParameter,
+    CalibrationRuns,
+    WantedResult,
+    calibrate,
+)
+
+NOISE, TARGET_ERROR = 1.7, 0.5
+"""Degrees: standard deviation of a heap of 1,000 particles, standard error of a mean of about 12."""
+N_RUNS = 12
+
+
+@dataclass(frozen=True)
+class SurrogateCase:
+    """A calibration with a known answer: values of its runs, and its intervals, the first before any run."""
+
+    truth: float
+    values: tuple[float, ...]
+    intervals: NDArray[np.float64]
+
+    def covers(self, runs: int = N_RUNS) -> bool:
+        """Whether the interval after so many runs holds the truth."""
+        low, high = self.intervals[runs]
+        return bool(low <= self.truth <= high)
+
+    def shrinkage(self, runs: int = N_RUNS) -> float:
+        """Width of the interval after so many runs over that of the prior."""
+        low, high = self.intervals[runs]
+        return float(high - low) / CONFIDENCE
+
+
+def main(cases: int, seed: int, result: str) -> None:
+    """Print a line for each number of runs, and write them all."""
+    rows: Rows = {}
+    found = [calibrate_surrogate(seed + k) for k in range(cases)]
+    for n in range(0, N_RUNS + 1, 2):
+        _show(rows, f"{n} runs", found, n)
+    spaced = tuple((np.arange(N_RUNS) + 0.5) / N_RUNS)
+    _show(rows, f"{N_RUNS} equally spaced", [calibrate_surrogate(seed + k, spaced) for k in range(cases)])
+    add_result(result, "surrogates", rows, cases=cases, first_seed=seed)
+
+
+def _show(rows: Rows, name: str, found: Sequence[SurrogateCase], runs: int = N_RUNS) -> None:
+    widths = [case.shrinkage(runs) for case in found]
+    covered = 100.0 * np.mean([case.covers(runs) for case in found])
+    show_row(rows, name, [covered, float(np.mean(widths)), float(np.median(widths))])
+
+
+def random_curve(rng: np.random.Generator) -> Callable[[NDArray[np.float64]], NDArray[np.float64]]:
+    """Degrees over 0 to 1: it rises by 8 to 25, more or less saturated, with ripples of up to a degree."""
+    begin, rise, length = rng.uniform(8, 18), rng.uniform(8, 25), rng.uniform(0.2, 2.0)
+    phase, height, frequency = rng.uniform(0, 2 * np.pi), rng.uniform(0, 1), rng.uniform(2, 6)
+
+    def curve(x: NDArray[np.float64]) -> NDArray[np.float64]:
+        saturated = (1 - np.exp(-x / length)) / (1 - np.exp(-1 / length))
+        return np.asarray(begin + rise * saturated + height * np.sin(frequency * x + phase))
+
+    return curve
+
+
+def calibrate_surrogate(seed: int, spaced: Sequence[float] = (), runs: int = N_RUNS) -> SurrogateCase:
+    """Each run states its noise as a heap does: from seven degrees of freedom.
+
+    Parameters
+    ----------
+    spaced
+        Values of the runs, where they are not proposed.
+    """
+    rng = np.random.default_rng(seed)
+    curve, truth = random_curve(rng), rng.uniform()
+    wanted = float(curve(np.array(truth)) + TARGET_ERROR * rng.normal())
+    target = WantedResult("angle", wanted, TARGET_ERROR, scale=5.0, noise=NOISE)
+    parameter = CalibrationParameter("x", 0.0, 1.0)
+    made = np.empty((0, 3))
+    intervals = []
+    for k in range(runs + 1):
+        found = calibrate([parameter], [target], CalibrationRuns.of(*made.T, 1, 1))
+        intervals.append(found.intervals[0])
+        if k < runs:
+            x = spaced[k] if spaced else float(found.next_values[0])
+            angle = curve(np.array(x)) + NOISE * rng.normal()
+            made = np.vstack([made, [x, angle, NOISE * np.sqrt(rng.chisquare(7) / 7)]])
+    return SurrogateCase(truth, tuple(made[:, 0].tolist()), np.array(intervals))
+
+
+if __name__ == "__main__":
+    words = [*sys.argv[1:], *("100", "0", "")[len(sys.argv) - 1 :]]
+    main(int(words[0]), int(words[1]), words[2])

@@ -1,0 +1,131 @@
+"""``repose calibrate``: contact parameters that give a wanted angle of repose."""
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from regolith_studio.cli.dataclass_options import with_dataclass_options
+from regolith_studio.cli.options import Folder, Jobs, Json, Seed, usage_errors
+from regolith_studio.cli.repose_options import CaseOptions, Particles, varied_values
+from regolith_studio.cli.terminal import print_errors, print_json, print_table, run_with_progress
+
+
+@with_dataclass_options
+def calibrate(
+    *,
+    datasets: Annotated[
+        list[Path],
+        typer.Argument(
+            metavar="DATASET...", help="Dataset folders; with several the facets are a parameter too."
+        ),
+    ],
+    output: Folder,
+    angle: Annotated[
+        float,
+        typer.Option("--angle", min=1.0, max=80.0, help="Wanted angle of repose in degrees.", metavar="A"),
+    ],
+    angle_error: Annotated[
+        float,
+        typer.Option(
+            "--angle-error",
+            min=0.0,
+            max=45.0,
+            help="Its standard error: of a mean, if of several.",
+            metavar="E",
+        ),
+    ] = 1.0,
+    bulk_density: Annotated[
+        float | None,
+        typer.Option(
+            "--bulk-density",
+            min=1.0,
+            max=3e4,
+            help="Wanted bulk density of the filled cylinder in kg/m^3.",
+            metavar="D",
+        ),
+    ] = None,
+    bulk_density_error: Annotated[
+        float,
+        typer.Option("--bulk-density-error", min=0.0, max=3e4, help="Its standard error.", metavar="E"),
+    ] = 20.0,
+    parameter: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--parameter",
+            help="A parameter of Table 1 or 2 with its range in SI units; static_friction=0.05,1.2 if "
+            "omitted; may be repeated.",
+            metavar="KEY=LOW,HIGH",
+        ),
+    ] = None,
+    runs: Annotated[
+        int, typer.Option("--runs", min=1, max=99, help="Number of runs, with earlier ones.", metavar="N")
+    ] = 12,
+    particles: Particles = 1000,
+    how: CaseOptions,
+    json: Json = False,
+    jobs: Jobs = 1,
+    seed: Seed = 0,
+) -> None:
+    """Find contact parameters that give a wanted angle of repose; resumes a stopped calibration."""
+    from dataclasses import replace
+
+    from regolith_studio.jobs.repose_calibration import (
+        DEFAULT_RANGES,
+        ReposeCalibrationRequest,
+        calibration_steps,
+    )
+    from regolith_studio.jobs.runners.process_pool import cores
+    from regolith_studio.studies.repose_calibration import (
+        angle_target,
+        calibration_document,
+        calibration_table,
+        density_target,
+    )
+
+    targets = [angle_target(angle, angle_error)]
+    if bulk_density is not None:
+        targets.append(density_target(bulk_density, bulk_density_error))
+    base = replace(how.request(n_particles=particles, seed=seed), threads=jobs or cores())
+    with usage_errors():
+        request = ReposeCalibrationRequest(
+            tuple(datasets), _ranges(parameter) or DEFAULT_RANGES, tuple(targets), base, runs
+        )
+    done = run_with_progress(calibration_steps(request, output))
+    document = calibration_document(done)
+    print_errors(done.warnings)
+    if json:
+        print_json(document)
+    else:
+        print_table(calibration_table(done))
+        typer.echo(calibration_in_words(document))
+
+
+def _ranges(entries: list[str] | None) -> dict[str, tuple[float, float]]:
+    """Ranges of ``KEY=LOW,HIGH`` entries."""
+    ranges = {}
+    for entry in entries or ():
+        key, ends = varied_values(entry)
+        if len(ends) != 2 or not all(type(end) in (int, float) for end in ends):
+            raise typer.BadParameter(f"Write a parameter and its range as KEY=LOW,HIGH, got {entry!r}.")
+        ranges[key] = (float(ends[0]), float(ends[1]))
+    return ranges
+
+
+def calibration_in_words(document: dict[str, Any]) -> str:
+    """The result of a calibration."""
+    lines = []
+    for each in document["parameters"]:
+        low, high = each["interval"]
+        lines.append(
+            f"{each['name']:20} {each['best']:.4g} ({low:.4g} to {high:.4g}, "
+            f"{100 * document['confidence']:g} % interval; before {each['low']:g} to {each['high']:g})"
+        )
+    for each in document["targets"]:
+        lines.append(
+            f"{each['name'].replace('_', ' '):20} {each['predicted']:.4g} ± "
+            f"{each['predicted_standard_error']:.2g} {each['unit']} predicted, {each['value']:g} ± "
+            f"{each['standard_error']:g} wanted"
+        )
+    proposed = ", ".join(f"{name} {value:g}" for name, value in document["next_run"].items())
+    return "\n".join([*lines, f"{'next run':20} {proposed}"])

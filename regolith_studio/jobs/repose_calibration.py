@@ -1,0 +1,253 @@
+"""Job that calibrates contact parameters by runs of a lifting cylinder, one after the other."""
+
+from collections.abc import Generator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from types import MappingProxyType
+from typing import cast
+
+from regolith_studio.dataset.folder_io import dataset_hash, read_dataset
+from regolith_studio.dem.run_io import read_run
+from regolith_studio.errors import FileError, InputError, RegolithError
+from regolith_studio.io.atomic import JOURNAL
+from regolith_studio.io.output_lock import output_lock
+from regolith_studio.jobs.events import Partial, Progress, Started, Step, Steps
+from regolith_studio.jobs.repose_jobs import PROGRESS_STEPS, ReposeRequest
+from regolith_studio.jobs.repose_study import (
+    CASE_KEYS,
+    ReposeVariant,
+    finished_run,
+    study_place,
+    study_run,
+    with_value,
+    write_with_runs,
+)
+from regolith_studio.messages import N_
+from regolith_studio.studies.calibration import CalibrationParameter, WantedResult
+from regolith_studio.studies.repose_calibration import (
+    FACETS,
+    CalibrationRun,
+    ReposeCalibration,
+    angle_target,
+    four_digits,
+)
+
+KIND = "calibration"
+"""Of the folder in the journal, and of the list of files."""
+MAX_PARAMETERS = 3
+DEFAULT_RANGES = MappingProxyType({"static_friction": (0.05, 1.2)})
+
+
+@dataclass(frozen=True, eq=False)
+class ReposeCalibrationRequest:
+    """What is wanted, and how it may be reached; picklable.
+
+    Parameters
+    ----------
+    datasets
+        Folders. With several the mean number of facets is one of the parameters.
+    ranges
+        Lowest and highest value of each parameter of Table 1 or 2, in SI units.
+    targets
+        Wanted angle, and perhaps bulk density.
+    request
+        Of every run, but for the parameters; its seed is the first run's, and each run has the next one.
+    max_runs
+        After which the calibration ends.
+
+    Raises
+    ------
+    InputError
+        If a range cannot be used.
+    """
+
+    datasets: tuple[Path, ...]
+    ranges: Mapping[str, tuple[float, float]]
+    targets: tuple[WantedResult, ...]
+    request: ReposeRequest
+    max_runs: int = 12
+
+    def __post_init__(self) -> None:
+        if not 1 <= len(self.ranges) + (len(self.datasets) > 1) <= MAX_PARAMETERS:
+            raise InputError(
+                f"A calibration finds one to {MAX_PARAMETERS} parameters, got "
+                f"{len(self.ranges) + (len(self.datasets) > 1)}."
+            )
+        for name, (low, high) in self.ranges.items():
+            if name in CASE_KEYS:
+                raise InputError(f"{name} cannot be calibrated; a value of Table 1 or 2 can.")
+            CalibrationParameter(name, low, high)
+            for value in (low, high):
+                with_value(self.request, name, value)
+
+
+def calibration_steps(request: ReposeCalibrationRequest, folder: Path) -> Steps:
+    """Run one test after the other in `folder`; returns :class:`ReposeCalibration`.
+
+    After each run the folder holds the result so far. Runs that are there already are data and are not run
+    again, also where another angle is wanted.
+
+    Raises
+    ------
+    FileError
+        If the folder holds runs of another dataset, engine or case.
+    """
+    total = PROGRESS_STEPS * request.max_runs
+    yield Started(N_("Calibration"), total)
+    datasets = _by_facets(request.datasets)
+    calibration = ReposeCalibration.begin(_parameters(request, datasets), request.targets)
+    yield Partial(calibration)
+    for number in range(request.max_runs):
+        run = earlier = _earlier_run(request, datasets, folder, number)
+        if run is None:
+            run = yield from _next_run(request, datasets, folder, calibration)
+        calibration = calibration.with_run(run)
+        if earlier is None or number == request.max_runs - 1:
+            write_calibration(calibration, folder)
+        yield Progress(PROGRESS_STEPS * (number + 1), total, run.folder)
+        yield Partial(calibration)
+    return calibration
+
+
+def calibrate_repose(
+    dataset: Path | str,
+    folder: Path | str,
+    *,
+    angle: float,
+    angle_error: float = 1.0,
+    ranges: Mapping[str, tuple[float, float]] = DEFAULT_RANGES,
+    request: ReposeRequest | None = None,
+    max_runs: int = 12,
+) -> ReposeCalibration:
+    """Find contact parameters that give a wanted angle of repose, by simulated tests.
+
+    Parameters
+    ----------
+    dataset
+        Folder of the dataset.
+    folder
+        For the runs and the result; runs that are there already are not run again.
+    angle, angle_error
+        Wanted angle and its standard error, in degrees.
+    ranges, request, max_runs
+        As in :class:`ReposeCalibrationRequest`; 1,000 particles on the default engine if omitted.
+
+    Raises
+    ------
+    RegolithError
+        If a range, the dataset or the folder cannot be used.
+    """
+    targets = (angle_target(angle, angle_error),)
+    wanted = ReposeCalibrationRequest((Path(dataset),), ranges, targets, request or ReposeRequest(), max_runs)
+    steps = calibration_steps(wanted, Path(folder))
+    with output_lock(Path(folder)):
+        while True:
+            try:
+                next(steps)
+            except StopIteration as end:
+                return cast("ReposeCalibration", end.value)
+
+
+def write_calibration(calibration: ReposeCalibration, folder: Path) -> list[str]:
+    """Write the result so far and the runs beside it in one step; names of the files."""
+    from regolith_studio.studies.figures.calibration import write_calibration_files  # matplotlib
+
+    return write_with_runs(folder, KIND, lambda stage: write_calibration_files(calibration, stage))
+
+
+def _by_facets(folders: Sequence[Path]) -> dict[float, Path]:
+    """Datasets by their mean number of facets, in ascending order.
+
+    Raises
+    ------
+    InputError
+        If two have the same.
+    """
+    found: dict[float, Path] = {}
+    for folder in folders:
+        facets = [each.shape.n_facets for each in read_dataset(folder).representatives]
+        mean = four_digits(sum(facets) / len(facets))
+        if mean in found:
+            raise InputError(
+                f"{found[mean].name} and {folder.name} both have {mean:g} facets in the mean; "
+                "datasets of a calibration differ in their facets."
+            )
+        found[mean] = folder
+    return dict(sorted(found.items()))
+
+
+def _parameters(
+    request: ReposeCalibrationRequest, datasets: Mapping[float, Path]
+) -> list[CalibrationParameter]:
+    parameters = [CalibrationParameter(name, *ends) for name, ends in request.ranges.items()]
+    if len(datasets) > 1:
+        parameters.append(CalibrationParameter(FACETS, min(datasets), max(datasets), tuple(datasets)))
+    return parameters
+
+
+def _variant(
+    request: ReposeCalibrationRequest,
+    datasets: Mapping[float, Path],
+    number: int,
+    values: Mapping[str, float],
+) -> ReposeVariant:
+    """What the run of this number is with these values of the parameters."""
+    one = replace(request.request, overwrite=True)
+    for name in request.ranges:
+        one = with_value(one, name, values[name])
+    one = replace(one, case=replace(one.case, seed=one.case.seed + number))
+    dataset = datasets[values[FACETS]] if FACETS in values else next(iter(datasets.values()))
+    return ReposeVariant("run", number + 1, dataset, one)
+
+
+def _earlier_run(
+    request: ReposeCalibrationRequest, datasets: Mapping[float, Path], folder: Path, number: int
+) -> CalibrationRun | None:
+    """A finished run of this number, whose parameters may have any values."""
+    name = _run_name(number)
+    place = study_place(folder, name, KIND)
+    try:
+        document = read_run(place).document
+    except FileError:
+        return None
+    if document["state"] != "finished":
+        return None
+    known = document["case"]["contact"] | document["case"]["test"]
+    values = {key: float(known[key]) for key in request.ranges}
+    if len(datasets) > 1:
+        hashes = {dataset_hash(path): facets for facets, path in datasets.items()}
+        values[FACETS] = hashes.get(document["dataset"]["sha256"], min(datasets))
+    variant = _variant(request, datasets, number, values)
+    if finished_run(place, variant.dataset, variant.request) is None:
+        raise FileError(
+            f"{folder} holds a run of another dataset, engine, case or seed ({name}); choose another folder."
+        )
+    return CalibrationRun(name, tuple(values.values()), document)
+
+
+def _next_run(
+    request: ReposeCalibrationRequest,
+    datasets: Mapping[float, Path],
+    folder: Path,
+    calibration: ReposeCalibration,
+) -> Generator[Step, None, CalibrationRun]:
+    """Simulate the run that is proposed; if it fails, it has no result.
+
+    Raises
+    ------
+    RegolithError
+        If the first run fails, as where an engine does not have a parameter.
+    """
+    number, name = len(calibration.runs), _run_name(len(calibration.runs))
+    names = [each.name for each in calibration.parameters]
+    values = calibration.next_values
+    variant = _variant(request, datasets, number, dict(zip(names, values, strict=True)))
+    place = folder / JOURNAL / KIND / name
+    document = yield from study_run(variant, variant.request, place, number, request.max_runs)
+    if document["state"] == "failed" and not calibration.runs:
+        raise RegolithError(document["problem"])
+    return CalibrationRun(name, values, document)
+
+
+def _run_name(number: int) -> str:
+    return f"run_{number + 1:02d}"

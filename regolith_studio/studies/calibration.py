@@ -1,0 +1,303 @@
+"""Calibration of contact parameters: from wanted results (an angle of repose, a bulk density) to parameters.
+
+A Gaussian process for each result interpolates the runs, whose noise is part of it. The posterior density of
+the parameters is uniform prior times the likelihood of the wanted results; the next run is where the weighted
+variance of the prediction is expected to fall most (targeted integrated mean square error: Picheny et al.,
+J. Mech. Des. 132 (2010) 071008).
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import product
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.special import logsumexp
+from scipy.stats import norm
+from scipy.stats.qmc import Sobol
+
+from regolith_studio.errors import InputError, MissingRequirement
+from regolith_studio.geometry.arrays import FloatArray
+
+N_POINTS = 1024
+"""Quasi-random points that represent the range of the parameters."""
+AMPLITUDES, LENGTHS, NOISES = (0.4, 1.0, 2.5), (0.25, 0.5, 1.0), (0.6, 1.0, 1.6)
+"""Hyperparameters that are averaged over: amplitude in scales of the result, length in ranges of a parameter,
+noise of a run relative to what the runs state."""
+TREND_VARIANCE = 16.0
+"""Of the constant and of the linear part of a result, in squares of its scale."""
+FAILED_DISTANCE = 0.1
+"""From a run without a result, in ranges of a parameter, within which no further run is proposed."""
+CONFIDENCE = 0.9
+"""Of the intervals of the parameters."""
+
+
+@dataclass(frozen=True)
+class CalibrationParameter:
+    """A parameter to be found, between `low` and `high`; one of `levels` where it cannot have all values.
+
+    Raises
+    ------
+    InputError
+        If the range is empty.
+    """
+
+    name: str
+    low: float
+    high: float
+    levels: tuple[float, ...] = ()
+
+    def __post_init__(self) -> None:
+        if not np.isfinite([self.low, self.high]).all() or not self.low < self.high:
+            raise InputError(
+                f"The range of {self.name} must go from a lower to a higher value, "
+                f"got {self.low:g} to {self.high:g}."
+            )
+
+
+@dataclass(frozen=True)
+class WantedResult:
+    """A wanted result.
+
+    Parameters
+    ----------
+    name, value
+        What is wanted; the unit is that of the runs' results.
+    error
+        Standard error of `value`.
+    scale
+        Typical change of the result over the range of the parameters.
+    noise
+        Standard deviation of a single run, as long as no run states its own.
+
+    Raises
+    ------
+    InputError
+        If a number is out of its range.
+    """
+
+    name: str
+    value: float
+    error: float
+    scale: float
+    noise: float
+
+    def __post_init__(self) -> None:
+        if not np.isfinite(self.value):
+            raise InputError(f"The wanted {self.name} must be a number, got {self.value:g}.")
+        if not (np.isfinite(self.error) and self.error >= 0.0):
+            raise InputError(f"The error of the {self.name} must not be negative, got {self.error:g}.")
+
+
+@dataclass(frozen=True, eq=False)
+class CalibrationRuns:
+    """What the runs gave, NaN where a run has no such result.
+
+    Parameters
+    ----------
+    values
+        Of the parameters, shape (n, d).
+    results, errors
+        Results and their standard deviations, shape (n, k) for k targets.
+    """
+
+    values: FloatArray
+    results: FloatArray
+    errors: FloatArray
+
+    @classmethod
+    def of(
+        cls, values: ArrayLike, results: ArrayLike, errors: ArrayLike, d: int, k: int
+    ) -> "CalibrationRuns":
+        """Runs of `d` parameters and `k` targets, perhaps none."""
+        shapes = ((-1, d), (-1, k), (-1, k))
+        arrays = (values, results, errors)
+        return cls(*(np.asarray(a, dtype=np.float64).reshape(s) for a, s in zip(arrays, shapes, strict=True)))
+
+
+@dataclass(frozen=True, eq=False)
+class CalibrationPosterior:
+    """What is known of the parameters.
+
+    Parameters
+    ----------
+    points, weights
+        Values of the parameters, shape (m, d), and their probabilities, shape (m,).
+    best
+        The point of the highest density, shape (d,).
+    intervals
+        Of :data:`CONFIDENCE` for each parameter, shape (d, 2).
+    predicted, deviations
+        Results and their standard deviations at all points without the noise of a run, shape (m, k).
+    best_index
+        Of `best` among the points.
+    misfit
+        Smallest distance between predicted and wanted results, in standard deviations: above 2 or so the
+        target is out of reach.
+    next_values
+        Of the parameters for the next run, shape (d,).
+    """
+
+    points: FloatArray
+    weights: FloatArray
+    intervals: FloatArray
+    predicted: FloatArray
+    deviations: FloatArray
+    best_index: int
+    misfit: float
+    next_values: FloatArray
+
+    @property
+    def best(self) -> FloatArray:
+        return np.asarray(self.points[self.best_index])
+
+
+def calibrate(
+    parameters: Sequence[CalibrationParameter], targets: Sequence[WantedResult], runs: CalibrationRuns
+) -> CalibrationPosterior:
+    """Posterior of the parameters, given the runs so far, and the values of the next run.
+
+    Raises
+    ------
+    MissingRequirement
+        If scikit-learn is not installed.
+    """
+    points = _prior_points(parameters)
+    unit = _to_unit(points, parameters)
+    tried = _to_unit(runs.values, parameters)
+    log_likelihood, misfit, gains = np.zeros(len(points)), np.zeros(len(points)), []
+    moments = []
+    for k, target in enumerate(targets):
+        models = _fit(target, tried, runs.results[:, k], runs.errors[:, k])
+        means, deviations = _predict(models, unit, target)
+        spread = np.hypot(deviations, target.error)
+        density = norm.logpdf(target.value, means, spread)
+        log_likelihood += logsumexp(density, axis=0, b=models.weights[:, None])
+        mean, deviation = _mixture(models.weights, means, deviations)
+        misfit += ((mean - target.value) / np.hypot(deviation, target.error)) ** 2
+        moments.append((mean, deviation))
+        gains.append((models, target))
+    weights = np.exp(log_likelihood - logsumexp(log_likelihood))
+    failed = tried[np.isnan(runs.results).any(axis=1)]
+    gain = sum(_variance_reduction(models, target, unit, weights) for models, target in gains)
+    return CalibrationPosterior(
+        points=points,
+        weights=weights,
+        intervals=np.array([_interval(column, weights) for column in points.T]),
+        predicted=np.column_stack([mean for mean, _ in moments]),
+        deviations=np.column_stack([deviation for _, deviation in moments]),
+        best_index=int(np.argmax(weights)),
+        misfit=float(np.sqrt(misfit.min())),
+        next_values=points[np.argmax(np.where(_near(unit, failed), -np.inf, gain))],
+    )
+
+
+def density_of(
+    posterior: CalibrationPosterior, parameter: CalibrationParameter, index: int, bins: int = 32
+) -> tuple[FloatArray, FloatArray]:
+    """Places, shape (bins,), and marginal posterior density of a parameter; 1 is that of the prior."""
+    height, edges = np.histogram(
+        posterior.points[:, index],
+        bins,
+        (parameter.low, parameter.high),
+        weights=posterior.weights * bins,
+    )
+    return (edges[1:] + edges[:-1]) / 2, height
+
+
+@dataclass(frozen=True, eq=False)
+class _Models:
+    """Gaussian processes of one result, one for each set of hyperparameters, with their probabilities."""
+
+    processes: tuple[Any, ...]
+    weights: FloatArray
+    noises: FloatArray
+    """Standard deviation of a run, in scales of the result."""
+
+
+def _fit(target: WantedResult, unit: FloatArray, results: FloatArray, errors: FloatArray) -> _Models:
+    try:
+        from sklearn.gaussian_process import GaussianProcessRegressor
+        from sklearn.gaussian_process.kernels import RBF, ConstantKernel, DotProduct
+    except ImportError:
+        raise MissingRequirement(
+            "The calibration needs scikit-learn, which is not installed: "
+            "pip install regolith-studio[classifier]."
+        ) from None
+
+    there = np.isfinite(results)
+    wanted = (results[there] - target.value) / target.scale
+    stated = errors[there & np.isfinite(errors)]
+    # What a single run states of its noise is noisy itself: the mean of all runs is taken.
+    noise = float(np.sqrt(np.mean(stated**2))) if len(stated) else target.noise
+    trend = ConstantKernel(TREND_VARIANCE) * DotProduct(1.0)
+    processes, evidence, noises = [], [], []
+    for amplitude, length, factor in product(AMPLITUDES, LENGTHS, NOISES):
+        kernel = trend + ConstantKernel(amplitude**2) * RBF(length)
+        noises.append(factor * noise / target.scale)
+        process = GaussianProcessRegressor(kernel, alpha=noises[-1] ** 2, optimizer=None)
+        if len(wanted):
+            process.fit(unit[there] - 0.5, wanted)
+        processes.append(process)
+        evidence.append(process.log_marginal_likelihood_value_ if len(wanted) else 0.0)
+    weights = np.exp(np.array(evidence) - logsumexp(evidence))
+    return _Models(tuple(processes), weights, np.array(noises))
+
+
+def _predict(models: _Models, unit: FloatArray, target: WantedResult) -> tuple[FloatArray, FloatArray]:
+    """Means and standard deviations of each process in the unit of the result, shape (h, m)."""
+    found = [process.predict(unit - 0.5, return_std=True) for process in models.processes]
+    means = np.array([mean for mean, _ in found])
+    return target.value + target.scale * means, target.scale * np.array([spread for _, spread in found])
+
+
+def _mixture(weights: FloatArray, means: FloatArray, deviations: FloatArray) -> tuple[FloatArray, FloatArray]:
+    mean = weights @ means
+    return mean, np.sqrt(weights @ (deviations**2 + (means - mean) ** 2))
+
+
+def _variance_reduction(
+    models: _Models, target: WantedResult, unit: FloatArray, weights: FloatArray
+) -> FloatArray:
+    """By a run at each point: of the variance of the prediction relative to the error of the comparison,
+    weighted by the posterior; of the most probable process; shape (m,)."""
+    chosen = int(np.argmax(models.weights))
+    if not hasattr(models.processes[chosen], "X_train_"):
+        chosen = len(models.processes) // 2
+    _, covariance = models.processes[chosen].predict(unit - 0.5, return_cov=True)
+    variance = np.diag(covariance)
+    relative = weights / (variance + (target.error / target.scale) ** 2 + 1e-12)
+    return np.asarray(relative @ covariance**2 / (variance + models.noises[chosen] ** 2))
+
+
+def _prior_points(parameters: Sequence[CalibrationParameter]) -> FloatArray:
+    unit = Sobol(len(parameters), scramble=False).random(N_POINTS) + 0.5 / N_POINTS
+    columns = []
+    for u, parameter in zip(unit.T, parameters, strict=True):
+        column = parameter.low + u * (parameter.high - parameter.low)
+        if parameter.levels:
+            levels = np.array(parameter.levels)
+            column = levels[np.minimum((u * len(levels)).astype(int), len(levels) - 1)]
+        columns.append(column)
+    return np.column_stack(columns)
+
+
+def _to_unit(values: FloatArray, parameters: Sequence[CalibrationParameter]) -> FloatArray:
+    low = np.array([each.low for each in parameters])
+    return np.asarray((values - low) / (np.array([each.high for each in parameters]) - low))
+
+
+def _near(unit: FloatArray, failed: FloatArray) -> FloatArray:
+    """Whether each point is close to a run without a result, shape (m,)."""
+    apart = np.linalg.norm(unit[:, None] - failed[None], axis=2)
+    return np.asarray((apart < FAILED_DISTANCE).any(axis=1))
+
+
+def _interval(values: FloatArray, weights: FloatArray) -> tuple[float, float]:
+    """Weighted quantiles."""
+    order = np.argsort(values, kind="stable")
+    below = np.cumsum(weights[order]) - weights[order] / 2
+    tail = (1.0 - CONFIDENCE) / 2
+    low, high = np.interp([tail, 1.0 - tail], below, values[order])
+    return float(low), float(high)

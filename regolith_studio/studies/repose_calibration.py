@@ -1,0 +1,215 @@
+"""Calibration with lifting-cylinder tests: results of the runs, posterior after each, table, document."""
+
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+from scipy.stats import t as student_t
+
+import regolith_studio
+from regolith_studio.dem.angle_of_repose import NEIGHBOURHOOD
+from regolith_studio.io.tables import Cell, Column, Table
+from regolith_studio.messages import N_, Message, Number
+from regolith_studio.studies.calibration import (
+    CONFIDENCE,
+    CalibrationParameter,
+    CalibrationPosterior,
+    CalibrationRuns,
+    WantedResult,
+    calibrate,
+    density_of,
+)
+
+ANGLE, BULK_DENSITY = "angle", "bulk_density"
+UNITS = {ANGLE: "deg", BULK_DENSITY: "kg/m^3"}
+FACETS = "n_facets"
+"""Parameter that has a value for each dataset: its mean number of facets."""
+MAX_MISFIT = 2.0
+"""Standard deviations between the predicted and the wanted results above which these are out of reach."""
+
+
+def angle_target(angle: float, error: float) -> WantedResult:
+    """A wanted angle of repose and its standard error, in degrees."""
+    return WantedResult(ANGLE, angle, error, scale=5.0, noise=1.7)
+
+
+def density_target(density: float, error: float) -> WantedResult:
+    """A wanted bulk density of the filled cylinder and its standard error, in kg/m^3."""
+    return WantedResult(BULK_DENSITY, density, error, scale=0.05 * density, noise=0.01 * density)
+
+
+@dataclass(frozen=True)
+class CalibrationRun:
+    """A run: the name of its folder, the values of the parameters, and its ``repose.json``."""
+
+    folder: str
+    values: tuple[float, ...]
+    document: dict[str, Any]
+
+    @property
+    def measurement(self) -> dict[str, Any]:
+        return self.document.get("measurement") or {"status": self.document["state"]}
+
+    def result(self, name: str) -> float:
+        """The angle in degrees or the bulk density of the filled cylinder in kg/m^3; NaN if there is none."""
+        if name == ANGLE:
+            angle = self.measurement.get("angle_deg")
+            return np.nan if angle is None else float(angle)
+        checks = self.document.get("checks")
+        density = float(self.document["case"]["contact"]["density"])
+        return np.nan if checks is None else density * float(checks["solid_fraction"])
+
+    def error(self, name: str) -> float:
+        """Standard deviation of a result, from the interval of the angle; NaN where a run states none."""
+        interval = self.measurement.get("interval_deg")
+        if name != ANGLE or interval is None:
+            return np.nan
+        confidence = self.measurement["settings"]["confidence"]
+        quantile = student_t.ppf((1.0 + confidence) / 2, 360.0 / NEIGHBOURHOOD - 1)
+        return float((interval[1] - interval[0]) / 2 / quantile)
+
+
+@dataclass(frozen=True, eq=False)
+class ReposeCalibration:
+    """Runs of a calibration, and the posterior before the first and after each of them."""
+
+    parameters: tuple[CalibrationParameter, ...]
+    targets: tuple[WantedResult, ...]
+    runs: tuple[CalibrationRun, ...]
+    posteriors: tuple[CalibrationPosterior, ...]
+
+    @classmethod
+    def begin(
+        cls, parameters: Sequence[CalibrationParameter], targets: Sequence[WantedResult]
+    ) -> "ReposeCalibration":
+        """Before the first run."""
+        return cls(tuple(parameters), tuple(targets), (), ())._extended(())
+
+    def with_run(self, run: CalibrationRun) -> "ReposeCalibration":
+        """With one more run."""
+        return self._extended((*self.runs, run))
+
+    @property
+    def posterior(self) -> CalibrationPosterior:
+        """After the last run."""
+        return self.posteriors[-1]
+
+    @property
+    def next_values(self) -> tuple[float, ...]:
+        """Of the parameters in the run that is proposed, rounded to four digits."""
+        return tuple(four_digits(value) for value in self.posterior.next_values)
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """Sentences on what the calibration could not find."""
+        sentences: list[str] = []
+        if failed := sum(bool(np.isnan(run.result(ANGLE))) for run in self.runs):
+            template = N_("{count} of {total} runs formed no pile with an angle.")
+            sentences.append(Message(template, count=failed, total=len(self.runs)))
+        if self.posterior.misfit > MAX_MISFIT:
+            template = N_(
+                "No values in the range give the wanted results: the nearest prediction is {count} "
+                "standard deviations away. Take a wider range, other parameters or other particles."
+            )
+            sentences.append(Message(template, count=Number(self.posterior.misfit, ".1f")))
+        return tuple(sentences)
+
+    def _extended(self, runs: tuple[CalibrationRun, ...]) -> "ReposeCalibration":
+        names = [each.name for each in self.targets]
+        found = CalibrationRuns.of(
+            [run.values for run in runs],
+            [[run.result(name) for name in names] for run in runs],
+            [[run.error(name) for name in names] for run in runs],
+            len(self.parameters),
+            len(self.targets),
+        )
+        posterior = calibrate(self.parameters, self.targets, found)
+        return ReposeCalibration(self.parameters, self.targets, runs, (*self.posteriors, posterior))
+
+
+def four_digits(value: float) -> float:
+    """A value rounded to four significant digits."""
+    return float(f"{value:.4g}")
+
+
+def calibration_table(calibration: ReposeCalibration) -> Table:
+    """One row a run: what it was, and what it gave."""
+    columns = (
+        Column("run"),
+        Column("seed"),
+        *(Column(each.name) for each in calibration.parameters),
+        Column("status"),
+        Column("angle", "deg"),
+        Column("interval_low", "deg"),
+        Column("interval_high", "deg"),
+        Column(BULK_DENSITY, UNITS[BULK_DENSITY]),
+    )
+    return Table(N_("Calibration"), columns, tuple(_row(run) for run in calibration.runs))
+
+
+def _row(run: CalibrationRun) -> tuple[Cell, ...]:
+    return (
+        run.folder,
+        run.document["case"]["seed"],
+        *run.values,
+        run.measurement["status"],
+        run.result(ANGLE),
+        *run.measurement.get("interval_deg", (None, None)),
+        run.result(BULK_DENSITY),
+    )
+
+
+def calibration_document(calibration: ReposeCalibration) -> dict[str, Any]:
+    """The calibration as plain JSON."""
+    posterior = calibration.posterior
+    names = [each.name for each in calibration.parameters]
+    return {
+        "format": "regolith-studio-repose-calibration",
+        "schema_version": 1,
+        "software": {"regolith-studio": regolith_studio.__version__},
+        "confidence": CONFIDENCE,
+        "n_runs": len(calibration.runs),
+        "targets": [_target(calibration, k) for k in range(len(calibration.targets))],
+        "parameters": [_parameter(calibration, k) for k in range(len(names))],
+        "misfit": posterior.misfit,
+        "next_run": dict(zip(names, calibration.next_values, strict=True)),
+        "runs": [_run(run, calibration) for run in calibration.runs],
+        "warnings": list(calibration.warnings),
+    }
+
+
+def _target(calibration: ReposeCalibration, k: int) -> dict[str, Any]:
+    target, posterior = calibration.targets[k], calibration.posterior
+    return {
+        "name": target.name,
+        "unit": UNITS[target.name],
+        "value": target.value,
+        "standard_error": target.error,
+        "predicted": float(posterior.predicted[posterior.best_index, k]),
+        "predicted_standard_error": float(posterior.deviations[posterior.best_index, k]),
+    }
+
+
+def _parameter(calibration: ReposeCalibration, k: int) -> dict[str, Any]:
+    parameter, posterior = calibration.parameters[k], calibration.posterior
+    values, density = density_of(posterior, parameter, k)
+    return {
+        **asdict(parameter),
+        "levels": list(parameter.levels),
+        "best": float(posterior.best[k]),
+        "interval": posterior.intervals[k].tolist(),
+        "density": {"values": values.tolist(), "relative_to_prior": density.tolist()},
+        "intervals_after_each_run": [each.intervals[k].tolist() for each in calibration.posteriors],
+    }
+
+
+def _run(run: CalibrationRun, calibration: ReposeCalibration) -> dict[str, Any]:
+    results = {each.name: run.result(each.name) for each in calibration.targets}
+    return {
+        "folder": run.folder,
+        "seed": run.document["case"]["seed"],
+        "status": run.measurement["status"],
+        **{each.name: value for each, value in zip(calibration.parameters, run.values, strict=True)},
+        **{name: None if np.isnan(value) else value for name, value in results.items()},
+    }

@@ -1,0 +1,185 @@
+"""Calibration of friction with heaps: resumed from its folder, stopped with the result so far."""
+
+import itertools
+import json
+from collections.abc import Callable, Generator
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from regolith_studio.cli.entry import run
+from regolith_studio.dataset.dataset import Dataset
+from regolith_studio.dataset.folder_io import write_dataset
+from regolith_studio.dem.case import PreparedCase
+from regolith_studio.dem.engine import RunChecks, SimulationResult
+from regolith_studio.dem.initial_packing import loose_column
+from regolith_studio.dem.run_io import find_runs, save_snapshot
+from regolith_studio.dem.snapshot import ParticleState, Snapshot
+from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
+from regolith_studio.geometry.half_spaces import HalfSpaces
+from regolith_studio.jobs import repose_jobs
+from regolith_studio.jobs.events import Steps
+from regolith_studio.studies.figures import calibration as figures
+from regolith_studio.studies.figures import repose as section_figures
+from tests.dem.interrupted_study import tree, write_figure
+from tests.dem.packings import cone
+
+N = 300
+Command = Callable[..., int]
+
+
+def true_angle(friction: float) -> float:
+    """Degrees of the heaps of the engine below."""
+    return 16.0 + 15.0 * friction
+
+
+def cone_engine(
+    _key: str, prepared: PreparedCase, _settings: Any, folder: Path, _threads: int
+) -> Generator[Snapshot, None, SimulationResult]:
+    """A cone whose angle follows from the friction; the filling is the denser the smaller the friction."""
+    friction, seed = prepared.case.contact.static_friction, prepared.case.seed
+    column = loose_column(prepared)
+    points = prepared.mean_diameter * cone(true_angle(friction), len(prepared), seed)
+    heap = ParticleState(points, column.diameters, column.orientations, column.class_index)
+    save_snapshot(folder, 0, heap)
+    yield Snapshot(heap, 0.5, "half")
+    checks = RunChecks(N, N, 0.0, 0.0, 0.0, 0.0, True, 0.02, 0.60 - 0.1 * friction)
+    return SimulationResult(heap, checks, 1, 1.0)
+
+
+@pytest.fixture
+def calibrated(boxes_folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Command:
+    """The command, on an engine that needs no time."""
+    monkeypatch.setattr(repose_jobs, "run_engine", cone_engine)
+    for module in (figures, section_figures):
+        monkeypatch.setattr(module, "write_figure", write_figure)
+
+    def calibrate(*words: str, place: str = "found") -> int:
+        request = ["repose", "calibrate", str(boxes_folder), "-o", str(tmp_path / place), "-n", str(N)]
+        return run([*request, *words])
+
+    return calibrate
+
+
+def result(folder: Path) -> dict[str, Any]:
+    return dict(json.loads((folder / "calibration.json").read_text("utf-8")))
+
+
+def test_that_the_friction_of_known_heaps_is_found(calibrated: Command, tmp_path: Path) -> None:
+    assert calibrated("--angle", f"{true_angle(0.6)}", "--angle-error", "0.5", "--runs", "6") == 0
+    found = result(tmp_path / "found")
+    (friction,) = found["parameters"]
+    assert friction["interval"][0] < 0.6 < friction["interval"][1]
+    assert np.ptp(friction["interval"]) < 0.5 * np.ptp(friction["intervals_after_each_run"][0])
+    assert len(friction["intervals_after_each_run"]) == 7
+    names = [each.folder.name for each in find_runs(tmp_path / "found")]
+    assert names == [f"run_0{k}" for k in range(1, 7)]
+    assert found["warnings"] == []
+
+
+def test_that_a_stopped_calibration_has_its_result_so_far_and_ends_with_the_same_bytes(
+    calibrated: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    words = ("--angle", "25", "--runs", "3")
+    assert calibrated(*words, place="whole") == 0
+    begun: list[object] = []
+
+    def engine(*task: Any) -> Steps:
+        begun.append(task)
+        if len(begun) == 3:
+            raise KeyboardInterrupt
+        return (yield from cone_engine(*task))
+
+    monkeypatch.setattr(repose_jobs, "run_engine", engine)
+    assert calibrated(*words) == 130
+    assert result(tmp_path / "found")["n_runs"] == 2
+    assert calibrated(*words) == 0
+    assert len(begun) == 4
+    assert tree(tmp_path / "found") == tree(tmp_path / "whole")
+
+
+def test_that_runs_are_data_for_another_wanted_angle(
+    calibrated: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert calibrated("--angle", "25", "--runs", "2") == 0
+    first = result(tmp_path / "found")["parameters"][0]["best"]
+    monkeypatch.setattr(repose_jobs, "run_engine", None)  # no run is made
+    assert calibrated("--angle", "28", "--runs", "2") == 0
+    assert result(tmp_path / "found")["parameters"][0]["best"] > first
+
+
+@pytest.mark.parametrize("other", [("--seed", "7"), ("--test", "lift_speed=0.02")])
+def test_that_runs_of_another_case_are_no_data(
+    calibrated: Command, capsys: pytest.CaptureFixture[str], other: tuple[str, ...]
+) -> None:
+    assert calibrated("--angle", "25", "--runs", "1") == 0
+    assert calibrated("--angle", "25", "--runs", "1", *other) == 1
+    assert "another dataset, engine, case or seed (run_01); choose another folder" in capsys.readouterr().err
+
+
+def test_that_an_angle_out_of_reach_is_said(calibrated: Command, capsys: pytest.CaptureFixture[str]) -> None:
+    assert calibrated("--angle", "60", "--runs", "4") == 0
+    assert "No values in the range give the wanted results" in capsys.readouterr().err
+
+
+def test_that_a_bulk_density_is_a_second_result(calibrated: Command, tmp_path: Path) -> None:
+    """Of the density 3075 kg/m^3 in Table 1 and a solid fraction of .55."""
+    density = ("--bulk-density", f"{3075 * 0.55}", "--bulk-density-error", "5")
+    assert calibrated("--angle", f"{true_angle(0.5)}", *density, "--runs", "4") == 0
+    found = result(tmp_path / "found")
+    assert [each["name"] for each in found["targets"]] == ["angle", "bulk_density"]
+    assert found["parameters"][0]["best"] == pytest.approx(0.5, abs=0.05)
+
+
+def test_that_several_datasets_make_the_facets_a_parameter(
+    calibrated: Command, boxes: Dataset, tmp_path: Path
+) -> None:
+    """Cuboids, and cubes whose eight corners are cut off."""
+    normals = np.array(list(itertools.product((-1.0, 1.0), repeat=3))) / np.sqrt(3)
+    sides = np.concatenate([np.eye(3), -np.eye(3), normals])
+    cut = HalfSpaces(sides, np.concatenate([np.full(6, 0.5), np.full(8, 0.7)]))
+    cut = cut.scaled(ConvexPolyhedron.from_half_spaces(cut).volume ** (-1 / 3))
+    only = replace(boxes.representatives[0], weight=1.0, shape=ConvexPolyhedron.from_half_spaces(cut))
+    folder = write_dataset(tmp_path / "cut", replace(boxes, representatives=(only,)))
+    assert calibrated(str(folder), "--angle", "25", "--runs", "2") == 0
+    _, facets = result(tmp_path / "found")["parameters"]
+    assert facets["levels"] == [6.0, 14.0]
+    found = result(tmp_path / "found")
+    facets_of_runs = {run["n_facets"] for run in found["runs"]} | {found["next_run"]["n_facets"]}
+    assert facets_of_runs == {6.0, 14.0}
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (("--parameter", "static_friction=1"), "KEY=LOW,HIGH"),
+        (("--parameter", "static_friction=1,0.2"), "from a lower to a higher value"),
+        (("--parameter", "static_friction=-1,1"), "must lie between"),
+        (("--parameter", "shapes=1,2"), "cannot be calibrated"),
+        (("--parameter", "stickiness=1,2"), "cannot be varied"),
+        (("--parameter", "static_friction=a,b"), "KEY=LOW,HIGH"),
+    ],
+)
+def test_that_ranges_of_parameters_are_checked_before_any_run(
+    calibrated: Command,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    words: tuple[str, ...],
+    sentence: str,
+) -> None:
+    assert calibrated("--angle", "25", *words) == 2
+    assert sentence in " ".join(capsys.readouterr().err.replace("│", " ").split())
+    assert not (tmp_path / "found").exists()
+
+
+def test_that_the_figure_shows_every_parameter(calibrated: Command, tmp_path: Path) -> None:
+    words = ("--parameter", "static_friction=0.1,1", "--parameter", "rolling_friction=0,0.3")
+    assert calibrated("--angle", "25", "--runs", "1", *words) == 0
+    assert [each["name"] for each in result(tmp_path / "found")["parameters"]] == [
+        "static_friction",
+        "rolling_friction",
+    ]
+    assert (tmp_path / "found" / "calibration.png").is_file()

@@ -1,0 +1,127 @@
+"""Calibration: posterior of parameters from noisy runs, and where the next run is made."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from benchmarks.calibration import calibrate_surrogate, random_curve
+from regolith_studio.errors import InputError
+from regolith_studio.studies.calibration import (
+    CONFIDENCE,
+    CalibrationParameter,
+    CalibrationPosterior,
+    CalibrationRuns,
+    WantedResult,
+    calibrate,
+    density_of,
+)
+
+FRICTION = CalibrationParameter("static_friction", 0.2, 1.2)
+QUANTILE = 1.6449
+"""Of the normal distribution, for an interval of 90 %."""
+
+
+def angle(value: float, error: float) -> WantedResult:
+    return WantedResult("angle", value, error, scale=5.0, noise=1.7)
+
+
+def line(target: WantedResult, noise: float) -> CalibrationPosterior:
+    """Runs at 21 frictions that lie on the line 10 + 20 x."""
+    friction = np.linspace(0.2, 1.2, 21)
+    results = 10.0 + 20.0 * (friction - 0.2)
+    runs = CalibrationRuns.of(friction, results, np.full(21, noise), 1, 1)
+    return calibrate([FRICTION], [target], runs)
+
+
+def test_that_exact_runs_on_a_line_give_the_normal_posterior_of_its_inverse() -> None:
+    """Error of the target over the slope: 1 degree over 20 degrees."""
+    found = line(angle(20.0, 1.0), noise=0.02)
+    assert found.best == pytest.approx([0.7], abs=0.005)
+    half = QUANTILE / 20.0
+    assert found.intervals[0] == pytest.approx([0.7 - half, 0.7 + half], abs=0.004)
+    where, density = density_of(found, FRICTION, 0)
+    assert density.mean() == pytest.approx(1.0)
+    assert where[np.argmax(density)] == pytest.approx(0.7, abs=0.05)
+
+
+def test_that_the_noise_of_runs_widens_the_interval() -> None:
+    exact, noisy = (line(angle(20.0, 0.2), noise) for noise in (0.02, 1.7))
+    assert np.ptp(noisy.intervals[0]) > 1.5 * np.ptp(exact.intervals[0])
+
+
+def test_that_nothing_is_known_before_the_first_run() -> None:
+    found = calibrate([FRICTION], [angle(25.0, 1.0)], CalibrationRuns.of([], [], [], 1, 1))
+    outside = (1.0 - CONFIDENCE) / 2
+    assert found.intervals[0] == pytest.approx([0.2 + outside, 1.2 - outside], abs=0.02)
+
+
+def test_that_a_result_which_no_value_gives_is_far_from_the_prediction() -> None:
+    assert line(angle(20.0, 1.0), noise=0.5).misfit < 0.5
+    assert line(angle(45.0, 1.0), noise=0.5).misfit > 5.0
+
+
+def test_that_no_run_is_proposed_beside_one_without_a_result() -> None:
+    empty = CalibrationRuns.of([], [], [], 1, 1)
+    first = calibrate([FRICTION], [angle(25.0, 1.0)], empty).next_values
+    runs = CalibrationRuns.of(first, [np.nan], [np.nan], 1, 1)
+    again = calibrate([FRICTION], [angle(25.0, 1.0)], runs).next_values
+    assert abs(again - first) >= 0.1
+
+
+def test_that_two_results_tell_two_parameters_apart_where_one_does_not() -> None:
+    """Angle 10 + 10 x + 10 y, density 1500 + 100 x - 100 y; wanted are those of x = .4, y = .6."""
+    rolling = CalibrationParameter("rolling_friction", 0.0, 1.0)
+    x, y = np.meshgrid(np.linspace(0.0, 1.0, 5), np.linspace(0.0, 1.0, 5))
+    values = np.column_stack([0.2 + x.ravel(), y.ravel()])
+    density = WantedResult("bulk_density", 1480.0, 2.0, scale=75.0, noise=15.0)
+    both = np.column_stack([10 * (1 + x + y).ravel(), (1500 + 100 * (x - y)).ravel()])
+    errors = np.full_like(both, 0.05)
+    targets = [angle(20.0, 0.2), density]
+    one = calibrate(
+        [FRICTION, rolling], targets[:1], CalibrationRuns.of(values, both[:, 0], errors[:, 0], 2, 1)
+    )
+    two = calibrate([FRICTION, rolling], targets, CalibrationRuns.of(values, both, errors, 2, 2))
+    assert np.ptp(one.intervals, axis=1).min() > 0.7
+    assert np.ptp(two.intervals, axis=1).max() < 0.15
+    assert two.best == pytest.approx([0.6, 0.6], abs=0.05)
+
+
+def test_that_a_parameter_with_levels_takes_no_other_values() -> None:
+    facets = CalibrationParameter("n_facets", 8.0, 60.0, levels=(8.0, 20.0, 60.0))
+    runs = CalibrationRuns.of([8.0, 20.0, 60.0], [31.0, 26.0, 22.0], [0.5, 0.5, 0.5], 1, 1)
+    found = calibrate([facets], [angle(26.0, 0.5)], runs)
+    assert set(found.points[:, 0]) == {8.0, 20.0, 60.0}
+    assert found.best == 20.0
+
+
+@pytest.mark.parametrize(
+    ("make", "sentence"),
+    [
+        (lambda: CalibrationParameter("friction", 1.0, 0.2), "from a lower to a higher value, got 1 to 0.2"),
+        (lambda: CalibrationParameter("friction", 0.0, np.inf), "from a lower to a higher value"),
+        (lambda: angle(25.0, -1.0), "must not be negative, got -1"),
+        (lambda: angle(np.nan, 1.0), "must be a number"),
+    ],
+)
+def test_that_ranges_and_targets_are_checked(make: Callable[[], object], sentence: str) -> None:
+    with pytest.raises(InputError, match=sentence):
+        make()
+
+
+def test_that_the_same_runs_propose_the_same_next_run() -> None:
+    assert calibrate_surrogate(3, runs=2).values == calibrate_surrogate(3, runs=2).values
+
+
+def test_that_surrogate_curves_differ_and_rise() -> None:
+    curves = np.array([random_curve(np.random.default_rng(k))(np.linspace(0, 1, 50)) for k in range(20)])
+    assert (curves[:, -1] - curves[:, 0] > 5.0).all()
+    assert np.ptp(curves[:, 25]) > 5.0
+
+
+@pytest.mark.slow
+def test_that_intervals_of_100_surrogates_cover_the_truth_and_shrink_to_a_third() -> None:
+    """12 runs with a noise of 1.7 degrees, a target with a standard error of half a degree."""
+    cases = [calibrate_surrogate(seed) for seed in range(100)]
+    assert 85 <= sum(case.covers() for case in cases) <= 95
+    assert np.mean([case.shrinkage() for case in cases]) <= 1 / 3
