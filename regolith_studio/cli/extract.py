@@ -37,7 +37,7 @@ def _print_counts(
     """Print number and size of the grains that each h gives."""
     from regolith_studio.imaging.segmentation.segment import heights_table
     from regolith_studio.io.tables import json_text
-    from regolith_studio.jobs.volume_jobs import count_over_heights, scratch_folder
+    from regolith_studio.jobs.scan_jobs import count_over_heights, scratch_folder
 
     table = heights_table(run_with_progress(count_over_heights(given, settings, heights, scratch_folder())))
     if as_json:
@@ -162,7 +162,7 @@ def extract(
     Volumes that an earlier run has finished are not extracted again.
     """
     from regolith_studio.io.atomic import staged_folder
-    from regolith_studio.jobs.volume_jobs import extract_measured
+    from regolith_studio.jobs.extraction_jobs import extract_measured
     from regolith_studio.session.batch.scan_groups import find_scans
     from regolith_studio.session.outputs.particles import ExtractionFolder
 

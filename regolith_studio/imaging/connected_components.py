@@ -1,4 +1,4 @@
-"""Connected components of masks, and of volumes that are processed slab by slab (union-find across slabs)."""
+"""Connected components of masks, and of volumes whose slabs are numbered apart and joined afterwards."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -44,20 +44,34 @@ def pores_filled(mask: NDArray[np.bool_]) -> NDArray[np.bool_]:
 
 
 @dataclass(frozen=True, eq=False)
-class ConnectedComponents:
-    """The components of a volume, after its last slab.
+class SlabComponents:
+    """The components of one slab, numbered from 1.
 
     Parameters
     ----------
-    body_of
-        Body of each provisional number, 1 to n; entry 0 is 0.
+    sizes
+        Voxels of each, shape (n,).
+    low, high
+        First voxel of each box along x, y and z of the volume and the one after its last, shape (n, 3).
+    """
+
+    sizes: IntArray
+    low: IntArray
+    high: IntArray
+
+
+@dataclass(frozen=True, eq=False)
+class ConnectedComponents:
+    """The components of a volume.
+
+    Parameters
+    ----------
     sizes
         Voxels of each body, shape (n,).
     low, high
-        First voxel of each box along x, y, z and the one after its last, shape (n, 3).
+        First voxel of each box along x, y and z and the one after its last, shape (n, 3).
     """
 
-    body_of: IntArray
     sizes: IntArray
     low: IntArray
     high: IntArray
@@ -67,42 +81,57 @@ class ConnectedComponents:
         return box_between(self.low[body - 1].tolist(), self.high[body - 1].tolist())
 
 
-class ComponentCounter:
-    """Numbers the components of one slab after the other."""
+def components_of_slab(mask: NDArray[np.bool_], first: int) -> tuple[NDArray[np.int32], SlabComponents]:
+    """Number of the component of each voxel in a slab, 0 outside, and what is known of them.
+
+    Parameters
+    ----------
+    mask
+        Shape (nx, ny, thickness).
+    first
+        z of its first slice in the volume.
+    """
+    numbers, count = connected_components(mask)
+    if count == 0:
+        none = np.zeros((0, 3), dtype=np.int64)
+        return np.zeros(mask.shape, np.int32, order="F"), SlabComponents(none[:, 0], none, none)
+    seen = _statistics(numbers, no_slice_conversion=True)
+    boxes = np.asarray(seen["bounding_boxes"], dtype=np.int64)[1:]
+    shift = np.array([0, 0, first])
+    sizes = np.asarray(seen["voxel_counts"], dtype=np.int64)[1:]
+    found = SlabComponents(sizes, boxes[:, 0::2] + shift, boxes[:, 1::2] + 1 + shift)
+    return numbers.astype(np.int32), found
+
+
+class ComponentJoiner:
+    """Joins the components of slabs, which are added from the first slab on."""
 
     def __init__(self) -> None:
         self._count = 0
-        self._links: list[IntArray] = []
-        self._sizes: list[IntArray] = []
-        self._low: list[IntArray] = []
-        self._high: list[IntArray] = []
-        self._face: NDArray[np.int32] | None = None
+        self._slabs: list[SlabComponents] = []
+        self._links: list[IntArray] = [np.empty((0, 2), dtype=np.int64)]
 
-    def numbered(self, mask: NDArray[np.bool_], first: int) -> NDArray[np.int32]:
-        """Provisional numbers of the next slab's bodies, which differ from those of all slabs before.
+    def add(self, slab: SlabComponents, below: NDArray[Any] | None, face: NDArray[Any]) -> int:
+        """Take the next slab; returns what is added to its numbers to make them differ from all before.
 
         Parameters
         ----------
-        mask
-            Shape (nx, ny, thickness).
-        first
-            z of its first slice.
+        below, face
+            Numbers in the last slice of the slab before, if there is one, and in the slab's first slice.
         """
-        bodies, count = connected_components(mask)
-        self._remember(bodies, count, first)
-        numbers = bodies.astype(np.int32)
-        numbers[bodies > 0] += self._count
-        if self._face is not None:
-            touching = (self._face > 0) & (numbers[:, :, 0] > 0)
-            pairs = np.column_stack([self._face[touching], numbers[:, :, 0][touching]])
-            self._links.append(np.unique(pairs, axis=0).astype(np.int64))
-        self._face = numbers[:, :, -1].copy()
-        self._count += count
-        return numbers
+        if below is not None:
+            before = self._count - len(self._slabs[-1].sizes)
+            touching = (below > 0) & (face > 0)
+            pairs = np.column_stack([below[touching], face[touching]]).astype(np.int64)
+            self._links.append(np.unique(pairs, axis=0) + np.array([before, self._count]))
+        first = self._count
+        self._slabs.append(slab)
+        self._count += len(slab.sizes)
+        return first
 
-    def finish(self) -> ConnectedComponents:
-        """The components, in the order of their first voxels."""
-        links = np.concatenate([np.empty((0, 2), dtype=np.int64), *self._links])
+    def finish(self) -> tuple[IntArray, ConnectedComponents]:
+        """The body of each number, entry 0 being 0, and the bodies in the order of their first voxels."""
+        links = np.concatenate(self._links)
         shape = (self._count + 1, self._count + 1)
         graph = sparse.coo_array((np.ones(len(links), dtype=np.int8), tuple(links.T)), shape=shape)
         n_bodies, found = csgraph.connected_components(graph, directed=False)
@@ -111,17 +140,7 @@ class ComponentCounter:
         low = np.full((n_bodies, 3), np.iinfo(np.int64).max)
         high = np.zeros((n_bodies, 3), dtype=np.int64)
         if self._count:
-            np.add.at(sizes, body_of[1:], np.concatenate(self._sizes))
-            np.minimum.at(low, body_of[1:], np.concatenate(self._low))
-            np.maximum.at(high, body_of[1:], np.concatenate(self._high))
-        return ConnectedComponents(body_of, sizes[1:], low[1:], high[1:])
-
-    def _remember(self, bodies: NDArray[Any], count: int, first: int) -> None:
-        if count == 0:
-            return
-        seen = _statistics(bodies)
-        boxes = seen["bounding_boxes"][1:]
-        shift = np.array([0, 0, first])
-        self._sizes.append(np.asarray(seen["voxel_counts"][1:], dtype=np.int64))
-        self._low.append(np.array([[side.start for side in box] for box in boxes]) + shift)
-        self._high.append(np.array([[side.stop for side in box] for box in boxes]) + shift)
+            np.add.at(sizes, body_of[1:], np.concatenate([slab.sizes for slab in self._slabs]))
+            np.minimum.at(low, body_of[1:], np.concatenate([slab.low for slab in self._slabs]))
+            np.maximum.at(high, body_of[1:], np.concatenate([slab.high for slab in self._slabs]))
+        return body_of, ConnectedComponents(sizes[1:], low[1:], high[1:])

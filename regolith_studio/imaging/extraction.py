@@ -6,12 +6,13 @@ contour is therefore moved to lie smoothly between the centres of voxels, and ha
 24 voxels a diameter and more the area is then right within 2 %.
 Where the grey values are at hand, they can tell the surface and above all its volume better.
 
-The volume is seen slab by slab: once for the sizes and boxes of the labels, once to cut them out.
+The volume is seen slab by slab for the sizes and boxes of the labels; each is cut out where it is worked on.
 """
 
-from collections.abc import Generator, Iterator, Mapping, Sequence
+from collections.abc import Callable, Generator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Literal, get_args
+from functools import cached_property, partial
+from typing import Any, Literal, get_args
 
 import numpy as np
 
@@ -19,18 +20,12 @@ from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import BoolArray, FloatArray
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle, Source
-from regolith_studio.imaging.bounding_boxes import Box, box_between, grown, touches, within
+from regolith_studio.imaging.bounding_boxes import Box, box_between, grown, n_voxels, touches, within
 from regolith_studio.imaging.connected_components import largest_component, pores_filled
 from regolith_studio.imaging.grain_surface import MARGIN, grey_mesh, mask_mesh
-from regolith_studio.imaging.label_table import (
-    GrainCrop,
-    contact_areas,
-    grain_crops,
-    label_masks,
-    label_table,
-)
-from regolith_studio.imaging.volume import Origin
-from regolith_studio.imaging.volume_slabs import ParallelMap, SliceSource
+from regolith_studio.imaging.label_table import contact_areas, grain_crop, label_table
+from regolith_studio.imaging.volume import Origin, Volume
+from regolith_studio.imaging.volume_slabs import BATCH_VOXELS, ParallelMap, SharedArray, in_batches
 from regolith_studio.messages import N_, count_message
 
 Surface = Literal["mask", "grey"]
@@ -41,7 +36,8 @@ WIDE_NECK, WIDE_NECK_OF_REST = 0.65, 0.75
 they are pieces of one grain; the second where the smaller one is what the border has left of a grain. Chosen
 on scans of ``benchmarks/agglutinate_scans.py``, of lobes and of balls in packings."""
 _COARSE, _OF_MASK = "Only", "The surface is that of the mask"
-_Made = tuple[int, Mesh, tuple[str, ...], Surface]
+_BATCH_SHARE = 8
+"""Of the smallest batch of voxels: a surface takes long however small its grain is."""
 
 
 @dataclass(frozen=True)
@@ -112,11 +108,12 @@ class ExtractedParticle:
 
 @dataclass(frozen=True)
 class ExtractionProgress:
-    """One label is done; `extracted` is its particle."""
+    """One label is done; `extracted` is its particle, and `measured` what was measured of it, if anything."""
 
     done: int
     total: int
     extracted: ExtractedParticle
+    measured: Any = None
 
 
 @dataclass(frozen=True)
@@ -168,11 +165,11 @@ class Extraction:
 
 
 def extract_particles(
-    volume: SliceSource,
+    volume: Volume,
     settings: ExtractionSettings | None = None,
     group: str = "",
     source: Source | None = None,
-    grey: SliceSource | None = None,
+    grey: Volume | None = None,
 ) -> Extraction:
     """Run :func:`extraction_steps` to its end."""
     steps = extraction_steps(volume, settings, group, source, grey=grey)
@@ -185,20 +182,21 @@ def extract_particles(
 
 
 def extraction_steps(
-    volume: SliceSource,
+    volume: Volume,
     settings: ExtractionSettings | None = None,
     group: str = "",
     source: Source | None = None,
     collect: bool = True,
-    grey: SliceSource | None = None,
+    grey: Volume | None = None,
     run: ParallelMap = map,
+    measure: Callable[[Particle], Any] | None = None,
 ) -> Generator[ExtractionProgress, None, Extraction]:
     """Make a particle of each label, telling after each how far it is.
 
     Parameters
     ----------
     volume
-        Labels, in memory or not.
+        Labels, in memory or mapped from a file.
     group, source
         Passed on to each particle.
     collect
@@ -207,7 +205,9 @@ def extraction_steps(
     grey
         The grey values that the labels were found in; surfaces are of the masks without them.
     run
-        Applies :func:`surface_of_label` to what is cut out of the volume.
+        Applies what is done to slabs and to single labels.
+    measure
+        Applied to each particle where it is made.
 
     Raises
     ------
@@ -216,20 +216,16 @@ def extraction_steps(
         :data:`~regolith_studio.imaging.label_table.MAX_LABEL`.
     """
     settings = settings or ExtractionSettings()
-    chosen = select_labels(volume, settings, grey is not None)
-    boxes, sizes, wanted = chosen.boxes, chosen.sizes, chosen.wanted
+    chosen = select_labels(volume, settings, grey is not None, run)
     found: list[ExtractedParticle] = []
-    cuts = _cuts(volume, grey if settings.surface == "grey" else None, wanted, settings)
-    made = run(surface_of_label, cuts)
-    for done, (label, mesh, notes, surface) in enumerate(made, start=1):
-        weight = border_weight(boxes[label], volume.shape) if settings.exclude_border else 1.0
-        particle = Particle(chosen.name_of(label), mesh, group, source, notes, weight)
-        extracted = ExtractedParticle(particle, label, sizes[label], weight, surface)
+    cuts = _cuts(volume, grey if settings.surface == "grey" else None, chosen, settings)
+    make = partial(_particle_of, group=group, source=source, measure=measure)
+    made = in_batches(run, make, cuts, lambda cut: max(n_voxels(cut.wider), BATCH_VOXELS // _BATCH_SHARE))
+    for done, (extracted, measured) in enumerate(made, start=1):
         if collect:
             found.append(extracted)
-        yield ExtractionProgress(done, len(wanted), extracted)
-    ordered = tuple(sorted(found, key=lambda each: each.label))
-    return Extraction(ordered, chosen.border, chosen.small, len(wanted))
+        yield ExtractionProgress(done, len(cuts), extracted, measured)
+    return Extraction(tuple(found), chosen.border, chosen.small, len(cuts))
 
 
 @dataclass(frozen=True, eq=False)
@@ -257,27 +253,35 @@ class LabelSelection:
 
     def name_of(self, label: int) -> str:
         """Name of the particle of a label."""
-        return f"particle_{label:0{max(4, len(str(max(self.boxes))))}d}"
+        return f"particle_{label:0{self._digits}d}"
+
+    @cached_property
+    def _digits(self) -> int:
+        return max(4, len(str(max(self.boxes))))
 
 
-def select_labels(volume: SliceSource, settings: ExtractionSettings, segmented: bool) -> LabelSelection:
+def select_labels(
+    volume: Volume, settings: ExtractionSettings, segmented: bool, run: ParallelMap = map
+) -> LabelSelection:
     """Which labels become particles.
 
     Parameters
     ----------
     segmented
         Whether the labels were found in grey values: then pieces of grains at the border are left out too.
+    run
+        Applies what is done to slabs.
 
     Raises
     ------
     InputError
         As :func:`extraction_steps`.
     """
-    table = label_table(volume)
+    table = label_table(volume, run)
     boxes, sizes = table.boxes(), table.sizes()
     border = [k for k, box in boxes.items() if settings.exclude_border and touches(box, volume.shape)]
     if segmented and border:
-        border += pieces_of_cut_grains(contact_areas(volume), sizes, border)
+        border += pieces_of_cut_grains(contact_areas(volume, run), sizes, border)
     small = [k for k in set(boxes).difference(border) if sizes[k] < settings.min_voxels]
     return LabelSelection(boxes, sizes, tuple(border), tuple(sorted(small)))
 
@@ -341,22 +345,26 @@ def border_weight(box: Box, shape: tuple[int, int, int]) -> float:
 
 @dataclass(frozen=True, eq=False)
 class LabelCut:
-    """A label cut out of its volume: all that its surface follows from; picklable.
+    """A label and where it lies: all that its particle follows from.
 
     Parameters
     ----------
-    label
-        Its number.
-    found
-        Its mask, or what lies about it.
+    labels, grey
+        The volumes; grey values only where surfaces are taken from them.
+    label, name, n_voxels, weight
+        Its number, and what is known of its particle.
     box, wider
-        Box of the label, and what `found` covers.
+        Box of the label, and what of the grey values about it is used.
     voxel_size, origin
         Of the volume.
     """
 
+    labels: SharedArray
+    grey: SharedArray | None
     label: int
-    found: BoolArray | GrainCrop
+    name: str
+    n_voxels: int
+    weight: float
     box: Box
     wider: Box
     voxel_size: FloatArray
@@ -374,26 +382,51 @@ class LabelCut:
 
 
 def _cuts(
-    volume: SliceSource, grey: SliceSource | None, boxes: Mapping[int, Box], settings: ExtractionSettings
-) -> Iterator[LabelCut]:
-    """Each label of `boxes`, in the order in which the slabs complete them."""
+    volume: Volume, grey: Volume | None, chosen: LabelSelection, settings: ExtractionSettings
+) -> list[LabelCut]:
+    """Each label that becomes a particle."""
     whole = box_between((0, 0, 0), volume.shape)
-    wider = {label: grown(box, MARGIN if grey else 0, whole) for label, box in boxes.items()}
-    cuts = label_masks(volume, boxes) if grey is None else grain_crops(volume, grey, wider)
-    voxel_size = np.asarray(volume.voxel_size, dtype=np.float64)
-    for label, found in cuts:
-        yield LabelCut(label, found, boxes[label], wider[label], voxel_size, volume.origin, settings)
+    labels, values = SharedArray(volume.array), None if grey is None else SharedArray(grey.array)
+    if grey is not None and grey.shape != volume.shape:
+        raise ValueError(f"labels of shape {volume.shape} do not fit grey values of shape {grey.shape}")
+    return [
+        LabelCut(
+            labels,
+            values,
+            label,
+            chosen.name_of(label),
+            chosen.sizes[label],
+            border_weight(box, volume.shape) if settings.exclude_border else 1.0,
+            box,
+            grown(box, MARGIN if grey else 0, whole),
+            volume.voxel_size,
+            volume.origin,
+            settings,
+        )
+        for label, box in chosen.wanted.items()
+    ]
 
 
-def surface_of_label(cut: LabelCut) -> _Made:
-    """Label, surface in micrometres, notes on it, and what it was taken from.
+def _particle_of(
+    cut: LabelCut, group: str, source: Source | None, measure: Callable[[Particle], Any] | None
+) -> tuple[ExtractedParticle, Any]:
+    """The particle of a label, and what is measured of it."""
+    mesh, notes, surface = surface_of_label(cut)
+    particle = Particle(cut.name, mesh, group, source, notes, cut.weight)
+    extracted = ExtractedParticle(particle, cut.label, cut.n_voxels, cut.weight, surface)
+    return extracted, None if measure is None else measure(particle)
+
+
+def surface_of_label(cut: LabelCut) -> tuple[Mesh, tuple[str, ...], Surface]:
+    """Surface in micrometres, notes on it, and what it was taken from.
 
     It is of the grey values where they are at hand and tell it, else of the mask.
     """
-    if not isinstance(cut.found, GrainCrop):
-        body, notes = _one_body(cut.found, cut.settings)
-        return cut.label, cut.mask_surface(body), tuple(notes), "mask"
-    crop, settings = cut.found, cut.settings
+    settings = cut.settings
+    if cut.grey is None:
+        body, notes = _one_body(np.ascontiguousarray(cut.labels.array[cut.box] == cut.label), settings)
+        return cut.mask_surface(body), tuple(notes), "mask"
+    crop = grain_crop(cut.labels, cut.grey, cut.label, cut.wider)
     part = within(cut.box, cut.wider)
     body, notes = _one_body(crop.own[part], settings)
     padding = [(a.start, n - a.stop) for a, n in zip(part, crop.own.shape, strict=True)]
@@ -401,8 +434,8 @@ def surface_of_label(cut: LabelCut) -> _Made:
     mesh = grey_mesh(crop, np.pad(body, padding), settings.iterations, settings.pass_band, cubic)
     if isinstance(mesh, str):
         notes.append(f"{_OF_MASK}: {mesh}.")
-        return cut.label, cut.mask_surface(body), tuple(notes), "mask"
-    return cut.label, cut.placed(mesh, cut.wider), tuple(notes), "grey"
+        return cut.mask_surface(body), tuple(notes), "mask"
+    return cut.placed(mesh, cut.wider), tuple(notes), "grey"
 
 
 def _one_body(mask: BoolArray, settings: ExtractionSettings) -> tuple[BoolArray, list[str]]:

@@ -80,3 +80,7 @@ class Volume:
     def read(self, z0: int, z1: int, /) -> NDArray[Any]:
         """The slices ``z0 <= z < z1``, shape (nx, ny, z1 - z0)."""
         return self.array[:, :, z0:z1]
+
+    def parts(self) -> list[tuple[int, int]]:
+        """None: the array is that of this process."""
+        return []

@@ -1,6 +1,7 @@
 """A box in a volume, and voxels averaged to larger ones, read slab by slab."""
 
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -96,6 +97,13 @@ class VolumeRegion:
             stop = min(first + step, z1)
             out[:, :, first - z0 : stop - z0] = self._means(first, stop)
         return out
+
+    def parts(self) -> list[tuple[int, int]]:
+        """Ranges of slices that processes may read each by itself: those of the whole volume."""
+        start, nz = self.box[2].start, self.shape[2]
+        ends = [-((start - stop) // self.bin) for _, stop in self.source.parts()]
+        inner = sorted({end for end in ends if 0 < end < nz})
+        return list(pairwise([0, *inner, nz])) if ends else []
 
     def _means(self, z0: int, z1: int) -> NDArray[Any]:
         """The slices from one slab of the whole volume."""

@@ -2,29 +2,36 @@
 
 A slab is a run of slices along z. Whatever reads one, a file or an array, is a :class:`SliceSource`;
 what is written slab by slab lies in a :class:`ScratchArrays`, in memory or in files that vanish with it.
+Tasks for other processes hold a :class:`SharedArray`, the path of such a file, and read their own parts.
 """
 
+import contextlib
 import math
 import shutil
 import tempfile
 import weakref
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Generator, Iterable, Iterator
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from types import TracebackType
-from typing import Any, Protocol
+from typing import Any, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from regolith_studio.errors import MissingRequirement
-from regolith_studio.imaging.volume import Origin, VolumeKind
+from regolith_studio.imaging.volume import Origin, Volume, VolumeKind
 
 ParallelMap = Callable[[Callable[[Any], Any], Iterable[Any]], Iterable[Any]]
 """As the built-in ``map``, lazily and in order; others apply picklable functions in several processes."""
 SLAB_VOXELS = 2**24
 """Voxels that are worked on at a time, unless a few slices are more."""
 _MIN_SLICES = 8
+BATCH_VOXELS = 2**19
+"""Voxels from which on small pieces of work are no longer put together to one task."""
+_Item = TypeVar("_Item")
+_Done = TypeVar("_Done")
 
 
 class SliceSource(Protocol):
@@ -33,7 +40,8 @@ class SliceSource(Protocol):
     `shape` is (nx, ny, nz), `dtype` the type of a voxel, `voxel_size` its edges along x, y, z in
     micrometres, `origin` the place of its first voxel (as in a ``Volume``), and `kind` says ``labels`` or
     ``grey``. ``read(z0, z1)`` gives the slices
-    ``z0 <= z < z1``, shape (nx, ny, z1 - z0).
+    ``z0 <= z < z1``, shape (nx, ny, z1 - z0). ``parts()`` are ranges of slices that several processes may
+    read, each its own; none where one process must read all in order.
     """
 
     @property
@@ -55,6 +63,8 @@ class SliceSource(Protocol):
     def name(self) -> str: ...
 
     def read(self, z0: int, z1: int, /) -> NDArray[Any]: ...
+
+    def parts(self) -> list[tuple[int, int]]: ...
 
 
 def slab_ranges(shape: tuple[int, int, int], voxels: int = SLAB_VOXELS) -> list[tuple[int, int]]:
@@ -112,14 +122,20 @@ class ScratchArrays:
     ----------
     folder
         Where the temporary folder is made; ``None`` keeps everything in memory.
+
+    Attributes
+    ----------
+    folder
+        The temporary folder, if there is one.
     """
 
     def __init__(self, folder: Path | None = None) -> None:
         self._count = 0
-        self._folder, self._clear = None, None
+        self.folder: Path | None = None
+        self._clear = None
         if folder is not None:
-            self._folder = Path(tempfile.mkdtemp(dir=folder, prefix="regolith-"))
-            self._clear = weakref.finalize(self, _removed, self._folder)
+            self.folder = Path(tempfile.mkdtemp(dir=folder, prefix="regolith-")).absolute()
+            self._clear = weakref.finalize(self, _removed, self.folder)
 
     def __enter__(self) -> "ScratchArrays":
         return self
@@ -141,18 +157,25 @@ class ScratchArrays:
             If the disk has no room for them: a file that outgrows its disk ends the process.
         """
         slices_first = shape[::-1]
-        if self._folder is None:
+        if self.folder is None:
             return np.zeros(slices_first, dtype).T
         needed = math.prod(shape) * np.dtype(dtype).itemsize
-        free = shutil.disk_usage(self._folder).free
+        free = shutil.disk_usage(self.folder).free
         if needed > free:
             raise MissingRequirement(
-                f"{needed / 2**30:.3g} GiB of temporary files do not fit into {self._folder.parent}, "
+                f"{needed / 2**30:.3g} GiB of temporary files do not fit into {self.folder.parent}, "
                 f"which has {free / 2**30:.3g} GiB left."
             )
         self._count += 1
-        path = self._folder / f"{self._count}.raw"
+        path = self.folder / f"{self._count}.raw"
         return np.memmap(path, dtype=np.dtype(dtype), mode="w+", shape=slices_first).T
+
+    def drop(self, array: NDArray[Any]) -> None:
+        """Remove the file of an array of :meth:`zeros` that is not needed any more."""
+        path = Path(str(array.filename)) if isinstance(array, np.memmap) else None
+        if path is not None and path.parent == self.folder:
+            with contextlib.suppress(PermissionError):  # Windows removes no mapped files; `close` tries again
+                path.unlink()
 
     def close(self) -> None:
         """Remove the files; arrays that are still in use keep what they show where the system allows it."""
@@ -162,3 +185,121 @@ class ScratchArrays:
 
 def _removed(folder: Path) -> None:
     shutil.rmtree(folder, ignore_errors=True)
+
+
+class SharedArray:
+    """An array of :class:`ScratchArrays` that tasks read and write in parts.
+
+    Sent to another process it is the path of its file, which is mapped anew there. What a process writes by
+    :meth:`write` is in the file when the call returns; what it writes into a mapped array itself
+    others see after :meth:`publish`.
+
+    Parameters
+    ----------
+    array
+        Shape (nx, ny, nz), slices contiguous.
+    """
+
+    def __init__(self, array: NDArray[Any]) -> None:
+        self.array = array
+
+    def __reduce__(self) -> tuple[Callable[..., "SharedArray"], tuple[Any, ...]]:
+        if not isinstance(self.array, np.memmap):
+            raise TypeError("an array in memory cannot be shared with other processes")
+        return _mapped, (str(self.array.filename), self.array.shape, self.array.dtype.str)
+
+    @property
+    def shape(self) -> tuple[int, int, int]:
+        """Voxels along x, y and z."""
+        nx, ny, nz = self.array.shape
+        return nx, ny, nz
+
+    def slices(self, first: int, stop: int) -> NDArray[Any]:
+        """The slices ``first <= z < stop``."""
+        return np.asarray(self.array[:, :, first:stop])
+
+    def thick(self, first: int, stop: int, margin: int) -> "ThickSlab":
+        """The slices with `margin` more on either side, where there are any."""
+        low, high = max(first - margin, 0), min(stop + margin, self.shape[2])
+        return ThickSlab(first, stop, self.slices(low, high), slice(first - low, stop - low))
+
+    def write(self, first: int, values: NDArray[Any]) -> None:
+        """Replace the slices from `first` on, shape (nx, ny, n)."""
+        if not isinstance(self.array, np.memmap):
+            self.array[:, :, first : first + values.shape[2]] = values
+            return
+        nx, ny, _ = self.shape
+        with Path(str(self.array.filename)).open("r+b", buffering=0) as file:
+            file.seek(first * nx * ny * self.array.itemsize)
+            np.ascontiguousarray(values.T, dtype=self.array.dtype).tofile(file)
+
+    def publish(self) -> None:
+        """Write to the file what was written into the array, so that other machines find it there."""
+        if isinstance(self.array, np.memmap):
+            self.array.flush()
+
+
+def _mapped(name: str, shape: tuple[int, int, int], dtype: str) -> SharedArray:
+    return SharedArray(np.memmap(name, np.dtype(dtype), "r", shape=shape[::-1]).T)
+
+
+def unpacked(
+    source: SliceSource, scratch: ScratchArrays, run: ParallelMap = map
+) -> Generator[tuple[int, int], None, Volume]:
+    """All voxels of a volume in an array of `scratch`; tells how many of how many parts are read.
+
+    Parameters
+    ----------
+    source
+        A :class:`~regolith_studio.imaging.volume.Volume`, which is returned as it is, or what reads slices.
+    run
+        Reads the parts; a volume that must be read in order is read by this process.
+    """
+    if isinstance(source, Volume):
+        return source
+    array = scratch.zeros(source.shape, source.dtype)
+    parts = source.parts()
+    apply = run if parts else map
+    copied = apply(partial(_copy_slices, source, SharedArray(array)), parts or slab_ranges(source.shape))
+    for done, _ in enumerate(copied, start=1):
+        yield done, len(parts)
+    return Volume(array, np.asarray(source.voxel_size, float), source.kind, source.name, source.origin)
+
+
+def _copy_slices(source: SliceSource, target: SharedArray, part: tuple[int, int]) -> None:
+    first, stop = part
+    target.write(first, source.read(first, stop))
+
+
+def in_batches(
+    run: ParallelMap,
+    function: Callable[[_Item], _Done],
+    items: Iterable[_Item],
+    n_voxels: Callable[[_Item], int],
+) -> Iterator[_Done]:
+    """Apply a function to items in order, several small ones in a task, so that tasks are worth sending.
+
+    Parameters
+    ----------
+    n_voxels
+        Size of an item; a task has :data:`BATCH_VOXELS` at least, where there are as many.
+    """
+    for results in run(partial(_apply_to_each, function), _batches(items, n_voxels)):
+        yield from results
+
+
+def _batches(items: Iterable[_Item], n_voxels: Callable[[_Item], int]) -> Iterator[list[_Item]]:
+    batch: list[_Item] = []
+    size = 0
+    for item in items:
+        batch.append(item)
+        size += n_voxels(item)
+        if size >= BATCH_VOXELS:
+            yield batch
+            batch, size = [], 0
+    if batch:
+        yield batch
+
+
+def _apply_to_each(function: Callable[[_Item], _Done], items: list[_Item]) -> list[_Done]:
+    return [function(item) for item in items]

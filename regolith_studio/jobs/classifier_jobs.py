@@ -24,12 +24,12 @@ from regolith_studio.imaging.segmentation.pixel_classifier import (
 from regolith_studio.imaging.segmentation.pixel_features import FeatureSettings, features_at, features_in
 from regolith_studio.imaging.segmentation.strokes import ERASER, Stroke, painted_rows
 from regolith_studio.imaging.volume import Volume
-from regolith_studio.imaging.volume_slabs import ScratchArrays
 from regolith_studio.io.atomic import write_bytes
 from regolith_studio.io.json_text import canonical_json
 from regolith_studio.jobs.events import Partial, Progress, Started, Steps
+from regolith_studio.jobs.extraction_jobs import volume_sha256
 from regolith_studio.jobs.extraction_settings import VolumeInput
-from regolith_studio.jobs.volume_jobs import IN_MEMORY, volume_sha256
+from regolith_studio.jobs.scan_jobs import read_all, scratch_arrays
 from regolith_studio.messages import N_, Message
 
 
@@ -81,9 +81,9 @@ def map_probabilities(scan: VolumeInput, training: TrainingSet, path: Path, scra
     """
     yield Started(Message(N_("Reading {name}"), name=scan.path.name))
     source = scan.opened()
-    nx, ny, nz = source.shape
-    with ScratchArrays(scratch if nx * ny * nz > IN_MEMORY else None) as arrays:
-        steps = probability_map(train(training), source, arrays)
+    with scratch_arrays(source, scratch) as arrays:
+        volume: Volume = yield from read_all(source, arrays)
+        steps = probability_map(train(training), volume, arrays)
         yield Started(N_("Predicting grains"))
         while True:
             try:

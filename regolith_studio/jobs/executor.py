@@ -48,6 +48,7 @@ class Executor:
     def __init__(self, workers: int = 1, runner: Runner | None = None) -> None:
         self.workers = workers or cores()
         self._runner = runner
+        self._check_shared: Callable[[Path, Path], None] | None = None
         self.dashboard = ""
         """Address of a cluster's status page, if there is one."""
 
@@ -59,17 +60,18 @@ class Executor:
         runner = DaskRunner(address, workers, tls)
         executor = cls(runner.workers, runner)
         executor.dashboard = runner.dashboard
+        executor._check_shared = runner.check_shared
         return executor
 
     def results(self, jobs: Iterable[Job]) -> Generator[JobResult | None, None, None]:
         """Results of `jobs` in their order; ``None`` whenever the caller may want to stop."""
-        if self._in_this_thread:
+        if self.in_this_thread:
             return (None if answer is None else answer[1] for answer in _run_one_by_one(jobs))
         return in_order(self._open_runner(), jobs, window=2 * self.workers)
 
     def as_completed(self, jobs: Iterable[Job]) -> Generator[tuple[int, JobResult] | None, None, None]:
         """Number and result of each of `jobs`, the quick ones first; ``None`` as for :meth:`results`."""
-        if self._in_this_thread:
+        if self.in_this_thread:
             return _run_one_by_one(jobs)
         return as_completed(self._open_runner(), jobs, window=2 * self.workers)
 
@@ -95,8 +97,20 @@ class Executor:
         return results
 
     @property
-    def _in_this_thread(self) -> bool:
+    def in_this_thread(self) -> bool:
+        """Whether there are no other processes."""
         return self.workers == 1 and self._runner is None
+
+    def check_shared(self, path: Path, folder: Path) -> None:
+        """Check that all workers find a file or folder, and `folder` for temporary files, under these paths.
+
+        Raises
+        ------
+        MissingRequirement
+            If one of a cluster does not.
+        """
+        if self._check_shared is not None:
+            self._check_shared(path.absolute(), folder)
 
     def _open_runner(self) -> Runner:
         if self._runner is None:

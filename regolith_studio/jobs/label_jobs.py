@@ -4,14 +4,14 @@ from pathlib import Path
 
 from regolith_studio.imaging.extraction import ExtractionSettings, LabelSelection, select_labels
 from regolith_studio.imaging.label_files import write_label_file
-from regolith_studio.imaging.volume_slabs import SliceSource
+from regolith_studio.imaging.volume import Volume
 from regolith_studio.io.atomic import write_bytes
 from regolith_studio.io.tables import Column, Table, csv_text
 from regolith_studio.jobs.events import Progress, Started, Steps
 from regolith_studio.messages import N_, Message
 
 
-def write_labels(labels: SliceSource, settings: ExtractionSettings, path: Path, segmented: bool) -> Steps:
+def write_labels(labels: Volume, settings: ExtractionSettings, path: Path, segmented: bool) -> Steps:
     """Write a label volume, and the table of its labels beside it; returns the path of the table.
 
     Parameters

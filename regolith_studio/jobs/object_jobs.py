@@ -25,20 +25,19 @@ from regolith_studio.imaging.segmentation.segment import (
 )
 from regolith_studio.imaging.slice_images import SliceImages
 from regolith_studio.imaging.volume import Volume
-from regolith_studio.imaging.volume_slabs import ScratchArrays, SliceSource
 from regolith_studio.io.atomic import write_bytes
 from regolith_studio.io.json_text import canonical_json
 from regolith_studio.jobs.events import Progress, Started, Steps
+from regolith_studio.jobs.extraction_jobs import volume_sha256
 from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput
-from regolith_studio.jobs.volume_jobs import (
-    IN_MEMORY,
+from regolith_studio.jobs.scan_jobs import (
     GrainSegmentation,
+    read_all,
     reported,
+    scratch_arrays,
     scratch_folder,
     segment_volume,
     slice_images,
-    volume_sha256,
-    working_bytes,
 )
 from regolith_studio.messages import N_, Message
 
@@ -94,14 +93,15 @@ def train_on_objects(given: VolumeInput, settings: GrainSettings, examples: Exam
         raise InputError(
             f"{given.path.name} holds labels; objects are classified where grains are segmented."
         )
-    with ScratchArrays(scratch if working_bytes(source) > IN_MEMORY else None) as arrays:
-        found: Segmentation = yield from segment_volume(source, settings.segmentation.uncorrected, arrays)
-        table: ObjectTable = yield from describe_grains(source, found)
+    with scratch_arrays(source, scratch) as arrays:
+        volume: Volume = yield from read_all(source, arrays)
+        found: Segmentation = yield from segment_volume(volume, settings.segmentation.uncorrected, arrays)
+        table: ObjectTable = yield from describe_grains(volume, found)
         training = train_on_examples(table, found.labels, examples, scan=volume_sha256(given.path))
     return ClassifiedObjects(training, classify_objects(training, table.vectors))
 
 
-def describe_grains(grey: SliceSource, found: Segmentation) -> Steps:
+def describe_grains(grey: Volume, found: Segmentation) -> Steps:
     """Measure all objects of a segmentation; returns their :class:`ObjectTable`."""
     yield Started(N_("Describing objects"))
     steps = describe_objects(found.labels, grey)
@@ -125,7 +125,7 @@ def classify_grains(
 
 
 def correct_grains(
-    grey: SliceSource,
+    grey: Volume,
     found: Segmentation,
     settings: SegmentationSettings,
     objects: ObjectTable | None = None,
@@ -137,11 +137,10 @@ def correct_grains(
     InputError
         If an edit does not find its grains, or no grain is left.
     """
-    large = working_bytes(grey) > IN_MEMORY
-    scratch = ScratchArrays(scratch_folder() if large else None)
+    scratch = scratch_arrays(grey, scratch_folder())
     try:
         made: Segmentation = yield from reported(correction_steps(found, grey, settings, scratch, objects))
-        if not large:
+        if scratch.folder is None:
             return GrainSegmentation(made, SliceImages(made.labels.array), scratch)
         return GrainSegmentation(made, (yield from slice_images(made.labels)), scratch)
     except BaseException:

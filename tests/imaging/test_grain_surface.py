@@ -11,7 +11,6 @@ from regolith_studio.errors import InputError
 from regolith_studio.imaging import volume_slabs
 from regolith_studio.imaging.extraction import ExtractedParticle, ExtractionSettings, extract_particles
 from regolith_studio.imaging.grain_surface import MAX_DEPTH, _fill_squared, depth
-from regolith_studio.imaging.label_table import grain_crops
 from regolith_studio.imaging.sample_volumes import sample_volume
 from regolith_studio.imaging.segmentation.segment import segment
 from regolith_studio.imaging.volume import Volume
@@ -239,7 +238,7 @@ def test_that_grey_values_of_another_shape_and_unknown_surfaces_are_refused() ->
     labels = Volume(np.ones((4, 4, 4), dtype=np.uint8), (1, 1, 1), "labels", "a")
     grey = Volume(np.ones((4, 4, 5), dtype=np.uint8), (1, 1, 1), "grey", "b")
     with pytest.raises(ValueError, match=r"shape \(4, 4, 4\) do not fit grey values of shape \(4, 4, 5\)"):
-        next(grain_crops(labels, grey, {}))
+        extract_particles(labels, ExtractionSettings(min_voxels=1, exclude_border=False), grey=grey)
     with pytest.raises(InputError, match="from the mask or the grey, not 'voxels'"):
         ExtractionSettings(surface="voxels")  # type: ignore[arg-type]
 

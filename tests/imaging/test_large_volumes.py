@@ -20,7 +20,7 @@ from regolith_studio.imaging.extraction import extraction_steps
 from regolith_studio.imaging.segmentation.denoising import DenoiseSettings
 from regolith_studio.imaging.segmentation.segment import SegmentationSettings, segmentation_steps
 from regolith_studio.imaging.segmentation.thresholding import ThresholdSettings
-from regolith_studio.imaging.volume_slabs import ScratchArrays
+from regolith_studio.imaging.volume_slabs import ScratchArrays, unpacked
 from regolith_studio.jobs.extraction_settings import VolumeInput
 
 path, kind, limit = Path(sys.argv[1]), sys.argv[2], int(sys.argv[3])
@@ -33,6 +33,14 @@ except MemoryError:
 volumes = []
 with ScratchArrays(path.parent) as scratch:
     source = VolumeInput(path, 1.0, kind=kind).opened()
+    if kind == "labels":
+        reading = unpacked(source, scratch)
+        while True:
+            try:
+                next(reading)
+            except StopIteration as end:
+                source = end.value
+                break
     if kind == "grey":
         settings = SegmentationSettings(DenoiseSettings("none"), ThresholdSettings("manual", 100.0))
         steps = segmentation_steps(source, settings, scratch)

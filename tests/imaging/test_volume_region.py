@@ -77,7 +77,8 @@ def test_that_a_grain_of_a_region_is_where_it_is_in_the_whole_scan() -> None:
     whole = extract_particles(volume_of(labels, "labels"), settings).particles[0]
     region = RegionSettings("12:34,0:25,40:230um").of(volume_of(labels, "labels"))
     assert region.shape == (22, 25, 38)
-    cropped = extract_particles(region, settings).particles[0]
+    cut = Volume(region.read(0, region.shape[2]), region.voxel_size, "labels", "cut", region.origin)
+    cropped = extract_particles(cut, settings).particles[0]
     assert np.array_equal(cropped.mesh.vertices, whole.mesh.vertices)
     assert np.array_equal(cropped.mesh.faces, whole.mesh.faces)
 
@@ -148,3 +149,18 @@ def test_that_a_rectangle_in_a_slice_of_a_region_is_cut_out_of_the_whole_volume(
     found = RegionSettings(drawn, bin=bin_).of(source)
     assert np.array_equal(found.read(0, 3), region.read(1, 4)[2:6])
     assert found.origin[0] == pytest.approx(region.origin[0] + 2)
+
+
+@pytest.mark.parametrize(("crop", "bin"), [("", 3), (":,:,5:29", 1), (":,:,5:30", 4), (":,:,31:33", 1)])
+def test_that_parts_of_a_region_are_those_of_its_volume_and_cover_it(crop: str, bin: int) -> None:
+    class Parted(Volume):
+        def parts(self) -> list[tuple[int, int]]:
+            return [(0, 8), (8, 16), (16, 24), (24, 32), (32, 40)]
+
+    source = Parted(np.zeros((8, 8, 40), np.uint8), np.ones(3), "grey", "parted")
+    region = RegionSettings(crop, bin).of(source)
+    parts = region.parts()
+    assert [z for first, stop in parts for z in range(first, stop)] == list(range(region.shape[2]))
+    start = region.box[2].start
+    assert all((start + stop * bin) % 8 < bin for _, stop in parts[:-1])  # where a part ends, or in that cube
+    assert RegionSettings(":,:,1:9").of(Volume(source.array, np.ones(3), "grey", "whole")).parts() == []

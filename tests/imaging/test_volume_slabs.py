@@ -1,5 +1,6 @@
-"""Slabs cover a volume once, with margins where there is room, and scratch files vanish."""
+"""Slabs cover a volume once, with margins where there is room; scratch files are shared, and vanish."""
 
+import pickle
 import shutil
 from pathlib import Path
 from types import SimpleNamespace
@@ -8,7 +9,14 @@ import numpy as np
 import pytest
 
 from regolith_studio.errors import MissingRequirement
-from regolith_studio.imaging.volume_slabs import ScratchArrays, slab_ranges, thick_slabs
+from regolith_studio.imaging import volume_slabs
+from regolith_studio.imaging.volume_slabs import (
+    ScratchArrays,
+    SharedArray,
+    slab_ranges,
+    thick_slabs,
+    unpacked,
+)
 
 
 @pytest.mark.parametrize("shape", [(5, 5, 1), (7, 3, 8), (100, 100, 103), (3000, 3000, 20)])
@@ -66,3 +74,57 @@ def test_that_a_full_disk_is_one_sentence_and_no_crash(
     with ScratchArrays(tmp_path) as scratch, pytest.raises(MissingRequirement, match="do not fit"):
         scratch.zeros((1024, 1024, 2), np.uint8)
     assert not list(tmp_path.iterdir())
+
+
+def test_that_a_shared_array_is_sent_as_the_path_of_its_file(tmp_path: Path) -> None:
+    with ScratchArrays(tmp_path) as scratch:
+        shared = SharedArray(scratch.zeros((300, 200, 100), np.int32))
+        shared.array[7, 8, 9] = 3
+        sent = pickle.dumps(shared)
+        assert len(sent) < 1000
+        there = pickle.loads(sent)
+        assert there.slices(9, 10)[7, 8, 0] == 3
+        there.write(20, np.full((300, 200, 2), 5, np.int32))
+        assert np.array_equal(np.unique(shared.slices(20, 22)), [5])
+        assert shared.array.sum() == 3 + 300 * 200 * 2 * 5
+
+
+def test_that_an_array_in_memory_is_not_sent() -> None:
+    with pytest.raises(TypeError, match="in memory cannot be shared"):
+        pickle.dumps(SharedArray(np.zeros((2, 2, 2))))
+
+
+def test_that_a_volume_that_has_no_parts_is_read_by_this_process_alone() -> None:
+    class Stream(Sequence):
+        origin = (0.0, 0.0, 0.0)
+
+        def parts(self) -> list[tuple[int, int]]:
+            return []
+
+    def refused(*_: object) -> None:
+        raise AssertionError("another process would have begun at its first byte again")
+
+    stream = Stream(np.arange(6 * 30).reshape(2, 3, 30))
+    steps = unpacked(stream, ScratchArrays(), refused)
+    found = []
+
+    def read():
+        found.append((yield from steps))
+
+    assert len(list(read())) == len(slab_ranges(stream.shape))
+    assert np.array_equal(found[0].array, stream.array)
+    assert stream.asked == list(range(30))
+
+
+def test_that_batches_hold_small_items_together_and_keep_their_order() -> None:
+    half = volume_slabs.BATCH_VOXELS // 2
+    tasks = []
+
+    def run(function, items):
+        for item in items:
+            tasks.append(item)
+            yield function(item)
+
+    sizes = [half, half, 3 * half, 1, 2]
+    assert list(volume_slabs.in_batches(run, str, sizes, int)) == [str(size) for size in sizes]
+    assert tasks == [[half, half], [3 * half], [1, 2]]

@@ -23,7 +23,7 @@ from regolith_studio.jobs.events import Partial, Progress, Started
 from regolith_studio.jobs.lecture_jobs import trace_degrees
 from regolith_studio.jobs.model_jobs import draw_live
 from regolith_studio.jobs.representatives_jobs import choose_job
-from regolith_studio.jobs.volume_jobs import find_grains, scan_of
+from regolith_studio.jobs.scan_jobs import find_grains, scan_of
 
 SLOWLY = "import sys, time, pathlib; time.sleep(0.4); [pathlib.Path(name).touch() for name in sys.argv[1:]]"
 

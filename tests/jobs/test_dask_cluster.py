@@ -7,24 +7,24 @@ import socket
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import closing, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import pytest
 
 from regolith_studio.errors import InputError, MissingRequirement
+from regolith_studio.imaging import volume_slabs
 from regolith_studio.imaging.extraction import ExtractedParticle
 from regolith_studio.imaging.sample_volumes import sample_file
 from regolith_studio.jobs.events import Progress
 from regolith_studio.jobs.executor import Executor
+from regolith_studio.jobs.extraction_jobs import extract_measured
 from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput
 from regolith_studio.jobs.particle_jobs import MeasuredParticle
 from regolith_studio.jobs.runners import dask_cluster
 from regolith_studio.jobs.runners.dask_cluster import TlsFiles
-from regolith_studio.jobs.volume_jobs import extract_measured
 from regolith_studio.session.recipe import Recipe, recipe_of
 from regolith_studio.session.run_recipe import run_recipe
 
@@ -180,22 +180,66 @@ def test_that_an_encrypted_cluster_works_and_lets_no_stranger_in(
             dask_cluster.DaskRunner(there.address, tls=strangers)
 
 
+def grains(
+    given: VolumeInput, executor: Executor, scratch: Path, after: Callable[[int], None] = lambda _: None
+) -> list[tuple[str, str, dict[str, float]]]:
+    """Names, meshes and descriptors of a scan's particles; `after` gets the number of each step."""
+    found: list[tuple[str, str, dict[str, float]]] = []
+
+    def keep(extracted: ExtractedParticle, measured: MeasuredParticle) -> None:
+        found.append(
+            (extracted.particle.name, extracted.particle.mesh.content_hash, dict(measured.descriptors))
+        )
+
+    for number, _ in enumerate(extract_measured(given, GrainSettings(), scratch, keep, executor)):
+        after(number)
+    return found
+
+
 @pytest.mark.slow
-def test_that_a_cluster_finds_the_grains_that_one_process_finds() -> None:
+@pytest.mark.skipif(os.name == "nt", reason="signals are a matter of POSIX")
+def test_that_a_cluster_finds_the_grains_that_one_process_finds_also_when_a_worker_is_killed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Slabs of eight slices, so that every stage has several tasks; the first worker dies in the middle."""
     given = VolumeInput(sample_file("grey"), kind="grey")
-    seen: list[list[tuple[str, str]]] = []
-    with closing(Executor.on_cluster(workers=2)) as cluster:
-        for executor in (cluster, Executor(1)):
-            found: list[tuple[str, str]] = []
+    alone = grains(given, Executor(1), tmp_path)
+    assert len(alone) == 46
+    monkeypatch.setattr(volume_slabs.slab_ranges, "__defaults__", (1,))
+    monkeypatch.setattr(volume_slabs, "BATCH_VOXELS", 1)
+    with cluster() as there, closing(Executor.on_cluster(there.address)) as executor:
+        executor._runner._client.wait_for_workers(2, timeout=60)  # type: ignore[union-attr]
+        total: list[int] = []
+        assert grains(given, executor, tmp_path, total.append) == alone
 
-            def keep(extracted: ExtractedParticle, _: MeasuredParticle, found: list[Any] = found) -> None:
-                found.append((extracted.particle.name, extracted.particle.mesh.content_hash))
+        def kill(number: int) -> None:
+            if number == len(total) // 2:
+                there.workers[0].send_signal(signal.SIGKILL)
 
-            for _ in extract_measured(given, GrainSettings(), None, keep, executor):
-                pass
-            seen.append(found)
-    assert len(seen[1]) == 46
-    assert seen[0] == seen[1]
+        assert grains(given, executor, tmp_path, kill) == alone
+    assert there.workers[0].returncode == -signal.SIGKILL
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.slow
+def test_that_workers_that_do_not_see_the_volume_or_the_output_are_one_sentence(tmp_path: Path) -> None:
+    shutil.copy(sample_file("grey"), tmp_path / "scan.tif")
+    given = VolumeInput(tmp_path / "scan.tif", kind="grey")
+    (tmp_path / "out").mkdir()
+    with closing(Executor.on_cluster(workers=1)) as executor:
+        client = executor._runner._client  # type: ignore[union-attr]
+        seen = dask_cluster._size_and_text(str(given.path), "")
+
+        def elsewhere(answer: object) -> None:
+            client.run = lambda *_: {"tcp://10.0.0.2:4001": answer}
+
+        elsewhere((None, ""))
+        with pytest.raises(MissingRequirement, match=r"4001 does not find .*scan\.tif"):
+            grains(given, executor, tmp_path / "out")
+        elsewhere(seen)
+        with pytest.raises(MissingRequirement, match=r"4001 does not see the folder .*out"):
+            grains(given, executor, tmp_path / "out")
+    assert not list((tmp_path / "out").iterdir())
 
 
 @pytest.mark.slow

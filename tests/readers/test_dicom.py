@@ -19,7 +19,7 @@ from pydicom.uid import (
 )
 
 from regolith_studio.errors import FileError
-from regolith_studio.jobs.volume_jobs import volume_sha256
+from regolith_studio.jobs.extraction_jobs import volume_sha256
 from regolith_studio.readers.volumes.files import volume_files
 from regolith_studio.readers.volumes.read import describe_volume, open_slabs, read_volume
 from regolith_studio.session.file_kinds import FileKind, kind_of

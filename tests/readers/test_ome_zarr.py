@@ -12,7 +12,7 @@ import zarr
 from zarr.codecs import BloscCodec, GzipCodec, ZstdCodec
 
 from regolith_studio.errors import FileError
-from regolith_studio.jobs.volume_jobs import volume_sha256
+from regolith_studio.jobs.extraction_jobs import volume_sha256
 from regolith_studio.readers.sandbox.parent import Sandbox
 from regolith_studio.readers.volumes.files import volume_files
 from regolith_studio.readers.volumes.read import describe_volume, open_slabs, read_volume

@@ -14,8 +14,8 @@ from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.harmonics.fit import fit_harmonics
 from regolith_studio.io.stl import stl_bytes
 from regolith_studio.jobs.events import Progress, Started
+from regolith_studio.jobs.extraction_jobs import extract_file
 from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput
-from regolith_studio.jobs.volume_jobs import extract_file
 from regolith_studio.readers.particles import read_mesh
 from regolith_studio.resources import resource
 from regolith_studio.session.batch.preprocessing import read_grain, read_index

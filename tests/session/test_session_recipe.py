@@ -11,20 +11,16 @@ from regolith_studio.errors import InputError
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
+from regolith_studio.imaging.extraction import ExtractionSettings
 from regolith_studio.imaging.segmentation.segment import SegmentationSettings
 from regolith_studio.imaging.segmentation.splitting import SplittingSettings
 from regolith_studio.io.atomic import write_files
 from regolith_studio.io.stl import stl_bytes
+from regolith_studio.jobs.extraction_jobs import extract_file, extract_labels
 from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput
 from regolith_studio.jobs.model_jobs import GenerationRequest, draw_shapes, fit_shapes, make_particles
 from regolith_studio.jobs.runners.run_job import InlineRunner
-from regolith_studio.jobs.volume_jobs import (
-    ExtractionSettings,
-    extract_file,
-    extract_labels,
-    find_grains,
-    read_scan,
-)
+from regolith_studio.jobs.scan_jobs import find_grains, read_scan
 from regolith_studio.readers.shape_files import ShapeSource
 from regolith_studio.session.batch.preprocessing import entry_of
 from regolith_studio.session.choices import Choices

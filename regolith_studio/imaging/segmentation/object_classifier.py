@@ -20,10 +20,10 @@ from skimage.measure import marching_cubes, mesh_surface_area
 from regolith_studio.errors import InputError, MissingRequirement
 from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray, locked_floats, locked_integers
 from regolith_studio.imaging.bounding_boxes import Box, box_between, grown
-from regolith_studio.imaging.label_table import GrainCrop, LabelTable, grain_crops, label_table
+from regolith_studio.imaging.label_table import GrainCrop, LabelTable, grain_crop, label_table
 from regolith_studio.imaging.segmentation.splitting import SplittingSettings, in_mean_edges, split
 from regolith_studio.imaging.volume import Volume
-from regolith_studio.imaging.volume_slabs import SliceSource
+from regolith_studio.imaging.volume_slabs import SharedArray
 from regolith_studio.messages import N_
 
 ObjectAction = Literal["keep", "split", "drop"]
@@ -128,7 +128,7 @@ class ObjectTraining:
             object.__setattr__(self, name, value)
 
 
-def describe_objects(labels: Volume, grey: SliceSource) -> Generator[tuple[int, int], None, ObjectTable]:
+def describe_objects(labels: Volume, grey: Volume) -> Generator[tuple[int, int], None, ObjectTable]:
     """Measure each object; tells how many are done, of how many, and returns the table.
 
     Raises
@@ -138,11 +138,12 @@ def describe_objects(labels: Volume, grey: SliceSource) -> Generator[tuple[int, 
     """
     table = label_table(labels)
     whole = box_between((0, 0, 0), labels.shape)
-    wider = {label: grown(box, 1, whole) for label, box in table.boxes().items()}
+    shared, values = SharedArray(labels.array), SharedArray(grey.array)
     vectors = np.empty((len(table.labels), len(OBJECT_FEATURES)))
-    for done, (label, crop) in enumerate(grain_crops(labels, grey, wider), start=1):
-        vectors[np.searchsorted(table.labels, label)] = object_features(crop, labels.voxel_size)
-        yield done, len(vectors)
+    for row, (label, box) in enumerate(table.boxes().items()):
+        crop = grain_crop(shared, values, label, grown(box, 1, whole))
+        vectors[row] = object_features(crop, labels.voxel_size)
+        yield row + 1, len(vectors)
     return ObjectTable(table, vectors)
 
 

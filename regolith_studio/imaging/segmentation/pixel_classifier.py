@@ -6,7 +6,7 @@ IoU of a hundred trees and predicts many times faster.
 """
 
 import warnings
-from collections.abc import Generator, Iterator
+from collections.abc import Generator
 from dataclasses import dataclass, field
 from functools import lru_cache, partial
 from typing import Any, Literal, get_args
@@ -27,10 +27,10 @@ from regolith_studio.imaging.volume import Origin, Volume, VolumeKind
 from regolith_studio.imaging.volume_slabs import (
     ParallelMap,
     ScratchArrays,
+    SharedArray,
     SliceSource,
     ThickSlab,
     slab_ranges,
-    thick_slabs,
 )
 from regolith_studio.messages import N_
 
@@ -262,6 +262,10 @@ class PaintedLabels:
         slab[tuple((positions[here] - (0, 0, z0)).T)] = self.training.labels[here] + 1
         return slab
 
+    def parts(self) -> list[tuple[int, int]]:
+        """None: what is painted is in memory."""
+        return []
+
 
 def _at_most(labels: IntArray, seed: int) -> IntArray:
     """Rows of at most :data:`MAX_PER_CLASS` voxels of each class, in their order."""
@@ -363,7 +367,7 @@ def _edges(sizes: FloatArray) -> str:
 
 
 def probability_map(
-    classifier: PixelClassifier, source: SliceSource, scratch: ScratchArrays, run: ParallelMap = map
+    classifier: PixelClassifier, source: Volume, scratch: ScratchArrays, run: ParallelMap = map
 ) -> Generator[tuple[int, int], None, Volume]:
     """Probability of each voxel to be grain, 0 to 255; tells how many of how many slabs are done.
 
@@ -378,33 +382,25 @@ def probability_map(
         If the volume has voxels of another size than the classifier was trained at.
     """
     check_voxel_size(classifier.voxel_size, source)
-    found: NDArray[np.uint8] = scratch.zeros(source.shape, np.uint8)
-    ranges = _prediction_ranges(source.shape)
-    predict = partial(slab_probability, classifier, shape=source.shape)
-    slabs = run(predict, prediction_slabs(classifier, source))
-    for done, ((first, stop), values) in enumerate(zip(ranges, slabs, strict=True), start=1):
-        found[:, :, first:stop] = values
+    found = SharedArray(scratch.zeros(source.shape, np.uint8))
+    ranges = slab_ranges(source.shape, _SLAB_VOXELS)
+    predict = partial(_predict_slab, classifier, SharedArray(source.array), found)
+    for done, _ in enumerate(run(predict, ranges), start=1):
         yield done, len(ranges)
-    return probability_volume(found, source)
+    return probability_volume(found.array, source)
 
 
-def prediction_slabs(classifier: PixelClassifier, source: SliceSource) -> Iterator[ThickSlab]:
-    """The slabs that are predicted at a time, with their margins.
-
-    They follow from the size of the volume alone, so that the result depends neither on who works nor on the
-    memory.
-    """
-    return thick_slabs(source, _prediction_ranges(source.shape), classifier.features.margin)
+def _predict_slab(
+    classifier: PixelClassifier, given: SharedArray, found: SharedArray, part: tuple[int, int]
+) -> None:
+    slab = given.thick(*part, classifier.features.margin)
+    found.write(slab.first, slab_probability(classifier, slab, given.shape))
 
 
 def probability_volume(values: NDArray[np.uint8], source: SliceSource) -> Volume:
     """Probabilities from 0 to 255 as a volume of the source's voxel size."""
     edges = np.asarray(source.voxel_size, dtype=np.float64)
     return Volume(values, edges, "grey", source.name, source.origin)
-
-
-def _prediction_ranges(shape: tuple[int, int, int]) -> list[tuple[int, int]]:
-    return slab_ranges(shape, _SLAB_VOXELS)
 
 
 def slab_probability(
@@ -417,7 +413,7 @@ def slab_probability(
     Parameters
     ----------
     slab
-        Of :func:`prediction_slabs`.
+        With the margin of the classifier's features.
     shape
         Of the volume.
     """

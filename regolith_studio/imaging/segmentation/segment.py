@@ -1,7 +1,8 @@
 """From grey values to labels: denoise, threshold, clean, find bodies, part touching grains.
 
 Everything happens slab by slab or body by body, so that the volume never has to be in memory
-whole: give a :class:`~regolith_studio.imaging.volume_slabs.ScratchArrays` in a folder for that.
+whole: give a :class:`~regolith_studio.imaging.volume_slabs.ScratchArrays` in a folder for that. Tasks read
+and write their own slabs of these arrays, also in other processes, and can be done twice.
 """
 
 from collections.abc import Generator, Iterable, Sequence
@@ -15,7 +16,12 @@ from numpy.typing import NDArray
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray, IntArray
 from regolith_studio.imaging.bounding_boxes import Box
-from regolith_studio.imaging.connected_components import ComponentCounter, ConnectedComponents
+from regolith_studio.imaging.connected_components import (
+    ComponentJoiner,
+    ConnectedComponents,
+    SlabComponents,
+    components_of_slab,
+)
 from regolith_studio.imaging.segmentation.denoising import DenoiseSettings, denoised, noise_of
 from regolith_studio.imaging.segmentation.label_edits import LabelEdit, apply_edits
 from regolith_studio.imaging.segmentation.morphology import CleaningSettings, cleaned
@@ -48,10 +54,10 @@ from regolith_studio.imaging.volume import Volume
 from regolith_studio.imaging.volume_slabs import (
     ParallelMap,
     ScratchArrays,
+    SharedArray,
     SliceSource,
-    ThickSlab,
     slab_ranges,
-    thick_slabs,
+    unpacked,
 )
 from regolith_studio.io.tables import Column, Table
 from regolith_studio.messages import N_, Message, Number
@@ -197,7 +203,8 @@ def segmentation_steps(
     scratch
         Where arrays as large as the volume lie, the result among them; in memory by default.
     run
-        Applies what is done to slabs and to bodies; the result does not depend on it.
+        Applies what is done to slabs and to bodies; the result does not depend on it. Other processes than
+        this one need `source` and `scratch` in files.
 
     Raises
     ------
@@ -205,8 +212,11 @@ def segmentation_steps(
         If the volume is too uniform for an automatic threshold, or no grain is found.
     """
     settings, scratch = settings or SegmentationSettings(), scratch or ScratchArrays()
-    found = yield from _found_bodies(source, settings, scratch, run)
-    sizes, n_parts = yield from _parted(found.numbers, found, settings, run)
+    volume: Volume = yield from _staged(N_("Reading the slices"), unpacked(source, scratch, run))
+    found = yield from _found_bodies(volume, settings, scratch, run)
+    numbers: NDArray[np.int32] = scratch.zeros(volume.shape, np.int32)
+    sizes, n_parts = yield from _parted(numbers, found, settings, scratch, run)
+    scratch.drop(found.numbers.array)
     least = settings.cleaning.min_voxels
     if not len(sizes):
         raise InputError(
@@ -214,18 +224,18 @@ def segmentation_steps(
             "is the threshold right, and are grains brighter than what is between them?"
         )
     small = int((found.bodies.sizes < least).sum()) + n_parts - len(sizes)
-    labels = Volume(found.numbers, found.edges, "labels", f"{source.name}, labels", source.origin)
+    labels = Volume(numbers, found.edges, "labels", f"{source.name}, labels", source.origin)
     n_bodies = int((found.bodies.sizes >= least).sum())
     result = Segmentation(labels, sizes, found.level, found.seen, n_bodies, small, found.n_not_finite)
     if settings.objects is None and not settings.edits:
         return result
-    sizes = yield from _correct(found.numbers, source, settings)
+    sizes = yield from _correct(numbers, volume, settings)
     return replace(result, sizes=sizes)
 
 
 def correction_steps(
     found: Segmentation,
-    grey: SliceSource,
+    grey: Volume,
     settings: SegmentationSettings,
     scratch: ScratchArrays | None = None,
     objects: ObjectTable | None = None,
@@ -254,7 +264,7 @@ def correction_steps(
 
 def _correct(
     numbers: NDArray[np.int32],
-    grey: SliceSource,
+    grey: Volume,
     settings: SegmentationSettings,
     objects: ObjectTable | None = None,
 ) -> Generator[SegmentationProgress, None, IntArray]:
@@ -269,7 +279,7 @@ def _correct(
         yield from _staged(N_("Classifying objects"), sorting)
     yield from _staged(N_("Correcting labels"), apply_edits(numbers, settings.edits, edges))
     counts = np.zeros(int(numbers.max()) + 1, dtype=np.int64)
-    for first, stop in slab_ranges(_shape(numbers)):
+    for first, stop in slab_ranges(SharedArray(numbers).shape):
         counts += np.bincount(numbers[:, :, first:stop].ravel(order="K"), minlength=len(counts))
     sizes = counts[1:][counts[1:] > 0]
     if not len(sizes):
@@ -332,12 +342,13 @@ def grains_over_heights(
     """
     settings, scratch = settings or SegmentationSettings(), scratch or ScratchArrays()
     tried = [replace(settings, splitting=replace(settings.splitting, h_maxima=h)) for h in heights]
-    found = yield from _found_bodies(source, settings, scratch)
+    volume: Volume = yield from _staged(N_("Reading the slices"), unpacked(source, scratch))
+    found = yield from _found_bodies(volume, settings, scratch)
     numbers: NDArray[np.int32] = scratch.zeros(source.shape, np.int32)
     rows = []
     for each in tried:
-        np.copyto(numbers, found.numbers)
-        sizes, _ = yield from _parted(numbers, found, each)
+        numbers[...] = 0
+        sizes, _ = yield from _parted(numbers, found, each, scratch)
         rows.append(GrainsAtHeight(each.splitting.h_maxima, sizes))
     return tuple(rows)
 
@@ -356,7 +367,7 @@ def heights_table(found: Sequence[GrainsAtHeight]) -> Table:
 
 @dataclass(frozen=True, eq=False)
 class _FoundBodies:
-    numbers: NDArray[np.int32]
+    numbers: SharedArray
     bodies: ConnectedComponents
     edges: FloatArray
     level: float
@@ -365,21 +376,25 @@ class _FoundBodies:
 
 
 def _found_bodies(
-    source: SliceSource, settings: SegmentationSettings, scratch: ScratchArrays, run: ParallelMap = map
+    source: Volume, settings: SegmentationSettings, scratch: ScratchArrays, run: ParallelMap = map
 ) -> Generator[SegmentationProgress, None, _FoundBodies]:
-    """Connected bodies with their provisional numbers, before they are parted."""
+    """Connected bodies before they are parted."""
+    values = source
     if settings.classifier is not None:
-        source = yield from _predicted(source, settings.classifier, scratch, run)
-    values, seen, n_not_finite = yield from _denoised(source, settings, scratch, run)
-    level = level_of(seen, settings.threshold, source.dtype)
-    numbers: NDArray[np.int32] = scratch.zeros(source.shape, np.int32)
-    bodies = yield from _numbered(values, level, settings, numbers)
+        values = yield from _predicted(source, settings.classifier, scratch, run)
+    smooth, seen, n_not_finite = yield from _denoised(values, settings, scratch, run)
+    level = level_of(seen, settings.threshold, values.dtype)
+    numbers = SharedArray(scratch.zeros(source.shape, np.int32))
+    bodies = yield from _numbered(smooth, level, settings, numbers, scratch, run)
+    for array in {id(each): each for each in (smooth.array, values.array)}.values():
+        if array is not source.array:
+            scratch.drop(array)
     edges = np.asarray(source.voxel_size, dtype=np.float64)
     return _FoundBodies(numbers, bodies, edges, level, seen, n_not_finite)
 
 
 def _predicted(
-    source: SliceSource, training: TrainingSet, scratch: ScratchArrays, run: ParallelMap
+    source: Volume, training: TrainingSet, scratch: ScratchArrays, run: ParallelMap
 ) -> Generator[SegmentationProgress, None, Volume]:
     """The map of probabilities that a classifier makes of grey values."""
     yield SegmentationProgress(N_("Training the classifier"), 0, 1)
@@ -389,17 +404,51 @@ def _predicted(
 
 
 def _parted(
-    numbers: NDArray[np.int32], found: _FoundBodies, settings: SegmentationSettings, run: ParallelMap = map
+    labels: NDArray[np.int32],
+    found: _FoundBodies,
+    settings: SegmentationSettings,
+    scratch: ScratchArrays,
+    run: ParallelMap = map,
 ) -> Generator[SegmentationProgress, None, tuple[IntArray, int]]:
-    """Turn provisional numbers into labels, in place; voxels of each grain, and parts before small ones were
-    dropped."""
+    """Write labels of grains into zeros; voxels of each grain, and parts before small ones were dropped."""
     least = settings.cleaning.min_voxels
     splitter = GrainSplitter(
-        numbers, found.bodies, found.edges, settings.splitting, settings.cleaning.fill_pores, settings.tiles
+        found.numbers,
+        labels,
+        found.bodies,
+        found.edges,
+        settings.splitting,
+        settings.cleaning.fill_pores,
+        settings.tiles,
     )
     for done, total in splitter.steps(least, run):
         yield SegmentationProgress(N_("Separating touching grains"), done, total)
-    return (yield from _renumbered(numbers, splitter.n_grains, least)), splitter.n_grains
+    sizes = splitter.sizes
+    kept = sizes >= max(least, 1)
+    label = np.concatenate([[0], np.where(kept, np.cumsum(kept), 0)])
+    shared = SharedArray(labels)
+    shared.publish()
+    table = _shared_table(label, scratch)
+    relabel = partial(_relabel_slab, shared, table)
+    ranges = slab_ranges(shared.shape)
+    for done, _ in enumerate(run(relabel, ranges), start=1):
+        yield SegmentationProgress(N_("Numbering grains"), done, len(ranges))
+    scratch.drop(table.array)
+    return sizes[kept], len(sizes)
+
+
+def _shared_table(values: IntArray, scratch: ScratchArrays) -> SharedArray:
+    """A table that tasks look up, shape (n, 1, 1)."""
+    table = SharedArray(scratch.zeros((len(values), 1, 1), np.int32))
+    table.write(0, values.reshape(-1, 1, 1))
+    return table
+
+
+def _relabel_slab(numbers: SharedArray, table: SharedArray, part: tuple[int, int], shift: int = 0) -> None:
+    """Replace each -k in a slab by entry k + `shift` of a table; what is not negative stays."""
+    slab = numbers.slices(*part)
+    entries = np.asarray(table.array)[:, 0, 0]
+    numbers.write(part[0], np.where(slab < 0, entries[np.where(slab < 0, shift - slab, 0)], slab))
 
 
 def preview(
@@ -435,85 +484,104 @@ def part_of(
     return Volume(np.array(volume.array[box]), volume.voxel_size, volume.kind, volume.name), settings
 
 
-_Values = Generator[SegmentationProgress, None, tuple[SliceSource, Histogram, int]]
+_Values = Generator[SegmentationProgress, None, tuple[Volume, Histogram, int]]
 
 
 def _denoised(
-    source: SliceSource, settings: SegmentationSettings, scratch: ScratchArrays, run: ParallelMap
+    source: Volume, settings: SegmentationSettings, scratch: ScratchArrays, run: ParallelMap
 ) -> _Values:
     """Grey values without noise (probabilities as they are), their histogram, and how many are not finite."""
-    how = settings.denoise
+    how, given = settings.denoise, SharedArray(source.array)
     ranges = slab_ranges(source.shape)
-    edges, noise, n_not_finite = _first_look(source)
+    edges, n_not_finite = _bins(given, run)
+    middle = source.shape[2] // 2
+    noise = noise_of(given.slices(middle, middle + 1)) if how.method == "non-local-means" else 0.0
+    values = None
+    if how.method != "none" and settings.threshold.method != "probability":
+        values = SharedArray(scratch.zeros(source.shape, source.dtype))
+    smooth = partial(_smooth_slab, given, values, how, noise, edges)
     seen = Histogram(np.zeros(len(edges) - 1, dtype=np.int64), edges)
-    if how.method == "none" or settings.threshold.method == "probability":
-        for done, (first, stop) in enumerate(ranges, start=1):
-            seen = seen + histogram(source.read(first, stop), edges)
-            yield SegmentationProgress(N_("Denoising"), done, len(ranges))
-        return source, seen, n_not_finite
-    values = scratch.zeros(source.shape, source.dtype)
-    smooth = partial(_smooth_slab, how=how, noise=noise, edges=edges)
-    slabs = run(smooth, thick_slabs(source, ranges, how.margin))
-    for done, ((first, stop), (slab, counts)) in enumerate(zip(ranges, slabs, strict=True), start=1):
-        values[:, :, first:stop] = slab
+    for done, counts in enumerate(run(smooth, ranges), start=1):
         seen = seen + counts
         yield SegmentationProgress(N_("Denoising"), done, len(ranges))
-    return Volume(values, np.asarray(source.voxel_size), "grey", source.name), seen, n_not_finite
+    found = source if values is None else replace(source, array=values.array)
+    return found, seen, n_not_finite
 
 
 def _smooth_slab(
-    slab: ThickSlab, how: DenoiseSettings, noise: float, edges: FloatArray
-) -> tuple[NDArray[Any], Histogram]:
-    """A slab without noise and without its margins, and its histogram."""
-    values = denoised(slab.values, how, noise)[:, :, slab.inner]
-    return values, histogram(values, edges)
+    given: SharedArray,
+    values: SharedArray | None,
+    how: DenoiseSettings,
+    noise: float,
+    edges: FloatArray,
+    part: tuple[int, int],
+) -> Histogram:
+    """Write a slab without noise into `values`, if there are any; returns its histogram."""
+    if values is None:
+        return histogram(given.slices(*part), edges)
+    slab = given.thick(*part, how.margin)
+    smooth = denoised(slab.values, how, noise)[:, :, slab.inner]
+    values.write(slab.first, smooth)
+    return histogram(smooth, edges)
 
 
-def _first_look(source: SliceSource) -> tuple[FloatArray, float, int]:
-    """Edges of the histogram's bins, the noise of the middle slice, and the number of voxels not finite."""
-    middle, noise, spans, n_not_finite = source.shape[2] // 2, 0.0, [], 0
-    for first, stop in slab_ranges(source.shape):
-        slab = source.read(first, stop)
-        if first <= middle < stop:
-            noise = noise_of(slab[:, :, middle - first : middle - first + 1])
-        if (known := finite(slab)).size:
-            spans.append(span(known))
-        n_not_finite += slab.size - known.size
+def _bins(given: SharedArray, run: ParallelMap) -> tuple[FloatArray, int]:
+    """Edges of the histogram's bins, and the number of voxels that are not finite."""
+    spans, n_not_finite = [], 0
+    for known, count in run(partial(_span_of_slab, given), slab_ranges(given.shape)):
+        spans += known
+        n_not_finite += count
     lowest, highest = span(np.array(spans))
-    return bins_between(lowest, highest, source.dtype), noise, n_not_finite
+    return bins_between(lowest, highest, given.array.dtype), n_not_finite
+
+
+def _span_of_slab(given: SharedArray, part: tuple[int, int]) -> tuple[list[tuple[float, float]], int]:
+    """Lowest and highest finite value of a slab, if there is one, and how many are not finite."""
+    slab = given.slices(*part)
+    known = finite(slab)
+    return [span(known)] if known.size else [], slab.size - known.size
 
 
 def _numbered(
-    values: SliceSource, level: float, settings: SegmentationSettings, numbers: NDArray[np.int32]
+    values: Volume,
+    level: float,
+    settings: SegmentationSettings,
+    numbers: SharedArray,
+    scratch: ScratchArrays,
+    run: ParallelMap,
 ) -> Generator[SegmentationProgress, None, ConnectedComponents]:
-    """Write the provisional numbers of the bodies into `numbers`."""
-    counter, ranges = ComponentCounter(), slab_ranges(values.shape)
-    for done, slab in enumerate(thick_slabs(values, ranges, settings.cleaning.margin), start=1):
-        mask = cleaned(grain_voxels(slab.values, level, settings.threshold), settings.cleaning)
-        numbers[:, :, slab.first : slab.stop] = counter.numbered(mask[:, :, slab.inner], slab.first)
-        yield SegmentationProgress(N_("Finding connected bodies"), done, len(ranges))
-    return counter.finish()
+    """Write the number of the body of each voxel into `numbers`, which hold zeros."""
+    joiner, ranges = ComponentJoiner(), slab_ranges(values.shape)
+    number = partial(_number_slab, SharedArray(values.array), numbers, level, settings)
+    shifts = []
+    for done, (part, slab) in enumerate(zip(ranges, run(number, ranges), strict=True), start=1):
+        first = part[0]
+        below = None if first == 0 else -numbers.slices(first - 1, first)
+        shifts.append(joiner.add(slab, below, -numbers.slices(first, first + 1)))
+        yield SegmentationProgress(N_("Finding connected bodies"), done, 2 * len(ranges))
+    body_of, bodies = joiner.finish()
+    table = _shared_table(body_of, scratch)
+    join = partial(_join_slab, numbers, table)
+    for done, _ in enumerate(run(join, zip(ranges, shifts, strict=True)), start=len(ranges) + 1):
+        yield SegmentationProgress(N_("Finding connected bodies"), done, 2 * len(ranges))
+    scratch.drop(table.array)
+    return bodies
 
 
-def _renumbered(
-    numbers: NDArray[np.int32], n_grains: int, least: int
-) -> Generator[SegmentationProgress, None, IntArray]:
-    """Turn -k into labels 1 to n without the small grains and all else into 0; returns their sizes."""
-    counts = np.zeros(n_grains + 1, dtype=np.int64)
-    ranges = slab_ranges(_shape(numbers))
-    for first, stop in ranges:
-        grains = np.maximum(-numbers[:, :, first:stop], 0)
-        counts += np.bincount(grains.ravel(order="K"), minlength=n_grains + 1)
-    kept = counts >= max(least, 1)
-    kept[0] = False
-    label = np.where(kept, np.cumsum(kept), 0).astype(np.int32)
-    for done, (first, stop) in enumerate(ranges, start=1):
-        slab = numbers[:, :, first:stop]
-        slab[...] = label[np.maximum(-slab, 0)]
-        yield SegmentationProgress(N_("Numbering grains"), done, len(ranges))
-    return counts[kept]
+def _number_slab(
+    values: SharedArray,
+    numbers: SharedArray,
+    level: float,
+    settings: SegmentationSettings,
+    part: tuple[int, int],
+) -> SlabComponents:
+    """Write -k for each voxel of a slab's component k; returns what is known of them."""
+    slab = values.thick(*part, settings.cleaning.margin)
+    mask = cleaned(grain_voxels(slab.values, level, settings.threshold), settings.cleaning)
+    found, components = components_of_slab(mask[:, :, slab.inner], slab.first)
+    numbers.write(slab.first, -found)
+    return components
 
 
-def _shape(array: NDArray[Any]) -> tuple[int, int, int]:
-    nx, ny, nz = array.shape
-    return nx, ny, nz
+def _join_slab(numbers: SharedArray, body_of: SharedArray, part: tuple[tuple[int, int], int]) -> None:
+    _relabel_slab(numbers, body_of, *part)

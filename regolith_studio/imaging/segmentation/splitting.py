@@ -7,7 +7,8 @@ together (too large).
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
 from itertools import product
 from typing import Any
 
@@ -22,7 +23,7 @@ from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray
 from regolith_studio.imaging.bounding_boxes import Box, box_between, grown, n_voxels, within
 from regolith_studio.imaging.connected_components import ConnectedComponents, pores_filled
 from regolith_studio.imaging.segmentation.watershed import WatershedBasins, find_basins
-from regolith_studio.imaging.volume_slabs import ParallelMap
+from regolith_studio.imaging.volume_slabs import ParallelMap, SharedArray, in_batches
 
 OpenEnds = tuple[tuple[bool, bool], ...]
 """For each axis, whether a mask goes on beyond the array at its low and its high end."""
@@ -124,65 +125,131 @@ class TileSettings:
 
 @dataclass(frozen=True, eq=False)
 class Tile:
-    """A body, or a tile of one with its margin: all that its grains follow from; picklable.
-
-    Parameters
-    ----------
-    mask
-        Voxels of the body, shape (nx, ny, nz).
-    core
-        Where the tile is in the mask: grains whose peak lies there are the tile's own.
-    edges, settings, continued
-        As in :func:`split`.
-    ends
-        Where the mask cuts the body.
-    final
-        Whether grains that are cut are taken as they are.
-    """
-
-    mask: BoolArray
-    core: Box
-    edges: FloatArray
-    settings: SplittingSettings
-    continued: OpenEnds
-    ends: OpenEnds
-    final: bool
-
-
-def grains_of_tile(tile: Tile) -> NDArray[np.int32] | None:
-    """A tile's own grains, 1 to n, and 0 elsewhere, shape of its mask; ``None`` if one is cut by its ends."""
-    grains, sites = split(tile.mask, tile.edges, tile.settings, tile.continued)
-    own = _inside(sites, tile.core)
-    if not tile.final and own[_touching(grains, tile.ends) - 1].any():
-        return None
-    number = np.zeros(len(own) + 1, dtype=np.int32)
-    number[1:][own] = 1 + np.arange(np.count_nonzero(own))
-    return number[grains]
-
-
-@dataclass(frozen=True)
-class _Piece:
-    """A core of a body, and the body's box."""
-
-    body: int
-    box: Box
-    core: Box
-
-    def outer(self, margin: int) -> Box:
-        """The core with a margin within the body's box."""
-        return grown(self.core, margin, self.box)
-
-
-class GrainSplitter:
-    """Parts bodies into grains, in place.
-
-    Pores are filled first and grains written down last, so that no tile depends on what another has found,
-    and tiles can be parted by several processes.
+    """A body, or a tile of one with its margin, in an array of bodies: all that its grains follow from.
 
     Parameters
     ----------
     numbers
-        Provisional numbers of bodies, shape (nx, ny, nz), int32; a voxel of grain k becomes -k.
+        Body of each voxel of the volume.
+    body
+        Its number.
+    box, core
+        Box of the body, and of the tile: grains whose peak lies there are the tile's own.
+    margin
+        Looked at around the tile, within the body's box.
+    """
+
+    numbers: SharedArray
+    body: int
+    box: Box
+    core: Box
+    margin: int = 0
+
+    @property
+    def outer(self) -> Box:
+        """The tile with its margin."""
+        return grown(self.core, self.margin, self.box)
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether the body is not cut into tiles."""
+        return self.core == self.box
+
+    def region(self) -> NDArray[Any]:
+        """Bodies in the tile and its margin."""
+        return np.asarray(self.numbers.array[self.outer])
+
+    def continued(self) -> OpenEnds:
+        """Ends at which grains may go on: the border of the scan, and where a tile cuts the body."""
+        x, y, z = (
+            (side.start == 0 or cut_low, side.stop == n or cut_high)
+            for side, n, (cut_low, cut_high) in zip(
+                self.outer, self.numbers.shape, _ends(self.outer, self.box), strict=True
+            )
+        )
+        return x, y, z
+
+
+@dataclass(frozen=True, eq=False)
+class TileGrains:
+    """The grains that a tile has found.
+
+    Parameters
+    ----------
+    box
+        Where they lie in the volume.
+    grains
+        1 to n, and 0 elsewhere, shape of the box, in the smallest type that holds n.
+    """
+
+    box: Box
+    grains: NDArray[np.unsignedinteger[Any]]
+
+
+def pores_of_tile(tile: Tile) -> IntArray:
+    """Voxels of pores of the tile's body, along x, y and z of the volume, shape (n, 3)."""
+    region = tile.region()
+    pores = _with_pores(region, tile.body) & (region == 0)
+    return np.asarray(np.argwhere(pores) + [side.start for side in tile.outer])
+
+
+def grains_of_tile(
+    tile: Tile, edges: FloatArray, settings: SplittingSettings, fill_pores: bool, final: bool
+) -> TileGrains | None:
+    """A tile's own grains, or ``None`` if one of them is cut by its ends.
+
+    Parameters
+    ----------
+    edges, settings
+        As in :func:`split`.
+    fill_pores
+        Whether pores of a whole body become part of it; those of tiles are filled before.
+    final
+        Whether grains that are cut are taken as they are.
+    """
+    region, outer = tile.region(), tile.outer
+    if fill_pores and tile.is_whole:
+        mask = _with_pores(region, tile.body) & ((region == 0) | (region == tile.body))
+    else:
+        mask = np.ascontiguousarray(region == tile.body)
+    grains, sites = split(mask, edges, settings, tile.continued())
+    own = _inside(sites, within(tile.core, outer))
+    if not final and own[_touching(grains, _ends(outer, tile.box)) - 1].any():
+        return None
+    n_own = int(np.count_nonzero(own))
+    number = np.zeros(len(own) + 1, dtype=np.min_scalar_type(n_own))
+    number[1:][own] = 1 + np.arange(n_own)
+    return _cropped(number[grains], outer)
+
+
+def _with_pores(region: NDArray[Any], body: int) -> BoolArray:
+    return pores_filled(np.ascontiguousarray(region == body))
+
+
+def _cropped(grains: NDArray[Any], outer: Box) -> TileGrains:
+    """Without the empty margins of the box."""
+    low, high = [], []
+    for axis, side in enumerate(outer):
+        other = tuple(each for each in range(3) if each != axis)
+        filled = np.flatnonzero(grains.any(axis=other))
+        low.append(side.start + (int(filled[0]) if len(filled) else 0))
+        high.append(side.start + (int(filled[-1]) + 1 if len(filled) else 0))
+    box = box_between(low, high)
+    return TileGrains(box, np.ascontiguousarray(grains[within(box, outer)]))
+
+
+class GrainSplitter:
+    """Parts bodies into grains.
+
+    Pores are filled first and grains are written to an array of their own, so that no tile depends on what
+    another has found, and tiles can be parted by several processes.
+
+    Parameters
+    ----------
+    numbers
+        Body of each voxel, shape (nx, ny, nz), int32; pores of bodies that are cut into tiles are filled.
+    labels
+        Zeros of the same shape; a voxel of grain k becomes -k.
     bodies
         What the numbers stand for.
     edges
@@ -195,18 +262,25 @@ class GrainSplitter:
 
     def __init__(
         self,
-        numbers: NDArray[np.int32],
+        numbers: SharedArray,
+        labels: NDArray[np.int32],
         bodies: ConnectedComponents,
         edges: FloatArray,
         settings: SplittingSettings,
         fill_pores: bool = True,
         tiles: TileSettings | None = None,
     ) -> None:
-        self._numbers, self._bodies, self._edges = numbers, bodies, edges
+        self._numbers, self._labels = numbers, labels
+        self._bodies, self._edges = bodies, edges
         self._settings, self._fill = settings, fill_pores
         self._tiles = tiles or TileSettings()
-        self._body_of_grain = np.zeros(1024, dtype=np.int64)
+        self._sizes: list[IntArray] = []
         self.n_grains = 0
+
+    @property
+    def sizes(self) -> IntArray:
+        """Voxels of each grain, shape (n_grains,)."""
+        return np.concatenate([np.zeros(0, dtype=np.int64), *self._sizes])
 
     def steps(self, min_voxels: int = 0, run: ParallelMap = map) -> Iterator[tuple[int, int]]:
         """Part all bodies of at least `min_voxels`; yields pieces done and pieces in all after each.
@@ -214,100 +288,85 @@ class GrainSplitter:
         Parameters
         ----------
         run
-            Applies :func:`grains_of_tile` to tiles.
+            Applies :func:`pores_of_tile` and :func:`grains_of_tile` to tiles.
         """
         wanted = (np.flatnonzero(self._bodies.sizes >= min_voxels) + 1).tolist()
-        pieces = [piece for body in wanted for piece in self._pieces(body)]
-        total, done = len(pieces), 0
-        for piece in pieces if self._fill else ():
-            self._fill_pores(piece)
-            yield 0, total
-        left = pieces
+        left = [tile for body in wanted for tile in self._tiles_of(body)]
+        cut = [tile for tile in left if not tile.is_whole]
+        total, done = len(left), 0
+        if self._fill:
+            for _ in self._fill_pores(cut, run):
+                yield 0, total
         for attempt in range(_ATTEMPTS):
-            trying, left = left, []
-            tiles = (self._tile(piece, attempt) for piece in trying)
-            for piece, found in zip(trying, run(grains_of_tile, tiles), strict=True):
+            margin = self._tiles.margin * 2**attempt
+            trying, left = [replace(tile, margin=margin) for tile in left], []
+            part = partial(
+                grains_of_tile,
+                edges=self._edges,
+                settings=self._settings,
+                fill_pores=self._fill,
+                final=attempt == _ATTEMPTS - 1,
+            )
+            for tile, found in zip(trying, in_batches(run, part, trying, _n_looked_at), strict=True):
                 if found is None:
-                    left.append(piece)
+                    left.append(tile)
                     continue
-                self._write(piece, self._numbers[self._outer(piece, attempt)], found)
+                self._write(found)
                 done += 1
                 yield done, total
-        for piece in pieces:
-            if piece.core != piece.box:
-                self._give_away_rest(piece)
+        for tile in cut:
+            self._give_away_rest(tile)
 
-    def _pieces(self, body: int) -> list[_Piece]:
+    def _tiles_of(self, body: int) -> list[Tile]:
         """The whole body, or tiles that hold some of it."""
         box, step = self._bodies.box(body), self._tiles.core
         if n_voxels(box) <= self._tiles.largest or not self._settings.enabled:
-            return [_Piece(body, box, box)]
+            return [Tile(self._numbers, body, box, box)]
         corners = product(*(range(side.start, side.stop, step) for side in box))
         high = [side.stop for side in box]
         cores = (box_between(low, np.minimum(np.add(low, step), high).tolist()) for low in corners)
-        return [_Piece(body, box, core) for core in cores if self._is_body(self._numbers[core], body).any()]
+        tiles = (Tile(self._numbers, body, box, core) for core in cores)
+        return [tile for tile in tiles if (tile.region() == body).any()]
 
-    def _outer(self, piece: _Piece, attempt: int) -> Box:
-        return piece.outer(self._tiles.margin * 2**attempt)
+    def _fill_pores(self, cut: list[Tile], run: ParallelMap) -> Iterator[None]:
+        """Give pores to their body.
 
-    def _fill_pores(self, piece: _Piece) -> None:
-        """Give pores the number of a voxel of their body."""
-        region = self._numbers[self._outer(piece, 0)]
-        own = np.ascontiguousarray(self._is_body(region, piece.body))
-        pores = pores_filled(own) & (region == 0)
-        if pores.any():
-            region[pores] = region[own][0]
+        A pore is enclosed by its body whatever else is filled already, so that the order does not count.
+        """
+        looked = [replace(tile, margin=self._tiles.margin) for tile in cut]
+        for tile, pores in zip(cut, in_batches(run, pores_of_tile, looked, _n_looked_at), strict=True):
+            place = tuple(pores.T)
+            numbers = self._numbers.array
+            free = numbers[place] == 0
+            numbers[tuple(axis[free] for axis in place)] = tile.body
+            yield
+        self._numbers.publish()
 
-    def _tile(self, piece: _Piece, attempt: int) -> Tile:
-        outer = self._outer(piece, attempt)
-        region = self._numbers[outer]
-        mask = np.ascontiguousarray(self._is_body(region, piece.body) | self._is_grain_of(region, piece.body))
-        return Tile(
-            mask,
-            within(piece.core, outer),
-            self._edges,
-            self._settings,
-            self._continued(outer, piece.box),
-            _ends(outer, piece.box),
-            outer == piece.box or attempt == _ATTEMPTS - 1,
-        )
-
-    def _is_body(self, region: NDArray[np.int32], body: int) -> BoolArray:
-        """Voxels of a body that belong to no grain yet."""
-        return np.asarray(self._bodies.body_of[np.maximum(region, 0)] == body)
-
-    def _is_grain_of(self, region: NDArray[np.int32], body: int) -> BoolArray:
-        """Voxels of a body's grains."""
-        return np.asarray(self._body_of_grain[np.maximum(-region, 0)] == body)
-
-    def _continued(self, outer: Box, box: Box) -> OpenEnds:
-        """Ends at which grains may go on: the border of the scan, and where a tile cuts the body."""
-        x, y, z = (
-            (side.start == 0 or cut_low, side.stop == n or cut_high)
-            for side, n, (cut_low, cut_high) in zip(
-                outer, self._numbers.shape, _ends(outer, box), strict=True
-            )
-        )
-        return x, y, z
-
-    def _write(self, piece: _Piece, region: NDArray[np.int32], grains: NDArray[np.int32]) -> None:
-        count = int(grains.max(initial=0))
-        stop = self.n_grains + count + 1
-        if stop > len(self._body_of_grain):
-            self._body_of_grain = np.concatenate([self._body_of_grain, np.zeros(stop, dtype=np.int64)])
-        self._body_of_grain[self.n_grains + 1 : stop] = piece.body
-        free = (grains > 0) & (region >= 0)
-        region[free] = -(grains[free] + self.n_grains)
+    def _write(self, found: TileGrains) -> None:
+        """Label the voxels of a tile's grains that no earlier tile has taken."""
+        count = int(found.grains.max(initial=0))
+        region = self._labels[found.box]
+        free = (found.grains > 0) & (region == 0)
+        taken = found.grains[free].astype(np.int32)
+        region[free] = -(taken + self.n_grains)
+        self._sizes.append(np.bincount(taken, minlength=count + 1)[1:])
         self.n_grains += count
 
-    def _give_away_rest(self, piece: _Piece) -> None:
+    def _give_away_rest(self, tile: Tile) -> None:
         """Voxels that no tile claimed go to the body's nearest grain."""
-        region = self._numbers[piece.outer(1)]
-        rest = self._is_body(region, piece.body)
-        if rest.any():
-            grains = np.where(self._is_grain_of(region, piece.body), -region, 0)
-            nearest = _expand_labels(grains, distance=float(self._tiles.core))
-            region[rest] = -nearest[rest]
+        wider = replace(tile, margin=1)
+        region, own = self._labels[wider.outer], wider.region() == tile.body
+        rest = own & (region == 0)
+        if not rest.any():
+            return
+        nearest = _expand_labels(np.where(own, -region, 0), distance=float(self._tiles.core))[rest]
+        region[rest] = -nearest
+        given = np.bincount(nearest, minlength=self.n_grains + 1)[1:]
+        self._sizes = [self.sizes + given]
+
+
+def _n_looked_at(tile: Tile) -> int:
+    return n_voxels(tile.outer)
 
 
 def _ends(outer: Box, box: Box) -> OpenEnds:

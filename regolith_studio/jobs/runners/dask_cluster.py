@@ -5,6 +5,7 @@ import logging
 import socket
 import threading
 import time
+import uuid
 from dataclasses import dataclass, field
 from importlib import import_module
 from pathlib import Path
@@ -236,6 +237,29 @@ class DaskRunner:
         handle.future.add_done_callback(lambda future: self._finish(handle, future))
         return handle
 
+    def check_shared(self, path: Path, folder: Path) -> None:
+        """Check that each worker finds a file or folder, and a folder for temporary files, under these paths.
+
+        Raises
+        ------
+        MissingRequirement
+            If one does not.
+        """
+        probe = folder / "probe"
+        probe.write_text(key := uuid.uuid4().hex)
+        for worker, (size, seen) in self._client.run(_size_and_text, str(path), str(probe)).items():
+            if size != _size_of(path):
+                raise MissingRequirement(
+                    f"The worker {worker} does not find {path}, or another file is there; workers read their "
+                    "parts of a volume themselves, from a place that all share."
+                )
+            if seen != key:
+                raise MissingRequirement(
+                    f"The worker {worker} does not see the folder {folder.parent}, where temporary files are "
+                    "written; write the output to a place that all workers share."
+                )
+        probe.unlink()
+
     def close(self) -> None:
         """Cancel what runs and disconnect; a cluster that was started here ends."""
         for handle in list(self._open):
@@ -288,6 +312,19 @@ class DaskRunner:
     def _lost_connection(self) -> str:
         where = f"at {self.address} " if self.address else ""
         return f"The cluster {where}does not answer any more; what it has done is kept, go on with --resume."
+
+
+def _size_of(path: Path) -> int | None:
+    """Bytes of a file, 0 of a folder, and none where there is nothing."""
+    if path.is_dir():
+        return 0
+    return path.stat().st_size if path.is_file() else None
+
+
+def _size_and_text(path: str, probe: str) -> tuple[int | None, str]:
+    """The size of a file, and what the file `probe` holds, as a worker sees them."""
+    there = Path(probe)
+    return _size_of(Path(path)), there.read_text() if there.is_file() else ""
 
 
 def _run_whole(job: Job) -> JobResult:

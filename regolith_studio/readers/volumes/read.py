@@ -76,6 +76,10 @@ class VolumeFile:
             voxels = _whole_numbers(self._file.path, voxels)
         return voxels.T
 
+    def parts(self) -> list[tuple[int, int]]:
+        """Ranges of slices that several processes may read, each its own; none of a packed stream."""
+        return [] if self.in_order else list(self._file.pieces(0, self.shape[2]))
+
     @property
     def origin(self) -> Origin:
         """Centre of the first voxel: the origin."""

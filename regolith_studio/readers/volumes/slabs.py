@@ -154,7 +154,7 @@ def open_slab_reader(
     FileError
         With one sentence if it is not a volume, is damaged, or holds several and none was named.
     """
-    reader = sandbox or volume_sandbox()
+    reader, path = sandbox or volume_sandbox(), path.absolute()  # workers may run in other folders
     if not path.is_dir():
         checked_size(path, largest=None)
     names = member_names(path)

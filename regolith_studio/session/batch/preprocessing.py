@@ -25,6 +25,7 @@ from regolith_studio.io.atomic import staged_folder
 from regolith_studio.io.json_text import json_bytes
 from regolith_studio.jobs.events import Steps
 from regolith_studio.jobs.executor import Executor
+from regolith_studio.jobs.extraction_jobs import extract_each, volume_sha256
 from regolith_studio.jobs.extraction_settings import (
     GrainSettings,
     VolumeInput,
@@ -33,7 +34,6 @@ from regolith_studio.jobs.extraction_settings import (
 )
 from regolith_studio.jobs.model_jobs import GenerationRequest, fit_model, fit_request_for, sample_of_meshes
 from regolith_studio.jobs.particle_jobs import load_particles
-from regolith_studio.jobs.volume_jobs import extract_each, volume_sha256
 from regolith_studio.readers.file_bytes import sha256_of
 from regolith_studio.readers.particles import FileProblem, find_files
 from regolith_studio.readers.shape_files import is_shape_source, read_shape_source
@@ -170,7 +170,7 @@ def _extract_grains(entry: VolumeEntry, base: Path, root: Path, finished: bool, 
         def keep(extracted: ExtractedParticle) -> None:
             rows[extracted.label] = _store_grain(stage, extracted)
 
-        done = yield from extract_each(volume, settings, root.parent, keep, executor.map)
+        done = yield from extract_each(volume, settings, root.parent, keep, executor)
         (stage / RECIPE).write_bytes(json_bytes(recipe_document(volume, settings, done)))
         (stage / INDEX).write_bytes(json_bytes([rows[label] for label in sorted(rows)]))
     return folder

@@ -23,8 +23,8 @@ from regolith_studio.io.atomic import listed_hashes, staged_folder, write_bytes
 from regolith_studio.io.tables import Column, Table, csv_bytes, csv_text
 from regolith_studio.jobs.events import Started, Steps
 from regolith_studio.jobs.executor import Executor
+from regolith_studio.jobs.extraction_jobs import extract_measured, volume_sha256
 from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput
-from regolith_studio.jobs.volume_jobs import extract_measured, volume_sha256
 from regolith_studio.messages import N_, Message
 from regolith_studio.readers.volumes.files import volume_files
 from regolith_studio.session.outputs.descriptors import UNITS

@@ -18,10 +18,10 @@ from regolith_studio.io.atomic import write_bytes
 from regolith_studio.io.json_text import json_bytes
 from regolith_studio.io.stl import stl_bytes
 from regolith_studio.io.tables import Cell, Column, Table, csv_text
+from regolith_studio.jobs.extraction_jobs import ExtractedFile
 from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput
 from regolith_studio.jobs.model_jobs import GenerationRequest, particle_names
 from regolith_studio.jobs.particle_jobs import MeasuredParticle
-from regolith_studio.jobs.volume_jobs import ExtractedFile
 from regolith_studio.messages import N_
 from regolith_studio.readers.shape_files import ShapeSource
 from regolith_studio.session.outputs.descriptors import described, descriptor_table

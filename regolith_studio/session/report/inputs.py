@@ -7,7 +7,7 @@ from regolith_studio.errors import InputError
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.jobs.events import Progress, Started, Steps
 from regolith_studio.jobs.executor import open_executor
-from regolith_studio.jobs.volume_jobs import scratch_folder
+from regolith_studio.jobs.scan_jobs import scratch_folder
 from regolith_studio.messages import N_
 from regolith_studio.readers.particles import FileProblem, collect_particles
 from regolith_studio.session.batch.inputs import BatchInputs

@@ -28,7 +28,7 @@ from regolith_studio.imaging.segmentation.pixel_features import FeatureSettings,
 from regolith_studio.imaging.segmentation.segment import SegmentationSettings, preview, segment
 from regolith_studio.imaging.segmentation.thresholding import ThresholdSettings
 from regolith_studio.imaging.volume import Volume
-from regolith_studio.imaging.volume_slabs import ScratchArrays, thick_slabs
+from regolith_studio.imaging.volume_slabs import ScratchArrays, SharedArray
 
 PROBABLE = ThresholdSettings("probability", 0.5)
 THREE = (PixelClass("resin", False), PixelClass("bright mineral", True), PixelClass("dark mineral", True))
@@ -168,7 +168,7 @@ def test_that_the_map_does_not_depend_on_how_the_volume_is_read(monkeypatch: pyt
     classifier = train(training)
     alone = []
     for first in range(24, -1, -8):  # each slab by itself, the last one first
-        (slab,) = thick_slabs(volume, [(first, first + 8)], classifier.features.margin)
+        slab = SharedArray(volume.array).thick(first, first + 8, classifier.features.margin)
         alone.insert(0, slab_probability(classifier, slab, volume.shape))
     assert np.array_equal(np.concatenate(alone, axis=2), predicted(training, volume))
 

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from scipy import ndimage
 
-from regolith_studio.imaging.connected_components import ComponentCounter
+from regolith_studio.imaging.connected_components import ConnectedComponents, components_of_slab
 from regolith_studio.imaging.segmentation.splitting import GrainSplitter, SplittingSettings, TileSettings
-from regolith_studio.imaging.volume_slabs import ParallelMap
+from regolith_studio.imaging.volume_slabs import ParallelMap, SharedArray
 
 SPONGE = ndimage.gaussian_filter(np.random.default_rng(7).standard_normal((44, 46, 48)), 2.0) > -0.02
 """Some large bodies with pores, and bodies within pores."""
@@ -22,15 +22,17 @@ def backwards(function: Callable[[Any], Any], items: Iterable[Any]) -> Iterator[
 
 
 def parted(run: ParallelMap, fill_pores: bool) -> tuple[np.ndarray, int]:
-    counter = ComponentCounter()
-    numbers = counter.numbered(SPONGE, 0)
+    numbers, slab = components_of_slab(SPONGE, 0)
+    bodies = ConnectedComponents(slab.sizes, slab.low, slab.high)
+    labels = np.zeros(SPONGE.shape, np.int32)
     tiles = TileSettings(largest=1000, core=20, margin=4)
     splitter = GrainSplitter(
-        numbers, counter.finish(), np.ones(3), SplittingSettings(), fill_pores=fill_pores, tiles=tiles
+        SharedArray(numbers), labels, bodies, np.ones(3), SplittingSettings(), fill_pores, tiles
     )
     for _ in splitter.steps(run=run):
         pass
-    return numbers, splitter.n_grains
+    assert np.array_equal(splitter.sizes, np.bincount(-labels.ravel(), minlength=splitter.n_grains + 1)[1:])
+    return labels, splitter.n_grains
 
 
 @pytest.mark.parametrize("fill_pores", [True, False])

@@ -13,7 +13,7 @@ from regolith_studio.imaging import slice_images
 from regolith_studio.imaging.sample_volumes import sample_volume
 from regolith_studio.imaging.segmentation.segment import segment
 from regolith_studio.imaging.volume import Volume
-from regolith_studio.jobs import volume_jobs
+from regolith_studio.jobs import scan_jobs
 from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput
 from regolith_studio.readers.volumes.header import RawLayout
 from regolith_studio.session.batch.preprocessing import entry_of
@@ -176,7 +176,7 @@ def test_that_a_large_volume_is_seen_coarsely_with_its_size_before_it_has_been_r
         assert not page.workflow.search.isEnabled()
         assert not page.brush.isEnabled()
 
-    monkeypatch.setattr(volume_jobs, "LOOK_BYTES", 1000)
+    monkeypatch.setattr(scan_jobs, "LOOK_BYTES", 1000)
     page.opening.looked.connect(look)
     page.opening.read(VolumeInput(part, 2.3, kind="grey"))
     wait(lambda: page.scan is not None and page.scan.volume.voxel_size[0] == 2.3, SECONDS)
@@ -196,8 +196,8 @@ def test_that_a_large_volume_is_seen_coarsely_with_its_size_before_it_has_been_r
 def test_that_a_large_volume_stays_on_the_disk_and_gives_the_same_grains(
     suffix, page, tmp_path, monkeypatch, wait
 ):
-    monkeypatch.setattr(volume_jobs, "IN_MEMORY", 100_000)
-    monkeypatch.setattr(volume_jobs, "scratch_folder", lambda: tmp_path)
+    monkeypatch.setattr(scan_jobs, "IN_MEMORY", 100_000)
+    monkeypatch.setattr(scan_jobs, "scratch_folder", lambda: tmp_path)
     monkeypatch.setattr(slice_images, "COARSE_BYTES", 100_000)
     array = sample_volume("grey").array[:90, :80, :70]
     if suffix == "npy":

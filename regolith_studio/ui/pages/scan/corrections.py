@@ -29,7 +29,7 @@ from regolith_studio.jobs.object_jobs import (
     describe_grains,
     save_objects,
 )
-from regolith_studio.jobs.volume_jobs import GrainSegmentation
+from regolith_studio.jobs.scan_jobs import GrainSegmentation
 from regolith_studio.session.history import History
 from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.pages.scan.brush_panel import Brush

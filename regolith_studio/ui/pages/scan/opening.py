@@ -12,7 +12,7 @@ from regolith_studio.errors import RegolithError
 from regolith_studio.imaging.sample_volumes import sample_file
 from regolith_studio.jobs.events import Job
 from regolith_studio.jobs.extraction_settings import VolumeInput
-from regolith_studio.jobs.volume_jobs import FirstLook, Scan, read_header, read_sample_scan, read_scan
+from regolith_studio.jobs.scan_jobs import FirstLook, Scan, read_header, read_sample_scan, read_scan
 from regolith_studio.readers.volume_formats import volume_suffixes
 from regolith_studio.readers.volumes.header import VolumeHeader, layout_from_name
 from regolith_studio.readers.volumes.region import RegionSettings, crop_of_rectangle

@@ -16,7 +16,7 @@ from regolith_studio.imaging.segmentation.strokes import ERASER
 from regolith_studio.imaging.volume import Volume
 from regolith_studio.jobs.events import Job
 from regolith_studio.jobs.extraction_settings import GrainSettings
-from regolith_studio.jobs.volume_jobs import GrainSegmentation, Scan, find_grains, view_labels
+from regolith_studio.jobs.scan_jobs import GrainSegmentation, Scan, find_grains, view_labels
 from regolith_studio.ui.layout import CONTROLS_WIDTH, padded, scrolled_column, side_by_side, tabs
 from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.pages.scan.brush_panel import Brush, BrushPanel

@@ -5,7 +5,7 @@ from PySide6.QtCore import QObject, QTimer, Signal
 from regolith_studio.imaging.bounding_boxes import Box
 from regolith_studio.imaging.segmentation.segment import Segmentation, SegmentationSettings
 from regolith_studio.jobs.events import Job
-from regolith_studio.jobs.volume_jobs import Scan, preview_heights, preview_part
+from regolith_studio.jobs.scan_jobs import Scan, preview_heights, preview_part
 from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.pages.scan.controls import SegmentationControls
 from regolith_studio.ui.pages.scan.slices_view import SlicesView

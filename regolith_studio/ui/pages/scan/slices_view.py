@@ -14,7 +14,7 @@ from regolith_studio.imaging.segmentation.segment import Segmentation
 from regolith_studio.imaging.slice_images import SliceImages
 from regolith_studio.imaging.volume import Volume
 from regolith_studio.jobs.classifier_jobs import SlicePrediction
-from regolith_studio.jobs.volume_jobs import Scan
+from regolith_studio.jobs.scan_jobs import Scan
 from regolith_studio.ui.layout import equal_parts
 from regolith_studio.ui.pages.scan.brush_panel import Brush, BrushPanel
 from regolith_studio.ui.pages.scan.grains_view import GrainsView

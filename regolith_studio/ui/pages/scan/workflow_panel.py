@@ -5,7 +5,7 @@ from PySide6.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
 
 from regolith_studio.imaging.segmentation.segment import Segmentation
 from regolith_studio.imaging.volume import Volume
-from regolith_studio.jobs.volume_jobs import FirstLook, Scan
+from regolith_studio.jobs.scan_jobs import FirstLook, Scan
 from regolith_studio.messages import N_
 from regolith_studio.ui.pages.scan.brush_panel import button
 from regolith_studio.ui.translation import tr, tr_count, translate

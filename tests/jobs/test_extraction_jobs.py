@@ -13,18 +13,11 @@ from regolith_studio.imaging.sample_volumes import sample_file, sample_volume
 from regolith_studio.imaging.segmentation.denoising import DenoiseSettings
 from regolith_studio.imaging.segmentation.segment import SegmentationSettings
 from regolith_studio.imaging.segmentation.thresholding import ThresholdSettings
-from regolith_studio.jobs import volume_jobs
+from regolith_studio.jobs import scan_jobs
 from regolith_studio.jobs.events import Progress, Started, Step, Steps
+from regolith_studio.jobs.extraction_jobs import extract_file, extract_labels, extract_measured, volume_sha256
 from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput, read_grain_settings
-from regolith_studio.jobs.volume_jobs import (
-    extract_file,
-    extract_labels,
-    extract_measured,
-    preview_heights,
-    preview_part,
-    segment_volume,
-    volume_sha256,
-)
+from regolith_studio.jobs.scan_jobs import preview_heights, preview_part, segment_volume
 from regolith_studio.readers.file_bytes import sha256_of
 from regolith_studio.resources import resource
 
@@ -81,7 +74,7 @@ def test_that_temporary_files_give_the_same_particles_and_vanish(
 ) -> None:
     scratch = part.path.parent / "scratch"
     _, memory = played(extract_file(part, QUICK))
-    monkeypatch.setattr(volume_jobs, "IN_MEMORY", 0)
+    monkeypatch.setattr(scan_jobs, "IN_MEMORY", 0)
     steps = extract_file(part, QUICK, scratch)
     while next(steps) != Started("Extracting particles"):
         pass
@@ -96,7 +89,7 @@ def test_that_temporary_files_give_the_same_particles_and_vanish(
 def test_that_a_cancelled_run_leaves_no_temporary_files(
     part: VolumeInput, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(volume_jobs, "IN_MEMORY", 0)
+    monkeypatch.setattr(scan_jobs, "IN_MEMORY", 0)
     steps = extract_file(part, QUICK, part.path.parent / "scratch")
     for _ in range(4):
         next(steps)

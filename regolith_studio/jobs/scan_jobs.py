@@ -1,12 +1,10 @@
-"""Jobs for volumes (section 2.1): read, preview, segment, and extract particles."""
+"""Jobs that show a scan before its particles are made: read it, look at slices, find and preview grains."""
 
-import hashlib
+import math
 import os
 import tempfile
-from collections import deque
-from collections.abc import Callable, Generator, Iterator, Sequence
+from collections.abc import Generator, Sequence
 from dataclasses import dataclass, field
-from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -15,15 +13,7 @@ from numpy.typing import NDArray
 
 from regolith_studio.errors import InputError, RegolithError
 from regolith_studio.geometry.arrays import FloatArray
-from regolith_studio.geometry.particle import Source
 from regolith_studio.imaging.bounding_boxes import Box
-from regolith_studio.imaging.extraction import (
-    ExtractedParticle,
-    Extraction,
-    ExtractionProgress,
-    ExtractionSettings,
-    extraction_steps,
-)
 from regolith_studio.imaging.label_surface import label_surface
 from regolith_studio.imaging.sample_volumes import SampleVolume, sample_volume
 from regolith_studio.imaging.segmentation.segment import (
@@ -39,16 +29,17 @@ from regolith_studio.imaging.segmentation.thresholding import Histogram, histogr
 from regolith_studio.imaging.slice_images import SliceImages, coarse_copy
 from regolith_studio.imaging.sparse_slices import sparse_slices
 from regolith_studio.imaging.volume import Volume, VolumeKind
-from regolith_studio.imaging.volume_slabs import ParallelMap, ScratchArrays, SliceSource, slab_ranges
+from regolith_studio.imaging.volume_slabs import (
+    ParallelMap,
+    ScratchArrays,
+    SliceSource,
+    slab_ranges,
+    unpacked,
+)
 from regolith_studio.jobs.compile_kernels import compile_first
-from regolith_studio.jobs.events import Job, Partial, Progress, Started, Step, Steps
-from regolith_studio.jobs.executor import Executor, open_executor, value_of
+from regolith_studio.jobs.events import Partial, Progress, Started, Step, Steps
 from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput
-from regolith_studio.jobs.label_jobs import write_labels
-from regolith_studio.jobs.particle_jobs import MeasuredParticle, measure_one
 from regolith_studio.messages import N_, Message
-from regolith_studio.readers.file_bytes import sha256_of
-from regolith_studio.readers.volumes.files import member_folder, member_names
 from regolith_studio.readers.volumes.read import VolumeFile, describe_volume
 from regolith_studio.readers.volumes.region import RegionSettings
 
@@ -57,7 +48,8 @@ IN_MEMORY = 2**30
 LOOK_BYTES = 2**26
 """Bytes of a volume beyond which a few slices are shown before all are read."""
 LOOK_VOXELS, LOOK_SECONDS = 2**24, 0.6
-_LABEL_BYTES = 4
+_LABEL_BYTES = 8
+"""Of the body and the grain of a voxel."""
 _SAMPLED = 4_000_000
 _CONTRAST = (0.002, 0.998)
 _Result = TypeVar("_Result")
@@ -173,14 +165,26 @@ def read_scan(given: VolumeInput, region: RegionSettings | None = None) -> Steps
     return scan_of(_volume_of(source, array))
 
 
+def read_all(
+    source: SliceSource, scratch: ScratchArrays, run: ParallelMap = map
+) -> Generator[Step, None, Volume]:
+    """All voxels of a volume in `scratch`, where parts of them can be worked on."""
+    steps = unpacked(source, scratch, run)
+    while True:
+        try:
+            yield Progress(*next(steps))
+        except StopIteration as end:
+            found: Volume = end.value
+            return found
+
+
 def find_grains(scan: Scan, settings: SegmentationSettings) -> Steps:
     """Segment a volume, a large one in temporary files; returns :class:`GrainSegmentation`."""
     yield from compile_first("scan")
-    large = scan.volume.array.size * (_LABEL_BYTES + scan.volume.dtype.itemsize) > IN_MEMORY
-    scratch = ScratchArrays(scratch_folder() if large else None)
+    scratch = scratch_arrays(scan.volume, scratch_folder())
     try:
         found: Segmentation = yield from segment_volume(scan.volume, settings, scratch)
-        if not large:
+        if scratch.folder is None:
             return GrainSegmentation(found, SliceImages(found.labels.array), scratch)
         yield Started(N_("Preparing the view"))
         return GrainSegmentation(found, (yield from slice_images(found.labels)), scratch)
@@ -199,6 +203,15 @@ def scratch_folder() -> Path:
     """Where temporary files of many gigabytes go: on a disk, where the system tells disks from memory."""
     there = Path("/var/tmp")
     return there if there.is_dir() and os.access(there, os.W_OK) else Path(tempfile.gettempdir())
+
+
+def scratch_arrays(volume: SliceSource, folder: Path | None) -> ScratchArrays:
+    """For what is computed from a volume: in memory, or in a folder beyond :data:`IN_MEMORY`."""
+    size = volume.dtype.itemsize
+    a_voxel = (_LABEL_BYTES + size if volume.kind == "grey" else 0) + (
+        0 if isinstance(volume, Volume) else size
+    )
+    return ScratchArrays(folder if _n_voxels(volume) * a_voxel > IN_MEMORY else None)
 
 
 def read_sample_scan(kind: SampleVolume = "grey", region: RegionSettings | None = None) -> Steps:
@@ -248,7 +261,7 @@ def count_over_heights(
         raise InputError(
             f"{given.path.name} holds labels, which are grains already; there is no h to choose."
         )
-    with ScratchArrays(scratch if working_bytes(volume) > IN_MEMORY else None) as arrays:
+    with scratch_arrays(volume, scratch) as arrays:
         return (yield from reported(grains_over_heights(volume, heights, settings.segmentation, arrays)))
 
 
@@ -285,112 +298,17 @@ def slice_images(volume: Volume) -> Generator[Step, None, SliceImages]:
 
 
 def _n_bytes(source: SliceSource) -> int:
-    return int(np.prod([int(edge) for edge in source.shape])) * source.dtype.itemsize
+    return _n_voxels(source) * source.dtype.itemsize
+
+
+def _n_voxels(source: SliceSource) -> int:
+    return math.prod(int(edge) for edge in source.shape)
 
 
 def _subsample(array: NDArray[Any]) -> NDArray[Any]:
     """Every n-th voxel of each axis, so that not many more than `_SAMPLED` remain."""
     step = max(1, int(np.ceil((array.size / _SAMPLED) ** (1 / 3))))
     return array[::step, ::step, ::step]
-
-
-_WORKING_BYTES = 4
-
-ParticleCallback = Callable[[ExtractedParticle, MeasuredParticle], None]
-
-
-@dataclass(frozen=True)
-class SegmentationSummary:
-    """What is worth keeping of a segmentation once its labels are gone."""
-
-    level: float
-    n_bodies: int
-    n_grains: int
-    n_small: int
-    n_not_finite: int
-
-
-@dataclass(frozen=True)
-class ExtractedFile:
-    """What came out of a file.
-
-    Parameters
-    ----------
-    extraction
-        The particles, where they were collected.
-    facts
-        Of the segmentation, where there was one.
-    sha256
-        Of the file, or of its slices one after the other.
-    shape, dtype, voxel_size, kind
-        Of the volume; micrometres.
-    """
-
-    extraction: Extraction
-    facts: SegmentationSummary | None
-    sha256: str
-    shape: tuple[int, int, int]
-    dtype: str
-    voxel_size: tuple[float, ...]
-    kind: VolumeKind
-
-
-def extract_file(given: VolumeInput, recipe: GrainSettings, scratch: Path | None = None) -> Steps:
-    """Read a volume, segment it if it is grey, and make its particles; returns :class:`ExtractedFile`.
-
-    Parameters
-    ----------
-    scratch
-        Folder for temporary files where the volume is too large for the memory.
-
-    Raises
-    ------
-    FileError
-        If the file is no volume.
-    InputError
-        If there is no particle in it, or the voxel size is not known.
-    """
-    return (yield from _extract(given, recipe, scratch, _collect, collect=True))
-
-
-def extract_each(
-    given: VolumeInput,
-    recipe: GrainSettings,
-    scratch: Path | None,
-    sink: Callable[[ExtractedParticle], None],
-    run: ParallelMap = map,
-) -> Steps:
-    """As :func:`extract_file`, but each particle is passed to `sink` and not kept, in the order of slabs.
-
-    `run` applies what is done to slabs, bodies and labels.
-    """
-    return (yield from _extract(given, recipe, scratch, partial(_pass_on, sink=sink), run=run))
-
-
-def extract_measured(
-    given: VolumeInput,
-    recipe: GrainSettings,
-    scratch: Path | None,
-    sink: ParticleCallback,
-    workers: int | Executor = 1,
-    labels_file: Path | None = None,
-) -> Steps:
-    """As :func:`extract_file`, but each particle is measured, handed to `sink` and forgotten.
-
-    Parameters
-    ----------
-    sink
-        Called in this process with each particle in the order of slabs.
-    workers
-        Processes, or an executor, that denoise slabs, part bodies, make surfaces and measure.
-    labels_file
-        Where to write the label volume, if anywhere (:func:`~regolith_studio.jobs.label_jobs.write_labels`).
-    """
-    with open_executor(workers) as executor:
-        consume = partial(_measure_and_pass_on, sink=sink, executor=executor)
-        return (
-            yield from _extract(given, recipe, scratch, consume, labels_file=labels_file, run=executor.map)
-        )
 
 
 def segment_volume(
@@ -416,139 +334,3 @@ def reported(steps: Generator[SegmentationProgress, None, _Result]) -> Generator
             stage = step.stage
             yield Started(stage, step.total)
         yield Progress(step.done, step.total)
-
-
-def extract_labels(
-    labels: SliceSource, settings: ExtractionSettings, path: Path, grey: SliceSource | None = None
-) -> Steps:
-    """Particles of a label volume, in memory or not, that `path` has led to; returns an ``Extraction``.
-
-    They are what :func:`extract_file` makes of the file, if it held the values `grey`.
-    """
-    yield from compile_first("scan")
-    yield Started(N_("Extracting particles"))
-    source = _source_of(path, labels)
-    return (yield from _collect(extraction_steps(labels, settings, path.stem, source, grey=grey)))
-
-
-def _source_of(path: Path, volume: SliceSource) -> Source:
-    edges = "x".join(f"{float(edge):g}" for edge in np.ravel(np.asarray(volume.voxel_size)))
-    return Source(str(path), volume_sha256(path), f"voxel:{edges}")
-
-
-def volume_sha256(path: Path) -> str:
-    """SHA-256 of a file, or of the files of a folder that are one volume one after the other."""
-    names = member_names(path)
-    if not names:
-        return sha256_of(path)
-    digest = hashlib.sha256()
-    for name in names:
-        digest.update(bytes.fromhex(sha256_of(member_folder(path) / name)))
-    return digest.hexdigest()
-
-
-_Extraction = Generator[ExtractionProgress, None, Extraction]
-_Consumer = Callable[[_Extraction], Generator[Step, None, Extraction]]
-
-
-def _extract(
-    given: VolumeInput,
-    recipe: GrainSettings,
-    folder: Path | None,
-    consume: _Consumer,
-    *,
-    collect: bool = False,
-    labels_file: Path | None = None,
-    run: ParallelMap = map,
-) -> Steps:
-    yield from compile_first("scan")
-    yield Started(Message(N_("Reading {name}"), name=given.path.name))
-    volume = recipe.region.of(given.opened())
-    sizes = tuple(float(edge) for edge in np.ravel(np.asarray(volume.voxel_size)))
-    source = _source_of(given.path, volume)
-    with ScratchArrays(folder if working_bytes(volume) > IN_MEMORY else None) as scratch:
-        facts: SegmentationSummary | None = None
-        labels: SliceSource = volume
-        if volume.kind == "grey":
-            found = segment_volume(volume, recipe.segmentation, scratch, run)
-            segmentation: Segmentation = yield from found
-            facts, labels = _summary_of(segmentation), segmentation.labels
-            del segmentation
-        grey = volume if volume.kind == "grey" else None
-        if labels_file is not None:
-            yield from write_labels(labels, recipe.extraction, labels_file, grey is not None)
-        yield Started(N_("Extracting particles"))
-        group = given.group or given.path.stem
-        steps = extraction_steps(labels, recipe.extraction, group, source, collect, grey, run)
-        extraction = yield from consume(steps)
-    if not extraction.n_found:
-        raise InputError(_no_particle_message(given.path, extraction))
-    return ExtractedFile(
-        extraction, facts, source.sha256, volume.shape, str(volume.dtype), sizes, volume.kind
-    )
-
-
-def _pass_on(
-    steps: _Extraction, sink: Callable[[ExtractedParticle], None]
-) -> Generator[Step, None, Extraction]:
-    while True:
-        try:
-            step = next(steps)
-        except StopIteration as end:
-            found: Extraction = end.value
-            return found
-        sink(step.extracted)
-        yield Progress(step.done, step.total, step.extracted.particle.name)
-
-
-def _collect(steps: _Extraction) -> Generator[Step, None, Extraction]:
-    return (yield from _pass_on(steps, lambda _particle: None))
-
-
-def _measure_and_pass_on(
-    steps: _Extraction, sink: ParticleCallback, executor: Executor
-) -> Generator[Step, None, Extraction]:
-    """Measure particles by other processes while the next ones are extracted."""
-    waiting: deque[ExtractionProgress] = deque()
-    ended: list[Extraction] = []
-
-    def jobs() -> Iterator[Job]:
-        while True:
-            try:
-                step = next(steps)
-            except StopIteration as end:
-                ended.append(end.value)
-                return
-            waiting.append(step)
-            yield Job(measure_one, (step.extracted.particle,))
-
-    for result in executor.results(jobs()):
-        if result is None:
-            continue
-        step = waiting.popleft()
-        sink(step.extracted, value_of(result))
-        yield Progress(step.done, step.total, step.extracted.particle.name)
-    return ended[0]
-
-
-def working_bytes(volume: SliceSource) -> int:
-    voxels = int(np.prod([int(edge) for edge in volume.shape]))
-    return voxels * (_WORKING_BYTES + volume.dtype.itemsize) if volume.kind == "grey" else 0
-
-
-def _summary_of(segmentation: Segmentation) -> SegmentationSummary:
-    return SegmentationSummary(
-        segmentation.level,
-        segmentation.n_bodies,
-        segmentation.n_grains,
-        segmentation.n_small,
-        segmentation.n_not_finite,
-    )
-
-
-def _no_particle_message(path: Path, extraction: Extraction) -> str:
-    counts = f"{len(extraction.border)} touch the border, {len(extraction.small)} are too small"
-    return (
-        f"None of the grains of {path.name} became a particle ({counts}); keep grains at the border, "
-        "take smaller ones, or say whether the volume holds labels or grey values."
-    )

@@ -1,0 +1,256 @@
+"""Jobs that make particles of volumes (section 2.1): read, segment, contour, measure."""
+
+import hashlib
+from collections.abc import Callable, Generator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from regolith_studio.errors import InputError
+from regolith_studio.geometry.particle import Particle, Source
+from regolith_studio.imaging.extraction import (
+    ExtractedParticle,
+    Extraction,
+    ExtractionProgress,
+    ExtractionSettings,
+    extraction_steps,
+)
+from regolith_studio.imaging.segmentation.segment import Segmentation
+from regolith_studio.imaging.volume import Volume, VolumeKind
+from regolith_studio.imaging.volume_slabs import ScratchArrays, SliceSource
+from regolith_studio.jobs.compile_kernels import compile_first
+from regolith_studio.jobs.events import Progress, Started, Step, Steps
+from regolith_studio.jobs.executor import Executor, open_executor
+from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput
+from regolith_studio.jobs.label_jobs import write_labels
+from regolith_studio.jobs.particle_jobs import MeasuredParticle, measure_particle
+from regolith_studio.jobs.scan_jobs import read_all, scratch_arrays, scratch_folder, segment_volume
+from regolith_studio.messages import N_, Message
+from regolith_studio.readers.file_bytes import sha256_of
+from regolith_studio.readers.volumes.files import member_folder, member_names
+
+ParticleCallback = Callable[[ExtractedParticle, MeasuredParticle], None]
+
+
+@dataclass(frozen=True)
+class SegmentationSummary:
+    """What is worth keeping of a segmentation once its labels are gone."""
+
+    level: float
+    n_bodies: int
+    n_grains: int
+    n_small: int
+    n_not_finite: int
+
+
+@dataclass(frozen=True)
+class ExtractedFile:
+    """What came out of a file.
+
+    Parameters
+    ----------
+    extraction
+        The particles, where they were collected.
+    facts
+        Of the segmentation, where there was one.
+    sha256
+        Of the file, or of its slices one after the other.
+    shape, dtype, voxel_size, kind
+        Of the volume; micrometres.
+    """
+
+    extraction: Extraction
+    facts: SegmentationSummary | None
+    sha256: str
+    shape: tuple[int, int, int]
+    dtype: str
+    voxel_size: tuple[float, ...]
+    kind: VolumeKind
+
+
+def extract_file(given: VolumeInput, recipe: GrainSettings, scratch: Path | None = None) -> Steps:
+    """Read a volume, segment it if it is grey, and make its particles; returns :class:`ExtractedFile`.
+
+    Parameters
+    ----------
+    scratch
+        Folder for temporary files where the volume is too large for the memory.
+
+    Raises
+    ------
+    FileError
+        If the file is no volume.
+    InputError
+        If there is no particle in it, or the voxel size is not known.
+    """
+    return (yield from _extract(given, recipe, scratch, Executor(), collect=True))
+
+
+def extract_each(
+    given: VolumeInput,
+    recipe: GrainSettings,
+    scratch: Path | None,
+    sink: Callable[[ExtractedParticle], None],
+    workers: int | Executor = 1,
+) -> Steps:
+    """As :func:`extract_file`, but each particle is passed to `sink` and not kept, in the order of labels.
+
+    Parameters
+    ----------
+    workers
+        Processes, or an executor. Other processes than this one read the volume and the temporary files
+        themselves; a cluster's must find both under the same paths.
+
+    Raises
+    ------
+    MissingRequirement
+        If a worker does not find them.
+    """
+    with open_executor(workers) as executor:
+        return (yield from _extract(given, recipe, scratch, executor, lambda step: sink(step.extracted)))
+
+
+def extract_measured(
+    given: VolumeInput,
+    recipe: GrainSettings,
+    scratch: Path | None,
+    sink: ParticleCallback,
+    workers: int | Executor = 1,
+    labels_file: Path | None = None,
+) -> Steps:
+    """As :func:`extract_each`, but each particle is measured where it is made, and passed on with that.
+
+    Parameters
+    ----------
+    labels_file
+        Where to write the label volume, if anywhere (:func:`~regolith_studio.jobs.label_jobs.write_labels`).
+    """
+    yield from compile_first("describe")
+
+    def hand_over(step: ExtractionProgress) -> None:
+        sink(step.extracted, step.measured)
+
+    with open_executor(workers) as executor:
+        return (
+            yield from _extract(
+                given, recipe, scratch, executor, hand_over, measure=measure_particle, labels_file=labels_file
+            )
+        )
+
+
+def extract_labels(
+    labels: Volume, settings: ExtractionSettings, path: Path, grey: Volume | None = None
+) -> Steps:
+    """Particles of a label volume, in memory or not, that `path` has led to; returns an ``Extraction``.
+
+    They are what :func:`extract_file` makes of the file, if it held the values `grey`.
+    """
+    yield from compile_first("scan")
+    yield Started(N_("Extracting particles"))
+    source = _source_of(path, labels)
+    return (yield from _handed_over(extraction_steps(labels, settings, path.stem, source, grey=grey)))
+
+
+def _source_of(path: Path, volume: Volume) -> Source:
+    edges = "x".join(f"{float(edge):g}" for edge in np.ravel(np.asarray(volume.voxel_size)))
+    return Source(str(path), volume_sha256(path), f"voxel:{edges}")
+
+
+def volume_sha256(path: Path) -> str:
+    """SHA-256 of a file, or of the files of a folder that are one volume one after the other."""
+    names = member_names(path)
+    if not names:
+        return sha256_of(path)
+    digest = hashlib.sha256()
+    for name in names:
+        digest.update(bytes.fromhex(sha256_of(member_folder(path) / name)))
+    return digest.hexdigest()
+
+
+_Sink = Callable[[ExtractionProgress], None]
+
+
+def _extract(
+    given: VolumeInput,
+    recipe: GrainSettings,
+    folder: Path | None,
+    executor: Executor,
+    sink: _Sink | None = None,
+    *,
+    collect: bool = False,
+    measure: Callable[[Particle], MeasuredParticle] | None = None,
+    labels_file: Path | None = None,
+) -> Steps:
+    yield from compile_first("scan")
+    yield Started(Message(N_("Reading {name}"), name=given.path.name))
+    source = recipe.region.of(given.opened())
+    run = map if executor.in_this_thread else executor.map
+    with _scratch(source, given.path, folder, executor) as scratch:
+        volume: Volume = yield from read_all(source, scratch, run)
+        origin = _source_of(given.path, volume)
+        facts: SegmentationSummary | None = None
+        labels, grey = volume, None
+        if volume.kind == "grey":
+            segmentation: Segmentation = yield from segment_volume(volume, recipe.segmentation, scratch, run)
+            facts, labels, grey = _summary_of(segmentation), segmentation.labels, volume
+            del segmentation
+        if labels_file is not None:
+            yield from write_labels(labels, recipe.extraction, labels_file, grey is not None)
+        yield Started(N_("Extracting particles"))
+        group = given.group or given.path.stem
+        steps = extraction_steps(labels, recipe.extraction, group, origin, collect, grey, run, measure)
+        extraction = yield from _handed_over(steps, sink)
+    if not extraction.n_found:
+        raise InputError(_no_particle_message(given.path, extraction))
+    sizes = tuple(volume.voxel_size.tolist())
+    return ExtractedFile(
+        extraction, facts, origin.sha256, volume.shape, str(volume.dtype), sizes, volume.kind
+    )
+
+
+def _scratch(source: SliceSource, path: Path, folder: Path | None, executor: Executor) -> ScratchArrays:
+    """Arrays for what is computed from a volume, in files that all workers see if there are several."""
+    if executor.in_this_thread:
+        return scratch_arrays(source, folder)
+    scratch = ScratchArrays(folder or scratch_folder())
+    try:
+        if scratch.folder is not None:
+            executor.check_shared(path, scratch.folder)
+    except BaseException:
+        scratch.close()
+        raise
+    return scratch
+
+
+def _handed_over(
+    steps: Generator[ExtractionProgress, None, Extraction], sink: _Sink | None = None
+) -> Generator[Step, None, Extraction]:
+    """The steps as events, each given to `sink` before."""
+    while True:
+        try:
+            step = next(steps)
+        except StopIteration as end:
+            found: Extraction = end.value
+            return found
+        if sink is not None:
+            sink(step)
+        yield Progress(step.done, step.total, step.extracted.particle.name)
+
+
+def _summary_of(segmentation: Segmentation) -> SegmentationSummary:
+    return SegmentationSummary(
+        segmentation.level,
+        segmentation.n_bodies,
+        segmentation.n_grains,
+        segmentation.n_small,
+        segmentation.n_not_finite,
+    )
+
+
+def _no_particle_message(path: Path, extraction: Extraction) -> str:
+    counts = f"{len(extraction.border)} touch the border, {len(extraction.small)} are too small"
+    return (
+        f"None of the grains of {path.name} became a particle ({counts}); keep grains at the border, "
+        "take smaller ones, or say whether the volume holds labels or grey values."
+    )
