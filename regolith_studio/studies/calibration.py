@@ -125,7 +125,7 @@ class CalibrationPosterior:
     points, weights
         Values of the parameters, shape (m, d), and their probabilities, shape (m,).
     best
-        The point of the highest density, shape (d,).
+        The point of the highest density within the intervals, shape (d,).
     intervals
         Of :data:`CONFIDENCE` for each parameter, shape (d, 2).
     predicted, deviations
@@ -181,13 +181,15 @@ def calibrate(
     weights = np.exp(log_likelihood - logsumexp(log_likelihood))
     failed = tried[np.isnan(runs.results).any(axis=1)]
     gain = sum(_variance_reduction(models, target, unit, weights) for models, target in gains)
+    intervals = np.array([_interval(column, weights) for column in points.T])
+    inside = ((points >= intervals[:, 0]) & (points <= intervals[:, 1])).all(axis=1)
     return CalibrationPosterior(
         points=points,
         weights=weights,
-        intervals=np.array([_interval(column, weights) for column in points.T]),
+        intervals=intervals,
         predicted=np.column_stack([mean for mean, _ in moments]),
         deviations=np.column_stack([deviation for _, deviation in moments]),
-        best_index=int(np.argmax(weights)),
+        best_index=int(np.argmax(np.where(inside, weights, -1.0))),
         misfit=float(np.sqrt(misfit.min())),
         next_values=points[np.argmax(np.where(_near(unit, failed), -np.inf, gain))],
     )

@@ -420,6 +420,10 @@
         <translation>Ein Körper rounded/polyhedron ist ein einziges Polyeder; das Format lammps-clumps kann Verbünde aufnehmen.</translation>
     </message>
     <message>
+        <source>A calibration would be stopped; it can be resumed later.</source>
+        <translation>Eine Kalibrierung würde angehalten; sie kann später fortgesetzt werden.</translation>
+    </message>
+    <message>
         <source>A card is made of a fitted sample: fit a model to one first.</source>
         <translation>Eine Karte entsteht aus einer Probe mit Modell: passen Sie zuerst eines an.</translation>
     </message>
@@ -614,6 +618,10 @@
     <message>
         <source>Angle of repose, {count:,} particles</source>
         <translation>Schüttwinkel, {count:,} Partikel</translation>
+    </message>
+    <message>
+        <source>Angle of repose: calibration</source>
+        <translation>Schüttwinkel: Kalibrierung</translation>
     </message>
     <message>
         <source>Angle of repose: study</source>
@@ -816,6 +824,10 @@
         <translation>Datensatz wird gebaut</translation>
     </message>
     <message>
+        <source>Bulk density</source>
+        <translation>Schüttdichte</translation>
+    </message>
+    <message>
         <source>By hand: drag the line</source>
         <translation>Von Hand: Linie ziehen</translation>
     </message>
@@ -842,6 +854,10 @@
     <message>
         <source>CSV, JSON, PNG, SVG</source>
         <translation>CSV, JSON, PNG, SVG</translation>
+    </message>
+    <message>
+        <source>Calibration</source>
+        <translation>Kalibrierung</translation>
     </message>
     <message>
         <source>Cards (*.json)</source>
@@ -1434,6 +1450,10 @@
     <message>
         <source>Density by volume</source>
         <translation>Dichte nach Volumen</translation>
+    </message>
+    <message>
+        <source>Density over prior</source>
+        <translation>Dichte zur A-priori-Dichte</translation>
     </message>
     <message>
         <source>Describing objects</source>
@@ -2034,6 +2054,10 @@
     <message>
         <source>Find representatives</source>
         <translation>Repräsentanten finden</translation>
+    </message>
+    <message>
+        <source>Find the friction that gives a wanted angle, or resume it</source>
+        <translation>Die Reibung suchen, die einen gewünschten Winkel ergibt, oder die Suche fortsetzen</translation>
     </message>
     <message>
         <source>Find the grains first.</source>
@@ -2880,6 +2904,10 @@
         <translation>Unterer Schnitt</translation>
     </message>
     <message>
+        <source>Lowest and highest value, with a comma between them</source>
+        <translation>Kleinster und größter Wert, mit einem Komma dazwischen</translation>
+    </message>
+    <message>
         <source>Lunar soil (published ratios and sizes)</source>
         <translation>Mondboden (veröffentlichte Verhältnisse und Größen)</translation>
     </message>
@@ -3308,6 +3336,10 @@
         <translation>Es fand sich kein Polyeder mit {faces} Facetten, das alle Deskriptoren trifft; dieses verfehlt {missed}. Ein Gewicht von 0 gibt einen Deskriptor frei.</translation>
     </message>
     <message>
+        <source>No values in the range give the wanted results: the nearest prediction is {count} standard deviations away. Take a wider range, other parameters or other particles.</source>
+        <translation>Keine Werte des Bereichs ergeben die gewünschten Ergebnisse: die nächste Vorhersage ist {count} Standardabweichungen entfernt. Nötig sind ein weiterer Bereich, andere Parameter oder andere Partikel.</translation>
+    </message>
+    <message>
         <source>No volume is open.</source>
         <translation>Kein Volumen ist geöffnet.</translation>
     </message>
@@ -3424,6 +3456,10 @@
         <translation>Anzahl der Repräsentanten</translation>
     </message>
     <message>
+        <source>Number of runs</source>
+        <translation>Anzahl der Läufe</translation>
+    </message>
+    <message>
         <source>Number of shapes that the heap is made of.</source>
         <translation>Anzahl der Formen, aus denen die Schüttung besteht.</translation>
     </message>
@@ -3458,6 +3494,10 @@
     <message>
         <source>Objects</source>
         <translation>Objekte</translation>
+    </message>
+    <message>
+        <source>Of the filled cylinder; its standard error is taken as 1 %</source>
+        <translation>Des gefüllten Zylinders; als Standardfehler gilt 1 %</translation>
     </message>
     <message>
         <source>Of the mesh; the tool tip of a cell lists what was found and repaired</source>
@@ -3780,6 +3820,10 @@
         <translation>Die Ansicht verschieben</translation>
     </message>
     <message>
+        <source>Parameter</source>
+        <translation>Parameter</translation>
+    </message>
+    <message>
         <source>Parametric, with facets: size, form, roughness and hull ratio are correlated as in the sample.</source>
         <translation>Parametrisch, mit Facetten: Größe, Form, Rauheit und Hüllenverhältnis sind korreliert wie in der Probe.</translation>
     </message>
@@ -4090,6 +4134,10 @@
     <message>
         <source>Random field</source>
         <translation>Zufallsfeld</translation>
+    </message>
+    <message>
+        <source>Range</source>
+        <translation>Bereich</translation>
     </message>
     <message>
         <source>Ranking</source>
@@ -5056,6 +5104,14 @@
         <translation>Standardabweichungen der Gaußfilter, die der Klassifikator sieht, aufsteigend, in Voxeln; die breiteste sollte etwa ein halbes Korn breit sein.</translation>
     </message>
     <message>
+        <source>Standard error</source>
+        <translation>Standardfehler</translation>
+    </message>
+    <message>
+        <source>Standard error of the wanted angle</source>
+        <translation>Standardfehler des gewünschten Winkels</translation>
+    </message>
+    <message>
         <source>Standard la&amp;yout</source>
         <translation>&amp;Standardanordnung</translation>
     </message>
@@ -5082,6 +5138,10 @@
     <message>
         <source>Start temperature T₀</source>
         <translation>Anfangstemperatur T₀</translation>
+    </message>
+    <message>
+        <source>Start the &amp;calibration</source>
+        <translation>&amp;Kalibrierung beginnen</translation>
     </message>
     <message>
         <source>Start the &amp;study</source>
@@ -5402,6 +5462,10 @@
     <message>
         <source>The dataset&apos;s polyhedra</source>
         <translation>Polyeder des Datensatzes</translation>
+    </message>
+    <message>
+        <source>The density narrows with each run.</source>
+        <translation>Mit jedem Lauf wird die Dichte schmaler.</translation>
     </message>
     <message>
         <source>The energy rose by {gain} m g d per particle without external work.</source>
@@ -6104,6 +6168,18 @@
         <translation>Reibung der Wand</translation>
     </message>
     <message>
+        <source>Wanted angle</source>
+        <translation>Gewünschter Winkel</translation>
+    </message>
+    <message>
+        <source>Wanted angle of repose</source>
+        <translation>Gewünschter Schüttwinkel</translation>
+    </message>
+    <message>
+        <source>Wanted bulk density</source>
+        <translation>Gewünschte Schüttdichte</translation>
+    </message>
+    <message>
         <source>Wasserstein distance {apart:.1%} of the mean, Kolmogorov-Smirnov distance {gap:.2f}; means {measured} measured, {drawn} drawn</source>
         <translation>Wasserstein-Distanz {apart:.1%} des Mittels, Kolmogorow-Smirnow-Distanz {gap:.2f}; Mittel {measured} gemessen, {drawn} gezogen</translation>
     </message>
@@ -6190,6 +6266,10 @@
     <message>
         <source>Write settings for the next scan</source>
         <translation>Einstellungen für den nächsten Scan schreiben</translation>
+    </message>
+    <message>
+        <source>Write the range as its lowest and highest value, with a comma between them.</source>
+        <translation>Den Bereich als kleinsten und größten Wert mit einem Komma dazwischen schreiben.</translation>
     </message>
     <message>
         <source>Write the volume of labels and a table of them for other programs</source>
@@ -6992,6 +7072,10 @@
         <translation>nicht unter {bound:.3g} {unit} (Linie)</translation>
     </message>
     <message>
+        <source>not given</source>
+        <translation>keine Angabe</translation>
+    </message>
+    <message>
         <source>not given in the paper</source>
         <translation>im Artikel nicht angegeben</translation>
     </message>
@@ -7066,6 +7150,10 @@
     <message>
         <source>pooled</source>
         <translation>gemeinsam</translation>
+    </message>
+    <message>
+        <source>predicted</source>
+        <translation>vorhergesagt</translation>
     </message>
     <message>
         <source>problem</source>
@@ -7166,6 +7254,10 @@
     <message>
         <source>run</source>
         <translation>Lauf</translation>
+    </message>
+    <message>
+        <source>runs: {count}</source>
+        <translation>Läufe: {count}</translation>
     </message>
     <message>
         <source>scattered</source>
@@ -7298,6 +7390,10 @@
     <message>
         <source>spring, dashpot and slider (where resistance is above 0)</source>
         <translation>Feder, Dämpfer und Gleiter (wo der Widerstand über 0 ist)</translation>
+    </message>
+    <message>
+        <source>standard deviation</source>
+        <translation>Standardabweichung</translation>
     </message>
     <message>
         <source>starting</source>
@@ -7648,6 +7744,10 @@
         <translation>{count} davon haben weniger als {least} Voxel und entfallen.</translation>
     </message>
     <message>
+        <source>{count} of {total} runs formed no pile with an angle.</source>
+        <translation>{count} von {total} Läufen ergaben keinen Haufen mit einem Winkel.</translation>
+    </message>
+    <message>
         <source>{count} pairs of faces cross each other.</source>
         <translation>{count} Paare von Flächen kreuzen sich.</translation>
     </message>
@@ -7878,6 +7978,10 @@
     <message>
         <source>{name}, split {split}, fit</source>
         <translation>{name}, Teilung {split}, Fit</translation>
+    </message>
+    <message>
+        <source>{name}: {best:.3g} ({low:.3g} to {high:.3g}, {share:.0%} interval) after {count} runs; next run at {next:.3g}.</source>
+        <translation>{name}: {best:.3g} ({low:.3g} bis {high:.3g}, {share:.0%}-Intervall) nach {count} Läufen; nächster Lauf bei {next:.3g}.</translation>
     </message>
     <message>
         <source>{name}: {count} shapes, weighted by {weighting}</source>

@@ -45,6 +45,13 @@ def test_that_exact_runs_on_a_line_give_the_normal_posterior_of_its_inverse() ->
     assert where[np.argmax(density)] == pytest.approx(0.7, abs=0.05)
 
 
+def test_that_the_best_value_lies_in_its_interval() -> None:
+    """The density is highest at the end of the range, which is in no equal-tailed interval."""
+    found = line(angle(9.0, 1.0), noise=0.5)
+    assert np.argmax(found.weights) == np.argmin(found.points[:, 0])
+    assert found.intervals[0, 0] <= found.best[0] <= found.intervals[0, 1]
+
+
 def test_that_the_noise_of_runs_widens_the_interval() -> None:
     exact, noisy = (line(angle(20.0, 0.2), noise) for noise in (0.02, 1.7))
     assert np.ptp(noisy.intervals[0]) > 1.5 * np.ptp(exact.intervals[0])

@@ -24,7 +24,9 @@ from regolith_studio.jobs.events import Partial
 from regolith_studio.jobs.runners.run_job import InlineRunner
 from regolith_studio.messages import to_json
 from regolith_studio.session.session import Session
+from regolith_studio.studies.calibration import CalibrationParameter
 from regolith_studio.studies.repose import runs_from
+from regolith_studio.studies.repose_calibration import CalibrationRun, ReposeCalibration, angle_target
 from regolith_studio.ui.bindings import Bindings
 from regolith_studio.ui.commands import Commands
 from regolith_studio.ui.dialogs.folder import FolderDialog
@@ -400,6 +402,55 @@ def test_that_a_study_says_what_it_lacks(page, dataset):
     page.study.restore({"key": "gravity", "values": "moon", "repeats": 2})
     page.start_study()
     assert "numbers with commas" in page._context.toast.sentence.text()
+
+
+def test_that_a_calibration_shows_runs_density_and_the_next_run(page):
+    """Heaps on the line 10 + 20 x; the wanted angle is that of a friction of 0.6."""
+    calibration = ReposeCalibration.begin(
+        [CalibrationParameter("static_friction", 0.05, 1.2)], [angle_target(22.0, 0.5)]
+    )
+    page.calibration.show_calibration(calibration)
+    assert page.calibration.prediction.curves == ()
+    for number, friction in enumerate((0.2, 0.6, 1.0, 0.5), 1):
+        measured = {"status": "pile", "angle_deg": 10 + 20 * friction, "interval_deg": None}
+        document = {"state": "finished", "measurement": measured}
+        calibration = calibration.with_run(CalibrationRun(f"run_{number:02d}", (friction,), document))
+    page.calibration.show_calibration(calibration)
+    *_, wanted, runs = page.calibration.prediction.curves
+    assert set(wanted.y) == {22.0}
+    assert (runs.x, runs.y) == ((0.2, 0.6, 1.0, 0.5), (14.0, 22.0, 30.0, 20.0))
+    last, half = page.calibration.posterior.curves
+    assert (last.label, half.label) == ("runs: 4", "runs: 2")
+    assert last.x[int(np.argmax(last.y))] == pytest.approx(0.6, abs=0.1)
+    assert "after 4 runs; next run at" in page.calibration.status.text()
+
+
+@pytest.mark.slow
+def test_that_a_calibration_runs_and_goes_on_in_its_folder(page, dataset, wait):
+    small(page, dataset)
+    page.calibration.restore({"angle": 25.0, "runs": 2})
+    page.start_calibration()
+    wait(lambda: "after 2 runs" in page.calibration.status.text() and not page.busy())
+    (folder,) = (page._folder / "studies").iterdir()
+    before = (folder / "run_01" / "repose.json").stat().st_mtime_ns
+    page.calibration.restore(page.state()["calibration"] | {"angle": 27.0})
+    page.start_calibration()
+    wait(lambda: "after 2 runs" in page.calibration.status.text() and not page.busy())
+    assert (folder / "run_01" / "repose.json").stat().st_mtime_ns == before
+    assert json.loads((folder / "calibration.json").read_text())["targets"][0]["value"] == 27.0
+
+
+def test_that_a_calibration_says_what_it_lacks(page, dataset):
+    page.start_calibration()
+    assert "no dataset yet" in page._context.toast.sentence.text()
+    small(page, dataset)
+    for words, sentence in (
+        ("0.2", "lowest and highest value"),
+        ("1, 0.2", "from a lower to a higher value"),
+    ):
+        page.calibration.restore({"key": "static_friction", "range": words})
+        page.start_calibration()
+        assert sentence in page._context.toast.sentence.text()
 
 
 def test_that_the_whole_column_of_particles_is_in_the_picture_before_the_lift(shown, app):

@@ -33,6 +33,12 @@ PAGE = Page(
         ActionSpec(PAGE_MENU, BREAK, ""),
         ActionSpec(PAGE_MENU, "run_test", N_("&Run the test"), "play", "Ctrl+Return", bar="words"),
         ActionSpec(PAGE_MENU, "start_study", N_("Start the &study"), tip=N_("Start the study, or resume it")),
+        ActionSpec(
+            PAGE_MENU,
+            "start_calibration",
+            N_("Start the &calibration"),
+            tip=N_("Find the friction that gives a wanted angle, or resume it"),
+        ),
         ActionSpec(PAGE_MENU, "play", N_("&Play the run")),
         ActionSpec(PAGE_MENU, BREAK, ""),
         ActionSpec(

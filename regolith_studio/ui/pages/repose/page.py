@@ -38,6 +38,8 @@ from regolith_studio.messages import N_
 from regolith_studio.ui.dialogs.folder import FolderDialog
 from regolith_studio.ui.layout import padded, scrolled_column, side_by_side, stacked, tabs
 from regolith_studio.ui.page import PageContext, PageWidget
+from regolith_studio.ui.pages.repose.calibration import CalibrationPanel
+from regolith_studio.ui.pages.repose.calibration_controller import CalibrationController
 from regolith_studio.ui.pages.repose.export import export_measurement, read_other
 from regolith_studio.ui.pages.repose.player import RunPlayer
 from regolith_studio.ui.pages.repose.runs import RunsPanel, angle_text, checks_text, duration_text
@@ -80,8 +82,10 @@ class ReposePage(PageWidget):
         self._show_answer(tr("No pile yet."))
         self.runs = RunsPanel()
         self.study = StudyPanel()
+        self.calibration = CalibrationPanel()
         self.engines = EnginePanel()
         self.studies = ReposeStudyController(self._context, self.study, self.setup, self._show_study_run)
+        self.calibrations = CalibrationController(self._context, self.calibration, self.setup)
         self._later = QTimer(self, singleShot=True, interval=PREVIEW_DELAY)
         self._later.timeout.connect(self._preview)
         self._place()
@@ -93,7 +97,7 @@ class ReposePage(PageWidget):
     # --- the page of the window ----------------------------------------------------------------
 
     def set_theme(self, theme: Theme) -> None:
-        for part in (self.player, self.x_z, self.y_z, self.runs, self.study):
+        for part in (self.player, self.x_z, self.y_z, self.runs, self.study, self.calibration):
             part.set_theme(theme)
 
     def commands(self) -> Mapping[str, Callable[..., object]]:
@@ -102,6 +106,7 @@ class ReposePage(PageWidget):
             "make_dataset": self.make_dataset,
             "run_test": self.run_test,
             "start_study": self.start_study,
+            "start_calibration": self.start_calibration,
             "play": lambda: self.player.play_or_report(self._context.toast.problem),
             "open_positions": self.open_positions,
             "export_run": self.export_run,
@@ -111,16 +116,22 @@ class ReposePage(PageWidget):
     def busy(self) -> str:
         if self._running:
             return tr("A simulation of the angle of repose would be stopped.")
-        return self.studies.busy()
+        return self.studies.busy() or self.calibrations.busy()
 
     def state(self) -> dict[str, Any]:
-        return {"setup": self.setup.state(), "study": self.study.state()}
+        return {
+            "setup": self.setup.state(),
+            "study": self.study.state(),
+            "calibration": self.calibration.state(),
+        }
 
     def restore(self, state: Mapping[str, Any]) -> None:
         if isinstance(state.get("setup"), Mapping):
             self.setup.restore(state["setup"])
         if isinstance(state.get("study"), Mapping):
             self.study.restore(state["study"])
+        if isinstance(state.get("calibration"), Mapping):
+            self.calibration.restore(state["calibration"])
 
     def on_hide(self) -> None:
         self.player.stop()
@@ -182,6 +193,10 @@ class ReposePage(PageWidget):
     def start_study(self) -> None:
         """Start or resume the study."""
         self.studies.start(self._folder)
+
+    def start_calibration(self) -> None:
+        """Start or resume the calibration."""
+        self.calibrations.start(self._folder)
 
     def open_positions(self) -> None:
         """Measure the pile of another program from a file of positions."""
@@ -408,6 +423,7 @@ class ReposePage(PageWidget):
             (sections, tr("Sections")),
             (self.runs, tr("Runs")),
             (self.study, tr("Study")),
+            (self.calibration, tr("Calibration")),
             (self.engines, tr("Engines")),
         ]
         below = tabs("repose_tabs", pages)
@@ -433,6 +449,7 @@ class ReposePage(PageWidget):
         self.setup.runWanted.connect(self.run_test)
         self.runs.chosen.connect(self._show_run)
         self.study.startWanted.connect(self.start_study)
+        self.calibration.startWanted.connect(self.start_calibration)
         for plot in (self.x_z, self.y_z):
             plot.cutDragged.connect(self._take_cut)
 
