@@ -7,9 +7,11 @@ the aspect ratio of the minimum-volume box lies half-way between those of the tw
 """
 
 from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
 
 from regolith_studio.geometry.arrays import FloatArray, IntArray
 from regolith_studio.geometry.kernels import kernel
@@ -17,7 +19,7 @@ from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.harmonics.legendre import harmonics
 from regolith_studio.harmonics.sphere_grid import enclosed_volumes, sphere_grid
 from regolith_studio.shape_models.convex_hull import hull_grid
-from regolith_studio.shape_models.inertia_ellipsoid import PrincipalAxes
+from regolith_studio.shape_models.inertia_ellipsoid import PrincipalAxes, principal_axes
 from regolith_studio.shape_models.shape_features import log_share
 
 Floats = NDArray[np.float32]
@@ -25,6 +27,10 @@ Floats = NDArray[np.float32]
 COARSE, FINE = 3, 4
 """Levels of the icospheres: of surfaces that are tried, and of those whose sphericity is measured."""
 MIN_HULL_DEGREE = 13
+FACTORS = (0.5, 2.0)
+"""Limits of the factor on the logarithms of a form."""
+BOX_TURN = 0.35
+"""Boxes are turned out of the principal axes by so much, to either side about each of them, radians."""
 _MIN_RADIUS = 1e-3
 _BATCH = 250
 
@@ -43,8 +49,8 @@ class SurfaceForms:
         Principal axes as columns, shape (n, 3, 3): maps back from the frame of the axes.
     forms
         Along the principal axes, with a product of one, shape (n, 3).
-    shares
-        ln(s / (1 - s)) of the sphericity and of the share of the hull, shape (n, 2).
+    features
+        As :func:`mesh_features`, shape (n, 3).
     area_factors
         Sphericity times the area of a mesh of unit volume, shape (n,): what the coarse mesh does not see of
         the surface stays the same when it is stretched.
@@ -54,7 +60,7 @@ class SurfaceForms:
     to_sphere: FloatArray
     from_frame: FloatArray
     forms: FloatArray
-    shares: FloatArray
+    features: FloatArray
     area_factors: FloatArray
 
     @classmethod
@@ -63,34 +69,46 @@ class SurfaceForms:
         lengths = np.exp(found.log_ratios)
         radii = rows @ harmonics(icosphere(COARSE).vertices, round(rows.shape[1] ** 0.5) - 1)
         points = (radii[:, :, None] * icosphere(COARSE).vertices) @ found.axes
-        shares = sphericity_and_convexity(rows)
+        features = mesh_features(rows, found.axes)
         return cls(
             (points / lengths[:, None, :]).astype(np.float32),
             np.swapaxes(found.axes, 1, 2) / lengths[:, :, None],
             found.axes,
-            _unit_product(np.sqrt(extents(points) * lengths)),
-            shares,
-            areas(points) / (1 + np.exp(-shares[:, 0])),
+            _unit_product(np.sqrt(np.ptp(points, axis=1) * lengths)),
+            features,
+            areas(points) / (1 + np.exp(-features[:, 1])),
         )
 
+    def elongated(self, targets: IntArray, changes: FloatArray) -> FloatArray:
+        """Forms (k, 3) of the particles `targets` with ln(longest / shortest) changed by `changes`."""
+        logs = np.log(self.forms[targets])
+        factors = 1 + changes / np.maximum(np.ptp(logs, axis=1), 1e-9)
+        return np.asarray(np.exp(logs * np.clip(factors, *FACTORS)[:, None]))
+
     def stretched(
-        self, picks: IntArray, turns: FloatArray, targets: IntArray
+        self, picks: IntArray, turns: FloatArray, wanted: FloatArray
     ) -> tuple[FloatArray, FloatArray]:
-        """Surfaces turned on the sphere of inertia and stretched along the axes to the forms of others.
+        """Surfaces turned on the sphere of inertia and stretched along the axes to other forms.
 
         Parameters
         ----------
-        picks, targets
-            Whose surfaces and whose forms, shapes (k,).
+        picks
+            Whose surfaces, shape (k,).
         turns
             Rotations, shape (k, 3, 3).
+        wanted
+            Forms, shape (k, 3).
 
         Returns
         -------
         Linear maps of determinant one (k, 3, 3), and ln(s / (1 - s)) of the sphericities (k,).
         """
-        turned = self.vertices[picks] @ np.swapaxes(turns, 1, 2).astype(np.float32)
-        factors = _unit_product(self.forms[targets] / np.sqrt(extents(turned)))
+        turned, edges = (
+            np.empty((len(picks), *self.vertices.shape[1:]), dtype=np.float32),
+            np.empty((len(picks), 3)),
+        )
+        _fill_turned(self.vertices, picks, turns, turned, edges)
+        factors = _unit_product(wanted / np.sqrt(edges))
         turned *= factors[:, None, :].astype(np.float32)
         return factors[:, :, None] * turns, log_share(self.area_factors[picks] / areas(turned))
 
@@ -117,29 +135,43 @@ def _fill_areas(vertices: Floats, faces: IntArray, found: FloatArray) -> None:
         found[n] = 0.5 * total
 
 
-def extents(vertices: FloatArray | Floats) -> FloatArray:
-    """Extents along the axes of meshes with these vertices (n, v, 3), shape (n, 3)."""
-    found = np.empty((len(vertices), 3))
-    _fill_extents(np.ascontiguousarray(vertices, dtype=np.float32), found)
-    return found
-
-
 @kernel
-def _fill_extents(vertices: Floats, found: FloatArray) -> None:
-    """Fill `found`, shape (n, 3), with the extents of each row of `vertices`, shape (n, v, 3)."""
-    for n in range(len(vertices)):
+def _fill_turned(
+    vertices: Floats, picks: IntArray, turns: FloatArray, turned: Floats, edges: FloatArray
+) -> None:
+    """Fill `turned`, shape (k, v, 3), with the rows `picks` of `vertices` under the rotations `turns`, and
+    `edges`, shape (k, 3), with the extents along the axes."""
+    for n in range(len(picks)):
+        points = vertices[picks[n]]
         for k in range(3):
-            low = high = vertices[n, 0, k]
-            for v in range(vertices.shape[1]):
-                value = vertices[n, v, k]
+            a, b, c = np.float32(turns[n, k, 0]), np.float32(turns[n, k, 1]), np.float32(turns[n, k, 2])
+            low, high = np.float32(np.inf), np.float32(-np.inf)
+            for v in range(len(points)):
+                value = a * points[v, 0] + b * points[v, 1] + c * points[v, 2]
+                turned[n, v, k] = value
                 low, high = min(low, value), max(high, value)
-            found[n, k] = high - low
+            edges[n, k] = high - low
 
 
-def sphericity_and_convexity(rows: FloatArray) -> FloatArray:
-    """ln(s / (1 - s)) of the sphericity and of the share of the hull that is filled, of radius functions
-    (n, (l_max + 1)^2), shape (n, 2)."""
-    return np.concatenate([_of_batch(rows[i : i + _BATCH]) for i in range(0, len(rows), _BATCH)])
+def mesh_features(rows: FloatArray, axes: FloatArray | None = None) -> FloatArray:
+    """ln of the aspect ratio, and ln(s / (1 - s)) of the sphericity and of the share of the hull.
+
+    The aspect ratio is that of the smallest of 27 boxes about the principal axes.
+
+    Parameters
+    ----------
+    rows
+        Coefficients of radius functions, shape (n, (l_max + 1)^2).
+    axes
+        Their principal axes as columns, shape (n, 3, 3), where they are known.
+
+    Returns
+    -------
+    Shape (n, 3).
+    """
+    known = principal_axes(rows).axes if axes is None else axes
+    batches = range(0, len(rows), _BATCH)
+    return np.concatenate([_of_batch(rows[i : i + _BATCH], known[i : i + _BATCH]) for i in batches])
 
 
 def _unit_product(values: FloatArray) -> FloatArray:
@@ -147,7 +179,7 @@ def _unit_product(values: FloatArray) -> FloatArray:
     return np.asarray(values / np.cbrt(values.prod(axis=1, keepdims=True)))
 
 
-def _of_batch(rows: FloatArray) -> FloatArray:
+def _of_batch(rows: FloatArray, axes: FloatArray) -> FloatArray:
     l_max = round(rows.shape[1] ** 0.5) - 1
     scaled = rows / (rows[:, :1] / np.sqrt(4 * np.pi))
     grid = sphere_grid(3 * l_max // 2 + 1, l_max)
@@ -157,4 +189,17 @@ def _of_batch(rows: FloatArray) -> FloatArray:
     sphericities = np.pi ** (1 / 3) * (6 * volumes) ** (2 / 3) / areas(surface)
     hulls = hull_grid(max(MIN_HULL_DEGREE, l_max), l_max)
     convexities = hulls.convexities(np.maximum(hulls.grid.values(scaled), _MIN_RADIUS))
-    return np.column_stack([log_share(sphericities), log_share(convexities)])
+    return np.column_stack(
+        [_log_aspect_ratios(surface, axes), log_share(sphericities), log_share(convexities)]
+    )
+
+
+def _log_aspect_ratios(vertices: FloatArray, axes: FloatArray) -> FloatArray:
+    """ln(longest / shortest edge) of the smallest box about `axes` (n, 3, 3) of each mesh (n, v, 3)."""
+    turns = Rotation.from_rotvec(list(product((-BOX_TURN, 0.0, BOX_TURN), repeat=3))).as_matrix()
+    frames = np.swapaxes(axes[:, None] @ turns, 2, 3).reshape(len(axes), -1, 3).astype(np.float32)
+    edges = np.empty((len(axes), len(turns), 3))
+    for found, mesh, frame in zip(edges, vertices.astype(np.float32), frames, strict=True):
+        found[:] = np.ptp(frame @ mesh.T, axis=1).reshape(-1, 3)
+    smallest = edges[np.arange(len(edges)), edges.prod(axis=2).argmin(axis=1)]
+    return np.asarray(np.log(smallest.max(axis=1) / smallest.min(axis=1)))

@@ -2,6 +2,7 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 from scipy.special import elliprg
 
 from regolith_studio.descriptors.describe import describe
@@ -20,10 +21,9 @@ from regolith_studio.shape_models.sample import Sample
 from regolith_studio.shape_models.surface_forms import (
     SurfaceForms,
     _fill_areas,
-    _fill_extents,
+    _fill_turned,
     areas,
-    extents,
-    sphericity_and_convexity,
+    mesh_features,
 )
 from tests.filling import filled
 
@@ -53,7 +53,7 @@ def share(logit: np.ndarray) -> np.ndarray:
 def test_that_a_sphere_on_the_form_of_an_ellipsoid_is_the_ellipsoid(ellipsoids: Sample) -> None:
     rows = ellipsoids.coefficients
     forms = SurfaceForms.of(rows, principal_axes(rows))
-    maps, logit = forms.stretched(np.array([0]), np.eye(3)[None], np.array([1]))
+    maps, logit = forms.stretched(np.array([0]), np.eye(3)[None], forms.forms[1:])
     lengths = AXES[1] / np.cbrt(AXES[1].prod())
     np.testing.assert_allclose(maps[0], np.diag(lengths), atol=2e-3)
     assert share(logit)[0] == pytest.approx(sphericity_of(AXES[1]), abs=1e-3)
@@ -63,54 +63,71 @@ def test_that_a_surface_on_its_own_form_is_itself(rough_sample: Callable[..., Sa
     rows = rough_sample(6, 5).coefficients
     forms = SurfaceForms.of(rows, principal_axes(rows))
     each = np.arange(6)
-    maps, logit = forms.stretched(each, np.broadcast_to(np.eye(3), (6, 3, 3)), each)
+    maps, logit = forms.stretched(each, np.broadcast_to(np.eye(3), (6, 3, 3)), forms.forms)
     whole = forms.from_frame @ maps @ forms.to_sphere
     np.testing.assert_allclose(whole, np.broadcast_to(np.eye(3), (6, 3, 3)), atol=1e-5)
-    np.testing.assert_allclose(logit, forms.shares[:, 0], atol=1e-4)
+    np.testing.assert_allclose(logit, forms.features[:, 1], atol=1e-4)
     back = MappedSurfaces(rows, 5).mapped(each, np.linalg.inv(whole))
     assert np.abs(back - rows).max() < 2e-3 * rows[:, 0].mean()
 
 
-def test_that_sphericities_and_hull_ratios_are_those_of_meshes(rough_sample: Callable[..., Sample]) -> None:
-    sample = rough_sample(8, 6)
-    found = share(sphericity_and_convexity(sample.coefficients))
-    meshes = [
-        describe(reconstruct(sample.particle(i), level=4), ("sphericity", "convexity")) for i in range(8)
-    ]
-    np.testing.assert_allclose(found[:, 0], [each["sphericity"] for each in meshes], atol=2e-3)
-    np.testing.assert_allclose(found[:, 1], [each["convexity"] for each in meshes], atol=2e-2)
+def test_that_a_form_is_elongated_by_what_is_asked(ellipsoids: Sample) -> None:
+    rows = ellipsoids.coefficients
+    forms = SurfaceForms.of(rows, principal_axes(rows))
+    changed = np.log(forms.elongated(np.array([1, 1]), np.array([0.1, -9.0])))
+    logs = np.log(AXES[1] / np.cbrt(AXES[1].prod()))
+    np.testing.assert_allclose(changed[0], logs * (1 + 0.1 / np.log(1.3 / 0.8)), atol=2e-3)
+    np.testing.assert_allclose(changed[1], logs / 2, atol=2e-3)
 
 
-def test_that_areas_and_extents_are_those_of_meshes_compiled_or_not() -> None:
+def test_that_features_are_the_descriptors_of_meshes(
+    rough_sample: Callable[..., Sample], ellipsoids: Sample
+) -> None:
+    """The smallest of a few boxes is not the minimum-volume box: aspect ratios agree on the average."""
+    sample = rough_sample(20, 6)
+    found = mesh_features(sample.coefficients)
+    keys = ("aspect_ratio", "sphericity", "convexity")
+    meshes = [describe(reconstruct(sample.particle(i), level=4), keys) for i in range(20)]
+    measured = np.array([[each[key] for key in keys] for each in meshes])
+    missed = found[:, 0] - np.log(measured[:, 0])
+    assert abs(missed.mean()) < 0.05
+    assert missed.std() < 0.12
+    np.testing.assert_allclose(share(found[:, 1]), measured[:, 1], atol=2e-3)
+    np.testing.assert_allclose(share(found[:, 2]), measured[:, 2], atol=2e-2)
+    assert mesh_features(ellipsoids.coefficients)[1, 0] == pytest.approx(np.log(1.3 / 0.8), abs=2e-3)
+
+
+def test_that_areas_and_turned_extents_are_those_of_meshes_compiled_or_not() -> None:
     sphere = icosphere(3)
-    points = np.stack([sphere.vertices * axes for axes in AXES])
-    meshes = [Mesh(each, sphere.faces) for each in points]
-    np.testing.assert_allclose(areas(points), [mesh.surface_area for mesh in meshes], rtol=1e-5)
-    np.testing.assert_allclose(extents(points), [np.ptp(mesh.bounds, axis=0) for mesh in meshes], rtol=1e-6)
-    single = points.astype(np.float32)
-    plain = [
-        filled(_fill_areas.py_func, (single, sphere.faces), np.zeros(2))[0],
-        filled(_fill_extents.py_func, (single,), np.zeros((2, 3)))[0],
-    ]
-    np.testing.assert_allclose(plain[0], areas(points), rtol=1e-5)
-    np.testing.assert_array_equal(plain[1], extents(points))
+    points = np.stack([sphere.vertices * axes for axes in AXES]).astype(np.float32)
+    turns = Rotation.from_rotvec([[0.3, 0.2, -0.4], [1.0, 0.0, 0.5]]).as_matrix()
+    meshes = [Mesh(points[i] @ turn.T, sphere.faces) for i, turn in zip((1, 0), turns, strict=True)]
+    for fill in (_fill_turned, _fill_turned.py_func):
+        given = points, np.array([1, 0]), turns
+        turned, edges, _ = filled(fill, given, np.empty_like(points), np.zeros((2, 3)))
+        np.testing.assert_allclose(turned, [mesh.vertices for mesh in meshes], atol=1e-6)
+        np.testing.assert_allclose(edges, [np.ptp(mesh.bounds, axis=0) for mesh in meshes], rtol=1e-6)
+        np.testing.assert_allclose(areas(turned), [mesh.surface_area for mesh in meshes], rtol=1e-5)
+    plain = filled(_fill_areas.py_func, (points, sphere.faces), np.zeros(2))[0]
+    np.testing.assert_allclose(plain, areas(points), rtol=1e-5)
 
 
 def test_that_draws_have_the_means_and_deviations_of_the_sample(rough_sample: Callable[..., Sample]) -> None:
     """Where means alone were calibrated, sphericities of such particles varied 6 % less than measured."""
     sample = rough_sample(150, 6)
     draws = MODEL.fit(sample).draw(1000, 3)
-    measured, drawn = (
-        share(sphericity_and_convexity(rows)) for rows in (sample.coefficients, draws.coefficients)
-    )
-    np.testing.assert_allclose(drawn.mean(axis=0), measured.mean(axis=0), rtol=2e-3)
+    measured, drawn = (mesh_features(rows) for rows in (sample.coefficients, draws.coefficients))
+    assert drawn[:, 0].mean() == pytest.approx(measured[:, 0].mean(), abs=5e-3)
     np.testing.assert_allclose(drawn.std(axis=0), measured.std(axis=0), rtol=0.05)
+    np.testing.assert_allclose(
+        share(drawn[:, 1:]).mean(axis=0), share(measured[:, 1:]).mean(axis=0), rtol=2e-3
+    )
 
 
 def test_that_no_particle_lends_its_surface_to_itself(rough_sample: Callable[..., Sample]) -> None:
     model = MODEL.fit(rough_sample(12, 4), RecombinedSettings(l_max=4))
     targets = np.repeat(np.arange(12), 40)
-    wanted = np.repeat(model.forms.shares[:, 1], 40)
+    wanted = np.repeat(model.forms.features[:, 2], 40)
     assert (model._lenders(targets, wanted, np.random.default_rng(0)) != targets).all()
 
 
@@ -132,9 +149,10 @@ def test_that_settings_out_of_range_are_refused(
 
 @pytest.mark.slow
 def test_that_draws_of_real_particles_are_new_and_have_their_descriptors(cement: Sample) -> None:
-    """Novelty by both ways of counting mirror images; the standard error of a mean of 300 is 0.3 % in S and
-    V/CH and 1.6 % in AR."""
-    draws = MODEL.fit(cement).draw(300, 0)
+    """Novelty by both ways of counting mirror images. Each form is drawn as often, so that the standard error
+    of the mean aspect ratio of 1,000 is 0.4 %; where forms alone were kept, it came out 2 % larger and varied
+    9 % more than measured."""
+    draws = MODEL.fit(cement).draw(1000, 0)
     measured = canonical(cement.truncated(10).coefficients)
     among = np.median(distances_among(measured, np.arange(0, len(measured), 10)))
     rows = draws.coefficients[:60, :121]
@@ -145,9 +163,14 @@ def test_that_draws_of_real_particles_are_new_and_have_their_descriptors(cement:
     assert np.median(np.minimum(found, images)) / among > 0.9
     assert draws.parents is not None
     assert (nearest == draws.parents[:60]).mean() < 0.15
-    for key, error in (("sphericity", 0.006), ("convexity", 0.006), ("aspect_ratio", 0.04)):
-        drawn = [describe(virtual_mesh(draws, i, 4), (key,))[key] for i in range(300)]
-        theirs = [
-            describe(reconstruct(each, level=4), (key,))[key] for each in map(cement.particle, range(300))
-        ]
-        assert np.mean(drawn) == pytest.approx(np.mean(theirs), rel=error)
+    keys = ("aspect_ratio", "sphericity", "convexity")
+    drawn, theirs = (
+        np.array([[describe(mesh, keys)[key] for key in keys] for mesh in meshes])
+        for meshes in (
+            (virtual_mesh(draws, i, 4) for i in range(1000)),
+            (reconstruct(cement.particle(i), level=4) for i in range(len(cement))),
+        )
+    )
+    means, deviations = drawn.mean(axis=0) / theirs.mean(axis=0), drawn.std(axis=0) / theirs.std(axis=0)
+    assert (np.abs(means - 1) < (0.015, 0.003, 0.003)).all()
+    assert (np.abs(deviations - 1) < (0.06, 0.04, 0.08)).all()

@@ -5,8 +5,8 @@ another that fills about the same share of its hull, which linear maps do not ch
 the one is kept whose sphericity is nearest to that of the other particle.
 
 What a map, the choice and the cut at l_max change is measured on draws and taken off what is asked for: first
-the power of each degree, then mean and deviation of the sphericity and of the share of the hull. Sizes, forms
-and sphericities are those of measured particles; it makes none beyond them.
+the power of each degree, then mean and deviation of aspect ratio, sphericity and share of the hull. Sizes,
+forms and sphericities are those of measured particles; it makes none beyond them.
 """
 
 from collections.abc import Callable, Mapping
@@ -27,13 +27,10 @@ from regolith_studio.shape_models.mapped_surfaces import MappedSurfaces, roughne
 from regolith_studio.shape_models.realizations import Scale, positive_rows
 from regolith_studio.shape_models.sample import Sample
 from regolith_studio.shape_models.size_law import LogNormalSizes
-from regolith_studio.shape_models.surface_forms import (
-    SurfaceForms,
-    sphericity_and_convexity,
-)
+from regolith_studio.shape_models.surface_forms import SurfaceForms, mesh_features
 
 KEY = "recombined"
-ROUNDS = 4
+ROUNDS = 3
 """Rounds of calibration, of a chunk of particles each."""
 SPREADS = (0.5, 2.0)
 """Limits of the factors on deviations that are asked for."""
@@ -98,8 +95,8 @@ class Recombined(SizedSampler):
     gain
         Factor of each degree of mapped particles, shape (l_max + 1,); ones if ``None``.
     offsets, spreads
-        What is asked for of ln(s / (1 - s)) of the sphericity and of the share of the hull: mean + offset +
-        spread (measured - mean), shapes (2,); zeros and ones if ``None``.
+        What is asked for of the features of :mod:`~regolith_studio.shape_models.surface_forms`: mean + offset
+        + spread (measured - mean), shapes (3,); zeros and ones if ``None``.
     """
 
     coefficients: FloatArray
@@ -112,7 +109,7 @@ class Recombined(SizedSampler):
     scale: ClassVar[Scale] = "radius"
 
     def __post_init__(self) -> None:
-        lengths = (("gain", np.ones, self.l_max + 1), ("offsets", np.zeros, 2), ("spreads", np.ones, 2))
+        lengths = (("gain", np.ones, self.l_max + 1), ("offsets", np.zeros, 3), ("spreads", np.ones, 3))
         for name, filler, length in lengths:
             given = getattr(self, name)
             values = filler(length) if given is None else given
@@ -145,7 +142,7 @@ class Recombined(SizedSampler):
 
     @cached_property
     def _by_convexity(self) -> IntArray:
-        return np.argsort(self.forms.shares[:, 1], kind="stable")
+        return np.argsort(self.forms.features[:, 2], kind="stable")
 
     def shapes(
         self, _radii: FloatArray, components: IntArray, rng: np.random.Generator
@@ -163,16 +160,17 @@ class Recombined(SizedSampler):
 
     def _made(self, targets: IntArray, rng: np.random.Generator) -> tuple[FloatArray, IntArray]:
         """Rows on the forms of `targets`, and the particles that their surfaces are from."""
-        middle = self.forms.shares.mean(axis=0)
-        asked = middle + np.asarray(self.offsets) + np.asarray(self.spreads) * (self.forms.shares - middle)
-        wanted = asked[targets]
+        measured = self.forms.features[targets]
+        middle = self.forms.features.mean(axis=0)
+        wanted = middle + np.asarray(self.offsets) + np.asarray(self.spreads) * (measured - middle)
+        forms = self.forms.elongated(targets, wanted[:, 0] - measured[:, 0])
         parents, maps = np.zeros_like(targets), np.empty((len(targets), 3, 3))
         nearest = np.full(len(targets), np.inf)
         for _ in range(self.settings.n_candidates):
-            picks = self._lenders(targets, wanted[:, 1], rng)
+            picks = self._lenders(targets, wanted[:, 2], rng)
             turns = Rotation.from_quat(rng.standard_normal((len(targets), 4))).as_matrix()
-            tried, sphericities = self.forms.stretched(picks, turns, targets)
-            distance = np.abs(sphericities - wanted[:, 0])
+            tried, sphericities = self.forms.stretched(picks, turns, forms)
+            distance = np.abs(sphericities - wanted[:, 1])
             better = distance < nearest
             nearest[better], parents[better], maps[better] = distance[better], picks[better], tried[better]
         whole = self.forms.from_frame[targets] @ maps @ self.forms.to_sphere[parents]
@@ -183,26 +181,37 @@ class Recombined(SizedSampler):
         """A particle for each target, not itself, out of those nearest to a share of the hull."""
         order, n = self._by_convexity, len(self.surfaces)
         count = min(self.settings.n_neighbours, n)
-        place = np.searchsorted(self.forms.shares[order, 1], convexities)
+        place = np.searchsorted(self.forms.features[order, 2], convexities)
         first = np.clip(place - count // 2, 0, n - count)
         found = first + rng.integers(count, size=len(targets))
         itself = order[found] == targets
         return np.asarray(order[np.where(itself, np.where(found + 1 < n, found + 1, found - 1), found)])
 
-    def corrected(self, first: bool) -> "Recombined":
-        """The model after a round of calibration: the first finds the gain, the others what to ask for."""
-        rng = np.random.default_rng(np.random.SeedSequence(0))
-        targets = rng.permutation(np.resize(rng.permutation(len(self.surfaces)), CHUNK))
-        rows, _ = self._made(targets, rng)
-        if first:
-            return self._with(gain=roughness_gain(rows, self.surfaces.cut[targets]))
-        measured, drawn = self.forms.shares[targets], sphericity_and_convexity(rows)
+    def roughened(self) -> "Recombined":
+        """The model with the gain by which its particles have the power of the measured ones."""
+        rows, targets = self._tried(0)
+        return self._with(gain=roughness_gain(rows, self.surfaces.cut[targets]))
+
+    def corrected(self, number: int) -> "Recombined":
+        """The model after round `number`, from 1, of calibrating what is asked for.
+
+        Each round has particles of its own and takes the 1 / `number`-th part of what is missing, so that
+        their noise averages out (Robbins and Monro 1951).
+        """
+        rows, targets = self._tried(number)
+        measured, drawn = self.forms.features[targets], mesh_features(rows)
         missing = measured.mean(axis=0) - drawn.mean(axis=0)
         ratio = (measured.std(axis=0) + 1e-9) / (drawn.std(axis=0) + 1e-9)
         return self._with(
-            offsets=np.asarray(self.offsets) + missing,
-            spreads=np.clip(np.asarray(self.spreads) * ratio, *SPREADS),
+            offsets=np.asarray(self.offsets) + missing / number,
+            spreads=np.clip(np.asarray(self.spreads) * ratio ** (1 / number), *SPREADS),
         )
+
+    def _tried(self, number: int) -> tuple[FloatArray, IntArray]:
+        """A chunk of particles for a round of calibration, and whose forms they have."""
+        rng = np.random.default_rng(np.random.SeedSequence(number))
+        targets = rng.permutation(np.resize(rng.permutation(len(self.surfaces)), CHUNK))
+        return self._made(targets, rng)[0], targets
 
     def _with(self, **changes: Any) -> "Recombined":
         """A copy that shares what does not depend on the calibration."""
@@ -251,9 +260,9 @@ class RecombinedModel:
             raise InputError(f"Particles that can be turned need l_max of at least 1, got {chosen.l_max}.")
         surfaces = MappedSurfaces.of(sample, chosen.l_max)
         fitted = Recombined(surfaces.coefficients, chosen, sample.unit)
-        for number in range(ROUNDS):
-            if number or surfaces.loses_by_mapping:
-                fitted = fitted.corrected(first=number == 0)
+        fitted = fitted.roughened() if surfaces.loses_by_mapping else fitted
+        for number in range(1, ROUNDS + 1):
+            fitted = fitted.corrected(number)
         return fitted
 
     def restored(self, values: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> Recombined:
