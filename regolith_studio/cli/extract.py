@@ -162,7 +162,6 @@ def extract(
     Volumes that an earlier run has finished are not extracted again.
     """
     from regolith_studio.io.atomic import staged_folder
-    from regolith_studio.jobs.extraction_jobs import extract_measured
     from regolith_studio.session.batch.scan_groups import find_scans
     from regolith_studio.session.outputs.particles import ExtractionFolder
 
@@ -188,8 +187,7 @@ def extract(
             return
         with staged_folder(output, "extract") as stage:
             folder = ExtractionFolder(stage)
-            steps = extract_measured(given, chosen, output.parent, folder.add, executor, labels)
-            done = run_with_progress(steps)
+            done = run_with_progress(folder.extract(given, chosen, output.parent, executor, labels))
             document = folder.finish(given, chosen, done)
     if done.facts is not None and done.facts.n_not_finite:
         print_errors(

@@ -108,12 +108,12 @@ class ExtractedParticle:
 
 @dataclass(frozen=True)
 class ExtractionProgress:
-    """One label is done; `extracted` is its particle, and `measured` what was measured of it, if anything."""
+    """One label is done; `made` is its particle, an :class:`ExtractedParticle`, or what was made of it."""
 
     done: int
     total: int
-    extracted: ExtractedParticle
-    measured: Any = None
+    name: str
+    made: Any
 
 
 @dataclass(frozen=True)
@@ -186,10 +186,9 @@ def extraction_steps(
     settings: ExtractionSettings | None = None,
     group: str = "",
     source: Source | None = None,
-    collect: bool = True,
+    make: Callable[[ExtractedParticle], Any] | None = None,
     grey: Volume | None = None,
     run: ParallelMap = map,
-    measure: Callable[[Particle], Any] | None = None,
 ) -> Generator[ExtractionProgress, None, Extraction]:
     """Make a particle of each label, telling after each how far it is.
 
@@ -199,15 +198,13 @@ def extraction_steps(
         Labels, in memory or mapped from a file.
     group, source
         Passed on to each particle.
-    collect
-        Keep the particles for the result; otherwise each is only in the step that made it, which
-        samples need that are larger than the memory.
+    make
+        Applied to each particle where it is made; what it returns takes the particle's place in the steps.
+        By default the particles themselves are in the steps, and are kept for the result.
     grey
         The grey values that the labels were found in; surfaces are of the masks without them.
     run
         Applies what is done to slabs and to single labels.
-    measure
-        Applied to each particle where it is made.
 
     Raises
     ------
@@ -219,12 +216,16 @@ def extraction_steps(
     chosen = select_labels(volume, settings, grey is not None, run)
     found: list[ExtractedParticle] = []
     cuts = _cuts(volume, grey if settings.surface == "grey" else None, chosen, settings)
-    make = partial(_particle_of, group=group, source=source, measure=measure)
-    made = in_batches(run, make, cuts, lambda cut: max(n_voxels(cut.wider), BATCH_VOXELS // _BATCH_SHARE))
-    for done, (extracted, measured) in enumerate(made, start=1):
-        if collect:
-            found.append(extracted)
-        yield ExtractionProgress(done, len(cuts), extracted, measured)
+    made = in_batches(
+        run,
+        partial(_particle_of, group, source, make),
+        cuts,
+        lambda cut: max(n_voxels(cut.wider), BATCH_VOXELS // _BATCH_SHARE),
+    )
+    for done, (cut, particle) in enumerate(zip(cuts, made, strict=True), start=1):
+        if make is None:
+            found.append(particle)
+        yield ExtractionProgress(done, len(cuts), cut.name, particle)
     return Extraction(tuple(found), chosen.border, chosen.small, len(cuts))
 
 
@@ -408,13 +409,13 @@ def _cuts(
 
 
 def _particle_of(
-    cut: LabelCut, group: str, source: Source | None, measure: Callable[[Particle], Any] | None
-) -> tuple[ExtractedParticle, Any]:
-    """The particle of a label, and what is measured of it."""
+    group: str, source: Source | None, make: Callable[[ExtractedParticle], Any] | None, cut: LabelCut
+) -> Any:
+    """The particle of a label, or what is made of it."""
     mesh, notes, surface = surface_of_label(cut)
     particle = Particle(cut.name, mesh, group, source, notes, cut.weight)
     extracted = ExtractedParticle(particle, cut.label, cut.n_voxels, cut.weight, surface)
-    return extracted, None if measure is None else measure(particle)
+    return extracted if make is None else make(extracted)
 
 
 def surface_of_label(cut: LabelCut) -> tuple[Mesh, tuple[str, ...], Surface]:

@@ -12,6 +12,7 @@ import hashlib
 import os
 import shutil
 import sys
+import time
 import uuid
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -32,6 +33,9 @@ JOURNAL = "journal"
 
 Content = bytes | Iterable[bytes]
 """Of a file: as a whole, or in pieces."""
+
+_REMOVALS, _REMOVAL_SECONDS = 10, 0.05
+"""How often the removal of a folder is tried, and what is waited in between."""
 
 _unfinished: set[Path] = set()
 """Hidden files and folders of this process that have not taken their places."""
@@ -73,6 +77,20 @@ def write_bytes(path: Path, content: bytes) -> None:
     """
     with staged_file(path) as stream:
         stream.write(content)
+
+
+def write_in_stage(path: Path, content: bytes) -> None:
+    """Write a file in a folder that is staged itself: what an interruption leaves of it goes with it.
+
+    Raises
+    ------
+    FileError
+        If it cannot be written.
+    """
+    try:
+        path.write_bytes(content)
+    except OSError as error:
+        raise FileError(f"The file {path} cannot be written ({os_error_reason(error)}).") from error
 
 
 def write_files(contents: Mapping[Path, bytes]) -> None:
@@ -211,9 +229,16 @@ def recover_folder(target: Path) -> Path:
 
 
 def remove_quietly(folder: Path) -> None:
-    """Remove a folder if it exists; errors are ignored."""
-    with contextlib.suppress(OSError):  # rmtree does not ignore the errors of close
-        shutil.rmtree(folder, ignore_errors=True)
+    """Remove a folder if it exists; errors are ignored.
+
+    It is tried again where another process writes into it at the same moment.
+    """
+    for _ in range(_REMOVALS):
+        with contextlib.suppress(OSError):  # rmtree does not ignore the errors of close
+            shutil.rmtree(folder, ignore_errors=True)
+        if not folder.is_dir():
+            return
+        time.sleep(_REMOVAL_SECONDS)
 
 
 def sync_folder(folder: Path) -> None:

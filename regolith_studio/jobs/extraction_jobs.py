@@ -3,12 +3,14 @@
 import hashlib
 from collections.abc import Callable, Generator
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
+from typing import Any, TypeVar
 
 import numpy as np
 
 from regolith_studio.errors import InputError
-from regolith_studio.geometry.particle import Particle, Source
+from regolith_studio.geometry.particle import Source
 from regolith_studio.imaging.extraction import (
     ExtractedParticle,
     Extraction,
@@ -30,7 +32,7 @@ from regolith_studio.messages import N_, Message
 from regolith_studio.readers.file_bytes import sha256_of
 from regolith_studio.readers.volumes.files import member_folder, member_names
 
-ParticleCallback = Callable[[ExtractedParticle, MeasuredParticle], None]
+_Made = TypeVar("_Made")
 
 
 @dataclass(frozen=True)
@@ -84,20 +86,25 @@ def extract_file(given: VolumeInput, recipe: GrainSettings, scratch: Path | None
     InputError
         If there is no particle in it, or the voxel size is not known.
     """
-    return (yield from _extract(given, recipe, scratch, Executor(), collect=True))
+    return (yield from _extract(given, recipe, scratch, Executor()))
 
 
 def extract_each(
     given: VolumeInput,
     recipe: GrainSettings,
     scratch: Path | None,
-    sink: Callable[[ExtractedParticle], None],
+    make: Callable[[ExtractedParticle], _Made],
+    sink: Callable[[_Made], None],
     workers: int | Executor = 1,
 ) -> Steps:
-    """As :func:`extract_file`, but each particle is passed to `sink` and not kept, in the order of labels.
+    """As :func:`extract_file`, but no particle is kept.
 
     Parameters
     ----------
+    make
+        Applied to each particle where it is made, maybe in another process; picklable.
+    sink
+        Called in this process with what `make` returns, in the order of labels.
     workers
         Processes, or an executor. Other processes than this one read the volume and the temporary files
         themselves; a cluster's must find both under the same paths.
@@ -108,35 +115,37 @@ def extract_each(
         If a worker does not find them.
     """
     with open_executor(workers) as executor:
-        return (yield from _extract(given, recipe, scratch, executor, lambda step: sink(step.extracted)))
+        return (yield from _extract(given, recipe, scratch, executor, make, sink))
 
 
 def extract_measured(
     given: VolumeInput,
     recipe: GrainSettings,
     scratch: Path | None,
-    sink: ParticleCallback,
+    make: Callable[[ExtractedParticle, MeasuredParticle], _Made],
+    sink: Callable[[_Made], None],
     workers: int | Executor = 1,
     labels_file: Path | None = None,
 ) -> Steps:
-    """As :func:`extract_each`, but each particle is measured where it is made, and passed on with that.
+    """As :func:`extract_each`, but each particle is measured where it is made.
 
     Parameters
     ----------
+    make
+        As in :func:`extract_each`, of a particle and what was measured of it.
     labels_file
         Where to write the label volume, if anywhere (:func:`~regolith_studio.jobs.label_jobs.write_labels`).
     """
     yield from compile_first("describe")
-
-    def hand_over(step: ExtractionProgress) -> None:
-        sink(step.extracted, step.measured)
-
+    measure = partial(_made_of_measured, make)
     with open_executor(workers) as executor:
-        return (
-            yield from _extract(
-                given, recipe, scratch, executor, hand_over, measure=measure_particle, labels_file=labels_file
-            )
-        )
+        return (yield from _extract(given, recipe, scratch, executor, measure, sink, labels_file))
+
+
+def _made_of_measured(
+    make: Callable[[ExtractedParticle, MeasuredParticle], _Made], extracted: ExtractedParticle
+) -> _Made:
+    return make(extracted, measure_particle(extracted.particle))
 
 
 def extract_labels(
@@ -168,18 +177,13 @@ def volume_sha256(path: Path) -> str:
     return digest.hexdigest()
 
 
-_Sink = Callable[[ExtractionProgress], None]
-
-
 def _extract(
     given: VolumeInput,
     recipe: GrainSettings,
     folder: Path | None,
     executor: Executor,
-    sink: _Sink | None = None,
-    *,
-    collect: bool = False,
-    measure: Callable[[Particle], MeasuredParticle] | None = None,
+    make: Callable[[ExtractedParticle], Any] | None = None,
+    sink: Callable[[Any], None] | None = None,
     labels_file: Path | None = None,
 ) -> Steps:
     yield from compile_first("scan")
@@ -199,7 +203,7 @@ def _extract(
             yield from write_labels(labels, recipe.extraction, labels_file, grey is not None)
         yield Started(N_("Extracting particles"))
         group = given.group or given.path.stem
-        steps = extraction_steps(labels, recipe.extraction, group, origin, collect, grey, run, measure)
+        steps = extraction_steps(labels, recipe.extraction, group, origin, make, grey, run)
         extraction = yield from _handed_over(steps, sink)
     if not extraction.n_found:
         raise InputError(_no_particle_message(given.path, extraction))
@@ -224,9 +228,9 @@ def _scratch(source: SliceSource, path: Path, folder: Path | None, executor: Exe
 
 
 def _handed_over(
-    steps: Generator[ExtractionProgress, None, Extraction], sink: _Sink | None = None
+    steps: Generator[ExtractionProgress, None, Extraction], sink: Callable[[Any], None] | None = None
 ) -> Generator[Step, None, Extraction]:
-    """The steps as events, each given to `sink` before."""
+    """The steps as events; what was made is given to `sink` before."""
     while True:
         try:
             step = next(steps)
@@ -234,8 +238,8 @@ def _handed_over(
             found: Extraction = end.value
             return found
         if sink is not None:
-            sink(step)
-        yield Progress(step.done, step.total, step.extracted.particle.name)
+            sink(step.made)
+        yield Progress(step.done, step.total, step.name)
 
 
 def _summary_of(segmentation: Segmentation) -> SegmentationSummary:

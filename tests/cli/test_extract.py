@@ -14,6 +14,7 @@ import trimesh
 
 from regolith_studio.imaging.sample_volumes import sample_volume
 from regolith_studio.resources import resource
+from regolith_studio.session.outputs import particles
 from regolith_studio.session.outputs.particles import ExtractionFolder
 
 GREY = resource("samples", "ct", "synthetic-grey.tif")
@@ -279,8 +280,8 @@ def test_that_a_folder_that_is_removed_while_it_is_written_to_is_not_made_again(
     parent = tmp_path / "parent"
     parent.mkdir()
     np.save(tmp_path / "balls.npy", two_balls())
-    step = "finish" if moment == "the tables" else "add"
-    complete, left = getattr(ExtractionFolder, step), ["the first particle", "the last particle"]
+    owner, step = (ExtractionFolder, "finish") if moment == "the tables" else (particles, "write_particle")
+    complete, left = getattr(owner, step), ["the first particle", "the last particle"]
 
     def remove(*arguments: object) -> object:
         if moment not in left[1:]:
@@ -288,7 +289,7 @@ def test_that_a_folder_that_is_removed_while_it_is_written_to_is_not_made_again(
         left.pop(0)
         return complete(*arguments)
 
-    monkeypatch.setattr(ExtractionFolder, step, remove)
+    monkeypatch.setattr(owner, step, remove)
     result = command("extract", tmp_path / "balls.npy", "-o", parent / "x", "--voxel-size", 1)
     assert (result.code, result.out) == (1, "")
     sentence = r"The file .*/parent/x/[^/]+ cannot be written \(there is no such file\)\.\n"

@@ -158,7 +158,7 @@ def test_that_weights_count_in_the_comparison_of_groups() -> None:
     assert row["wasserstein_1"] == pytest.approx(0.25 * 0.2 + 0.75 * 0.2)
 
 
-@pytest.mark.parametrize("step", ["add", "finish"])
+@pytest.mark.parametrize("step", ["extract", "finish"])
 def test_that_groups_are_not_written_to_a_folder_that_was_removed(
     command, scans: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, step: str
 ) -> None:

@@ -137,8 +137,8 @@ def test_that_extraction_tells_how_far_it_is() -> None:
     array[2:14, 2:14, 2:14] = 1
     array[16:28, 16:28, 16:28] = 2
     story = list(extraction_steps(Volume(array, (1.0, 1.0, 1.0), "labels", "t")))
-    assert [(step.done, step.total, step.extracted.label) for step in story] == [(1, 2, 1), (2, 2, 2)]
-    assert [step.extracted.n_voxels for step in story] == [12**3, 12**3]
+    assert [(step.done, step.total, step.made.label) for step in story] == [(1, 2, 1), (2, 2, 2)]
+    assert [step.made.n_voxels for step in story] == [12**3, 12**3]
 
 
 @pytest.mark.parametrize(
@@ -227,7 +227,7 @@ def test_that_slabs_give_the_particles_of_the_whole(monkeypatch: pytest.MonkeyPa
     thin = extract_particles(volume)
     assert (thin.labels, thin.border, thin.small) == (whole.labels, whole.border, whole.small)
     assert [p.mesh.content_hash for p in thin.particles] == [p.mesh.content_hash for p in whole.particles]
-    story = list(extraction_steps(volume, collect=False))
+    story = list(extraction_steps(volume, make=str))
     assert [step.done for step in story] == list(range(1, 48))
 
 

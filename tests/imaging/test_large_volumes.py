@@ -50,8 +50,8 @@ with ScratchArrays(path.parent) as scratch:
             except StopIteration as end:
                 source = end.value.labels
                 break
-    for step in extraction_steps(source, collect=False):
-        volumes.append(step.extracted.particle.mesh.volume)
+    for step in extraction_steps(source, make=lambda made: made.particle.mesh.volume):
+        volumes.append(step.made)
 print(json.dumps(volumes))
 """
 

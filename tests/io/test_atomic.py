@@ -185,3 +185,29 @@ def test_that_a_file_within_the_folder_it_belongs_to_is_part_of_it(tmp_path: Pat
         ("grain.stl", "new"),
     }
     assert "fit.json" in (tmp_path / "out" / "fit.sha256").read_text()
+
+
+def test_that_a_folder_that_another_process_writes_into_is_removed_at_the_second_try(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder, remove, tries = tmp_path / "stage", shutil.rmtree, []
+    folder.mkdir()
+
+    def too_late(path: Path, **options: bool) -> None:
+        remove(path, **options)
+        tries.append(path)
+        if len(tries) == 1:  # as if written between the look at its files and its removal
+            path.mkdir()
+            (path / "particle.stl").write_bytes(b"late")
+
+    monkeypatch.setattr(shutil, "rmtree", too_late)
+    atomic.remove_quietly(folder)
+    assert len(tries) == 2
+    assert not folder.exists()
+
+
+def test_that_a_file_in_a_stage_that_is_gone_is_one_sentence(tmp_path: Path) -> None:
+    with pytest.raises(
+        FileError, match=r"The file .*gone/a\.stl cannot be written \(there is no such file\)"
+    ):
+        atomic.write_in_stage(tmp_path / "gone" / "a.stl", b"")

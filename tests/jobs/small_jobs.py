@@ -5,7 +5,9 @@ import time
 from pathlib import Path
 
 from regolith_studio.errors import InputError, JobCancelled
+from regolith_studio.imaging.extraction import ExtractedParticle
 from regolith_studio.jobs.events import Progress, Started, Steps
+from regolith_studio.jobs.particle_jobs import MeasuredParticle
 
 
 def count_to(n: int) -> Steps:
@@ -97,3 +99,8 @@ def sleep_without_steps(path: str) -> Steps:
     yield Started("Sleeping")
     Path(path).touch()
     time.sleep(60)
+
+
+def name_and_numbers(extracted: ExtractedParticle, measured: MeasuredParticle) -> tuple[str, str, object]:
+    """Name, hash of the mesh and descriptors of a particle."""
+    return extracted.particle.name, extracted.particle.mesh.content_hash, measured.descriptors

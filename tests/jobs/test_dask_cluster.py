@@ -16,17 +16,16 @@ import pytest
 
 from regolith_studio.errors import InputError, MissingRequirement
 from regolith_studio.imaging import volume_slabs
-from regolith_studio.imaging.extraction import ExtractedParticle
 from regolith_studio.imaging.sample_volumes import sample_file
 from regolith_studio.jobs.events import Progress
 from regolith_studio.jobs.executor import Executor
 from regolith_studio.jobs.extraction_jobs import extract_measured
 from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput
-from regolith_studio.jobs.particle_jobs import MeasuredParticle
 from regolith_studio.jobs.runners import dask_cluster
 from regolith_studio.jobs.runners.dask_cluster import TlsFiles
 from regolith_studio.session.recipe import Recipe, recipe_of
 from regolith_studio.session.run_recipe import run_recipe
+from tests.jobs.small_jobs import name_and_numbers
 
 pytest.importorskip("distributed")
 pytestmark = pytest.mark.filterwarnings("default")  # Dask's own
@@ -182,16 +181,11 @@ def test_that_an_encrypted_cluster_works_and_lets_no_stranger_in(
 
 def grains(
     given: VolumeInput, executor: Executor, scratch: Path, after: Callable[[int], None] = lambda _: None
-) -> list[tuple[str, str, dict[str, float]]]:
+) -> list[tuple[str, str, object]]:
     """Names, meshes and descriptors of a scan's particles; `after` gets the number of each step."""
-    found: list[tuple[str, str, dict[str, float]]] = []
-
-    def keep(extracted: ExtractedParticle, measured: MeasuredParticle) -> None:
-        found.append(
-            (extracted.particle.name, extracted.particle.mesh.content_hash, dict(measured.descriptors))
-        )
-
-    for number, _ in enumerate(extract_measured(given, GrainSettings(), scratch, keep, executor)):
+    found: list[tuple[str, str, object]] = []
+    steps = extract_measured(given, GrainSettings(), scratch, name_and_numbers, found.append, executor)
+    for number, _ in enumerate(steps):
         after(number)
     return found
 

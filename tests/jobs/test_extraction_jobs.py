@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from regolith_studio.errors import InputError
-from regolith_studio.imaging.extraction import ExtractionSettings
+from regolith_studio.imaging.extraction import ExtractedParticle, ExtractionSettings
 from regolith_studio.imaging.sample_volumes import sample_file, sample_volume
 from regolith_studio.imaging.segmentation.denoising import DenoiseSettings
 from regolith_studio.imaging.segmentation.segment import SegmentationSettings
@@ -17,13 +17,19 @@ from regolith_studio.jobs import scan_jobs
 from regolith_studio.jobs.events import Progress, Started, Step, Steps
 from regolith_studio.jobs.extraction_jobs import extract_file, extract_labels, extract_measured, volume_sha256
 from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput, read_grain_settings
+from regolith_studio.jobs.particle_jobs import MeasuredParticle
 from regolith_studio.jobs.scan_jobs import preview_heights, preview_part, segment_volume
 from regolith_studio.readers.file_bytes import sha256_of
 from regolith_studio.resources import resource
+from tests.jobs.small_jobs import name_and_numbers
 
 GREY = resource("samples", "ct", "synthetic-grey.tif")
 PART = (slice(0, 80), slice(0, 80), slice(0, 80))
 QUICK = GrainSettings(SegmentationSettings(DenoiseSettings("none")))
+
+
+def pair_of(extracted: ExtractedParticle, measured: MeasuredParticle) -> object:
+    return extracted, measured
 
 
 def played(steps: Steps) -> tuple[list[Step], Any]:
@@ -101,7 +107,7 @@ def test_that_a_cancelled_run_leaves_no_temporary_files(
 def test_that_measured_particles_are_handed_over_and_not_kept(part: VolumeInput) -> None:
     seen = []
     _, kept = played(extract_file(part, QUICK))
-    _, done = played(extract_measured(part, QUICK, None, lambda *pair: seen.append(pair), workers=1))
+    _, done = played(extract_measured(part, QUICK, None, pair_of, seen.append))
     assert done.extraction.n_found == len(seen) == len(kept.extraction.found)
     assert done.extraction.found == ()
     for found, facts in seen:
@@ -113,12 +119,7 @@ def test_that_measured_particles_are_handed_over_and_not_kept(part: VolumeInput)
 def test_that_two_processes_make_the_particles_that_one_makes(part: VolumeInput) -> None:
     seen: dict[int, list[tuple[str, str, object]]] = {1: [], 2: []}
     for workers, found in seen.items():
-
-        def keep(extracted, facts, found=found):
-            particle = extracted.particle
-            found.append((particle.name, particle.mesh.content_hash, facts.descriptors))
-
-        played(extract_measured(part, QUICK, None, keep, workers=workers))
+        played(extract_measured(part, QUICK, None, name_and_numbers, found.append, workers=workers))
     assert len(seen[1]) > 3
     assert seen[1] == seen[2]
 

@@ -10,6 +10,7 @@ import shutil
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -165,14 +166,11 @@ def _extract_grains(entry: VolumeEntry, base: Path, root: Path, finished: bool, 
     if (folder / INDEX).is_file() and (finished or _is_whole(folder)):
         return folder
     with _removing_empty_folder(root), staged_folder(folder, "prepared") as stage:
-        rows: dict[int, dict[str, Any]] = {}
-
-        def keep(extracted: ExtractedParticle) -> None:
-            rows[extracted.label] = _store_grain(stage, extracted)
-
-        done = yield from extract_each(volume, settings, root.parent, keep, executor)
+        rows: list[dict[str, Any]] = []
+        store = partial(_store_grain, stage)
+        done = yield from extract_each(volume, settings, root.parent, store, rows.append, executor)
         (stage / RECIPE).write_bytes(json_bytes(recipe_document(volume, settings, done)))
-        (stage / INDEX).write_bytes(json_bytes([rows[label] for label in sorted(rows)]))
+        (stage / INDEX).write_bytes(json_bytes(rows))
     return folder
 
 

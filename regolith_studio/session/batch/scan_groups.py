@@ -23,7 +23,7 @@ from regolith_studio.io.atomic import listed_hashes, staged_folder, write_bytes
 from regolith_studio.io.tables import Column, Table, csv_bytes, csv_text
 from regolith_studio.jobs.events import Started, Steps
 from regolith_studio.jobs.executor import Executor
-from regolith_studio.jobs.extraction_jobs import extract_measured, volume_sha256
+from regolith_studio.jobs.extraction_jobs import volume_sha256
 from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput
 from regolith_studio.messages import N_, Message
 from regolith_studio.readers.volumes.files import volume_files
@@ -114,7 +114,7 @@ def extract_groups(
                 continue
             with staged_folder(output / given.group, "extract") as stage:
                 folder = ExtractionFolder(stage)
-                steps = extract_measured(given, settings, output, folder.add, workers)
+                steps = folder.extract(given, settings, output, workers)
                 done = yield from _numbered(steps, given.group, number, len(scans))
                 folder.finish(given, settings, done)
             extracted.append(given.group)

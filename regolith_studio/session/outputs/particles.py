@@ -1,8 +1,9 @@
 """Particles of a volume or of a shape model as files: STL, tables and the recipe."""
 
 import io
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
+from functools import partial
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -14,11 +15,13 @@ from regolith_studio.dataset.build import software_versions
 from regolith_studio.harmonics.coefficients import CONVENTION
 from regolith_studio.imaging.extraction import ExtractedParticle
 from regolith_studio.imaging.volume_slabs import SliceSource
-from regolith_studio.io.atomic import write_bytes
+from regolith_studio.io.atomic import write_bytes, write_in_stage
 from regolith_studio.io.json_text import json_bytes
 from regolith_studio.io.stl import stl_bytes
 from regolith_studio.io.tables import Cell, Column, Table, csv_text
-from regolith_studio.jobs.extraction_jobs import ExtractedFile
+from regolith_studio.jobs.events import Steps
+from regolith_studio.jobs.executor import Executor
+from regolith_studio.jobs.extraction_jobs import ExtractedFile, extract_measured
 from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput
 from regolith_studio.jobs.model_jobs import GenerationRequest, particle_names
 from regolith_studio.jobs.particle_jobs import MeasuredParticle
@@ -36,8 +39,34 @@ RECIPE, LISTED = "extraction.json", "extract.sha256"
 _LIBRARIES = ("scikit-image", "connected-components-3d", "vtk", "tifffile", "h5py")
 
 
+@dataclass(frozen=True, eq=False)
+class ParticleRecord:
+    """What the tables say of a particle that was written: a row, and an entry of ``--json``."""
+
+    label: int
+    row: dict[Column, Cell]
+    entry: dict[str, Any]
+
+
+def write_particle(folder: Path, extracted: ExtractedParticle, facts: MeasuredParticle) -> ParticleRecord:
+    """Write one particle's STL; returns its record."""
+    particle = extracted.particle
+    write_in_stage(folder / f"{particle.name}.stl", stl_bytes(particle.mesh.triangles, STL_HEADER))
+    table = descriptor_table([particle], [facts])
+    extra = {
+        "label": extracted.label,
+        "voxels": extracted.n_voxels,
+        "weight": extracted.weight,
+        "surface": extracted.surface,
+    }
+    row = dict(zip(table.columns, table.rows[0], strict=True)) | {
+        Column(name): value for name, value in (extra | {"notes": " ".join(particle.notes)}).items()
+    }
+    return ParticleRecord(extracted.label, row, described(particle, facts) | extra)
+
+
 class ExtractionFolder:
-    """Writes particles one by one; keeps only the rows of the tables in memory.
+    """The particles of a volume as files; keeps only the rows of the tables in memory.
 
     Parameters
     ----------
@@ -47,32 +76,31 @@ class ExtractionFolder:
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
-        self._rows: dict[int, dict[Column, Cell]] = {}
-        self._entries: dict[int, dict[str, Any]] = {}
+        self._records: list[ParticleRecord] = []
 
-    def add(self, extracted: ExtractedParticle, facts: MeasuredParticle) -> None:
-        """Write one particle's STL and remember its row."""
-        particle = extracted.particle
-        write_bytes(self._folder / f"{particle.name}.stl", stl_bytes(particle.mesh.triangles, STL_HEADER))
-        table = descriptor_table([particle], [facts])
-        extra: Mapping[Column, Cell] = {
-            Column("label"): extracted.label,
-            Column("voxels"): extracted.n_voxels,
-            Column("weight"): extracted.weight,
-            Column("surface"): extracted.surface,
-            Column("notes"): " ".join(particle.notes),
-        }
-        self._rows[extracted.label] = dict(zip(table.columns, table.rows[0], strict=True)) | dict(extra)
-        self._entries[extracted.label] = described(particle, facts) | {
-            "label": extracted.label,
-            "voxels": extracted.n_voxels,
-            "weight": extracted.weight,
-            "surface": extracted.surface,
-        }
+    def extract(
+        self,
+        volume: VolumeInput,
+        recipe: GrainSettings,
+        scratch: Path,
+        workers: int | Executor = 1,
+        labels_file: Path | None = None,
+    ) -> Steps:
+        """Write the particles of a volume, each where it is made; returns :class:`ExtractedFile`.
+
+        The parameters are those of :func:`~regolith_studio.jobs.extraction_jobs.extract_measured`.
+        """
+        write = partial(write_particle, self._folder)
+        return (
+            yield from extract_measured(
+                volume, recipe, scratch, write, self._records.append, workers, labels_file
+            )
+        )
 
     def finish(self, volume: VolumeInput, recipe: GrainSettings, result: ExtractedFile) -> dict[str, Any]:
         """Write ``particles.csv`` and the recipe; returns what ``--json`` prints."""
-        rows = [self._rows[label] for label in sorted(self._rows)]
+        records = sorted(self._records, key=lambda each: each.label)
+        rows = [record.row for record in records]
         columns = next(tuple(row) for row in rows if len(row) == max(map(len, rows)))
         table = Table(
             "Particles of a volume", columns, tuple(tuple(row.get(c) for c in columns) for row in rows)
@@ -80,7 +108,7 @@ class ExtractionFolder:
         write_bytes(self._folder / "particles.csv", csv_text(table).encode("utf-8"))
         document = recipe_document(volume, recipe, result)
         write_bytes(self._folder / RECIPE, json_bytes(document))
-        return {"particles": [self._entries[label] for label in sorted(self._entries)]} | document
+        return {"particles": [record.entry for record in records]} | document
 
 
 def recipe_document(volume: VolumeInput, recipe: GrainSettings, result: ExtractedFile) -> dict[str, Any]:
