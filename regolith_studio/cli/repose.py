@@ -297,7 +297,7 @@ def run_remarks(document: dict[str, Any]) -> list[str]:
 
 def run_in_words(document: dict[str, Any]) -> str:
     """The result of a run."""
-    checks, measurement = document["checks"], document["measurement"]
+    checks, measurement, heap = document["checks"], document["measurement"], document["packing"]["heap"]
     lines = [
         in_words(measurement) if measurement["status"] == "pile" else measurement["reason"],
         f"filled to            {100 * checks['fill_height']:.2f} cm, packed {checks['solid_fraction']:.2f}",
@@ -305,4 +305,10 @@ def run_in_words(document: dict[str, Any]) -> str:
         f"overlap at rest      {100 * checks['max_overlap']:.2f} % of the mean diameter at most",
         f"energy gained        {checks['energy_gain']:.1e} m g d a particle",
     ]
+    if heap is not None:
+        lines.insert(
+            2,
+            f"inside the heap      packed {heap['solid_fraction']:.2f}, {heap['bulk_density']:.0f} kg/m^3, "
+            f"{heap['coordination_number']:.1f} contacts a particle ({heap['n_particles']} particles)",
+        )
     return "\n".join(lines)

@@ -18,6 +18,7 @@ from regolith_studio.dem.angle_of_repose import ReposeMeasurement, measurement_d
 from regolith_studio.dem.case import PreparedCase, ReposeCase
 from regolith_studio.dem.engine import Engine, RunChecks, SimulationResult
 from regolith_studio.dem.evaluation.settings import NotAPileError
+from regolith_studio.dem.heap_packing import HeapPacking, packing_document
 from regolith_studio.dem.scaling_report import scaling_report
 from regolith_studio.dem.snapshot import ParticleState, particle_state_bytes, read_particle_state
 from regolith_studio.errors import FileError, RegolithError, os_error_reason
@@ -287,6 +288,7 @@ def run_document(
     state: str,
     ending: SimulationResult | None = None,
     measured: ReposeMeasurement | NotAPileError | None = None,
+    packing: HeapPacking | None = None,
     problem: str | None = None,
     n_snapshots: int = 0,
 ) -> dict[str, Any]:
@@ -298,6 +300,8 @@ def run_document(
         ``finished``, ``stopped`` by the user, or ``failed``.
     measured
         The measurement, or why there is no angle.
+    packing
+        Of the heap.
     problem
         The message of a failed run.
     """
@@ -335,6 +339,9 @@ def run_document(
             "notes": list(ending.notes) if ending else [],
         },
         "checks": _checks(ending.checks) if ending else None,
+        "packing": packing_document(
+            case.contact.density, ending.checks.solid_fraction if ending else None, packing
+        ),
         "measurement": _measurement(measured),
         "messages": [to_json(each) for each in _sentences(ending, measured) if isinstance(each, Message)],
     }

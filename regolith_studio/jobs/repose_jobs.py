@@ -12,6 +12,7 @@ from regolith_studio.dem.engine import Engine, SimulationResult
 from regolith_studio.dem.engine_process import EngineError, run_engine
 from regolith_studio.dem.engines import DEFAULT_ENGINE, ENGINES, engine_named
 from regolith_studio.dem.evaluation.settings import EvaluationSettings, NotAPileError
+from regolith_studio.dem.heap_packing import HeapPacking, measure_packing
 from regolith_studio.dem.initial_packing import loose_column
 from regolith_studio.dem.run_io import (
     run_document,
@@ -166,6 +167,7 @@ class _RunWriter:
         state: str,
         ending: SimulationResult | None = None,
         measured: ReposeMeasurement | NotAPileError | None = None,
+        packing: HeapPacking | None = None,
         problem: str | None = None,
     ) -> dict[str, Any]:
         document = run_document(
@@ -175,6 +177,7 @@ class _RunWriter:
             state=state,
             ending=ending,
             measured=measured,
+            packing=packing,
             problem=problem,
             n_snapshots=len(snapshot_files(self.folder)),
         )
@@ -186,12 +189,13 @@ class _RunWriter:
 def _finish_run(
     record: _RunWriter, ending: SimulationResult, folder: Path, evaluation: EvaluationSettings
 ) -> ReposeRun:
-    measured = measure_result(ending, evaluation)
+    measured, packing = measure_result(ending, evaluation), None
     if isinstance(measured, ReposeMeasurement):
         from regolith_studio.studies.figures.repose import write_section_figure  # matplotlib
 
         write_section_figure(ending.particles.points, ending.particles.diameters, measured, record.folder)
-    document = record.save("finished", ending, measured)
+        packing = measure_packing(record.prepared, ending.particles, measured)
+    document = record.save("finished", ending, measured, packing)
     return ReposeRun(folder, document, ending, measured)
 
 

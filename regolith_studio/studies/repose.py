@@ -18,6 +18,9 @@ COLUMNS = (
     Column("asymmetric_paper", "deg"),
     Column("symmetric_paper", "deg"),
     Column("n_particles"),
+    Column("filled_bulk_density", "kg/m^3"),
+    Column("heap_bulk_density", "kg/m^3"),
+    Column("coordination_number"),
     Column("max_overlap", "%"),
     Column("folder"),
 )
@@ -79,6 +82,8 @@ def _row(run: ReposeStudyRun) -> tuple[Cell, ...]:
     paper = measurement.get("paper_sections", {})
     checks = run.document.get("checks") or {}
     overlap = checks.get("max_overlap")
+    packing = run.document.get("packing") or {}
+    heap = packing.get("heap") or {}
     return (
         run.varied,
         run.value,
@@ -90,6 +95,9 @@ def _row(run: ReposeStudyRun) -> tuple[Cell, ...]:
         paper.get("asymmetric", {}).get("mean_deg"),
         paper.get("symmetric", {}).get("mean_deg"),
         run.document["case"]["n_particles"],
+        packing.get("filled_bulk_density"),
+        heap.get("bulk_density"),
+        heap.get("coordination_number"),
         None if overlap is None else 100 * overlap,
         run.folder,
     )

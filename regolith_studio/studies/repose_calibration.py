@@ -56,9 +56,8 @@ class CalibrationRun:
         if name == ANGLE:
             angle = self.measurement.get("angle_deg")
             return np.nan if angle is None else float(angle)
-        checks = self.document.get("checks")
-        density = float(self.document["case"]["contact"]["density"])
-        return np.nan if checks is None else density * float(checks["solid_fraction"])
+        density = (self.document.get("packing") or {}).get("filled_bulk_density")
+        return np.nan if density is None else float(density)
 
     def error(self, name: str) -> float:
         """Standard deviation of a result, from the interval of the angle; NaN where a run states none."""

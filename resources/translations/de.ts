@@ -6848,6 +6848,10 @@
         <translation>in der Regression</translation>
     </message>
     <message>
+        <source>inside the heap {density:.2f} g/cm³, {contacts:.1f} contacts a particle</source>
+        <translation>im Haufen {density:.2f} g/cm³, {contacts:.1f} Kontakte je Partikel</translation>
+    </message>
+    <message>
         <source>intersecting faces</source>
         <translation>sich schneidende Dreiecke</translation>
     </message>

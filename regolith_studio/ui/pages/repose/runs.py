@@ -193,11 +193,20 @@ def checks_text(run: RunSummary) -> str:
     if checks["problems"]:
         return " ".join(translate(run.message(each)) for each in checks["problems"])
     overlap = 100 * checks["max_overlap"]
-    return tr(
+    checked = tr(
         "Checked: {count:,} particles, overlap at most {overlap:.1f} % of d",
         count=checks["particles_out"],
         overlap=overlap,
     )
+    heap = (run.document.get("packing") or {}).get("heap")
+    if heap is None:
+        return checked
+    inside = tr(
+        "inside the heap {density:.2f} g/cm³, {contacts:.1f} contacts a particle",
+        density=heap["bulk_density"] / 1000.0,
+        contacts=heap["coordination_number"],
+    )
+    return f"{checked}; {inside}"
 
 
 def duration_text(seconds: float) -> str:
