@@ -6,8 +6,9 @@ import pytest
 from scipy.spatial import cKDTree
 from scipy.spatial.distance import pdist, squareform
 
+from benchmarks.sliding_friction import FRICTION, SEEDS, TUMBLED, slide
 from regolith_studio.dataset.dataset import Dataset
-from regolith_studio.dataset.parameters import ContactParameters, LiftingCylinderTest
+from regolith_studio.dataset.parameters import ContactParameters
 from regolith_studio.dem.case import ReposeCase, prepare
 from regolith_studio.dem.engines.mujoco import simulation
 from regolith_studio.dem.engines.mujoco.model import (
@@ -154,39 +155,21 @@ def test_that_the_memory_for_contacts_grows_with_the_number_and_not_with_its_squ
     assert 100_000 * 2000 < large < 1e9
 
 
-def friction_of_sliding_grains(boxes: Dataset, degrees: float, seed: int = 2) -> tuple[float, set[float]]:
-    """Mean of tan(slope) - a / (g cos(slope)) over 12 time units of 40 boxes on the tilted plate; steps."""
-    test = LiftingCylinderTest(mass=0.003, plate_friction=0.8)
-    prepared = prepare(boxes, ReposeCase(test, n_particles=40, seed=seed))
-    solver = simulation.MujocoSolver(prepared, MujocoSettings())
-    half = np.array([shape[:, 2].max() for shape in prepared.shapes])[prepared.class_index]
-    rows = solver.data.qpos.reshape(-1, 7)
-    rows[:, :3] = np.column_stack(
-        [np.zeros(40), 4.0 * np.arange(40), half * prepared.scales / prepared.mean_diameter]
-    )
-    rows[:, 3:] = (1.0, 0.0, 0.0, 0.0)
-    solver.begin("rest")
-    slope = np.radians(degrees)
-    solver.model.opt.gravity = (np.sin(slope), 0.0, -np.cos(slope))
-    steps = set()
-    while solver.time < 12.0:
-        step = solver.time_step()
-        solver.advance(step, round(0.5 / step))
-        steps.add(step)
-    speed = solver.data.qvel.reshape(-1, 6)[:, 0]
-    return float(np.tan(slope) - speed.mean() / solver.time / np.cos(slope)), steps
-
-
 @pytest.mark.slow
-def test_that_grains_which_slide_fast_feel_the_friction_that_is_set(
-    boxes: Dataset, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Coulomb's law on a slope of 50 degrees; with one step for all speeds they bounce and feel less."""
-    felt, steps = zip(*(friction_of_sliding_grains(boxes, 50.0, seed) for seed in (2, 3, 4)), strict=True)
-    assert np.mean(felt) == pytest.approx(0.8, abs=0.03)
+def test_that_grains_which_slide_fast_feel_the_friction_that_is_set(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Coulomb's law on a slope of 50 degrees: boxes that stay flat feel it, those that tumble roll in part.
+
+    With one step for all speeds all bounce, tumble and feel less.
+    """
+    felt, turn, brick, steps = map(list, zip(*(slide(50.0, seed) for seed in SEEDS), strict=True))
+    flat = np.concatenate(felt)[np.concatenate(turn) < TUMBLED]
+    assert flat.mean() == pytest.approx(FRICTION, abs=0.01)
+    assert flat.std() < 0.02
+    assert np.concatenate(felt)[np.concatenate(brick)].mean() == pytest.approx(FRICTION, abs=0.01)
+    assert np.mean(felt) == pytest.approx(FRICTION, abs=0.03)
     assert all(min(each) < max(each) == MujocoSettings().time_step for each in steps)
     monkeypatch.setattr(simulation, "MAX_MOVE", 1.0)
-    assert np.mean([friction_of_sliding_grains(boxes, 50.0, seed)[0] for seed in (2, 3, 4)]) < 0.75
+    assert np.mean([slide(50.0, seed)[0] for seed in SEEDS]) < 0.75
 
 
 def test_that_a_run_says_which_steps_it_took(boxes: Dataset) -> None:

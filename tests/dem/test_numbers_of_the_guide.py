@@ -52,6 +52,20 @@ def test_that_the_table_of_the_evaluation_has_the_default_settings() -> None:
             assert text.partition(":")[0] == (value if isinstance(value, str) else f"{value:g}")
 
 
+def test_that_the_table_of_sliding_friction_has_the_results_of_its_benchmark() -> None:
+    table = json.loads((ROOT / "benchmarks/results/sliding_friction.json").read_text("utf-8"))
+    found = table["slope of 50 degrees"]["rows"]
+    said = rows_of(REPOSE, "| settings | all | cubes | bricks | tumbled | steps |")
+    assert said == [
+        [name, *(f"{each:.3f}" for each in row[:3]), f"{100 * row[3]:.0f} %", f"{row[4]:,.0f}"]
+        for name, row in found.items()
+    ]
+    usual, single = found["as it is"], found["one step for all speeds"]
+    assert f"with a friction of 0.8 feel {single[0]:.2f}" in one_line(REPOSE)
+    assert f"bricks, which stay flat, feel {usual[2]:.2f}" in one_line(REPOSE)
+    assert f"hop, tumble and feel {usual[1]:.2f}" in one_line(REPOSE)
+
+
 def test_that_the_table_of_choices_has_the_default_parameters() -> None:
     said = {row[0]: row[1] for row in rows_of(REPOSE, "| not given | chosen |")}
     contact, test = ContactParameters(), LiftingCylinderTest()

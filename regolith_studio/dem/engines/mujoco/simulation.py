@@ -14,8 +14,8 @@ from regolith_studio.messages import N_, Message
 
 MAX_MOVE = 0.01
 """Largest way in a step of all but one in a hundred particles, in mean diameters. Grains that slide faster
-bounce: on a slope of 50 degrees they lose a twelfth of a friction of 0.8 with the default step, and a
-fortieth with this limit, in the mean over three seeds."""
+bounce: on a slope of 50 degrees boxes lose a tenth of a friction of 0.8 with the default step, and a fortieth
+with this limit, in the mean over three seeds (``benchmarks/sliding_friction.py``)."""
 SMALLEST_SHARE = 1 / 8
 """Of the time step that is set, however fast particles move."""
 STATE = mujoco.mjtState.mjSTATE_INTEGRATION
