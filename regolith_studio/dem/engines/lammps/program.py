@@ -48,7 +48,7 @@ class LammpsSettings:
         default=0.0, metadata={"label": N_("Error of the spheres"), "minimum": 0.0, "maximum": 0.9}
     )
     max_stiffness: float = field(
-        default=2e4, metadata={"label": N_("Young's modulus / ρgd"), "minimum": 0.0, "maximum": 1e12}
+        default=4e4, metadata={"label": N_("Young's modulus / ρgd"), "minimum": 0.0, "maximum": 1e12}
     )
     step_share: float = field(
         default=0.15, metadata={"label": N_("Step, in Rayleigh's time"), "minimum": 0.01, "maximum": 0.5}

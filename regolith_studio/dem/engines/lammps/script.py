@@ -169,7 +169,7 @@ def script(
     )
     return f"""units lj
 atom_style hybrid sphere bond
-boundary f f f
+boundary s s f
 newton off
 comm_modify vel yes cutoff 4.0
 read_data clumps.data

@@ -35,6 +35,8 @@ MAX_SPEED = 2.0
 """Largest speed of a particle, in that of a fall from the top of the column."""
 REST_ENERGY = 1e-3
 """Mean kinetic energy in m g d at which a heap is at rest."""
+NEAR = 0.05
+"""Mean diameters between spheres of bodies that belong to one heap."""
 
 
 class FlewApartError(RegolithError):
@@ -294,11 +296,12 @@ def _checks(run: _Run) -> RunChecks:
     length, _ = run.units
     points = run.last.points / length
     turns = Rotation.from_quat(run.last.orientations, scalar_first=True)
-    overlaps = _overlaps(*run.clumps.atoms(points, turns))
-    kinetic = run.kinetic[max(run.kinetic)] / len(points) if run.kinetic else float("inf")
+    bodies, depths = _neighbours(*run.clumps.atoms(points, turns))
+    heap = np.unique(bodies)
+    kinetic = float(_kinetic_energies(run.clumps, run.states[-1])[heap].sum()) / len(points)
     return check_run(
         points[:, 2],
-        overlaps,
+        depths[depths > 0.0],
         energy_gain=run.energy_gain,
         kinetic_energy=kinetic,
         at_rest=bool(kinetic < REST_ENERGY),
@@ -306,10 +309,23 @@ def _checks(run: _Run) -> RunChecks:
     )
 
 
-def _overlaps(body: IntArray, places: FloatArray, radius: FloatArray) -> FloatArray:
-    """Depths by which spheres of different bodies overlap, in mean diameters."""
-    pairs = cKDTree(places).query_pairs(2.0 * float(radius.max()), output_type="ndarray")
+def _kinetic_energies(clumps: Clumps, state: _State) -> FloatArray:
+    """Of motion and rotation of each body, shape (n,)."""
+    velocity, momentum = state.motion[:, :3], state.motion[:, 3:]
+    inertias = replace(clumps, turns=state.turns).inertias()
+    rotation = np.einsum("ni,ni->n", momentum, np.linalg.solve(inertias, momentum[:, :, None])[:, :, 0])
+    return np.asarray(0.5 * (clumps.scales**3 * (velocity**2).sum(axis=1) + rotation))
+
+
+def _neighbours(body: IntArray, places: FloatArray, radius: FloatArray) -> tuple[IntArray, FloatArray]:
+    """Pairs of bodies whose spheres are nearer than :data:`NEAR`, shape (m, 2), and the depths to which these
+    overlap in mean diameters, negative where they do not, shape (m,).
+
+    A clump without rolling resistance that has left the heap can roll on for ever: it has no neighbour.
+    """
+    pairs = cKDTree(places).query_pairs(2.0 * float(radius.max()) + NEAR, output_type="ndarray")
     pairs = pairs[body[pairs[:, 0]] != body[pairs[:, 1]]]
     apart = np.linalg.norm(places[pairs[:, 0]] - places[pairs[:, 1]], axis=1)
-    depth = radius[pairs].sum(axis=1) - apart
-    return np.asarray(depth[depth > 0.0])
+    depth = np.asarray(radius[pairs].sum(axis=1) - apart)
+    near = depth > -NEAR
+    return body[pairs[near]], depth[near]
