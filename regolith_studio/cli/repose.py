@@ -238,6 +238,15 @@ def study(
     repeats: Annotated[
         int, typer.Option("--repeats", min=1, max=1000, help="Number of seeds per value.", metavar="N")
     ] = 1,
+    against: Annotated[
+        str,
+        typer.Option(
+            "--against",
+            help="Shape statistics of the datasets, such as aspect_ratio,sphericity, over which a response "
+            "surface is fitted to the angles.",
+            metavar="KEYS",
+        ),
+    ] = "",
     particles: Particles = 1000,
     how: CaseOptions,
     json: Json = False,
@@ -245,11 +254,16 @@ def study(
     seed: Seed = 0,
 ) -> None:
     """Measure the angle of repose against a parameter or for several datasets; resumes a stopped study."""
+    from regolith_studio.errors import InputError
     from regolith_studio.jobs.repose_study import ReposeVariant, study_repose, with_value, write_study
     from regolith_studio.studies.repose import repose_table
+    from regolith_studio.studies.repose_surface import fit_repose_surface, surface_document, surface_table
 
     del jobs  # one run after the other, so that what is there already is known
     key, points = varied_values(vary)
+    if points and against:
+        raise typer.BadParameter("--against compares datasets as they are; leave out --vary.")
+    keys, statistics = _statistics(against, datasets)
     request = how.request(n_particles=particles, seed=seed)
     rows = []
     for folder in datasets:
@@ -259,11 +273,40 @@ def study(
         if not points:
             rows.append(ReposeVariant(name, folder.name, folder, request))
     done = run_with_progress(study_repose(rows, output, repeats))
-    files = write_study(done, output)
+    try:
+        surface = fit_repose_surface(done, statistics, keys) if keys else None
+    except InputError:
+        write_study(done, output)
+        raise
+    files = write_study(done, output, surface)
     if json:
         print_json({"folder": str(output), "files": files})
-    else:
-        print_table(repose_table(done))
+        return
+    print_table(repose_table(done))
+    if surface is not None:
+        print_table(surface_table(surface))
+        typer.echo(surface_in_words(surface_document(surface)))
+
+
+def _statistics(against: str, folders: list[Path]) -> tuple[list[str], dict[str, Any]]:
+    """Names of shape statistics, and their values for each dataset by the name of its folder, checked to
+    suffice for a response surface before any run."""
+    import numpy as np
+
+    from regolith_studio.dataset.folder_io import read_dataset
+    from regolith_studio.studies.repose_surface import shape_statistics
+    from regolith_studio.studies.response_surface import fit_response_surface
+
+    keys = [key.strip() for key in against.split(",") if key.strip()]
+    if not keys:
+        return [], {}
+    names = [folder.name for folder in folders]
+    if len(set(names)) < len(names):
+        raise typer.BadParameter("The folders of the datasets must have different names.")
+    with usage_errors():
+        values = shape_statistics([read_dataset(folder) for folder in folders], keys)
+        fit_response_surface(keys, values, np.zeros(len(values)))
+    return keys, dict(zip(names, values, strict=True))
 
 
 def in_words(document: dict[str, Any]) -> str:
@@ -293,6 +336,21 @@ def run_remarks(document: dict[str, Any]) -> list[str]:
         *document["run"]["notes"],
         *document["checks"]["problems"],
     ]
+
+
+def surface_in_words(document: dict[str, Any]) -> str:
+    """The change of the angle over the range of each statistic."""
+    lines = [
+        f"{document['kind']} surface, residual standard deviation "
+        f"{document['residual_standard_deviation_deg']:.1f} deg"
+    ]
+    for each in document["effects"]:
+        low, high = each["interval_deg"]
+        lines.append(
+            f"{each['statistic']:20} {each['change_over_range_deg']:+.1f} deg ({low:+.1f} to {high:+.1f}) "
+            f"over its range of {each['range']:.3g}"
+        )
+    return "\n".join(lines)
 
 
 def run_in_words(document: dict[str, Any]) -> str:

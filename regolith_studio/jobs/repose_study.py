@@ -24,6 +24,7 @@ from regolith_studio.jobs.events import Partial, Progress, Started, Step, Steps
 from regolith_studio.jobs.repose_jobs import PROGRESS_STEPS, ReposeRequest, simulate_repose
 from regolith_studio.messages import N_, Message
 from regolith_studio.studies.repose import ReposeStudy, runs_from
+from regolith_studio.studies.repose_surface import ReposeSurface
 
 CASE_KEYS = ("shapes", "cohesion", "n_particles", "coarse_graining")
 """What of a case can be varied besides the values of Tables 1 and 2."""
@@ -86,10 +87,15 @@ def study_place(folder: Path, name: str, kind: str = STUDY) -> Path:
     return unfinished if unfinished.is_dir() else folder / name
 
 
-def write_study(study: ReposeStudy, folder: Path) -> list[str]:
+def write_study(study: ReposeStudy, folder: Path, surface: ReposeSurface | None = None) -> list[str]:
     """Write table and figure of a study, and its runs beside them, in one step; returns the files' names.
 
     Runs of earlier studies in the folder stay.
+
+    Parameters
+    ----------
+    surface
+        Through the angles of the study, which is written too.
 
     Raises
     ------
@@ -97,8 +103,13 @@ def write_study(study: ReposeStudy, folder: Path) -> list[str]:
         If the folder cannot be written.
     """
     from regolith_studio.studies.figures.repose import write_repose_study  # matplotlib
+    from regolith_studio.studies.figures.response_surface import write_surface
 
-    return write_with_runs(folder, STUDY, lambda stage: write_repose_study(study, stage, STUDY))
+    def write(stage: Path) -> tuple[Path, ...]:
+        files = write_repose_study(study, stage, STUDY)
+        return files if surface is None else (*files, *write_surface(surface, stage))
+
+    return write_with_runs(folder, STUDY, write)
 
 
 def write_with_runs(folder: Path, kind: str, write: Callable[[Path], Sequence[Path]]) -> list[str]:

@@ -1,18 +1,29 @@
 """A study of the angle of repose is one result: replaced as a whole, resumed from its journal."""
 
+import json
 import os
 import subprocess
 import sys
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from regolith_studio.cli.entry import run
-from regolith_studio.dem.run_io import find_runs
+from regolith_studio.dataset.dataset import Dataset
+from regolith_studio.dataset.folder_io import write_dataset
+from regolith_studio.dem.case import PreparedCase
+from regolith_studio.dem.engine import RunChecks, SimulationResult
+from regolith_studio.dem.initial_packing import loose_column
+from regolith_studio.dem.run_io import find_runs, save_snapshot
+from regolith_studio.dem.snapshot import ParticleState, Snapshot
 from regolith_studio.jobs import repose_jobs
 from regolith_studio.studies.figures import repose as figures
+from tests.dem.conftest import box
 from tests.dem.interrupted_study import SMALL, instant_engine, write_figure
+from tests.dem.packings import cone
 
 ROOT = Path(__file__).resolve().parents[2]
 RUNS = ["static_friction_0.2_seed0", "static_friction_0.8_seed0"]
@@ -77,6 +88,57 @@ def test_that_a_study_is_written_beside_files_of_others(words: list[str], tmp_pa
     assert (study / "thesis.txt").read_text() == "important"
     assert runs(study) == RUNS
     assert not (study / "journal").exists()
+
+
+def heap_by_aspect_ratio(
+    _key: str, prepared: PreparedCase, _settings: object, folder: Path, _threads: int
+) -> Iterator[object]:
+    """A cone of 20 degrees and 5 more for every 1 of the aspect ratio of the cuboids."""
+    extents = np.ptp(prepared.shapes[0], axis=0)
+    column = loose_column(prepared)
+    points = prepared.mean_diameter * cone(20 + 5 * extents.max() / extents.min(), len(prepared), 1)
+    heap = ParticleState(points, column.diameters, column.orientations, column.class_index)
+    save_snapshot(folder, 0, heap)
+    yield Snapshot(heap, 0.5, "half")
+    n = len(prepared)
+    return SimulationResult(heap, RunChecks(n, n, 0.0, 0.0, 0.0, 0.0, True, 0.02, 0.55), 1, 1.0)
+
+
+def dataset_of_cuboids(folder: Path, aspect_ratio: float, boxes: Dataset) -> str:
+    shape = box(aspect_ratio, 1.0, 1.0)
+    only = replace(boxes.representatives[0], weight=1.0, shape=shape)
+    return str(write_dataset(folder / f"box{aspect_ratio}", replace(boxes, representatives=(only,))))
+
+
+def test_that_angles_of_datasets_give_a_surface_over_their_aspect_ratios(
+    boxes: Dataset, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(repose_jobs, "run_engine", heap_by_aspect_ratio)
+    monkeypatch.setattr(figures, "write_figure", write_figure)
+    folders = [dataset_of_cuboids(tmp_path / "data", ratio, boxes) for ratio in (1.0, 1.5, 2.0)]
+    study = tmp_path / "study"
+    words = ["repose", "study", *folders, "-o", str(study), "-n", "300", "--against", "aspect_ratio"]
+    assert run(words) == 0
+    (effect,) = json.loads((study / "response_surface_terms.json").read_text("utf-8"))["effects"]
+    assert (effect["mean"], effect["range"]) == pytest.approx((1.5, 1.0))
+    assert effect["change_over_range_deg"] == pytest.approx(5.0, abs=2.0)
+    assert (study / "response_surface.png").is_file()
+    assert "aspect_ratio" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("keys", "sentence"),
+    [
+        ("aspect_ratio", "needs results at 3 different points or more, got 1"),
+        ("volume", "There is no shape statistic 'volume'"),
+    ],
+)
+def test_that_a_surface_is_refused_before_any_run(
+    words: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str], keys: str, sentence: str
+) -> None:
+    assert run([*words, "--against", keys]) == 2
+    assert sentence in " ".join(capsys.readouterr().err.replace("│", " ").split())
+    assert not (tmp_path / "study").exists()
 
 
 @pytest.mark.slow
