@@ -4,13 +4,15 @@ Sizes, links and foreign files are checked before anything is read.
 """
 
 import hashlib
+import json
 import os
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.schema import SCHEMA_VERSION, DatasetDocument
 from regolith_studio.dataset.serialization import dataset_of, document_text, mesh_files, parsed_document
-from regolith_studio.errors import DatasetError, os_error_reason
+from regolith_studio.errors import DatasetError, SchemaVersionError, os_error_reason
 from regolith_studio.io.atomic import recover_folder, replace_folder
 
 DOCUMENT, README = "dataset.json", "README.txt"
@@ -66,12 +68,26 @@ def read_mesh_bytes(folder: Path, file: str) -> bytes:
 
 def foreign_files(folder: Path, document: DatasetDocument) -> list[str]:
     """Files and folders below `folder` that do not belong to its dataset, as relative POSIX paths."""
-    meshes = (mesh.file for record in document.representatives for mesh in record.mesh_records)
+    return _foreign(
+        folder, (mesh.file for record in document.representatives for mesh in record.mesh_records)
+    )
+
+
+def _foreign(folder: Path, meshes: Iterable[str]) -> list[str]:
     own = {DOCUMENT, README, "meshes", *meshes}
     found = {
         path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.name not in IGNORED_FILES
     }
     return sorted(found - own)
+
+
+def _texts_in(content: object) -> Iterator[str]:
+    """All texts of a JSON value; names of files are among them in every version of the schema."""
+    if isinstance(content, str):
+        yield content
+    elif isinstance(content, list | dict):
+        for each in content.values() if isinstance(content, dict) else content:
+            yield from _texts_in(each)
 
 
 def real_path(path: Path | str) -> Path:
@@ -148,6 +164,8 @@ def read_dataset(folder: Path | str) -> Dataset:
 def check_replaceable(target: Path, overwrite: bool) -> None:
     """Check that a folder may be replaced by a dataset.
 
+    A dataset of another version of the schema may be replaced like one of the present version.
+
     Raises
     ------
     DatasetError
@@ -159,18 +177,22 @@ def check_replaceable(target: Path, overwrite: bool) -> None:
         raise DatasetError(f"{target} is a file; a dataset is written into a folder.")
     if not any(target.iterdir()):
         return
+    version = ""
     try:
-        document = read_document(target)
+        foreign = foreign_files(target, read_document(target))
+    except SchemaVersionError:
+        version = " of another version of the program"
+        foreign = _foreign(target, _texts_in(json.loads(_read(target / DOCUMENT, MAX_DOCUMENT_BYTES))))
     except DatasetError as error:
         raise DatasetError(
             f"{target} is not empty and contains no dataset; choose another folder."
         ) from error
-    if foreign := foreign_files(target, document):
+    if foreign:
         raise DatasetError(
             f"{target} also holds files that are not the dataset's ({foreign[0]}); nothing was overwritten."
         )
     if not overwrite:
-        raise DatasetError(f"{target} holds a dataset already; nothing was overwritten.")
+        raise DatasetError(f"{target} holds a dataset{version} already; nothing was overwritten.")
 
 
 README_TEMPLATE = """\

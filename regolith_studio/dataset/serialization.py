@@ -25,7 +25,13 @@ from regolith_studio.dataset.schema import (
 )
 from regolith_studio.dataset.size_distributions import Weighting
 from regolith_studio.descriptors.describe import describe
-from regolith_studio.errors import DatasetError, FileError, RegolithError, format_validation_error
+from regolith_studio.errors import (
+    DatasetError,
+    FileError,
+    RegolithError,
+    SchemaVersionError,
+    format_validation_error,
+)
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.convex_compound import ConvexCompound, Polyhedron
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
@@ -123,6 +129,8 @@ def parsed_document(text: str, where: str) -> DatasetDocument:
 
     Raises
     ------
+    SchemaVersionError
+        If it is of another version of the schema.
     DatasetError
         Naming the first entry that violates the schema.
     """
@@ -133,7 +141,7 @@ def parsed_document(text: str, where: str) -> DatasetDocument:
     if not isinstance(content, dict) or content.get("format") != FORMAT:
         raise DatasetError(f"{where} is not a dataset of Regolith Studio: its format is not {FORMAT!r}.")
     if content.get("schema_version") != SCHEMA_VERSION:
-        raise DatasetError(
+        raise SchemaVersionError(
             f"{where} has the schema version {content.get('schema_version')!r}, but this program reads only "
             f"version {SCHEMA_VERSION}; build the dataset again."
         )

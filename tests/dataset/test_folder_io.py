@@ -117,6 +117,34 @@ def test_that_a_dataset_can_be_kept_from_being_replaced(tmp_path: Path, make_dat
     assert contents(folder) == before
 
 
+def of_another_version(folder: Path) -> Path:
+    """Gives a dataset another version and another form, of which only the names of its meshes are left."""
+    path = folder / "dataset.json"
+    document = json.loads(path.read_text())
+    meshes = [record["mesh"]["file"] for record in document["representatives"]]
+    path.write_text(json.dumps({"format": document["format"], "schema_version": 1, "shapes": meshes}))
+    return folder
+
+
+def test_that_a_dataset_of_another_version_can_be_replaced(tmp_path: Path, make_dataset) -> None:
+    folder = of_another_version(write_dataset(tmp_path / "set", make_dataset(count=5)))
+    before = contents(folder)
+    with pytest.raises(DatasetError, match="holds a dataset of another version of the program already"):
+        write_dataset(folder, make_dataset(count=2), overwrite=False)
+    assert contents(folder) == before
+    write_dataset(folder, make_dataset(count=2))
+    assert validate_dataset(folder) == []
+
+
+def test_that_files_beside_a_dataset_of_another_version_are_kept(tmp_path: Path, make_dataset) -> None:
+    folder = of_another_version(write_dataset(tmp_path / "set", make_dataset()))
+    (folder / "meshes" / "mine.stl").write_text("mine")
+    before = contents(folder)
+    with pytest.raises(DatasetError, match=r"meshes/mine\.stl"):
+        write_dataset(folder, make_dataset())
+    assert contents(folder) == before
+
+
 def test_that_an_empty_folder_is_used_and_missing_parents_are_made(tmp_path: Path, make_dataset) -> None:
     (tmp_path / "empty").mkdir()
     write_dataset(tmp_path / "empty", make_dataset())
