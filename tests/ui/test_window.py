@@ -273,10 +273,28 @@ def test_that_the_export_tells_what_it_will_write_and_refuses_a_used_folder(wind
     text = " ".join(label.text() for label in dialog.findChildren(QWidget) if hasattr(label, "text"))
     assert "12, as unit-volume STL files" in text
     folder = dialog.findChild(QLineEdit, "export_folder")
-    folder.setText(str(tmp_path / "used"))
-    assert not dialog.go.isEnabled()
-    folder.setText(str(tmp_path / "new"))
-    assert dialog.go.isEnabled()
+    for path, sentence in (
+        (tmp_path / "used", "contains no dataset"),
+        (tmp_path / "used" / "thesis.txt" / "in a file", "thesis.txt is a file"),
+        ("", "full path"),
+        ("name alone", "full path"),
+        ("~nobody of this name/data", "full path"),
+        (f"/{'a' * 5000}", "full path"),
+    ):
+        folder.setText(str(path))
+        assert not dialog.go.isEnabled(), path
+        assert sentence in dialog.state.text()
+    for path in (tmp_path / "new", tmp_path / "a" / "b", "~/no such folder"):
+        folder.setText(str(path))
+        assert dialog.go.isEnabled(), path
+    dialog.reject()
+
+
+def test_that_the_export_is_no_higher_than_its_texts(window):
+    window.menus.by_name["export"].trigger()
+    dialog = window.findChild(ExportDialog)
+    assert dialog.height() == dialog.layout().heightForWidth(dialog.width())
+    assert dialog.state.geometry().top() - dialog.name.geometry().bottom() < 40
     dialog.reject()
 
 

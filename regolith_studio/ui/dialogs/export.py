@@ -1,5 +1,7 @@
 """Dialog of the export of a dataset: content and folder, then its progress."""
 
+import contextlib
+import os
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -20,6 +22,7 @@ from PySide6.QtWidgets import (
 
 from regolith_studio.coarsening.methods import METHODS
 from regolith_studio.coarsening.weights import JACCARD, presets
+from regolith_studio.dataset.folder_io import DOCUMENT
 from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.jobs.dataset_jobs import DatasetOptions
 from regolith_studio.session.choices import Choices
@@ -78,6 +81,33 @@ def summary(count: int, choices: Choices, cost: str = "") -> list[tuple[str, str
     ]
 
 
+def folder_problem(folder: Path, overwrite: bool) -> str:
+    """Why a dataset cannot be written there, as one sentence, or nothing.
+
+    Parameters
+    ----------
+    overwrite
+        Whether a dataset that is there may be replaced.
+    """
+    try:
+        place = next(each for each in (folder, *folder.parents) if each.exists())
+    except OSError:  # a name that is too long
+        place = Path()
+    if not folder.is_absolute() or not place.is_absolute():
+        return tr("Enter the full path of a new or empty folder.")
+    if not place.is_dir():
+        return tr("{path} is a file: enter a new or empty folder.", path=place)
+    if not os.access(place, os.R_OK | os.W_OK | os.X_OK):
+        return tr("Nothing can be written into {path}: choose another folder.", path=place)
+    if place != folder or not any(folder.iterdir()):
+        return ""
+    if not (folder / DOCUMENT).is_file():
+        return tr("The folder is not empty and contains no dataset: choose another one.")
+    if not overwrite:
+        return tr("The folder holds a dataset: choose another one, or tick that it is replaced.")
+    return ""
+
+
 class ExportDialog(QDialog):
     """Edits a request, then shows the progress; ``started`` carries it, ``stopped`` asks to cancel."""
 
@@ -109,7 +139,7 @@ class ExportDialog(QDialog):
         self.cancel = buttons.button(QDialogButtonBox.StandardButton.Cancel)
         self.go = buttons.addButton(tr("Export"), QDialogButtonBox.ButtonRole.AcceptRole)
         self.go.setObjectName("export_go")
-        self._arrange(summary(count, choices, cost), buttons)
+        layout = self._arrange(summary(count, choices, cost), buttons)
         self.go.setDefault(True)
         buttons.accepted.connect(self._start)
         buttons.rejected.connect(self.reject)
@@ -117,11 +147,15 @@ class ExportDialog(QDialog):
         self.folder.textChanged.connect(self._judge)
         self.overwrite.toggled.connect(self._judge)
         self._judge()
+        self.resize(self.minimumWidth(), layout.heightForWidth(self.minimumWidth()))
 
     def value(self) -> ExportRequest:
         """Folder and options."""
         options = DatasetOptions(name=self.name.text().strip(), overwrite=self.overwrite.isChecked())
-        return ExportRequest(Path(self.folder.text().strip()).expanduser(), options)
+        folder = Path(self.folder.text().strip())
+        with contextlib.suppress(RuntimeError):  # there is no such user
+            folder = folder.expanduser()
+        return ExportRequest(folder, options)
 
     def show_task(self, task: Task) -> None:
         """Show how far the work is."""
@@ -142,7 +176,7 @@ class ExportDialog(QDialog):
             self.stopped.emit()
         super().reject()
 
-    def _arrange(self, rows: list[tuple[str, str]], buttons: QDialogButtonBox) -> None:
+    def _arrange(self, rows: list[tuple[str, str]], buttons: QDialogButtonBox) -> QVBoxLayout:
         where = QHBoxLayout()
         where.addWidget(self.folder, 1)
         where.addWidget(self.browse)
@@ -161,18 +195,12 @@ class ExportDialog(QDialog):
         layout.addWidget(self.bar)
         layout.addWidget(buttons)
         self.bar.hide()
+        return layout
 
     def _judge(self) -> None:
         folder = self.value().folder
-        text = self.folder.text().strip()
-        used = bool(text) and folder.is_dir() and any(folder.iterdir())
-        blocked = folder.is_file() or not text
-        self.overwrite.setVisible(used)
-        sentence = ""
-        if blocked:
-            sentence = tr("Enter a new or empty folder.")
-        elif used and not self.overwrite.isChecked():
-            sentence = tr("The folder is not empty: choose another one, or replace the dataset in it.")
+        sentence = folder_problem(folder, self.overwrite.isChecked())
+        self.overwrite.setVisible(folder_problem(folder, True) != folder_problem(folder, False))
         self.state.setText(sentence)
         self.go.setEnabled(not sentence)
 
