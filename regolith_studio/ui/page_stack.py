@@ -72,7 +72,7 @@ class PageStack(QWidget):
             self._apply_theme(key)
             self._current = key
             self._stack.setCurrentWidget(self._scroll_areas[key])
-            self.buttons[key].setChecked(True)
+            self._bar.set_current(key)
             self._contexts[key].bindings.resume()
             widget.on_show()
             self.changed.emit(key)

@@ -51,6 +51,15 @@ class Sidebar(QFrame):
         self._column.addStretch(1)
         self._choose(0)
 
+    def set_current(self, key: str) -> None:
+        """Check the button of a page; Tab comes to it alone, and the focus follows within the bar."""
+        focused = any(button.hasFocus() for button in self.buttons.values())
+        for name, button in self.buttons.items():
+            button.setFocusPolicy(Qt.FocusPolicy.TabFocus if name == key else Qt.FocusPolicy.NoFocus)
+        self.buttons[key].setChecked(True)
+        if focused:
+            self.buttons[key].setFocus(Qt.FocusReason.OtherFocusReason)
+
     def set_theme(self, theme: Theme) -> None:
         """Take the colours of a theme."""
         for key, page in self._pages.items():

@@ -246,6 +246,24 @@ def chord(window, key, modifiers=Qt.KeyboardModifier.NoModifier):
     QApplication.processEvents()
 
 
+def test_that_tab_comes_to_the_page_that_is_seen_in_the_bar_of_pages(shown, preferences):
+    window = shown(MainWindow(Session(InlineRunner()), preferences, "image"))
+    window.activateWindow()
+    assert QTest.qWaitForWindowActive(window, 5000)
+    bar = window.pages.buttons
+    for key in ("sample", "explore", "dataset"):
+        window.go(key)
+        assert [name for name, each in bar.items() if each.focusPolicy() & Qt.FocusPolicy.TabFocus] == [key]
+    bar["dataset"].setFocus()
+    chord(window, Qt.Key.Key_2, Qt.KeyboardModifier.AltModifier)
+    assert window.pages.current == "sample"
+    assert QApplication.focusWidget() is bar["sample"]
+    chord(window, Qt.Key.Key_Down)
+    chord(window, Qt.Key.Key_Space)
+    assert window.pages.current == "scan"
+    assert QApplication.focusWidget() is bar["scan"]
+
+
 @pytest.mark.slow
 def test_that_undo_and_redo_work_while_a_number_box_has_the_keys(window, settled):
     page, session = window.page, window.session
