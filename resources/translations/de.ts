@@ -616,6 +616,10 @@
         <translation>Schüttwinkel</translation>
     </message>
     <message>
+        <source>Angle of repose against shape statistics</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>Angle of repose, {count:,} particles</source>
         <translation>Schüttwinkel, {count:,} Partikel</translation>
     </message>
@@ -1681,7 +1685,7 @@
     </message>
     <message>
         <source>Each with {fineness}; method: {method} (see Explore).</source>
-        <translation>Jedes mit {fineness}; Verfahren: {method} (Seite Erkunden).</translation>
+        <translation>Je Polyeder {fineness}; Verfahren: {method} (Seite Erkunden).</translation>
     </message>
     <message>
         <source>Earth</source>
@@ -1740,8 +1744,8 @@
         <translation>Geben Sie einen Ordner für die Ergebnisse an.</translation>
     </message>
     <message>
-        <source>Enter a new or empty folder.</source>
-        <translation>Geben Sie einen neuen oder leeren Ordner an.</translation>
+        <source>Enter the full path of a new or empty folder.</source>
+        <translation>Geben Sie den vollständigen Pfad eines neuen oder leeren Ordners ein.</translation>
     </message>
     <message>
         <source>Equivalent diameter [µm]</source>
@@ -3382,6 +3386,10 @@
     <message>
         <source>Nothing</source>
         <translation>Nichts</translation>
+    </message>
+    <message>
+        <source>Nothing can be written into {path}: choose another folder.</source>
+        <translation>In {path} kann nicht geschrieben werden: wählen Sie einen anderen Ordner.</translation>
     </message>
     <message>
         <source>Nothing is gained beyond {count} facets</source>
@@ -5552,12 +5560,16 @@
         <translation>Der Ordner enthält einen unfertigen Lauf: setzen Sie ihn fort, oder wählen Sie einen anderen Ordner.</translation>
     </message>
     <message>
+        <source>The folder holds a dataset: choose another one, or tick that it is replaced.</source>
+        <translation>Der Ordner enthält einen Datensatz: wählen Sie einen anderen oder haken Sie an, dass er ersetzt wird.</translation>
+    </message>
+    <message>
         <source>The folder holds {count} series; the longest was read.</source>
         <translation>Der Ordner enthält {count} Serien; die längste wurde gelesen.</translation>
     </message>
     <message>
-        <source>The folder is not empty: choose another one, or replace the dataset in it.</source>
-        <translation>Der Ordner ist nicht leer: wählen Sie einen anderen oder ersetzen Sie den Datensatz darin.</translation>
+        <source>The folder is not empty and contains no dataset: choose another one.</source>
+        <translation>Der Ordner ist nicht leer und enthält keinen Datensatz: wählen Sie einen anderen.</translation>
     </message>
     <message>
         <source>The folder of your datasets</source>
@@ -6457,7 +6469,7 @@
     </message>
     <message>
         <source>at most {faces} facets, {triangles} triangles</source>
-        <translation>höchstens {faces} Facetten, {triangles} Dreiecken</translation>
+        <translation>höchstens {faces} Facetten, {triangles} Dreiecke</translation>
     </message>
     <message>
         <source>at most {limit}</source>
@@ -7461,7 +7473,7 @@
     </message>
     <message>
         <source>the fewest facets with all errors below {limit} %</source>
-        <translation>den wenigsten Facetten, deren Fehler alle unter {limit} % liegen</translation>
+        <translation>so wenige Facetten, wie alle Fehler unter {limit} % erlauben</translation>
     </message>
     <message>
         <source>the fit at l&lt;sub&gt;max&lt;/sub&gt; = {degree}</source>
@@ -8030,6 +8042,10 @@
     <message>
         <source>{number}. Voxels painted at {place}</source>
         <translation>{number}. Voxel gemalt bei {place}</translation>
+    </message>
+    <message>
+        <source>{path} is a file: enter a new or empty folder.</source>
+        <translation>{path} ist eine Datei: geben Sie einen neuen oder leeren Ordner ein.</translation>
     </message>
     <message>
         <source>{phase}, {time} s simulated</source>

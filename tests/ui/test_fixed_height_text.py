@@ -8,6 +8,7 @@ from PySide6.QtWidgets import (
     QAbstractSpinBox,
     QApplication,
     QComboBox,
+    QFrame,
     QLabel,
     QLineEdit,
     QScrollBar,
@@ -46,6 +47,22 @@ def test_that_no_word_of_a_long_text_is_below_the_button(shown, wait, width):
     wait(lambda: label.width() <= text.viewport().width(), 5.0)
     label.setText("Short.")
     wait(lambda: not text.more.isVisible() and label.width() >= width - 4, 5.0)
+
+
+def dark(widget):
+    """Number of dark pixels, which are those of letters."""
+    picture = widget.grab().toImage()
+    dots = ((x, y) for x in range(picture.width()) for y in range(picture.height()))
+    return sum(picture.pixelColor(*dot).lightness() < 100 for dot in dots)
+
+
+def test_that_the_dots_above_capital_letters_are_seen(shown):
+    alone = QLabel("ÄÖÜ")
+    alone.setMargin(8)
+    text = FixedHeightText((QLabel("ÄÖÜ"),))
+    text.setFrameShape(QFrame.Shape.NoFrame)
+    text.resize(alone.sizeHint().width(), text.sizeHint().height())
+    assert dark(shown(text)) == dark(shown(alone)) > 0
 
 
 def places(page):

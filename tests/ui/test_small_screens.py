@@ -1,9 +1,11 @@
 """Windows with little room: a screen of 1920x1080 pixels at a scale of two leaves 960x540."""
 
+import numpy as np
 import pytest
 from PySide6.QtCore import QSize, Qt
 from PySide6.QtWidgets import QHBoxLayout, QLineEdit, QScrollArea, QSplitter, QWidget
 
+from regolith_studio.imaging.segmentation.segment import GrainsAtHeight
 from regolith_studio.jobs.runners.run_job import InlineRunner
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.session import Session
@@ -232,6 +234,17 @@ def test_that_explore_does_not_scroll_on_a_small_screen_below_a_title_bar(shown,
     controls = window.page.findChild(QScrollArea, "controls")
     bars = [each.verticalScrollBar() for each in (controls, *window.pages.scroll_areas)]
     assert [bar.maximum() for bar in bars] == [0, 0]
+
+
+def test_that_the_note_on_h_is_seen_on_a_small_screen_without_scrolling(shown, preferences, app):
+    window = shown(MainWindow(Session(InlineRunner()), preferences, "image"))
+    window.resize(1280, 800 - FRAME)
+    controls = window.go("scan").controls
+    controls.show_heights([GrainsAtHeight(h, np.full(40, 99)) for h in (0.4, 0.8, 1.6, 3.2)])
+    for _ in range(3):
+        app.processEvents()
+    note = controls.heights
+    assert note.visibleRegion().boundingRect() == note.rect()
 
 
 def test_that_plots_stand_behind_each_other_only_where_two_have_no_room(shown, preferences):

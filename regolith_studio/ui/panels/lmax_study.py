@@ -82,7 +82,7 @@ class LmaxStudyPanel(QWidget):
         self.answer.setObjectName("lmax_study_answer")
         self._question = QWidget()
         row = QHBoxLayout(self._question)
-        row.setContentsMargins(8, 0, 8, 6)
+        row.setContentsMargins(8, 8, 8, 0)
         words = QLabel(tr("Smallest l<sub>max</sub> with every error below"))
         for label, share in ((words, 2), (self.answer, 1)):
             label.setWordWrap(True)  # on two lines where letters are large

@@ -52,6 +52,7 @@ class ViewFrame(QFrame):
         self._titles: tuple[str, ...] = ("",)
         self._detail = ""
         self._mark = QLabel()
+        self._mark.hide()
         self._title = QLabel()
         self._title.setTextFormat(Qt.TextFormat.RichText)
         self._title.setProperty("role", "heading")
@@ -71,6 +72,7 @@ class ViewFrame(QFrame):
     def set_colour(self, colour: str) -> None:
         """Colour of the mark before the title: the same as in the plots."""
         self._mark.setText(f'<span style="color:{colour}">&#9632;</span>')
+        self._mark.show()
 
     def set_texts(self, title: str, detail: str = "", *shorter: str) -> None:
         """Title as rich text, the quiet line, and titles for views too narrow for the first one."""

@@ -5,11 +5,15 @@ from PySide6.QtWidgets import QToolButton, QVBoxLayout, QWidget
 
 
 class Collapsible(QWidget):
-    """A button with an arrow, and content that it shows or hides; collapsed at first."""
+    """A button with an arrow, and parts below each other that it shows or hides; collapsed at first."""
 
-    def __init__(self, title: str, content: QWidget) -> None:
+    def __init__(self, title: str, *parts: QWidget) -> None:
         super().__init__()
-        self.content = content
+        self.content = QWidget()
+        column = QVBoxLayout(self.content)
+        column.setContentsMargins(0, 0, 0, 0)
+        for part in parts:
+            column.addWidget(part)
         self.button = QToolButton()
         self.button.setText(title)
         self.button.setCheckable(True)
@@ -21,7 +25,7 @@ class Collapsible(QWidget):
         layout.setContentsMargins(0, 0, 0, 0)
         layout.setSpacing(4)
         layout.addWidget(self.button)
-        layout.addWidget(content)
+        layout.addWidget(self.content)
         self.button.toggled.connect(self.set_open)
         self.set_open(False)
 

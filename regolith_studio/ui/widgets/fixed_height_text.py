@@ -11,6 +11,8 @@ from regolith_studio.ui.translation import tr
 NOTE_LINES = 2
 """Visible lines of a note between controls."""
 SIGN = "i"
+ACCENTS = 2
+"""Pixels above the first line: the dots of Ä, Ö and Ü rise above what Qt takes for the height of a line."""
 
 
 class FixedHeightText(QScrollArea):
@@ -30,8 +32,9 @@ class FixedHeightText(QScrollArea):
         self._inside = QWidget()
         column = QVBoxLayout(self._inside)
         column.setContentsMargins(0, 0, 0, 0)
-        column.setSpacing(2)
+        column.setSpacing(0)
         for text in texts:
+            text.setContentsMargins(0, ACCENTS, 0, 0)
             text.setAlignment(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignTop)
             column.addWidget(text)
         column.addStretch(1)
@@ -43,6 +46,8 @@ class FixedHeightText(QScrollArea):
         self.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         self.setAccessibleName(tr("Remarks"))
         self.setWidget(self._inside)
+        for part in (self.viewport(), self._inside):
+            part.setAutoFillBackground(False)  # shows what is behind, which is lighter in tabs
         self.more = QToolButton(self)
         self.more.setObjectName("whole_text")
         self.more.setText(SIGN)
@@ -62,7 +67,7 @@ class FixedHeightText(QScrollArea):
         return "<br>".join(each.text() for each in self._texts if each.text() and not each.isHidden())
 
     def sizeHint(self) -> QSize:
-        return QSize(super().sizeHint().width(), self._lines * self.line + 2 * self.frameWidth())
+        return QSize(super().sizeHint().width(), self._lines * self.line + ACCENTS + 2 * self.frameWidth())
 
     def minimumSizeHint(self) -> QSize:
         button = self.more.sizeHint().width()

@@ -25,6 +25,8 @@ _MAX_HEADER_SHARE, _MIN_HEADER_SHARE = 0.33, 0.2
 """Limits of the vertical header's width as a share of the width of the table."""
 MIN_COLUMN, MARGINS = 24, 6
 """Minimum width of a column, and the free pixels around its name."""
+GRIP = 4
+"""Pixels that a header keeps free at its sides beyond its margins."""
 SPARE = 11
 """Pixels of a row in addition to its lines of text."""
 Bands = tuple[Sequence[Sequence[float]], Sequence[Sequence[float]]]
@@ -181,6 +183,7 @@ def keep_legible(table: QTableWidget, width: int, heights: FontRowHeight, lines:
         Of the rows, and how many lines of text their cells have.
     """
     names, model = table.horizontalHeader().fontMetrics(), table.model()
+    width -= table.verticalScrollBar().sizeHint().width()  # which many rows need
     heads = [table.horizontalHeaderItem(column) for column in range(table.columnCount())]
     widths = [names.horizontalAdvance(head.text()) + MARGINS for head in heads if head is not None]
     cells = (model.index(row, at) for row in range(table.rowCount()) for at in range(table.columnCount()))
@@ -204,7 +207,7 @@ def _lines_of_names(table: QTableWidget, width: int) -> int:
     rows = table.verticalHeader()
     letters = rows.fontMetrics()
     margin = rows.style().pixelMetric(QStyle.PixelMetric.PM_HeaderMargin, None, rows)
-    room = QRect(0, 0, max(width - 2 * margin, 1), 10_000)
+    room = QRect(0, 0, max(width - 2 * margin - GRIP, 1), 10_000)
     wrapped = Qt.TextFlag.TextWordWrap
     heights = [letters.boundingRect(room, wrapped, name).height() for name in _row_names(table)]
     return math.ceil(max(heights, default=0) / letters.lineSpacing())

@@ -97,7 +97,8 @@ class Toast(QFrame):
         assert parent is not None, "a toast is made with its parent"
         width = min(560, parent.width() - 2 * _MARGIN)
         self.resize(width, self.heightForWidth(width) if self.hasHeightForWidth() else 40)
-        self.move(parent.width() - self.width() - _MARGIN, parent.height() - self.height() - 40)
+        left = (parent.width() - self.width()) // 2  # the buttons at the right stay free
+        self.move(left, parent.height() - self.height() - 40)
 
     def _show_details(self) -> None:
         self._timer.stop()

@@ -227,6 +227,7 @@ class LossesLabel(QScrollArea):
     def __init__(self) -> None:
         super().__init__()
         self.setObjectName("dataset_losses")
+        self.setAccessibleName(tr("Limits of the formats"))
         self.setWidgetResizable(True)
         self.setProperty("role", "texts")
         self.label = remark()

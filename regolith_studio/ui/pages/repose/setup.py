@@ -229,12 +229,7 @@ class SetupPanel(QWidget):
         column.addWidget(Collapsible(tr("Test"), self.test))
         column.addWidget(Collapsible(tr("Contact"), self.contact))
         column.addWidget(Collapsible(tr("Evaluation of the heap"), self.evaluation))
-        forms = QWidget()
-        inside = QVBoxLayout(forms)
-        inside.setContentsMargins(0, 0, 0, 0)
-        for numerics in self._numerics.values():
-            inside.addWidget(numerics)
-        column.addWidget(Collapsible(tr("Numerics of the engine"), forms))
+        column.addWidget(Collapsible(tr("Numerics of the engine"), *self._numerics.values()))
         column.addWidget(remark(tr("* not given in the paper: an assumption that can be changed")))
         column.addWidget(self.run)
         column.addWidget(FixedHeightText((self.problem, self.scaling_report)))

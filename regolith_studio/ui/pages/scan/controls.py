@@ -18,6 +18,7 @@ from regolith_studio.messages import N_
 from regolith_studio.readers.volumes.region import RegionSettings
 from regolith_studio.ui.translation import tr, translate
 from regolith_studio.ui.translation.numbers import number_text
+from regolith_studio.ui.widgets.collapsible import Collapsible
 from regolith_studio.ui.widgets.fixed_height_text import FixedHeightText
 from regolith_studio.ui.widgets.forms import SettingsForm
 from regolith_studio.ui.widgets.labels import heading, remark
@@ -115,6 +116,9 @@ class SegmentationControls(QWidget):
         self.draw_box.setCheckable(True)
         self.draw_box.setToolTip(tr("Draw a box in a slice; what is outside of it is left out."))
         self.diameter, self.region_error, self.heights = remark(), remark(), remark()
+        self.region_fold = Collapsible(
+            tr("Region of interest"), self.region, self.draw_box, self.region_error
+        )
         self._arrange()
         self._connect()
         self.setValue(self._recipe)
@@ -182,6 +186,8 @@ class SegmentationControls(QWidget):
         self.least.setValue(what.min_voxels)
         self.region.setValue(dataclasses.asdict(recipe.region))
         self.region_error.hide()
+        if recipe.region != RegionSettings():
+            self.region_fold.set_open(True)
         self._show_which()
 
     def set_level(self, level: float) -> None:
@@ -316,11 +322,7 @@ class SegmentationControls(QWidget):
         self.level.setKeyboardTracking(False)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
-        layout.addWidget(heading(tr("Region of interest")))
-        layout.addWidget(self.region)
-        layout.addWidget(self.draw_box)
-        layout.addWidget(self.region_error)
-        layout.addSpacing(10)
+        layout.addWidget(self.region_fold)
         layout.addWidget(heading(tr("Segmentation")))
         layout.addLayout(
             _form(
@@ -334,13 +336,13 @@ class SegmentationControls(QWidget):
         )
         for part in (self.dark, self.opening, self.closing, self.pores):
             layout.addWidget(part)
-        layout.addSpacing(10)
+        layout.addSpacing(4)
         layout.addWidget(heading(tr("Separation of grains")))
         layout.addWidget(self.split)
         layout.addWidget(self.h_maxima)
         layout.addWidget(FixedHeightText((self.heights,)))
         self.heights.hide()
-        layout.addSpacing(10)
+        layout.addSpacing(4)
         layout.addWidget(heading(tr("Selection of grains")))
         layout.addWidget(self.border)
         layout.addWidget(self.least)
@@ -364,6 +366,7 @@ def _slider(name: str, spec: NumberSpec) -> NumberSlider:
 
 def _form(rows: Sequence[tuple[str, QWidget]]) -> QFormLayout:
     form = QFormLayout()
+    form.setVerticalSpacing(4)
     form.setFieldGrowthPolicy(QFormLayout.FieldGrowthPolicy.AllNonFixedFieldsGrow)
     for words, part in rows:
         form.addRow(words, part)

@@ -208,7 +208,7 @@ class StudiesPage(PageWidget):
     def _place(self) -> None:
         above = side_by_side(
             [_titled(tr(LMAX_TITLE), _framed(self.lmax_study)), _titled(tr(COARSENING_TITLE), self.tabs)],
-            [360, 980],
+            [320, 1020],
             stretch=1,
         )
         above.setObjectName("studies_figures")
