@@ -5,20 +5,26 @@ all degrees that the sample has, up to twice that of the draws, and cut afterwar
 both lose the same by the cut.
 """
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import asdict, dataclass, field, fields, replace
 from functools import cached_property
 from math import isqrt
-from typing import Any
+from typing import Any, ClassVar, Self
 
 import numpy as np
+from numpy.typing import NDArray
 
+from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats
+from regolith_studio.harmonics.coefficients import degrees
 from regolith_studio.harmonics.sphere_grid import sphere_grid
+from regolith_studio.messages import N_
+from regolith_studio.shape_models.chunked_sampling import SizedSampler
 from regolith_studio.shape_models.inertia_ellipsoid import PrincipalAxes, principal_axes
 from regolith_studio.shape_models.linear_maps import Tables, mapped_radii, radius_tables
-from regolith_studio.shape_models.realizations import positive_rows
+from regolith_studio.shape_models.realizations import Scale, positive_rows
 from regolith_studio.shape_models.sample import Sample
+from regolith_studio.shape_models.size_law import LogNormalSizes
 
 OVERSAMPLING = 2
 """Measured particles are mapped with degrees up to so many times that of the draws."""
@@ -130,3 +136,114 @@ def _power(rows: FloatArray) -> FloatArray:
     """Mean over the particles of the sum of squares at each degree, sizes divided out."""
     starts = np.arange(round(rows.shape[1] ** 0.5)) ** 2
     return np.asarray(np.add.reduceat(((rows / rows[:, :1]) ** 2).mean(axis=0), starts))
+
+
+@dataclass(frozen=True)
+class SurfaceSettings:
+    """Parameters
+    ----------
+    l_max
+        Degree of the particles drawn; by default all that the sample has.
+    size_jitter
+        Standard deviation of ln r_eq about the measured one.
+    """
+
+    l_max: int = 30
+    size_jitter: float = field(
+        default=0.02,
+        metadata={
+            "label": N_("Size jitter"),
+            "maximum": 1.0,
+            "decimals": 3,
+            "tip": N_("Deviation in ln r_eq."),
+        },
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class SurfaceSampler(SizedSampler):
+    """Base of fitted models that keep the measured particles and map them linearly.
+
+    Parameters
+    ----------
+    coefficients
+        Of the measured radii, shape (n, (base l_max + 1)^2), positive everywhere.
+    settings
+        Of the fit.
+    unit
+        Length unit of the sample.
+    gain
+        Factor of each degree of mapped particles, shape (l_max + 1,); ones if ``None``.
+    """
+
+    coefficients: FloatArray
+    settings: Any
+    unit: str = "um"
+    gain: FloatArray | None = None
+    scale: ClassVar[Scale] = "radius"
+
+    def __post_init__(self) -> None:
+        gain = np.ones(self.l_max + 1) if self.gain is None else self.gain
+        object.__setattr__(self, "gain", locked_floats(gain, (self.l_max + 1,), "gain"))
+        object.__setattr__(self, "coefficients", self.surfaces.coefficients)
+
+    def __reduce__(self) -> tuple[type[Self], tuple[Any, ...]]:
+        return type(self), tuple(getattr(self, each.name) for each in fields(self))
+
+    @property
+    def l_max(self) -> int:
+        """Degree of the particles it draws."""
+        return int(self.settings.l_max)
+
+    @cached_property
+    def surfaces(self) -> MappedSurfaces:
+        """The measured particles."""
+        return MappedSurfaces(self.coefficients, self.l_max)
+
+    @cached_property
+    def sizes(self) -> LogNormalSizes:
+        """Law of equivalent radii: the measured ones, each blurred a little; component i is particle i."""
+        return LogNormalSizes.kernel(self.surfaces.equivalent_radii, self.settings.size_jitter)
+
+    def mapped(self, picks: IntArray, inverses: FloatArray) -> FloatArray:
+        """Coefficients of the particles `picks` under maps with these inverses (k, 3, 3), times the gain."""
+        rows = self.surfaces.mapped(picks, inverses)
+        return np.asarray(rows * np.asarray(self.gain)[degrees(rows.shape[1])])
+
+    def calibrated(self, **changes: Any) -> Self:
+        """A copy with another calibration, which shares what has been found of the measured particles."""
+        better = replace(self, **changes)
+        names = {each.name for each in fields(self)}
+        better.__dict__.update({name: found for name, found in self.__dict__.items() if name not in names})
+        return better
+
+    def stored(self) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
+        """Settings and calibration for JSON; the measured coefficients."""
+        calibration = [each.name for each in fields(self)[3:]]
+        values = {name: np.asarray(getattr(self, name)).tolist() for name in calibration}
+        kept = {"settings": asdict(self.settings), "unit": self.unit, **values}
+        return kept, {"coefficients": self.coefficients}
+
+    @classmethod
+    def restored(cls, settings: Any, values: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> Self:
+        """The model from its settings, and the values and arrays that it stored."""
+        return cls(arrays["coefficients"], settings, **{k: v for k, v in values.items() if k != "settings"})
+
+
+def measured_surfaces(sample: Sample, settings: SurfaceSettings, n_neighbours: int) -> MappedSurfaces:
+    """The particles of a sample for a model with these settings.
+
+    Raises
+    ------
+    InputError
+        If a setting is out of range, the sample is not expanded so far, or fewer than two particles have a
+        positive radius.
+    """
+    if n_neighbours < 1 or not 0 <= settings.size_jitter <= 1:
+        raise InputError(
+            "The neighbours must be at least 1 and the size jitter 0 to 1, got "
+            f"{n_neighbours} and {settings.size_jitter:g}."
+        )
+    if settings.l_max < 1:
+        raise InputError(f"Particles that can be turned need l_max of at least 1, got {settings.l_max}.")
+    return MappedSurfaces.of(sample, settings.l_max)

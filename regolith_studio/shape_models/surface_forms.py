@@ -26,6 +26,8 @@ Floats = NDArray[np.float32]
 
 COARSE, FINE = 3, 4
 """Levels of the icospheres: of surfaces that are tried, and of those whose sphericity is measured."""
+N_FEATURES = 3
+"""Columns of :func:`mesh_features`."""
 MIN_HULL_DEGREE = 13
 FACTORS = (0.5, 2.0)
 """Limits of the factor on the logarithms of a form."""

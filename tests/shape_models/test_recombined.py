@@ -143,7 +143,7 @@ def test_that_sizes_are_the_measured_ones_each_as_often(rough_sample: Callable[.
 def test_that_settings_out_of_range_are_refused(
     rough_sample: Callable[..., Sample], changes: dict[str, float]
 ) -> None:
-    with pytest.raises(InputError, match="must be at least 1 and the size jitter 0 to 1"):
+    with pytest.raises(InputError, match="must be at least 1"):
         MODEL.fit(rough_sample(), RecombinedSettings(l_max=4, **changes))  # type: ignore[arg-type]
 
 

@@ -166,7 +166,9 @@ def test_that_sizes_where_nothing_was_measured_take_the_nearest_shapes(
 def test_that_a_setting_out_of_range_is_refused(
     changes: dict[str, float], rough_sample: Callable[..., Sample]
 ) -> None:
-    with pytest.raises(InputError, match="The turn must be 0 to 2 radians"):
+    with pytest.raises(
+        InputError, match=r"turn must be 0 to 2 radians|neighbours must be at least 1 and the size"
+    ):
         MODEL.fit(rough_sample(5, 4), SampleMatchedSettings(**({"l_max": 4} | changes)))
 
 

@@ -9,8 +9,8 @@ the power of each degree, then mean and deviation of aspect ratio, sphericity an
 forms and sphericities are those of measured particles; it makes none beyond them.
 """
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, ClassVar
 
@@ -20,14 +20,17 @@ from scipy.spatial.transform import Rotation
 
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats
-from regolith_studio.harmonics.coefficients import degrees
 from regolith_studio.messages import N_
-from regolith_studio.shape_models.chunked_sampling import CHUNK, SizedSampler
-from regolith_studio.shape_models.mapped_surfaces import MappedSurfaces, roughness_gain
-from regolith_studio.shape_models.realizations import Scale, positive_rows
+from regolith_studio.shape_models.chunked_sampling import CHUNK
+from regolith_studio.shape_models.mapped_surfaces import (
+    SurfaceSampler,
+    SurfaceSettings,
+    measured_surfaces,
+    roughness_gain,
+)
+from regolith_studio.shape_models.realizations import positive_rows
 from regolith_studio.shape_models.sample import Sample
-from regolith_studio.shape_models.size_law import LogNormalSizes
-from regolith_studio.shape_models.surface_forms import SurfaceForms, mesh_features
+from regolith_studio.shape_models.surface_forms import N_FEATURES, SurfaceForms, mesh_features
 
 KEY = "recombined"
 ROUNDS = 3
@@ -39,20 +42,15 @@ ATTEMPTS = 5
 
 
 @dataclass(frozen=True)
-class RecombinedSettings:
+class RecombinedSettings(SurfaceSettings):
     """Parameters
     ----------
-    l_max
-        Degree of the particles drawn; by default all that the sample has.
     n_neighbours
         The surface comes from one of so many particles with the nearest share of the hull.
     n_candidates
         Surfaces that are tried for each particle.
-    size_jitter
-        Standard deviation of ln r_eq about the measured one.
     """
 
-    l_max: int = 30
     n_neighbours: int = field(
         default=20,
         metadata={
@@ -69,76 +67,34 @@ class RecombinedSettings:
             "tip": N_("The one with the nearest sphericity is kept."),
         },
     )
-    size_jitter: float = field(
-        default=0.02,
-        metadata={
-            "label": N_("Size jitter"),
-            "maximum": 1.0,
-            "decimals": 3,
-            "tip": N_("Deviation in ln r_eq."),
-        },
-    )
 
 
 @dataclass(frozen=True, eq=False)
-class Recombined(SizedSampler):
+class Recombined(SurfaceSampler):
     """The measured particles and what is asked for to draw others like them.
 
     Parameters
     ----------
-    coefficients
-        Of the measured radii, shape (n, (base l_max + 1)^2), positive everywhere.
-    settings
-        Of the fit.
-    unit
-        Length unit of the sample.
-    gain
-        Factor of each degree of mapped particles, shape (l_max + 1,); ones if ``None``.
     offsets, spreads
         What is asked for of the features of :mod:`~regolith_studio.shape_models.surface_forms`: mean + offset
         + spread (measured - mean), shapes (3,); zeros and ones if ``None``.
     """
 
-    coefficients: FloatArray
-    settings: RecombinedSettings
-    unit: str = "um"
-    gain: FloatArray | None = None
     offsets: FloatArray | None = None
     spreads: FloatArray | None = None
     key: ClassVar[str] = KEY
-    scale: ClassVar[Scale] = "radius"
 
     def __post_init__(self) -> None:
-        lengths = (("gain", np.ones, self.l_max + 1), ("offsets", np.zeros, 3), ("spreads", np.ones, 3))
-        for name, filler, length in lengths:
+        super().__post_init__()
+        for name, filler in (("offsets", np.zeros), ("spreads", np.ones)):
             given = getattr(self, name)
-            values = filler(length) if given is None else given
-            object.__setattr__(self, name, locked_floats(values, (length,), name))
-        object.__setattr__(self, "coefficients", self.surfaces.coefficients)
-
-    def __reduce__(self) -> tuple[Callable[..., "Recombined"], tuple[Any, ...]]:
-        calibration = self.gain, self.offsets, self.spreads
-        return Recombined, (self.coefficients, self.settings, self.unit, *calibration)
-
-    @property
-    def l_max(self) -> int:
-        """Degree of the particles it draws."""
-        return self.settings.l_max
-
-    @cached_property
-    def surfaces(self) -> MappedSurfaces:
-        """The measured particles."""
-        return MappedSurfaces(self.coefficients, self.l_max)
+            values = filler(N_FEATURES) if given is None else given
+            object.__setattr__(self, name, locked_floats(values, (N_FEATURES,), name))
 
     @cached_property
     def forms(self) -> SurfaceForms:
         """Their surfaces apart from their forms, both cut at l_max."""
         return SurfaceForms.of(self.surfaces.cut, self.surfaces.axes)
-
-    @cached_property
-    def sizes(self) -> LogNormalSizes:
-        """Law of equivalent radii: the measured ones, each blurred a little; component i is particle i."""
-        return LogNormalSizes.kernel(self.surfaces.equivalent_radii, self.settings.size_jitter)
 
     @cached_property
     def _by_convexity(self) -> IntArray:
@@ -174,8 +130,7 @@ class Recombined(SizedSampler):
             better = distance < nearest
             nearest[better], parents[better], maps[better] = distance[better], picks[better], tried[better]
         whole = self.forms.from_frame[targets] @ maps @ self.forms.to_sphere[parents]
-        rows = self.surfaces.mapped(parents, np.asarray(np.linalg.inv(whole), dtype=np.float64))
-        return np.asarray(rows * np.asarray(self.gain)[degrees(rows.shape[1])]), parents
+        return self.mapped(parents, np.asarray(np.linalg.inv(whole), dtype=np.float64)), parents
 
     def _lenders(self, targets: IntArray, convexities: FloatArray, rng: np.random.Generator) -> IntArray:
         """A particle for each target, not itself, out of those nearest to a share of the hull."""
@@ -190,7 +145,7 @@ class Recombined(SizedSampler):
     def roughened(self) -> "Recombined":
         """The model with the gain by which its particles have the power of the measured ones."""
         rows, targets = self._tried(0)
-        return self._with(gain=roughness_gain(rows, self.surfaces.cut[targets]))
+        return self.calibrated(gain=roughness_gain(rows, self.surfaces.cut[targets]))
 
     def corrected(self, number: int) -> "Recombined":
         """The model after round `number`, from 1, of calibrating what is asked for.
@@ -202,7 +157,7 @@ class Recombined(SizedSampler):
         measured, drawn = self.forms.features[targets], mesh_features(rows)
         missing = measured.mean(axis=0) - drawn.mean(axis=0)
         ratio = (measured.std(axis=0) + 1e-9) / (drawn.std(axis=0) + 1e-9)
-        return self._with(
+        return self.calibrated(
             offsets=np.asarray(self.offsets) + missing / number,
             spreads=np.clip(np.asarray(self.spreads) * ratio ** (1 / number), *SPREADS),
         )
@@ -212,25 +167,6 @@ class Recombined(SizedSampler):
         rng = np.random.default_rng(np.random.SeedSequence(number))
         targets = rng.permutation(np.resize(rng.permutation(len(self.surfaces)), CHUNK))
         return self._made(targets, rng)[0], targets
-
-    def _with(self, **changes: Any) -> "Recombined":
-        """A copy that shares what does not depend on the calibration."""
-        better = replace(self, **changes)
-        for name in ("surfaces", "forms", "sizes", "_by_convexity"):
-            better.__dict__[name] = getattr(self, name)
-        return better
-
-    def stored(self) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
-        """The settings and the calibration for JSON; the measured coefficients."""
-        settings = {name: getattr(self.settings, name) for name in self.settings.__dataclass_fields__}
-        values = {
-            "settings": settings,
-            "unit": self.unit,
-            "gain": np.asarray(self.gain).tolist(),
-            "offsets": np.asarray(self.offsets).tolist(),
-            "spreads": np.asarray(self.spreads).tolist(),
-        }
-        return values, {"coefficients": self.coefficients}
 
 
 class RecombinedModel:
@@ -250,15 +186,10 @@ class RecombinedModel:
             If a setting is out of range, the sample is not expanded so far, or fewer than two particles have
             a positive radius.
         """
-        chosen = settings or replace(RecombinedSettings(), l_max=min(30, sample.l_max))
-        if chosen.n_neighbours < 1 or chosen.n_candidates < 1 or not 0 <= chosen.size_jitter <= 1:
-            raise InputError(
-                "Neighbours and candidates must be at least 1 and the size jitter 0 to 1, got "
-                f"{chosen.n_neighbours}, {chosen.n_candidates} and {chosen.size_jitter:g}."
-            )
-        if chosen.l_max < 1:
-            raise InputError(f"Particles that can be turned need l_max of at least 1, got {chosen.l_max}.")
-        surfaces = MappedSurfaces.of(sample, chosen.l_max)
+        chosen = settings or RecombinedSettings(min(30, sample.l_max))
+        if chosen.n_candidates < 1:
+            raise InputError(f"The surfaces tried must be at least 1, got {chosen.n_candidates}.")
+        surfaces = measured_surfaces(sample, chosen, chosen.n_neighbours)
         fitted = Recombined(surfaces.coefficients, chosen, sample.unit)
         fitted = fitted.roughened() if surfaces.loses_by_mapping else fitted
         for number in range(1, ROUNDS + 1):
@@ -267,14 +198,7 @@ class RecombinedModel:
 
     def restored(self, values: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> Recombined:
         """The model from its stored values."""
-        return Recombined(
-            arrays["coefficients"],
-            RecombinedSettings(**values["settings"]),
-            str(values["unit"]),
-            values["gain"],
-            values["offsets"],
-            values["spreads"],
-        )
+        return Recombined.restored(RecombinedSettings(**values["settings"]), values, arrays)
 
 
 MODEL = RecombinedModel()

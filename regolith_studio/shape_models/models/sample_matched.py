@@ -16,7 +16,7 @@ where mirror images count as the same its draws are near copies. Those of ``reco
 the sample, take ``log_field``.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, ClassVar
@@ -27,14 +27,18 @@ from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
 from regolith_studio.errors import InputError
-from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats
-from regolith_studio.harmonics.coefficients import degrees, orders
+from regolith_studio.geometry.arrays import FloatArray, IntArray
+from regolith_studio.harmonics.coefficients import orders
 from regolith_studio.messages import N_
-from regolith_studio.shape_models.chunked_sampling import CHUNK, SizedSampler
-from regolith_studio.shape_models.mapped_surfaces import MappedSurfaces, roughness_gain
-from regolith_studio.shape_models.realizations import Scale, positive_rows
+from regolith_studio.shape_models.chunked_sampling import CHUNK
+from regolith_studio.shape_models.mapped_surfaces import (
+    SurfaceSampler,
+    SurfaceSettings,
+    measured_surfaces,
+    roughness_gain,
+)
+from regolith_studio.shape_models.realizations import positive_rows
 from regolith_studio.shape_models.sample import Sample
-from regolith_studio.shape_models.size_law import LogNormalSizes
 
 KEY = "sample_matched"
 N_COMPARED = 2 * CHUNK
@@ -44,11 +48,9 @@ HALVINGS = 4
 
 
 @dataclass(frozen=True)
-class SampleMatchedSettings:
+class SampleMatchedSettings(SurfaceSettings):
     """Parameters
     ----------
-    l_max
-        Degree of the particles drawn; by default all that the sample has.
     turn
         Mean angle of the rotation of a round particle, radians; angles are even between 0.6 and 1.4 times as
         much, and smaller by short over long axis: on a long particle the same angle changes more, and more
@@ -56,14 +58,11 @@ class SampleMatchedSettings:
     n_neighbours
         The ellipsoid comes from one of so many particles nearest in elongation and flatness, itself among
         them.
-    size_jitter
-        Standard deviation of ln r_eq about the measured one.
     mirrored
         Whether particles are mirrored in the end, which changes no descriptor. Mirror images are as far from
         the measured particles as other particles of the material are; without it draws are near copies.
     """
 
-    l_max: int = 30
     turn: float = field(
         default=0.45,
         metadata={
@@ -82,62 +81,14 @@ class SampleMatchedSettings:
             "tip": N_("Nearest particles whose ellipsoid may be used."),
         },
     )
-    size_jitter: float = field(
-        default=0.02,
-        metadata={
-            "label": N_("Size jitter"),
-            "maximum": 1.0,
-            "decimals": 3,
-            "tip": N_("Deviation in ln r_eq."),
-        },
-    )
     mirrored: bool = field(default=True, metadata={"label": N_("Mirror images")})
 
 
 @dataclass(frozen=True, eq=False)
-class SampleMatched(SizedSampler):
-    """The measured particles and how far to leave them.
+class SampleMatched(SurfaceSampler):
+    """The measured particles and how far to leave them."""
 
-    Parameters
-    ----------
-    coefficients
-        Of the measured radii, shape (n, (base l_max + 1)^2), positive everywhere.
-    settings
-        Of the fit.
-    unit
-        Length unit of the sample.
-    gain
-        Factor of each degree of mapped particles, shape (l_max + 1,); ones if ``None``.
-    """
-
-    coefficients: FloatArray
-    settings: SampleMatchedSettings
-    unit: str = "um"
-    gain: FloatArray | None = None
     key: ClassVar[str] = KEY
-    scale: ClassVar[Scale] = "radius"
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "coefficients", self._surfaces.coefficients)
-        gain = np.ones(self.l_max + 1) if self.gain is None else self.gain
-        object.__setattr__(self, "gain", locked_floats(gain, (self.l_max + 1,), "gain"))
-
-    def __reduce__(self) -> tuple[Callable[..., "SampleMatched"], tuple[Any, ...]]:
-        return SampleMatched, (self.coefficients, self.settings, self.unit, self.gain)
-
-    @property
-    def l_max(self) -> int:
-        """Degree of the particles it draws."""
-        return self.settings.l_max
-
-    @cached_property
-    def _surfaces(self) -> MappedSurfaces:
-        return MappedSurfaces(self.coefficients, self.l_max)
-
-    @cached_property
-    def sizes(self) -> LogNormalSizes:
-        """Law of equivalent radii: the measured ones, each blurred a little; component i is particle i."""
-        return LogNormalSizes.kernel(self._surfaces.equivalent_radii, self.settings.size_jitter)
 
     @cached_property
     def _neighbours(self) -> IntArray:
@@ -146,7 +97,7 @@ class SampleMatched(SizedSampler):
         Where a particle is not among the nearest of its neighbour, it stands there itself: so each ellipsoid
         is lent as often as it was measured, and long and flat ones are not lost to the middle.
         """
-        ratios = self._surfaces.axes.log_ratios[:, [0, 2]]
+        ratios = self.surfaces.axes.log_ratios[:, [0, 2]]
         spread = np.maximum(ratios.std(axis=0), 1e-9)
         count = min(self.settings.n_neighbours, len(ratios))
         found = np.asarray(cKDTree(ratios / spread).query(ratios / spread, k=np.arange(1, count + 1))[1])
@@ -171,7 +122,7 @@ class SampleMatched(SizedSampler):
 
     def _roundness(self, parents: IntArray, forms: IntArray) -> FloatArray:
         """Short over long axis of whichever ellipsoid is the longer one, shape (n,)."""
-        shares = np.exp(self._surfaces.axes.log_ratios[:, 0] - self._surfaces.axes.log_ratios[:, 2])
+        shares = np.exp(self.surfaces.axes.log_ratios[:, 0] - self.surfaces.axes.log_ratios[:, 2])
         return np.asarray(np.minimum(shares[parents], shares[forms]))
 
     def _turned(self, parents: IntArray, forms: IntArray, spins: FloatArray) -> FloatArray:
@@ -185,31 +136,21 @@ class SampleMatched(SizedSampler):
             own = parents[bad] if halving == HALVINGS else forms[bad]
             rows[bad] = self._mapped(parents[bad], own, spins[bad] * share)
         bad = np.flatnonzero(~positive_rows(rows))
-        rows[bad] = self._surfaces.cut[parents[bad]]
+        rows[bad] = self.surfaces.cut[parents[bad]]
         return rows
 
     def _mapped(self, parents: IntArray, forms: IntArray, spins: FloatArray) -> FloatArray:
-        axes, lengths = self._surfaces.axes.axes[parents], np.exp(self._surfaces.axes.log_ratios)
+        axes, lengths = self.surfaces.axes.axes[parents], np.exp(self.surfaces.axes.log_ratios)
         back = np.swapaxes(axes, 1, 2) / lengths[forms][:, :, None]
         turn_back = Rotation.from_rotvec(-spins).as_matrix()
         inverses = (axes * lengths[parents][:, None, :]) @ turn_back @ back
-        rows = self._surfaces.mapped(parents, inverses)
-        return np.asarray(rows * np.asarray(self.gain)[degrees(rows.shape[1])])
+        return self.mapped(parents, inverses)
 
     def roughened(self) -> "SampleMatched":
         """The same with the gain by which its particles have the power of the measured ones."""
         draws = replace(self, gain=None).draw(N_COMPARED, 0)
-        measured = self._surfaces.cut[draws.parents]
-        better = replace(self, gain=roughness_gain(draws.coefficients, measured))
-        for name in ("_surfaces", "_neighbours", "sizes"):  # which do not depend on the gain
-            better.__dict__[name] = getattr(self, name)
-        return better
-
-    def stored(self) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
-        """The settings for JSON; the measured coefficients."""
-        settings = {name: getattr(self.settings, name) for name in self.settings.__dataclass_fields__}
-        values = {"settings": settings, "unit": self.unit, "gain": np.asarray(self.gain).tolist()}
-        return values, {"coefficients": self.coefficients}
+        measured = self.surfaces.cut[draws.parents]
+        return self.calibrated(gain=roughness_gain(draws.coefficients, measured))
 
 
 def _spins(rng: np.random.Generator, turn: float) -> FloatArray:
@@ -238,26 +179,16 @@ class SampleMatchedModel:
             If a setting is out of range, the sample is not expanded so far, or fewer than two particles have
             a positive radius.
         """
-        chosen = settings or replace(SampleMatchedSettings(), l_max=min(30, sample.l_max))
-        if not 0 <= chosen.turn <= 2 or chosen.n_neighbours < 1 or not 0 <= chosen.size_jitter <= 1:
-            raise InputError(
-                "The turn must be 0 to 2 radians, the neighbours at least 1 and the size jitter 0 to 1, got "
-                f"{chosen.turn:g}, {chosen.n_neighbours} and {chosen.size_jitter:g}."
-            )
-        if chosen.l_max < 1:
-            raise InputError(f"Particles that can be turned need l_max of at least 1, got {chosen.l_max}.")
-        surfaces = MappedSurfaces.of(sample, chosen.l_max)
+        chosen = settings or SampleMatchedSettings(min(30, sample.l_max))
+        if not 0 <= chosen.turn <= 2:
+            raise InputError(f"The turn must be 0 to 2 radians, got {chosen.turn:g}.")
+        surfaces = measured_surfaces(sample, chosen, chosen.n_neighbours)
         fitted = SampleMatched(surfaces.coefficients, chosen, sample.unit)
         return fitted.roughened() if surfaces.loses_by_mapping else fitted
 
     def restored(self, values: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> SampleMatched:
         """The model from its stored values."""
-        return SampleMatched(
-            arrays["coefficients"],
-            SampleMatchedSettings(**values["settings"]),
-            str(values["unit"]),
-            values["gain"],
-        )
+        return SampleMatched.restored(SampleMatchedSettings(**values["settings"]), values, arrays)
 
 
 MODEL = SampleMatchedModel()
