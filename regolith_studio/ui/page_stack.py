@@ -2,7 +2,8 @@
 
 from collections.abc import Callable
 
-from PySide6.QtCore import QSize, Qt, Signal
+from PySide6.QtCore import QEvent, QObject, QSize, Qt, Signal
+from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QAbstractItemView, QFrame, QHBoxLayout, QScrollArea, QStackedWidget, QWidget
 
 from regolith_studio.ui.page import Page, PageContext, PageWidget
@@ -14,7 +15,15 @@ MIN_SIZE = QSize(240, 160)
 
 
 class ScrollablePage(QScrollArea):
-    """A page with scroll bars where it needs more room than there is."""
+    """A page with scroll bars where it needs more room than there is.
+
+    Attributes
+    ----------
+    laidOut
+        Emitted when the page may need another width.
+    """
+
+    laidOut = Signal()  # noqa: N815
 
     def __init__(self, page: QWidget) -> None:
         super().__init__()
@@ -26,6 +35,12 @@ class ScrollablePage(QScrollArea):
 
     def minimumSizeHint(self) -> QSize:
         return MIN_SIZE
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
+        done = super().eventFilter(watched, event)
+        if event.type() == QEvent.Type.LayoutRequest:
+            self.laidOut.emit()
+        return done
 
 
 class PageStack(QWidget):
@@ -73,10 +88,15 @@ class PageStack(QWidget):
             self._current = key
             self._stack.setCurrentWidget(self._scroll_areas[key])
             self._bar.set_current(key)
+            self._fit_bar()
             self._contexts[key].bindings.resume()
             widget.on_show()
             self.changed.emit(key)
         return widget
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self._fit_bar()
 
     def neighbour(self, step: int) -> None:
         """The next page, or the one before."""
@@ -121,11 +141,18 @@ class PageStack(QWidget):
         for view in widget.findChildren(QAbstractItemView):
             view.setTabKeyNavigation(False)  # Tab leaves a table; arrows move in it
         self._scroll_areas[key] = ScrollablePage(widget)
+        self._scroll_areas[key].laidOut.connect(self._fit_bar)
         self._stack.addWidget(self._scroll_areas[key])
         ensure_polished(widget)
         widget.set_theme(current_theme())
         self.widgets[key] = widget
         self.built.emit(key)
+
+    def _fit_bar(self) -> None:
+        """Let the bar give up its words where the page would be scrolled sideways beside them."""
+        if self._current:
+            needed = self.widgets[self._current].minimumSizeHint().width()
+            self._bar.set_narrow(needed + self._bar.width_with_words() > self.width())
 
     def _apply_theme(self, key: str) -> None:
         if key in self._unthemed:

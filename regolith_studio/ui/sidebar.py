@@ -1,4 +1,4 @@
-"""The buttons of the pages: icon above text, beside it in a low window, alone in a very low one."""
+"""The buttons of the pages: icon above text, beside it in a low window, alone where there is least room."""
 
 from collections.abc import Mapping
 from functools import partial
@@ -42,7 +42,7 @@ class Sidebar(QFrame):
         self._column.setContentsMargins(5, 8, 5, 8)
         self._column.setSpacing(3)
         self._heights: tuple[int, ...] = ()
-        self._style = 0
+        self._style, self._narrow, self._words_width = 0, False, 0
         self.buttons: dict[str, QToolButton] = {}
         for number, (key, page) in enumerate(pages.items(), start=1):
             button = self.buttons[key] = self._button(page, number)
@@ -59,6 +59,17 @@ class Sidebar(QFrame):
         self.buttons[key].setChecked(True)
         if focused:
             self.buttons[key].setFocus(Qt.FocusReason.OtherFocusReason)
+
+    def width_with_words(self) -> int:
+        """Width that the bar needs for the words below the icons."""
+        self._needed()
+        return self._words_width
+
+    def set_narrow(self, narrow: bool) -> None:
+        """Show icons alone, whatever height there is."""
+        if narrow != self._narrow:
+            self._narrow = narrow
+            self._fit()
 
     def set_theme(self, theme: Theme) -> None:
         """Take the colours of a theme."""
@@ -88,6 +99,9 @@ class Sidebar(QFrame):
 
     def _fit(self) -> None:
         """The most roomy style that fits."""
+        if self._narrow:
+            self._choose(len(_STYLES) - 1)
+            return
         fitting = (at for at, height in enumerate(self._needed()) if height <= self.height())
         self._choose(next(fitting, len(_STYLES) - 1))
 
@@ -99,6 +113,10 @@ class Sidebar(QFrame):
                 self._choose(at)
                 heights.append(self._height())
             self._heights = tuple(heights)
+            self._choose(0)
+            margins = self._column.contentsMargins()
+            widest = max(button.sizeHint().width() for button in self.buttons.values())
+            self._words_width = widest + margins.left() + margins.right()
             self._choose(now)
         return self._heights
 

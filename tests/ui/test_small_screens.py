@@ -91,6 +91,37 @@ def test_that_larger_letters_leave_nearly_half_of_explore_to_its_views(shown, pr
     wait(lambda: columns.sizes() == pytest.approx(before, abs=3), 5.0)
 
 
+@pytest.mark.slow
+@pytest.mark.usefixtures("usual_letters")
+@pytest.mark.parametrize(("language", "letters"), [("en", 150), ("en", 175), ("de", 150)])
+def test_that_no_page_is_scrolled_sideways_in_large_letters(
+    shown, preferences, app, speaking, language, letters
+):
+    speaking(language)
+    preferences.window = preferences.window | {LETTERS: letters}
+    window = shown(MainWindow(Session(InlineRunner()), preferences, "image"))
+    window.resize(1280, 800)
+    for key in PAGES:
+        window.go(key)
+        for _ in range(5):
+            app.processEvents()
+        area = window.page.parentWidget().parentWidget()
+        assert area.horizontalScrollBar().maximum() == 0, key
+
+
+@pytest.mark.usefixtures("usual_letters")
+def test_that_the_bar_of_pages_gives_up_its_words_before_a_page_scrolls(shown, preferences, app):
+    window = shown(MainWindow(Session(InlineRunner()), preferences, "image"))
+    button = window.pages.buttons["explore"]
+    least = window.page.minimumSizeHint().width() + window.pages.findChild(Sidebar).width_with_words()
+    for width, words in ((least, True), (least - 1, False), (least, True)):
+        window.resize(width, 800)
+        for _ in range(3):
+            app.processEvents()
+        assert (button.toolButtonStyle() != Qt.ToolButtonStyle.ToolButtonIconOnly) == words
+        assert window.page.width() <= window.pages.scroll_areas[0].width()
+
+
 @pytest.mark.usefixtures("usual_letters")
 def test_that_the_buttons_of_studies_are_whole_in_large_letters(shown, preferences, app):
     window = shown(MainWindow(Session(InlineRunner()), preferences, "image"))

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from PySide6.QtCore import QEvent, Qt
+from PySide6.QtCore import QEvent, QSize, Qt
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QBoxLayout, QFrame, QGridLayout, QHBoxLayout, QLabel, QWidget
 
@@ -40,7 +40,8 @@ class Headline(QFrame):
         self.captions = tuple(remark(caption) for caption in captions)
         self.sentence = remark()
         self.sentence.setObjectName(f"{name}_sentence")
-        grid = QGridLayout()
+        self._ends: list[QWidget] = []
+        grid = self._grid = QGridLayout()
         grid.setHorizontalSpacing(16)
         grid.setVerticalSpacing(0)
         for column, (figure, caption) in enumerate(zip(self.figures, self.captions, strict=True)):
@@ -50,7 +51,8 @@ class Headline(QFrame):
             grid.addWidget(caption, 1, column)
         self._parts = QBoxLayout(QBoxLayout.Direction.LeftToRight)
         self._parts.addLayout(grid)
-        self._parts.addWidget(FixedHeightText((self.sentence,), LINES), 1)
+        self._words = FixedHeightText((self.sentence,), LINES)
+        self._parts.addWidget(self._words, 1)
         row = self._row = QHBoxLayout(self)
         row.setContentsMargins(12, 5, 10, 5)
         row.addLayout(self._parts, 1)
@@ -67,6 +69,7 @@ class Headline(QFrame):
 
     def add(self, part: QWidget) -> None:
         """Put a button at the end."""
+        self._ends.append(part)
         self._row.addWidget(part)
 
     def caption(self, place: int, text: str, tip: str = "") -> None:
@@ -74,6 +77,17 @@ class Headline(QFrame):
         self.captions[place].setText(text)
         for part in (self.captions[place], self.figures[place]):
             part.setToolTip(tip)
+
+    def minimumSizeHint(self) -> QSize:
+        """As narrow as the figures, or the sentence where it is below them."""
+        inside = max(self._grid.minimumSize().width(), self._words.minimumSizeHint().width())
+        return QSize(self._outer_width() + inside, super().minimumSizeHint().height())
+
+    def _outer_width(self) -> int:
+        """Width of the margins, and of the buttons at the end with the space before them."""
+        margins = self._row.contentsMargins()
+        ends = sum(each.minimumSizeHint().width() + self._row.spacing() for each in self._ends)
+        return margins.left() + margins.right() + ends
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)
@@ -84,7 +98,8 @@ class Headline(QFrame):
         figure = self.figures[0].fontMetrics().horizontalAdvance(WIDEST_FIGURE) + 16
         words = self.fontMetrics().horizontalAdvance("0" * SENTENCE_DIGITS)
         high = self.window().height() >= MIN_LINES * self.fontMetrics().height()
-        below = high and width < len(self.figures) * figure + words
+        cramped = width < self._outer_width() + self._grid.minimumSize().width() + words // 2
+        below = cramped or (high and width < len(self.figures) * figure + words)
         way = QBoxLayout.Direction.TopToBottom if below else QBoxLayout.Direction.LeftToRight
         if way != self._parts.direction():
             self._parts.setDirection(way)
