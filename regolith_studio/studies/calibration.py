@@ -297,9 +297,13 @@ def _near(unit: FloatArray, failed: FloatArray) -> FloatArray:
 
 
 def _interval(values: FloatArray, weights: FloatArray) -> tuple[float, float]:
-    """Weighted quantiles."""
+    """The shortest interval that holds the probability; the middle one of equally short ones."""
     order = np.argsort(values, kind="stable")
-    below = np.cumsum(weights[order]) - weights[order] / 2
-    tail = (1.0 - CONFIDENCE) / 2
-    low, high = np.interp([tail, 1.0 - tail], below, values[order])
-    return float(low), float(high)
+    ordered, total = values[order], np.cumsum(weights[order])
+    first = np.flatnonzero(total <= 1.0 - CONFIDENCE + weights[order])
+    before = total[first] - weights[order][first]
+    last = np.minimum(np.searchsorted(total, before + CONFIDENCE), len(values) - 1)
+    width = ordered[last] - ordered[first]
+    shortest = np.flatnonzero(width <= 1.001 * width.min())
+    chosen = shortest[len(shortest) // 2]
+    return float(ordered[first[chosen]]), float(ordered[last[chosen]])

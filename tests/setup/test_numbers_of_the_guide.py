@@ -14,6 +14,7 @@ PAGES = {
     "segmentation": ("segmentation.md", "grain_surfaces.md"),
     "harmonics": ("harmonics.md", "harmonics_quality.md"),
     "dataset": ("dataset.md",),
+    "calibration": ("calibration.md",),
 }
 """Pages that hold the tables of a result file."""
 RESULTS: dict[str, dict[str, Any]] = {

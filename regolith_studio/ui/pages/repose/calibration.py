@@ -5,14 +5,13 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from PySide6.QtCore import Qt, Signal
+from PySide6.QtCore import Signal
 from PySide6.QtWidgets import (
     QComboBox,
     QFormLayout,
     QHBoxLayout,
     QPushButton,
     QSpinBox,
-    QVBoxLayout,
     QWidget,
 )
 
@@ -28,7 +27,7 @@ from regolith_studio.studies.repose_calibration import (
     angle_target,
     density_target,
 )
-from regolith_studio.ui.layout import equal_parts
+from regolith_studio.ui.layout import task_columns
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import tr, translate
 from regolith_studio.ui.widgets.labels import remark
@@ -175,29 +174,23 @@ class CalibrationPanel(QWidget):
 
     def _place(self) -> None:
         form = QFormLayout()
-        form.setContentsMargins(8, 6, 0, 0)
         form.addRow(tr("Wanted angle"), self.angle)
         form.addRow(tr("Standard error"), self.error)
         form.addRow(tr("Bulk density"), self.density)
         form.addRow(tr("Parameter"), self.key)
         form.addRow(tr("Range"), self.range)
         form.addRow(tr("Runs"), self.runs)
-        buttons = QHBoxLayout()
-        buttons.addWidget(self.start)
-        buttons.addWidget(self.stop)
-        buttons.addStretch(1)
-        form.addRow(buttons)
-        form.addRow(self.status)
-        left = QWidget()
-        column = QVBoxLayout(left)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.addLayout(form)
-        column.addStretch(1)
         row = QHBoxLayout(self)
         row.setContentsMargins(0, 0, 0, 0)
-        parts = equal_parts(Qt.Orientation.Horizontal, (left, self.prediction, self.posterior))
-        parts.setObjectName("repose_calibration_parts")
-        row.addWidget(parts)
+        row.addWidget(
+            task_columns(
+                form,
+                (self.start, self.stop),
+                self.status,
+                (self.prediction, self.posterior),
+                "repose_calibration_parts",
+            )
+        )
 
     def _connect(self) -> None:
         self.key.currentIndexChanged.connect(

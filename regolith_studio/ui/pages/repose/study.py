@@ -16,7 +16,6 @@ from PySide6.QtWidgets import (
     QSpinBox,
     QTableWidget,
     QTableWidgetItem,
-    QVBoxLayout,
     QWidget,
 )
 
@@ -25,7 +24,7 @@ from regolith_studio.dem.run_io import RunSummary
 from regolith_studio.jobs.repose_study import SHAPE_KEYS, values_in
 from regolith_studio.messages import N_
 from regolith_studio.studies.repose import ReposeStudy, ReposeStudyRun
-from regolith_studio.ui.layout import equal_parts
+from regolith_studio.ui.layout import task_columns
 from regolith_studio.ui.pages.repose.runs import explanation
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import tr
@@ -186,26 +185,16 @@ class StudyPanel(QWidget):
 
     def _place(self) -> None:
         form = QFormLayout()
-        form.setContentsMargins(8, 6, 0, 0)
         form.addRow(tr("Vary"), self.key)
         form.addRow(tr("Values"), self.values)
         form.addRow(tr("Runs per value"), self.repeats)
-        buttons = QHBoxLayout()
-        buttons.addWidget(self.start)
-        buttons.addWidget(self.stop)
-        buttons.addStretch(1)
-        form.addRow(buttons)
-        form.addRow(self.status)
-        left = QWidget()
-        column = QVBoxLayout(left)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.addLayout(form)
-        column.addStretch(1)
         row = QHBoxLayout(self)
         row.setContentsMargins(0, 0, 0, 0)
-        parts = equal_parts(Qt.Orientation.Horizontal, (left, self.plot, self.table))
-        parts.setObjectName("repose_study_parts")
-        row.addWidget(parts)
+        row.addWidget(
+            task_columns(
+                form, (self.start, self.stop), self.status, (self.plot, self.table), "repose_study_parts"
+            )
+        )
 
     def _connect(self) -> None:
         self.key.currentIndexChanged.connect(lambda *_: self._propose())
