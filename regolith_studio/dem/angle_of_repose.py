@@ -39,6 +39,9 @@ HOLLOW = N_(
     "The heap is hollow: its flanks are flatter at the foot than at the top by {share} % of their slope, "
     "so that it has no single angle."
 )
+ROUGH_SHARE = 0.3
+"""Part of the scatter of a flank about its line by which a rough surface seems to rise from tip to toe, where
+the silhouette is the highest of more grains. Measured: 0.28, on noisy cones of 5,000 balls."""
 PAPER_AZIMUTHS = (0.0, 90.0)
 """Degrees of x-z and y-z."""
 
@@ -65,7 +68,7 @@ class ReposeMeasurement:
         Over all sections.
     interval
         Of the asymmetric mean over all sections: Student's, from the scatter of the flanks, widened in
-        quadrature by `cut_shift`.
+        quadrature by `cut_shift` and by the tilt of a rough surface (:data:`ROUGH_SHARE`).
     cut_shift
         Largest change of the angle when the lower cut is a third lower or higher.
     n_particles, mean_diameter, height, width, base
@@ -145,7 +148,8 @@ def measure_repose(
         warnings.append(COARSE_PILE)
     flanks = _flanks(sections)
     shift = _cut_shift(sections, surfaces, mean_diameter, settings)
-    half_width = float(np.hypot(standard_interval(flanks, settings.confidence), shift))
+    terms = (standard_interval(flanks, settings.confidence), shift, rough_tilt(sections))
+    half_width = float(np.linalg.norm(terms))
     return ReposeMeasurement(
         sections=tuple(sections),
         paper_asymmetric=_spread(_flanks(sections[:2])),
@@ -281,6 +285,18 @@ def _cut_shift(
             continue
         shifts.append(abs(float(np.mean(_flanks(others)) - angle)))
     return max(shifts)
+
+
+def rough_tilt(sections: Sequence[Section]) -> float:
+    """Mean angle in degrees by which flanks can be tilted because their surface is rough."""
+    tilts = []
+    for section in sections:
+        u, z, fit = section.profile.u, section.profile.height, section.asymmetric
+        for line, side in ((fit.left, u < fit.break_point), (fit.right, u >= fit.break_point)):
+            run = u[side & section.used]
+            scatter = np.std(z[side & section.used] - line.slope * run)
+            tilts.append(ROUGH_SHARE * scatter / np.ptp(run) / (1.0 + line.slope**2))
+    return float(np.degrees(np.mean(tilts)))
 
 
 def _flanks(sections: Sequence[Section]) -> list[float]:

@@ -12,11 +12,12 @@ from regolith_studio.dem.angle_of_repose import (
     azimuths_of,
     measure_repose,
     measurement_document,
+    rough_tilt,
     standard_interval,
 )
 from regolith_studio.dem.evaluation.profile import Discs, base_level, connected_tops, project
 from regolith_studio.dem.evaluation.settings import EvaluationSettings, NotAPileError
-from regolith_studio.dem.evaluation.slope_fit import fit_asymmetric, fit_symmetric
+from regolith_studio.dem.evaluation.slope_fit import Line, fit_asymmetric, fit_symmetric
 from regolith_studio.errors import InputError
 from regolith_studio.studies.figures.repose import framed
 from tests.dem.packings import cone, packing
@@ -242,3 +243,18 @@ def test_that_a_picture_of_a_section_does_not_follow_nearly_flat_flanks_away_fro
     half = max(abs(section.profile.u[[section.profile.first, section.profile.last]]))
     assert half < reach < 1.3 * half
     assert (wide, height) == (pytest.approx(1.3 * half), pytest.approx(top))
+
+
+def test_that_the_interval_of_a_rough_heap_contains_the_tilt_of_its_surface() -> None:
+    """A surface that jumps by 0.2 about lines of 30 degrees over a run of 10: 0.3 * 0.2 / 10 cos^2(30)."""
+    slope = np.tan(np.radians(30.0))
+    away = np.linspace(1.0, 11.0, 101)
+    u = np.concatenate([-away[::-1], away])
+    jumps = np.where(np.arange(len(u)) % 2, 0.2, -0.2)
+    height = 12.0 * slope - slope * np.abs(u) + jumps
+    section = measure_repose(cone(30, 1000, 1), 1.0).sections[0]
+    profile = dataclasses.replace(section.profile, u=u, height=height)
+    left, right = Line(slope, 0.0), Line(-slope, 0.0)
+    lines = dataclasses.replace(section.asymmetric, left=left, right=right, break_point=0.0)
+    rough = dataclasses.replace(section, profile=profile, used=np.full(len(u), True), asymmetric=lines)
+    assert rough_tilt([rough]) == pytest.approx(np.degrees(0.3 * 0.2 / 10.0 * 0.75), rel=1e-3)
