@@ -8,6 +8,10 @@ from typing import Any
 import numpy as np
 import pytest
 
+from regolith_studio.imaging.extraction import CLOSED_GAP, WIDE_NECK, WIDE_NECK_OF_SMALL
+from regolith_studio.imaging.segmentation.morphology import CleaningSettings
+from regolith_studio.imaging.segmentation.splitting import SplittingSettings, TileSettings
+
 ROOT = Path(__file__).parents[2]
 PAGES = {
     "shape_models": ("shape_model.md", "shape_model_quality.md"),
@@ -105,6 +109,14 @@ def test_that_the_sentences_on_random_choices_have_the_results_of_their_benchmar
     )
 
 
+def test_that_the_paper_s_shares_by_mass_are_those_by_number_times_the_cube_of_size() -> None:
+    sizes = np.array([25.0, 37.0, 56.0, 84.0, 125.0])
+    masses = np.array([85.5, 12.6, 1.7, 0.23, 0.03]) * sizes**3
+    *first, last = [f"{share:.2g}" for share in 100 * masses / masses.sum()]
+    words = " ".join((ROOT / "docs/dataset.md").read_text("utf-8").split())
+    assert f"are {', '.join(first)} and {last} % by mass" in words
+
+
 def test_that_the_card_of_a_sample_is_within_two_floors_of_other_particles() -> None:
     rows = RESULTS["shape_models"]["draws of a card"]["rows"]
     pairs = zip(rows["particles of the card"], rows["hull field"], strict=True)
@@ -133,6 +145,20 @@ def test_that_no_pieces_of_cut_grains_are_kept_and_few_whole_ones_are_lost() -> 
     assert not any(pieces for *_, pieces in tables["h"]["rows"].values())
     whole, lost = np.sum(list(tables["spread of ln d"]["rows"].values()), axis=0)
     assert lost / whole < 0.01
+
+
+def test_that_the_page_on_scans_has_the_defaults_of_the_code() -> None:
+    words = " ".join((ROOT / "docs/segmentation.md").read_text("utf-8").split())
+    splitting = SplittingSettings()
+    for sentence in (
+        f"h is {splitting.h_maxima:g} voxels, or {100 * splitting.relative:g} % of the peak's height",
+        f"Bodies of fewer than {CleaningSettings().min_voxels} voxels are dropped",
+        f"more than {TileSettings().largest / 2**20:.0f} million voxels are worked on in tiles",
+        f"more than {WIDE_NECK} of the smaller label's",
+        f"that of w above {CLOSED_GAP} voxels",
+        f"if its diameter is more than {WIDE_NECK_OF_SMALL}.",
+    ):
+        assert sentence in words
 
 
 def test_that_unequal_voxels_stretch_round_grains_by_at_most_a_percent_and_edged_ones_as_told() -> None:
