@@ -162,6 +162,26 @@ def test_that_the_table_of_engines_has_the_results_of_its_runs(engine: str) -> N
         assert row[column + 1] == f"{run['angle_deg']:.1f} ({low:.1f} to {high:.1f})"
 
 
+def test_that_the_table_of_friction_has_the_results_of_its_runs() -> None:
+    found: dict[str, list[dict[str, Any]]] = {}
+    for run in results("repose_friction.json"):
+        assert (run["particles"], run["problems"]) == (1000, [])
+        found.setdefault(f"{run['value']:g}", []).append(run)
+    rows = rows_of(REPOSE, "| friction | seed 0 | seed 1 | mean | filled to, packed |")
+    assert {row[0] for row in rows} == set(found)
+    for value, *cells in rows:
+        runs = found[value]
+        assert [run["seed"] for run in runs] == [0, 1]
+        height, packed, angle = (
+            np.mean([run[key] for run in runs]) for key in ("fill_height_cm", "solid_fraction", "angle_deg")
+        )
+        low_to_high = [" to ".join(f"{end:.1f}" for end in run["interval_deg"]) for run in runs]
+        angles = [f"{run['angle_deg']:.1f} ({ends})" for run, ends in zip(runs, low_to_high, strict=True)]
+        assert cells == [*angles, f"{angle:.1f}", f"{height:.2f} cm, {packed:.2f}"]
+    means = [np.mean([run["angle_deg"] for run in found[value]]) for value in ("0.2", "0.8")]
+    assert f"rises by {means[1] - means[0]:.1f} degrees from 0.2 to 0.8" in one_line(REPOSE)
+
+
 def test_that_the_table_of_mujoco_and_rapier_has_the_results_of_its_runs() -> None:
     columns = "seed|MuJoCo: filled to, packed|angle|s|Rapier: filled to, packed|angle|deepest overlap|s"
     header = f"| {' | '.join(columns.split('|'))} |"
