@@ -617,7 +617,7 @@
     </message>
     <message>
         <source>Angle of repose against shape statistics</source>
-        <translation>Schüttwinkel über Formkennwerten</translation>
+        <translation>Schüttwinkel gegen Formkenngrößen</translation>
     </message>
     <message>
         <source>Angle of repose, {count:,} particles</source>

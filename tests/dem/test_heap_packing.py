@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from benchmarks.sliding_friction import box
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.parameters import LiftingCylinderTest
 from regolith_studio.dem.angle_of_repose import measure_repose
@@ -11,7 +12,6 @@ from regolith_studio.dem.case import PreparedCase, ReposeCase, ShapeKind, prepar
 from regolith_studio.dem.heap_packing import HeapPacking, measure_packing, within_particles
 from regolith_studio.dem.run_checks import separations
 from regolith_studio.dem.snapshot import ParticleState
-from tests.dem.conftest import box
 from tests.dem.packings import cone
 
 CUBE = box(1, 1, 1).vertices

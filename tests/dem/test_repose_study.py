@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from benchmarks.sliding_friction import box
 from regolith_studio.cli.entry import run
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.folder_io import write_dataset
@@ -21,7 +22,6 @@ from regolith_studio.dem.run_io import find_runs, save_snapshot
 from regolith_studio.dem.snapshot import ParticleState, Snapshot
 from regolith_studio.jobs import repose_jobs
 from regolith_studio.studies.figures import repose as figures
-from tests.dem.conftest import box
 from tests.dem.interrupted_study import SMALL, instant_engine, write_figure
 from tests.dem.packings import cone
 

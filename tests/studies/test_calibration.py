@@ -127,6 +127,7 @@ def test_that_surrogate_curves_differ_and_rise() -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.timeout(1800)
 def test_that_intervals_of_100_surrogates_cover_the_truth_and_shrink_to_a_third() -> None:
     """12 runs with a noise of 1.7 degrees, a target with a standard error of half a degree."""
     cases = [calibrate_surrogate(seed) for seed in range(100)]
