@@ -24,7 +24,7 @@ from regolith_studio.messages import N_, Message
 if TYPE_CHECKING:
     from regolith_studio.geometry.mesh import Mesh
 
-TASKS = {"read": 10, "fit": 27, "describe": 33, "quadric": 18, "annealing": 12, "exact": 76, "compound": 12}
+TASKS = {"read": 10, "fit": 27, "describe": 33, "quadric": 18, "annealing": 12, "exact": 77, "compound": 12}
 TASKS |= {"degrees": 3, "model": 7, "scan": 10, "representatives": 3}
 """What can be compiled, in the order in which the window needs it, and the files of machine code that each
 adds to those of the tasks before it. Annealing has no kernel that the exact method does not need too.
@@ -120,18 +120,22 @@ def run_task(name: str) -> None:
     else:
         coarsen(mesh, 12, name)
         if name == "exact":
-            _insert_facet(mesh)
+            _insert_and_enlarge_facet(mesh)
 
 
-def _insert_facet(mesh: "Mesh") -> None:
-    """Put a half-space that bounds no facet of a cube back to work, as only some particles need."""
+def _insert_and_enlarge_facet(mesh: "Mesh") -> None:
+    """Put a half-space that bounds no facet of a cube back to work and enlarge it; few particles need it."""
     from regolith_studio.coarsening.core.facet_insertion import insert_lost_facets
+    from regolith_studio.coarsening.core.polyhedron_measures import measure_polyhedron
+    from regolith_studio.coarsening.exact.sliver_removal import add_area_charges
     from regolith_studio.coarsening.target import Target
 
     rays = Target.of(mesh).rays
     normals = np.vstack([np.eye(3), -np.eye(3), np.full((1, 3), 1 / np.sqrt(3))])
     offsets = np.array([0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 2.0])
-    insert_lost_facets(normals, offsets, rays.directions, rays.first, rays.distance, 0.3)
+    _, *planes = insert_lost_facets(normals, offsets, rays.directions, rays.first, rays.distance, 0.3)
+    cut = measure_polyhedron(*planes)
+    add_area_charges(cut.normals, cut.vertices, cut.edges, cut.centroids, np.ones(7), np.zeros((7, 4)))
 
 
 def _draw_particles() -> None:

@@ -155,7 +155,7 @@ def test_that_a_first_start_compiles_as_many_kernels_as_are_announced(tmp_path: 
     kernels = subprocess.check_output([sys.executable, "-c", named], env=environment, text=True).split()
     compiled = {path.name.split("-")[0] for path in tmp_path.rglob("*.nbc")}
     assert len(kernels) > 150
-    assert {*kernels} - compiled == {"sliver_removal.add_area_charges"}  # slivers are seldom
+    assert {*kernels} <= compiled
 
 
 @pytest.mark.slow
