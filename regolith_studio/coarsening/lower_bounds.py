@@ -87,12 +87,6 @@ def bounds_in_force(bounds: Mapping[str, float], errors: Mapping[str, float]) ->
     return held
 
 
-def min_loss(descriptors: Mapping[str, float], n_facets: int, weights: LossWeights) -> float:
-    """A lower bound of Eq. 9."""
-    bounds = attainable_errors(descriptors, n_facets, weights)
-    return float(sum(weights[key] * bound for key, bound in bounds.items()))
-
-
 def sphericity_reason(sphericity: float, n_facets: int) -> str | None:
     """Why `n_facets` facets cannot have this sphericity, or ``None`` if Goldberg's bound allows it."""
     limit = max_sphericity(n_facets)
