@@ -1,4 +1,8 @@
-"""Scans that no threshold segments, from ten brush strokes in a file: voxels and grains against the truth."""
+"""Scans that no threshold segments, from ten brush strokes in a file: voxels and grains against the truth.
+
+Each stroke goes back and forth in a grain or between grains of one slice, 150 voxels long, and was placed
+where the prediction after the strokes before was most wrong, among 60 places drawn at random.
+"""
 
 import json
 from collections.abc import Callable
@@ -125,7 +129,7 @@ def share_matched(found: Labels, truth: Labels) -> float:
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("kind", "threshold_at_most", "at_least"),
-    [("two_minerals", 0.8, 0.92), ("gradient_and_rings", 0.8, 0.915), ("touching_plates", 0.9, 0.9)],
+    [("two_minerals", 0.8, 0.95), ("gradient_and_rings", 0.8, 0.95), ("touching_plates", 0.9, 0.95)],
 )
 def test_that_ten_strokes_segment_what_no_threshold_does(
     kind: str, threshold_at_most: float, at_least: float
