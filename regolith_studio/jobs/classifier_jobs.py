@@ -18,12 +18,14 @@ from regolith_studio.imaging.segmentation.pixel_classifier import (
     PixelClassifier,
     TrainingSet,
     paint_from_labels,
+    painted_voxels,
     probability_map,
     train,
 )
 from regolith_studio.imaging.segmentation.pixel_features import FeatureSettings, features_at, features_in
 from regolith_studio.imaging.segmentation.strokes import ERASER, Stroke, painted_rows
 from regolith_studio.imaging.volume import Volume
+from regolith_studio.imaging.volume_slabs import SliceSource
 from regolith_studio.io.atomic import write_bytes
 from regolith_studio.io.json_text import canonical_json
 from regolith_studio.jobs.events import Partial, Progress, Started, Steps
@@ -31,6 +33,7 @@ from regolith_studio.jobs.extraction_jobs import volume_sha256
 from regolith_studio.jobs.extraction_settings import VolumeInput
 from regolith_studio.jobs.scan_jobs import read_all, scratch_arrays
 from regolith_studio.messages import N_, Message
+from regolith_studio.readers.volumes.region import RegionSettings
 
 
 def train_on_labels(
@@ -116,6 +119,35 @@ def write_painted(scan: VolumeInput, training: TrainingSet, path: Path) -> Steps
     for done, total in write_label_file(path, PaintedLabels(training, scan.opened()), len(training.classes)):
         yield Progress(done, total)
     return path
+
+
+def read_strokes(labels: VolumeInput, volume: Volume, n_classes: int, region: RegionSettings) -> Steps:
+    """Read painted labels, as ilastik and label editors keep them, as strokes: a tuple of one for each class.
+
+    Parameters
+    ----------
+    labels
+        0 where nothing is painted, 1 for the first class, and so on.
+    volume
+        The region of the scan that was painted on, or the whole.
+    region
+        Applied to labels of the whole scan.
+
+    Raises
+    ------
+    FileError
+        If the file is no volume.
+    InputError
+        If it differs from the scan in size, holds more classes, or nothing is painted.
+    """
+    yield Started(Message(N_("Reading {name}"), name=labels.path.name))
+    painted: SliceSource = labels.opened()
+    if painted.shape != volume.shape:
+        painted = region.of(painted)
+    positions, classes = painted_voxels(painted, volume, n_classes)
+    if not len(classes):
+        raise InputError(f"Nothing is painted in {labels.path.name}: all its labels are 0.")
+    return tuple(Stroke(positions[classes == each], int(each)) for each in np.unique(classes))
 
 
 COARSE = 4

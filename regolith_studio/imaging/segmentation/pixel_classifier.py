@@ -182,25 +182,41 @@ def paint_from_labels(
     InputError
         If the two volumes differ in size, or as :class:`TrainingSet`.
     """
-    if tuple(painted.shape) != tuple(source.shape):
+    settings = settings or ClassifierSettings()
+    positions, labels = painted_voxels(painted, source, len(classes), settings.seed)
+    vectors = features_at(source, positions, settings.features)
+    sizes = np.asarray(source.voxel_size, dtype=np.float64)
+    return TrainingSet(positions, labels, vectors, classes, sizes, scan, settings)
+
+
+def painted_voxels(
+    painted: SliceSource, scan: SliceSource, n_classes: int, seed: int = 0
+) -> tuple[IntArray, IntArray]:
+    """Voxels of a volume of painted labels, shape (n, 3), and the class of each, from 0, shape (n,).
+
+    At most :data:`MAX_PER_CLASS` of each class, drawn at random where there are more.
+
+    Raises
+    ------
+    InputError
+        If it differs from the scan in size, or holds more classes.
+    """
+    if tuple(painted.shape) != tuple(scan.shape):
         raise InputError(
-            f"{painted.name} has {painted.shape} voxels, but {source.name} has {source.shape}; "
+            f"{painted.name} has {painted.shape} voxels, but {scan.name} has {scan.shape}; "
             "paint on this scan."
         )
-    settings = settings or ClassifierSettings()
     found: list[tuple[IntArray, IntArray]] = []
     for first, stop in slab_ranges(painted.shape):
         slab = painted.read(first, stop)
         where = np.stack(np.nonzero(slab), axis=-1)
         found.append((where + np.array([0, 0, first]), slab[tuple(where.T)].astype(np.int64) - 1))
     positions, labels = (np.concatenate([each[k] for each in found]) for k in (0, 1))
-    if len(labels) and labels.max() >= len(classes):
-        raise InputError(f"{painted.name} holds label {labels.max() + 1}; classes are 1 to {len(classes)}.")
-    kept = _at_most(labels, settings.seed)
-    positions, labels = positions[kept], labels[kept]
-    vectors = features_at(source, positions, settings.features)
-    sizes = np.asarray(source.voxel_size, dtype=np.float64)
-    return TrainingSet(positions, labels, vectors, classes, sizes, scan, settings)
+    if len(labels) and not 0 <= labels.min() <= labels.max() < n_classes:
+        wrong = labels.max() if labels.max() >= n_classes else labels.min()
+        raise InputError(f"{painted.name} holds label {wrong + 1}; classes are 1 to {n_classes}.")
+    kept = _at_most(labels, seed)
+    return positions[kept], labels[kept]
 
 
 @dataclass(frozen=True, eq=False)

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import tifffile
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QFileDialog
@@ -106,3 +107,29 @@ def test_that_other_widths_train_the_same_strokes_again_and_wrong_ones_are_expla
         assert words in page.brush.state.text()
     assert page.painting.training is kept
     assert page.brush.features == kept.settings.features
+
+
+def test_that_labels_of_another_program_become_strokes(page, minerals, wait, tmp_path, monkeypatch):
+    """As napari saves its layer of labels; of a wrong size there is one sentence."""
+    page.opening.read(VolumeInput(minerals, 2.0, kind="grey"))
+    wait(lambda: page.scan is not None and page.brush.isEnabled(), SECONDS)
+    painted = np.zeros((32, 32, 56), dtype=np.uint8)  # slices, rows, columns
+    painted[16, 2:4, 2:54], painted[16, 10:22, 14:18], painted[16, 10:22, 38:42] = 1, 2, 3
+    tifffile.imwrite(tmp_path / "labels.tif", painted)
+    monkeypatch.setattr(QFileDialog, "getOpenFileName", lambda *_: (str(tmp_path / "labels.tif"), ""))
+    page.tabs.setCurrentWidget(page.brush)
+    press(page.brush.labels)
+    wait(lambda: page.painting.training is not None, SECONDS)
+    positions, classes, _ = painted_rows(page.painting.strokes)
+    there = np.zeros(painted.shape, dtype=np.uint8)
+    there[tuple(positions[:, ::-1].T)] = classes + 1
+    assert np.array_equal(there, painted)
+    page.painting.undo()
+    page.painting.undo()
+    assert page.painting.strokes == ()
+    tifffile.imwrite(tmp_path / "labels.tif", painted[:30])
+    said = []
+    monkeypatch.setattr(page._context.toast, "problem", said.append)
+    press(page.brush.labels)
+    wait(lambda: said, SECONDS)
+    assert "has (56, 32, 30) voxels" in said[0]

@@ -57,6 +57,7 @@ class BrushPanel(QWidget):
     undoRequested = Signal()  # noqa: N815
     clearRequested = Signal()  # noqa: N815
     useRequested = Signal()  # noqa: N815
+    labelsRequested = Signal()  # noqa: N815
     openRequested = Signal()  # noqa: N815
     saveRequested = Signal()  # noqa: N815
 
@@ -92,6 +93,13 @@ class BrushPanel(QWidget):
             "brush_use",
             tr("Use for the grains"),
             tr("Use the classifier as the threshold of the segmentation"),
+        )
+        self.labels = button(
+            "brush_labels",
+            tr("Read labels …"),
+            tr(
+                "Read what was painted in another program, such as ilastik or napari, from a volume of labels"
+            ),
         )
         self.browse = button("brush_open", tr("Open …"), tr("Open a classifier and use it for the grains"))
         self.save = button("brush_save", tr("Save …"), tr("Save the classifier for other scans"))
@@ -159,6 +167,7 @@ class BrushPanel(QWidget):
             (self.undo, self.undoRequested),
             (self.clear, self.clearRequested),
             (self.use, self.useRequested),
+            (self.labels, self.labelsRequested),
             (self.browse, self.openRequested),
             (self.save, self.saveRequested),
         ):
@@ -176,7 +185,7 @@ class BrushPanel(QWidget):
             (QLabel(tr("Widths")), self.sigmas),
             (self.planar,),
             (self.undo, self.clear),
-            (self.use,),
+            (self.use, self.labels),
             (self.browse, self.save),
         )
         for parts in rows:

@@ -298,6 +298,7 @@ class ScanPage(PageWidget):
 
     def _connect_buttons(self) -> None:
         self.brush.useRequested.connect(self.controls.use_classifier)
+        self.brush.labelsRequested.connect(self.files.read_labels)
         self.brush.openRequested.connect(self.files.open_classifier)
         self.brush.saveRequested.connect(self.files.save_classifier)
         self.objects.openRequested.connect(self.files.open_objects)

@@ -13,10 +13,13 @@ from regolith_studio.jobs.classifier_jobs import (
     TrainedStrokes,
     Vectors,
     predict_slices,
+    read_strokes,
     save_classifier,
     train_on_strokes,
 )
 from regolith_studio.jobs.events import Job
+from regolith_studio.jobs.extraction_settings import VolumeInput
+from regolith_studio.readers.volumes.region import RegionSettings
 from regolith_studio.session.history import History
 from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.pages.scan.brush_panel import CLASSES, BrushPanel
@@ -81,6 +84,16 @@ class Painting(QObject):
         self._history.redo()
         self._learn()
 
+    def read_labels(self, path: Path, region: RegionSettings) -> None:
+        """Add what is painted in a volume of labels to the strokes."""
+        if self._volume is None:
+            return
+        given = VolumeInput(path, tuple(self._volume.voxel_size.tolist()), kind="labels")
+        job = Job(read_strokes, (given, self._volume, len(CLASSES), region))
+        self._context.start(
+            tr("Reading labels"), job, lambda found: self._push((*self.strokes, *found)), lane="labels"
+        )
+
     def save(self, path: Path, scan: Path, done: Callable[[Path], None]) -> None:
         """Write the classifier, and call `done` with its path."""
         if self.training is not None:
@@ -89,6 +102,7 @@ class Painting(QObject):
 
     def stop(self) -> None:
         """Stop training and predicting."""
+        self._context.stop("labels")
         self._context.stop("train")
         self._context.stop("predict")
 

@@ -17,12 +17,14 @@ from regolith_studio.jobs.extraction_settings import (
     read_grain_settings,
     read_objects,
 )
+from regolith_studio.readers.volume_formats import volume_suffixes
 from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.pages.scan.controls import SegmentationControls
 from regolith_studio.ui.pages.scan.corrections import Corrections
 from regolith_studio.ui.pages.scan.file_dialogs import (
     CLASSIFIERS,
     SETTINGS,
+    VOLUMES,
     ask_to_open,
     ask_to_save,
     note_command,
@@ -72,6 +74,13 @@ class SettingsFiles(QObject):
     def open_classifier(self) -> None:
         """Ask for the file of a classifier and take it as the threshold."""
         self._open(tr("Open a classifier"), tr(CLASSIFIERS), read_classifier, self._use_classifier)
+
+    def read_labels(self) -> None:
+        """Ask for a volume of labels and add what is painted there to the strokes."""
+        suffixes = " ".join(f"*{suffix}" for suffix in sorted(volume_suffixes()))
+        path = ask_to_open(self._page, self._context, tr("Read labels"), tr(VOLUMES, suffixes=suffixes))
+        if path is not None:
+            self._painting.read_labels(path, self._controls.value().region)
 
     def open_objects(self) -> None:
         """Ask for the file of an object classifier and apply it."""
