@@ -110,7 +110,8 @@ class GrainOptions:
         typer.Option(
             "--threshold",
             help="Threshold of grey volumes: otsu, multi-otsu, multi-otsu:CLASSES:BOUNDARY, a grey value, or "
-            "probability[:P] for a probability map.",
+            "probability[:P[:LOW]] for a probability map, where voxels from LOW on count if they are "
+            "connected to some from P on.",
             metavar="HOW",
         ),
     ] = "otsu"
@@ -233,7 +234,7 @@ def volume_kind(text: str) -> "VolumeKind | None":
 
 
 def threshold_from(text: str, dark: bool) -> "ThresholdSettings":
-    """The threshold that ``otsu``, ``multi-otsu:4:2``, ``probability:0.6`` or ``87.5`` denotes."""
+    """The threshold that ``otsu``, ``multi-otsu:4:2``, ``probability:0.6:0.3`` or ``87.5`` denotes."""
     from regolith_studio.imaging.segmentation.thresholding import ThresholdSettings
 
     name, _, rest = text.partition(":")
@@ -245,12 +246,14 @@ def threshold_from(text: str, dark: bool) -> "ThresholdSettings":
                 classes, boundary = map(int, rest.split(":")) if rest else (3, 1)
                 return ThresholdSettings("multi-otsu", classes=classes, boundary=boundary, dark=dark)
             case "probability":
-                return ThresholdSettings("probability", float(rest or 0.5), dark=dark)
+                core, _, low = rest.partition(":")
+                return ThresholdSettings("probability", float(core or 0.5), dark=dark, low=float(low or 0))
             case _:
                 return ThresholdSettings("manual", float(text), dark=dark)
     except ValueError:
         raise typer.BadParameter(
-            f"A threshold is otsu, multi-otsu[:CLASSES:BOUNDARY], probability[:P] or a number, got {text!r}."
+            "A threshold is otsu, multi-otsu[:CLASSES:BOUNDARY], probability[:P[:LOW]] or a number, got "
+            f"{text!r}."
         ) from None
 
 

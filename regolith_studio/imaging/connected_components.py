@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scipy import sparse
 from scipy.sparse import csgraph
 
-from regolith_studio.geometry.arrays import IntArray
+from regolith_studio.geometry.arrays import BoolArray, IntArray
 from regolith_studio.imaging.bounding_boxes import Box, box_between
 
 _components: Any = cc3d.connected_components
@@ -53,11 +53,14 @@ class SlabComponents:
         Voxels of each, shape (n,).
     low, high
         First voxel of each box along x, y and z of the volume and the one after its last, shape (n, 3).
+    has_core
+        Whether it holds a voxel of the core mask, shape (n,).
     """
 
     sizes: IntArray
     low: IntArray
     high: IntArray
+    has_core: BoolArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,7 +84,9 @@ class ConnectedComponents:
         return box_between(self.low[body - 1].tolist(), self.high[body - 1].tolist())
 
 
-def components_of_slab(mask: NDArray[np.bool_], first: int) -> tuple[NDArray[np.int32], SlabComponents]:
+def components_of_slab(
+    mask: NDArray[np.bool_], first: int, core: NDArray[np.bool_] | None = None
+) -> tuple[NDArray[np.int32], SlabComponents]:
     """Number of the component of each voxel in a slab, 0 outside, and what is known of them.
 
     Parameters
@@ -90,16 +95,24 @@ def components_of_slab(mask: NDArray[np.bool_], first: int) -> tuple[NDArray[np.
         Shape (nx, ny, thickness).
     first
         z of its first slice in the volume.
+    core
+        Only bodies with a voxel of this mask, of the same shape, are bodies; by default all are.
     """
     numbers, count = connected_components(mask)
     if count == 0:
         none = np.zeros((0, 3), dtype=np.int64)
-        return np.zeros(mask.shape, np.int32, order="F"), SlabComponents(none[:, 0], none, none)
+        return np.zeros(mask.shape, np.int32, order="F"), SlabComponents(
+            none[:, 0], none, none, none[:, 0] > 0
+        )
     seen = _statistics(numbers, no_slice_conversion=True)
     boxes = np.asarray(seen["bounding_boxes"], dtype=np.int64)[1:]
     shift = np.array([0, 0, first])
     sizes = np.asarray(seen["voxel_counts"], dtype=np.int64)[1:]
-    found = SlabComponents(sizes, boxes[:, 0::2] + shift, boxes[:, 1::2] + 1 + shift)
+    has_core = np.ones(count + 1, dtype=bool)
+    if core is not None:
+        has_core[:] = False
+        has_core[np.unique(numbers[core])] = True
+    found = SlabComponents(sizes, boxes[:, 0::2] + shift, boxes[:, 1::2] + 1 + shift, has_core[1:])
     return numbers.astype(np.int32), found
 
 
@@ -130,7 +143,7 @@ class ComponentJoiner:
         return first
 
     def finish(self) -> tuple[IntArray, ConnectedComponents]:
-        """The body of each number, entry 0 being 0, and the bodies in the order of their first voxels."""
+        """The body of each number, 0 for none, and the bodies in the order of their first voxels."""
         links = np.concatenate(self._links)
         shape = (self._count + 1, self._count + 1)
         graph = sparse.coo_array((np.ones(len(links), dtype=np.int8), tuple(links.T)), shape=shape)
@@ -139,8 +152,11 @@ class ComponentJoiner:
         sizes = np.zeros(n_bodies, dtype=np.int64)
         low = np.full((n_bodies, 3), np.iinfo(np.int64).max)
         high = np.zeros((n_bodies, 3), dtype=np.int64)
+        kept = np.zeros(n_bodies, dtype=bool)
         if self._count:
+            np.logical_or.at(kept, body_of[1:], np.concatenate([slab.has_core for slab in self._slabs]))
             np.add.at(sizes, body_of[1:], np.concatenate([slab.sizes for slab in self._slabs]))
             np.minimum.at(low, body_of[1:], np.concatenate([slab.low for slab in self._slabs]))
             np.maximum.at(high, body_of[1:], np.concatenate([slab.high for slab in self._slabs]))
-        return body_of, ConnectedComponents(sizes[1:], low[1:], high[1:])
+        number = np.where(kept, np.cumsum(kept), 0)
+        return number[body_of], ConnectedComponents(sizes[kept], low[kept], high[kept])

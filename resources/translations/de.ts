@@ -1556,6 +1556,10 @@
         <translation>Fertig: {count} Dateien in {folder}.</translation>
     </message>
     <message>
+        <source>Down to</source>
+        <translation>Hinab bis</translation>
+    </message>
+    <message>
         <source>Drag the slider. At 0 the fit is a sphere; at 10 it keeps the form, at 30 nearly all details.</source>
         <translation>Ziehen Sie am Regler. Bei 0 ist der Fit eine Kugel; bei 10 behält er die Form, bei 30 fast alle Einzelheiten.</translation>
     </message>
@@ -2488,6 +2492,10 @@
         <translation>Wie viele Einzelheiten: l_max</translation>
     </message>
     <message>
+        <source>Hysteresis: voxels from this probability on belong to a grain if they are connected to some from the level on; 0 for none.</source>
+        <translation>Hysterese: Voxel ab dieser Wahrscheinlichkeit gehören zu einem Korn, wenn sie mit Voxeln ab der Schwelle zusammenhängen; 0 für keine.</translation>
+    </message>
+    <message>
         <source>Imported particles</source>
         <translation>Importierte Partikel</translation>
     </message>
@@ -2906,6 +2914,10 @@
     <message>
         <source>Lower cut</source>
         <translation>Unterer Schnitt</translation>
+    </message>
+    <message>
+        <source>Lower probability of a hysteresis</source>
+        <translation>Untere Wahrscheinlichkeit einer Hysterese</translation>
     </message>
     <message>
         <source>Lowest and highest value, with a comma between them</source>
@@ -4164,8 +4176,24 @@
         <translation>Erreicht</translation>
     </message>
     <message>
+        <source>Read labels</source>
+        <translation>Labels lesen</translation>
+    </message>
+    <message>
+        <source>Read labels …</source>
+        <translation>Labels lesen …</translation>
+    </message>
+    <message>
         <source>Read the files of the chosen particle in another unit</source>
         <translation>Die Dateien des gewählten Partikels in einer anderen Einheit lesen</translation>
+    </message>
+    <message>
+        <source>Read what was painted in another program, such as ilastik or napari, from a volume of labels</source>
+        <translation>In einem anderen Programm, etwa ilastik oder napari, Gemaltes aus einem Volumen von Labels lesen</translation>
+    </message>
+    <message>
+        <source>Reading labels</source>
+        <translation>Labels werden gelesen</translation>
     </message>
     <message>
         <source>Reading particles</source>

@@ -49,6 +49,7 @@ from regolith_studio.imaging.segmentation.thresholding import (
     histogram,
     level_of,
     span,
+    weak_level,
 )
 from regolith_studio.imaging.volume import Volume
 from regolith_studio.imaging.volume_slabs import (
@@ -577,8 +578,12 @@ def _number_slab(
 ) -> SlabComponents:
     """Write -k for each voxel of a slab's component k; returns what is known of them."""
     slab = values.thick(*part, settings.cleaning.margin)
-    mask = cleaned(grain_voxels(slab.values, level, settings.threshold), settings.cleaning)
-    found, components = components_of_slab(mask[:, :, slab.inner], slab.first)
+    how = settings.threshold
+    mask = cleaned(grain_voxels(slab.values, weak_level(level, how), how), settings.cleaning)[
+        :, :, slab.inner
+    ]
+    core = mask & grain_voxels(slab.values[:, :, slab.inner], level, how) if how.low else None
+    found, components = components_of_slab(mask, slab.first, core)
     numbers.write(slab.first, -found)
     return components
 

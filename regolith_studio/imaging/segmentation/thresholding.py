@@ -35,6 +35,9 @@ class ThresholdSettings:
         counted from the dark end from 1.
     dark
         Whether grains are what lies below the level.
+    low
+        Of ``probability``: the lower threshold of a hysteresis. Voxels from there on belong to a grain if
+        they are connected to some from `value` on (Canny 1986); 0 for no hysteresis.
     """
 
     method: ThresholdMethod = "otsu"
@@ -42,6 +45,7 @@ class ThresholdSettings:
     classes: int = 3
     boundary: int = 1
     dark: bool = False
+    low: float = 0.0
 
     def __post_init__(self) -> None:
         if self.method not in THRESHOLD_METHODS:
@@ -50,6 +54,11 @@ class ThresholdSettings:
             raise InputError(f"The threshold is a finite number, got {self.value}.")
         if self.method == "probability" and not 0.0 < self.value < 1.0:
             raise InputError(f"The threshold of a probability lies between 0 and 1, got {self.value}.")
+        if self.low and (self.method != "probability" or self.dark or not 0.0 < self.low < self.value):
+            raise InputError(
+                f"The lower threshold of a hysteresis lies between 0 and the threshold, {self.value:g}, of a "
+                f"probability to be grain, got {self.low:g}."
+            )
         if self.classes not in (3, 4, 5) or self.boundary not in range(1, self.classes):
             raise InputError(
                 f"Multi-Otsu takes 3 to 5 classes and a boundary from 1 to one less than that, got "
@@ -185,6 +194,11 @@ def level_of(seen: Histogram, settings: ThresholdSettings, dtype: np.dtype[Any])
             _multi_otsu(classes=settings.classes, hist=(seen.counts, centres))[settings.boundary - 1]
         )
     return float(seen.edges[np.searchsorted(seen.edges, found, side="right")])
+
+
+def weak_level(level: float, settings: ThresholdSettings) -> float:
+    """The grey value from which on voxels may belong to a grain, where `level` is that of its core."""
+    return level * settings.low / settings.value if settings.low else level
 
 
 def grain_voxels(values: NDArray[Any], level: float, settings: ThresholdSettings) -> NDArray[np.bool_]:

@@ -285,3 +285,32 @@ def test_that_the_largest_body_and_closed_pores_are_those_of_scipy() -> None:
     assert np.array_equal(pores_filled(body), ndimage.binary_fill_holes(body))
     full = np.ones((3, 3, 3), dtype=bool)
     assert pores_filled(full) is full
+
+
+@pytest.mark.usefixtures("thin_slabs")
+def test_that_hysteresis_keeps_the_weak_voxels_that_strong_ones_are_connected_to() -> None:
+    """Against bodies of the whole volume at once by scipy; they reach over several slabs."""
+    noise = ndimage.gaussian_filter(np.random.default_rng(3).standard_normal((40, 41, 42)), 1.5)
+    chances = np.clip(128 + 600 * noise, 0, 255).astype(np.uint8)
+    settings = SegmentationSettings(
+        threshold=ThresholdSettings("probability", 0.9, low=0.75),
+        cleaning=CleaningSettings(fill_pores=False, min_voxels=0),
+        splitting=SplittingSettings(enabled=False),
+    )
+    found = segment(Volume(chances, np.ones(3), "grey", "chances"), settings)
+    bodies, count = ndimage.label(chances >= 0.75 * 255)
+    kept = np.unique(bodies[chances >= 0.9 * 255])
+    assert 10 < len(kept) < count
+    assert np.array_equal(found.labels.array > 0, np.isin(bodies, kept[kept > 0]))
+    assert found.n_bodies == found.n_grains == np.count_nonzero(kept)
+
+
+@pytest.mark.parametrize(
+    ("method", "value", "low", "dark"),
+    [("otsu", 0.5, 0.2, False), ("probability", 0.5, 0.5, False), ("probability", 0.5, 0.2, True)],
+)
+def test_that_a_hysteresis_needs_a_probability_and_a_lower_one(
+    method: str, value: float, low: float, dark: bool
+) -> None:
+    with pytest.raises(InputError, match=r"lower threshold of a hysteresis lies between 0 and the threshold"):
+        ThresholdSettings(method, value, low=low, dark=dark)  # type: ignore[arg-type]

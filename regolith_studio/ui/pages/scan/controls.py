@@ -83,7 +83,7 @@ class SegmentationControls(QWidget):
         self._classifier: TrainingSet | None = None
         self.denoise = choice("denoise", tr("Denoise"), DENOISE)
         self.threshold = choice("threshold", tr("Threshold"), THRESHOLD)
-        self.level = DecimalField()
+        self.level, self.low = DecimalField(), DecimalField()
         self.boundary = choice(
             "boundary", tr("Boundary"), ((1, N_("dark | middle")), (2, N_("middle | bright")))
         )
@@ -136,6 +136,7 @@ class SegmentationControls(QWidget):
                 value=self.level.value() if method in ("manual", "probability") else 0.5,
                 boundary=int(self.boundary.currentData()),
                 dark=self.dark.isChecked(),
+                low=self.low.value() if method == "probability" and not self.dark.isChecked() else 0.0,
             ),
             CleaningSettings(
                 int(self.opening.value()),
@@ -180,6 +181,9 @@ class SegmentationControls(QWidget):
             with QSignalBlocker(check):
                 check.setChecked(on)
         self._show_level(how.threshold.value)
+        self._show_which()
+        with QSignalBlocker(self.low):
+            self.low.setValue(how.threshold.low)
         self.opening.setValue(how.cleaning.opening)
         self.closing.setValue(how.cleaning.closing)
         self.h_maxima.setValue(how.splitting.h_maxima)
@@ -245,6 +249,7 @@ class SegmentationControls(QWidget):
             self.denoise,
             self.threshold,
             self.level,
+            self.low,
             self.boundary,
             self.dark,
             self.split,
@@ -270,6 +275,9 @@ class SegmentationControls(QWidget):
         method = self.threshold.currentData()
         with QSignalBlocker(self.level):
             self.level.setRange(*((0.01, 0.99) if method in _PROBABLE else (-1e9, 1e9)))
+        with QSignalBlocker(self.low):
+            self.low.setRange(0.0, max(0.0, self.level.value() - 0.01) if method in _PROBABLE else 0.0)
+        self.low.setEnabled(method in _PROBABLE and not self.dark.isChecked())
         self.boundary.setEnabled(method == "multi-otsu")
         self.level.setEnabled(method in ("manual", *_PROBABLE))
         self.denoise.setEnabled(self.threshold.isEnabled() and method not in _PROBABLE)
@@ -311,15 +319,26 @@ class SegmentationControls(QWidget):
             check.toggled.connect(self._changed)
         for slider in self._sliders:
             slider.valueChanged.connect(lambda _: self._changed())
-        self.level.valueChanged.connect(self._changed)
+        for field in (self.level, self.low):
+            field.valueChanged.connect(self._changed)
         self.region.valueChanged.connect(self._region_changed)
 
     def _arrange(self) -> None:
         self.level.setObjectName("level")
         self.level.setAccessibleName(tr("Grey level at which grains begin"))
         self.level.setRange(-1e9, 1e9)
-        self.level.setDecimals(2)
-        self.level.setKeyboardTracking(False)
+        self.low.setObjectName("low")
+        self.low.setAccessibleName(tr("Lower probability of a hysteresis"))
+        self.low.setSingleStep(0.05)
+        self.low.setToolTip(
+            tr(
+                "Hysteresis: voxels from this probability on belong to a grain if they are connected to some "
+                "from the level on; 0 for none."
+            )
+        )
+        for field in (self.level, self.low):
+            field.setDecimals(2)
+            field.setKeyboardTracking(False)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(self.region_fold)
@@ -330,6 +349,7 @@ class SegmentationControls(QWidget):
                     (tr("Denoise"), self.denoise),
                     (tr("Threshold"), self.threshold),
                     (tr("Level"), self.level),
+                    (tr("Down to"), self.low),
                     (tr("Boundary"), self.boundary),
                 )
             )
