@@ -302,6 +302,7 @@ class SegmentationControls(QWidget):
         except InputError as error:
             self.region_error.setText(translate(str(error)))
             self.region_error.show()
+            self.region_fold.set_open(True)
             return
         self.region_error.hide()
         self._changed()
