@@ -95,10 +95,10 @@ def fit_response_surface(factors: Sequence[str], values: FloatArray, results: Fl
     if not _independent(scaled, powers):
         raise InputError(f"{', '.join(factors)} do not vary independently of each other; leave one out.")
     terms = _terms(scaled, powers)
-    coefficients, *_ = np.linalg.lstsq(terms, results, rcond=None)
+    coefficients = np.asarray(np.linalg.lstsq(terms, results, rcond=None)[0], dtype=np.float64)
     freedom = len(results) - len(powers)
     variance = float(((results - terms @ coefficients) ** 2).sum() / freedom)
-    covariance = variance * np.linalg.inv(terms.T @ terms)
+    covariance = np.asarray(variance * np.linalg.inv(terms.T @ terms), dtype=np.float64)
     return ResponseSurface(
         tuple(factors), centre, width, tuple(powers), coefficients, covariance, freedom, variance**0.5
     )
