@@ -1556,10 +1556,6 @@
         <translation>Fertig: {count} Dateien in {folder}.</translation>
     </message>
     <message>
-        <source>Down to</source>
-        <translation>Hinab bis</translation>
-    </message>
-    <message>
         <source>Drag the slider. At 0 the fit is a sphere; at 10 it keeps the form, at 30 nearly all details.</source>
         <translation>Ziehen Sie am Regler. Bei 0 ist der Fit eine Kugel; bei 10 behält er die Form, bei 30 fast alle Einzelheiten.</translation>
     </message>

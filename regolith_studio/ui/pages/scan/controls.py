@@ -6,7 +6,17 @@ from typing import Any, cast
 
 from PySide6.QtCore import QEvent, QSignalBlocker, Signal
 from PySide6.QtGui import QStandardItemModel
-from PySide6.QtWidgets import QCheckBox, QComboBox, QFormLayout, QPushButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import (
+    QCheckBox,
+    QComboBox,
+    QFormLayout,
+    QHBoxLayout,
+    QLabel,
+    QPushButton,
+    QSizePolicy,
+    QVBoxLayout,
+    QWidget,
+)
 
 from regolith_studio.errors import InputError
 from regolith_studio.imaging.extraction import voxel_diameter
@@ -340,6 +350,12 @@ class SegmentationControls(QWidget):
         for field in (self.level, self.low):
             field.setDecimals(2)
             field.setKeyboardTracking(False)
+        self.level.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)  # not for 1e9
+        levels = QHBoxLayout()
+        levels.setSpacing(6)
+        levels.addWidget(self.level, 3)
+        levels.addWidget(QLabel(tr("to")))
+        levels.addWidget(self.low, 2)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(self.region_fold)
@@ -349,8 +365,7 @@ class SegmentationControls(QWidget):
                 (
                     (tr("Denoise"), self.denoise),
                     (tr("Threshold"), self.threshold),
-                    (tr("Level"), self.level),
-                    (tr("Down to"), self.low),
+                    (tr("Level"), levels),
                     (tr("Boundary"), self.boundary),
                 )
             )
@@ -385,7 +400,7 @@ def _slider(name: str, spec: NumberSpec) -> NumberSlider:
     return slider
 
 
-def _form(rows: Sequence[tuple[str, QWidget]]) -> QFormLayout:
+def _form(rows: Sequence[tuple[str, QWidget | QHBoxLayout]]) -> QFormLayout:
     form = QFormLayout()
     form.setVerticalSpacing(4)
     form.setFieldGrowthPolicy(QFormLayout.FieldGrowthPolicy.AllNonFixedFieldsGrow)
