@@ -178,10 +178,21 @@ def test_that_the_keywords_of_mfix_describe_every_phase_and_every_pair(
     assert int(given["mmax"]) == count
     for phase in range(1, count + 1):
         assert given[f"solids_model({phase})"] == "'GSP'"
-        assert float(given[f"d_p0({phase})"]) > 0
         assert float(given[f"ro_s0({phase})"]) < DENSITY, "overlapping spheres are added up"
     restitution = [key for key in given if key.startswith("des_en_input(")]
     assert restitution == [f"des_en_input({k})" for k in range(1, count * (count + 1) // 2 + 1)]
+
+
+def test_that_mfix_knows_the_size_of_a_phase_of_which_no_particle_was_drawn(dataset: Dataset) -> None:
+    files = EXPORTERS["mfix"].files(dataset, OPTIONS.replaced(n_particles=1))
+    given = dict(re.findall(r"(d_p0\(\d\)) = (\S+)", files["solids.mfx"].decode()))
+    rows = list(csv.DictReader(files["gsp_config.csv"].decode().splitlines()[1:]))
+    for phase, one in enumerate(dataset.representatives, start=1):
+        shares = [float(row["rel_d"]) for row in rows if int(row["pid"]) == phase]
+        volume = np.pi / 6 * float(given[f"d_p0({phase})"]) ** 3 * np.sum(np.power(shares, 3))
+        density = float(re.search(rf"ro_s0\({phase}\) = (\S+)", files["solids.mfx"].decode())[1])
+        median = COARSE * 1e-6 * one.sizes.quantile(0.5)
+        assert density * volume == pytest.approx(DENSITY * np.pi / 6 * median**3)
 
 
 def musen_database() -> Any:

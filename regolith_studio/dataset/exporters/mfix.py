@@ -4,6 +4,7 @@ import numpy as np
 
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.export import NOTES, Exporter, ExportOptions, shape_names, sizes_csv
+from regolith_studio.dataset.lifting_cylinder import MICROMETRE
 from regolith_studio.dataset.multisphere import bare_areas, fit_spheres_by, sphere_fit_errors
 from regolith_studio.dataset.packing import PackedParticles, pack_on_lattice
 from regolith_studio.geometry.arrays import FloatArray
@@ -51,7 +52,7 @@ def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
     return {
         "gsp_config.csv": b"#version = 1\n" + csv_bytes(config),
         "particle_input.csv": csv_bytes(_particles(particles, bounds, densities)),
-        "solids.mfx": _keywords(particles, bounds, densities, options).encode("ascii"),
+        "solids.mfx": _keywords(dataset, particles, bounds, densities, options).encode("ascii"),
         "sizes.csv": sizes_csv(dataset),
         NOTES: _NOTE.format(rows="\n".join(said)).encode("utf-8"),
     }
@@ -100,11 +101,15 @@ def _particles(
 
 
 def _keywords(
-    particles: PackedParticles, bounds: FloatArray, densities: FloatArray, options: ExportOptions
+    dataset: Dataset,
+    particles: PackedParticles,
+    bounds: FloatArray,
+    densities: FloatArray,
+    options: ExportOptions,
 ) -> str:
     contact, phases = options.contact, range(1, len(bounds) + 1)
-    typical = [float(np.median(particles.scale[particles.class_index == k])) for k in range(len(bounds))]
-    typical = [value if np.isfinite(value) else float(np.median(particles.scale)) for value in typical]
+    to_metres = options.coarse_graining_factor * MICROMETRE * (np.pi / 6) ** (1 / 3)
+    medians = [one.sizes.quantile(0.5) * to_metres for one in dataset.representatives]
     reach = float((bounds[particles.class_index] * particles.scale).max())
     low, high = particles.position.min(axis=0) - reach, particles.position.max(axis=0) + reach
     pairs = len(bounds) * (len(bounds) + 1) // 2
@@ -113,7 +118,7 @@ def _keywords(
         *(f"# domain at least {a}: {x!r} to {y!r} m" for a, x, y in zip("xyz", low, high, strict=True)),
         f"mmax = {len(bounds)}",
         *(f"solids_model({k}) = 'GSP'" for k in phases),
-        *(f"d_p0({k}) = {float(bounds[k - 1]) * typical[k - 1]!r}" for k in phases),
+        *(f"d_p0({k}) = {float(bounds[k - 1] * medians[k - 1])!r}" for k in phases),
         *(f"ro_s0({k}) = {float(densities[k - 1])!r}" for k in phases),
         "gener_part_config = .False.",
         f"mew = {contact.static_friction!r}",
