@@ -62,7 +62,8 @@ class PlainLoss:
         offsets = np.linalg.norm(points, axis=1)
         normals = points / offsets[:, None]
         try:
-            corners = HalfspaceIntersection(np.c_[normals, -offsets], np.zeros(3)).intersections
+            with np.errstate(divide="ignore", invalid="ignore"):  # an open polyhedron has corners at infinity
+                corners = HalfspaceIntersection(np.c_[normals, -offsets], np.zeros(3)).intersections
             if not np.isfinite(corners).all():
                 return np.inf
             if self._lean:

@@ -15,7 +15,6 @@ from regolith_studio.geometry.half_spaces import HalfSpaces
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.sphere_points import icosphere
 
-pytestmark = pytest.mark.filterwarnings("default")  # the plain programs are full of them
 WAYS: list[dict[str, Any]] = [{}, {"lean": True}, {"exact": True}, {"lean": True, "exact": True}]
 
 

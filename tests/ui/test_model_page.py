@@ -10,6 +10,7 @@ from PySide6.QtWidgets import QFileDialog, QWidget
 
 from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.descriptors.distributions import Distribution
+from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.harmonics.coefficients import degrees
@@ -84,6 +85,15 @@ def rough_sample(n=30, l_max=4):
 def take(page, sample):
     page._add(ShapeSource(sample, "rough", "0" * 64))
     page.source.l_max.setValue(4)
+
+
+def egg(n):
+    ball = icosphere(2)
+    return Particle(f"egg-{n}", Mesh(ball.vertices * np.array([1.4, 1.2, 1.0]) * (10.0 + n), ball.faces))
+
+
+def choose_model(page, key):
+    page.source.model.setCurrentIndex(page.source.model.findData(key))
 
 
 def place(editor, degree, percent):
@@ -163,6 +173,7 @@ def test_that_drawing_fits_the_selected_source_first_and_goes_on_after_its_draws
     page.drawing.draw.click()
     assert page._fitted is fitted, "number and seed ask for no other fit"
     take(page, rough_sample())
+    choose_model(page, "gaussian_field")
     page.drawing.draw.click()
     assert (page._fitted.source.name, page._fitted.n_fitted) == ("rough", 30)
     page.source.half.setChecked(True)
@@ -172,8 +183,10 @@ def test_that_drawing_fits_the_selected_source_first_and_goes_on_after_its_draws
 
 def test_that_particles_drawn_from_open_ones_and_opened_are_not_fitted_instead_of_them(page, wait):
     session = page._context.session
-    session.adopt([Particle(f"ball-{n}", icosphere(2).moved(scale=10.0 + n)) for n in range(3)])
+    session.adopt([egg(n) for n in range(3)])
     page.source.choose_source("open")
+    choose_model(page, "gaussian_field")
+    page.source.l_max.setValue(4)
     page.drawing.setValue({"n": 2})
     wait(page.drawing.draw.isEnabled)
     page.drawing.draw.click()
@@ -183,7 +196,7 @@ def test_that_particles_drawn_from_open_ones_and_opened_are_not_fitted_instead_o
     wait(lambda: page.source.source.itemText(0) == "Open particles (2)")
     page.drawing.draw.click()
     assert page._fitted is fitted
-    session.adopt([Particle(f"egg-{n}", icosphere(2).moved(scale=10.0 + n)) for n in range(4)])
+    session.adopt([egg(n) for n in range(4)])
     page.drawing.draw.click()
     assert page._fitted.n_fitted == 4
 
@@ -191,7 +204,7 @@ def test_that_particles_drawn_from_open_ones_and_opened_are_not_fitted_instead_o
 @pytest.mark.slow
 def test_that_models_are_judged_on_the_sample_that_was_fitted(page):
     take(page, rough_sample())
-    page.source.model.setCurrentIndex(page.source.model.findData("gaussian_field"))
+    choose_model(page, "gaussian_field")
     assert not page.evaluation.frame.start.isEnabled()
     page.source.fit.click()
     assert page.live.spectrum.value() == pytest.approx(
