@@ -124,14 +124,14 @@ class HarmonicFit:
 
 
 def fit_harmonics(
-    mesh: Particle | Mesh,
+    particle: Particle | Mesh,
     l_max: int = 30,
     star_point: ArrayLike | str | None = None,
     sampling_degree: int = SAMPLING_DEGREE,
     rule: str = DEFAULT_RULE,
     reference: str = "sphere",
 ) -> HarmonicFit:
-    """Expand the radius function of a closed mesh.
+    """Expand the radius function of a particle or a closed mesh.
 
     The radius is sampled at `sampling_degree` and the expansion cut at `l_max`, because sampling at
     l_max itself folds finer shape into the coefficients. A lower l_max later needs no new fit.
@@ -157,7 +157,7 @@ def fit_harmonics(
     if reference not in REFERENCES:
         raise InputError(f"The reference must be one of {', '.join(REFERENCES)}, got {reference!r}.")
     rays = ray_grid(sampling_degree)
-    solid = require_solid(solid_of(mesh))
+    solid = require_solid(solid_of(particle))
     radius, notes = _sampled(solid, star_point, rays, rule)
     ellipsoid = REFERENCES[reference](solid)
     fit = expand_radius(radius, rays, l_max, ellipsoid)
