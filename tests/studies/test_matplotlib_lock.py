@@ -11,7 +11,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from matplotlib import mathtext
 from matplotlib.figure import Figure
-from regolith_studio.studies.figures.files import png_bytes, write_figure
+from regolith_studio.studies.figures.files import write_figure
 from regolith_studio.ui.widgets import formula
 
 sys.setswitchinterval(5e-4)
@@ -24,13 +24,10 @@ def figure(number):
     return made
 
 def work(number):
-    match number % 3:
-        case 0:
-            return hashlib.sha256(png_bytes(figure(number))).hexdigest()
-        case 1:
-            with tempfile.TemporaryDirectory() as folder:
-                paths = write_figure(figure(number), Path(folder), "one")
-                return hashlib.sha256(b"".join(path.read_bytes() for path in paths)).hexdigest()
+    if number % 3:
+        with tempfile.TemporaryDirectory() as folder:
+            paths = write_figure(figure(number), Path(folder), "one")
+            return hashlib.sha256(b"".join(path.read_bytes() for path in paths)).hexdigest()
     formula._outlines.clear()
     mathtext.MathTextParser._parse_cached.cache_clear()
     lines = [rf"$\sqrt{{A_{{{number + k}}}}} = \sum_{{m}} c_{{{k} m}}^{{2}}$" for k in range(4)]

@@ -1,7 +1,6 @@
 """Writes figures as PNG and SVG, with the same bytes each time."""
 
 import re
-from io import BytesIO
 from pathlib import Path
 
 import matplotlib
@@ -28,12 +27,3 @@ def write_figure(figure: Figure, folder: Path, stem: str) -> tuple[Path, Path]:
 def with_subscript(symbol: str) -> str:
     """A symbol such as ``D_min`` as matplotlib sets it, with a real subscript."""
     return re.sub(r"_(\w+)", r"$_\\mathrm{\1}$", symbol)
-
-
-def png_bytes(figure: Figure, dots_per_inch: int = DOTS_PER_INCH) -> bytes:
-    """A figure as a PNG file in memory."""
-    FigureCanvasAgg(figure)
-    stream = BytesIO()
-    with MATPLOTLIB_LOCK:
-        figure.savefig(stream, format="png", dpi=dots_per_inch)
-    return stream.getvalue()
