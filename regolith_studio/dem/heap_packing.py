@@ -11,7 +11,7 @@ from scipy.stats.qmc import Sobol
 from regolith_studio.dem.angle_of_repose import ReposeMeasurement
 from regolith_studio.dem.case import PreparedCase
 from regolith_studio.dem.initial_packing import enclosing_radii
-from regolith_studio.dem.run_checks import separations
+from regolith_studio.dem.separation import separations
 from regolith_studio.dem.snapshot import ParticleState
 from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray
 

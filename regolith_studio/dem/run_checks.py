@@ -3,14 +3,12 @@
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.spatial import ConvexHull, cKDTree
 from scipy.spatial.transform import Rotation
 
 from regolith_studio.dem.case import PreparedCase
 from regolith_studio.dem.engine import RunChecks
-from regolith_studio.dem.initial_packing import enclosing_radii
 from regolith_studio.dem.snapshot import ParticleState
-from regolith_studio.geometry.arrays import FloatArray, IntArray
+from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.messages import N_, Message, Number
 
 MAX_OVERLAP = 0.02
@@ -76,72 +74,6 @@ def measure_filling(prepared: PreparedCase, particles: ParticleState) -> tuple[f
     return height, volume / (prepared.case.test.area * height)
 
 
-PARALLEL = 1e-9
-"""Edges with a smaller cross product of unit directions are parallel."""
-_Form = tuple[FloatArray, FloatArray, FloatArray]
-"""Vertices of a convex polyhedron, unit normals of its facets, unit directions of its edges, each (k, 3)."""
-
-
-def overlap_depths(prepared: PreparedCase, particles: ParticleState, rounding: float = 0.0) -> FloatArray:
-    """Depth of every pair of particles that overlap, in metres, shape (m,).
-
-    By the separating axis theorem: the minimum overlap of the projections on the normals of both polyhedra
-    and on the cross products of their edges.
-
-    Parameters
-    ----------
-    rounding
-        Radius of a ball that is added to every polyhedron, in equivalent diameters. The depth is then an
-        upper bound where corners meet corners or edges.
-    """
-    reach = enclosing_radii(prepared) + rounding * particles.diameters
-    pairs = cKDTree(particles.points).query_pairs(2.0 * float(reach.max()), output_type="ndarray")
-    apart = np.linalg.norm(particles.points[pairs[:, 0]] - particles.points[pairs[:, 1]], axis=1)
-    depths = -separations(prepared, particles, pairs[apart < reach[pairs].sum(axis=1)], rounding=rounding)
-    return np.asarray(depths[depths > 0.0])
-
-
-def separations(
-    prepared: PreparedCase,
-    particles: ParticleState,
-    pairs: IntArray,
-    limit: float = 0.0,
-    rounding: float = 0.0,
-) -> FloatArray:
-    """Distance of the particles of each pair, negative where they overlap, in metres, shape (m,).
-
-    By the separating axis theorem, as in :func:`overlap_depths`: exact for overlaps; a lower bound on the
-    distance where corners face corners or edges, and where it is above `limit`.
-
-    Parameters
-    ----------
-    pairs
-        Indices, shape (m, 2).
-    rounding
-        Radius of a ball that is added to every polyhedron, in equivalent diameters.
-    """
-    radii = rounding * particles.diameters
-    if prepared.case.shapes == "spheres":
-        radii = radii + particles.diameters / 2
-        ways = particles.points[pairs[:, 0]] - particles.points[pairs[:, 1]]
-        return np.asarray(np.linalg.norm(ways, axis=1) - radii[pairs].sum(axis=1))
-    forms = [[(part, *_normals_and_edges(part)) for part in parts] for parts in prepared.part_vertices]
-    turns = Rotation.from_quat(particles.orientations, scalar_first=True).as_matrix()
-    scales = prepared.scales
-
-    def placed(k: int) -> list[_Form]:
-        return [
-            (scales[k] * part @ turns[k].T + particles.points[k], normals @ turns[k].T, edges @ turns[k].T)
-            for part, normals, edges in forms[int(prepared.class_index[k])]
-        ]
-
-    found = (
-        _min_separation(placed(a), placed(b), limit + radii[a] + radii[b]) - radii[a] - radii[b]
-        for a, b in pairs.tolist()
-    )
-    return np.fromiter(found, dtype=np.float64, count=len(pairs))
-
-
 def lowest_corners(prepared: PreparedCase, particles: ParticleState) -> FloatArray:
     """Height of the lowest corner of every particle above the plate, in metres, shape (n,)."""
     downwards = Rotation.from_quat(particles.orientations, scalar_first=True).as_matrix()[:, 2]
@@ -149,38 +81,3 @@ def lowest_corners(prepared: PreparedCase, particles: ParticleState) -> FloatArr
         (prepared.shapes[kind] @ way).min() for kind, way in zip(prepared.class_index, downwards, strict=True)
     ]
     return np.asarray(particles.points[:, 2] + prepared.scales * np.array(lowest))
-
-
-def _normals_and_edges(corners: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Unit normals of the facets and unit directions of the edges of a hull, each direction once."""
-    hull = ConvexHull(corners)
-    normals = np.unique(np.round(hull.equations[:, :3], 9), axis=0)
-    ends = np.sort(
-        np.concatenate([hull.simplices[:, [0, 1]], hull.simplices[:, [1, 2]], hull.simplices[:, [2, 0]]])
-    )
-    ends = np.unique(ends, axis=0)
-    edges = corners[ends[:, 1]] - corners[ends[:, 0]]
-    return normals, edges / np.linalg.norm(edges, axis=1)[:, None]
-
-
-def _min_separation(one: list[_Form], other: list[_Form], limit: float) -> float:
-    """Of two particles of one or more convex parts."""
-    return min(_separation(mine, yours, limit) for mine in one for yours in other)
-
-
-def _separation(one: _Form, other: _Form, limit: float) -> float:
-    """Of two polyhedra, negative where they overlap; a lower bound if it is above `limit`."""
-    rough = -_min_overlap(one[0], other[0], np.vstack([one[1], other[1]]))
-    if rough > limit:
-        return rough
-    crossed = np.cross(one[2][:, None, :], other[2][None, :, :]).reshape(-1, 3)
-    length = np.linalg.norm(crossed, axis=1)
-    crossed = crossed[length > PARALLEL] / length[length > PARALLEL][:, None]
-    return max(rough, -_min_overlap(one[0], other[0], crossed))
-
-
-def _min_overlap(one: FloatArray, other: FloatArray, directions: FloatArray) -> float:
-    """Of the projections on unit directions, for a translation either way."""
-    a, b = one @ directions.T, other @ directions.T
-    ways = np.minimum(a.max(axis=0) - b.min(axis=0), b.max(axis=0) - a.min(axis=0))
-    return float(ways.min(initial=np.inf))

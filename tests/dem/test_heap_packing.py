@@ -10,7 +10,7 @@ from regolith_studio.dataset.parameters import LiftingCylinderTest
 from regolith_studio.dem.angle_of_repose import measure_repose
 from regolith_studio.dem.case import PreparedCase, ReposeCase, ShapeKind, prepare
 from regolith_studio.dem.heap_packing import HeapPacking, measure_packing, within_particles
-from regolith_studio.dem.run_checks import separations
+from regolith_studio.dem.separation import separations
 from regolith_studio.dem.snapshot import ParticleState
 from tests.dem.packings import cone
 

@@ -8,7 +8,8 @@ from scipy.spatial.transform import Rotation
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.parameters import LiftingCylinderTest
 from regolith_studio.dem.case import PreparedCase, ReposeCase, prepare
-from regolith_studio.dem.run_checks import lowest_corners, overlap_depths
+from regolith_studio.dem.run_checks import lowest_corners
+from regolith_studio.dem.separation import near_pairs, overlap_depths, separations
 from regolith_studio.dem.snapshot import ParticleState
 
 
@@ -70,3 +71,49 @@ def test_that_the_lowest_corner_is_the_lowest_of_all(boxes: Dataset) -> None:
     pile = placed(prepared, np.array([[0, 0, 0.01], [0, 0, -0.02]]), Rotation.random(2, random_state=4))
     expected = [corners(prepared, pile, k)[:, 2].min() for k in range(10)]
     assert lowest_corners(prepared, pile) == pytest.approx(expected)
+
+
+def rounded_stones(n: int) -> PreparedCase:
+    """Hulls of few and of many points on a sphere, whose facets and edges differ in number."""
+    chance = np.random.default_rng(1)
+    shapes = []
+    for count in (6, 12, 30):
+        ways = chance.normal(size=(count, 3))
+        hull = ConvexHull(ways / np.linalg.norm(ways, axis=1)[:, None])
+        shapes.append(hull.points / hull.volume ** (1 / 3))
+    return PreparedCase(
+        ReposeCase(n_particles=n), tuple(shapes), np.arange(n) % 3, chance.uniform(0.6, 1.8, n), 1.0
+    )
+
+
+def test_that_separations_are_those_of_the_hull_of_differences_for_many_pairs_at_once() -> None:
+    """Overlaps are its distance from the origin; of bodies that are apart it is at least the separation."""
+    n = 60
+    prepared = rounded_stones(n)
+    points = np.random.default_rng(2).uniform(0.0, 2.8, (n, 3))
+    turns = Rotation.random(n, random_state=3)
+    pile = ParticleState(points, prepared.diameters, turns.as_quat(scalar_first=True), prepared.class_index)
+    pairs = np.array([(a, b) for a in range(n) for b in range(a)])
+    pairs = pairs[np.random.default_rng(4).choice(len(pairs), 120, replace=False)]
+    found = separations(prepared, pile, pairs, limit=np.inf)
+    facets = [
+        ConvexHull((corners(prepared, pile, b)[:, None] - corners(prepared, pile, a)).reshape(-1, 3))
+        for a, b in pairs
+    ]
+    expected = np.array([hull.equations[:, 3].max() for hull in facets])
+    assert 30 < (expected < 0.0).sum() < 90
+    assert found == pytest.approx(expected, abs=1e-7)
+
+
+def test_that_near_pairs_are_those_whose_spheres_overlap() -> None:
+    """A few large spheres among small ones, some of equal size."""
+    chance = np.random.default_rng(5)
+    points, reach = (
+        chance.uniform(0.0, 6.0, (200, 3)),
+        chance.choice([0.2, 0.21, 2.0], 200, p=[0.6, 0.38, 0.02]),
+    )
+    apart = np.linalg.norm(points[:, None] - points[None], axis=2)
+    expected = np.argwhere(np.triu(apart < reach[:, None] + reach[None], k=1))
+    found = np.sort(near_pairs(points, reach), axis=1)
+    assert len(found) == len(expected) > 100
+    assert {*map(tuple, found.tolist())} == {*map(tuple, expected.tolist())}

@@ -23,8 +23,8 @@ from regolith_studio.dem.engines.rapier.simulation import N_WALLS, RapierSolver,
 from regolith_studio.dem.evaluation.settings import EvaluationSettings
 from regolith_studio.dem.initial_packing import enclosing_radii
 from regolith_studio.dem.lifting_cylinder import LiftingSettings
-from regolith_studio.dem.run_checks import overlap_depths
 from regolith_studio.dem.run_io import read_run, snapshot_files
+from regolith_studio.dem.separation import overlap_depths
 from regolith_studio.dem.snapshot import EngineState, Snapshot, read_particle_state
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray

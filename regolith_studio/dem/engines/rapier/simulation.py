@@ -12,7 +12,8 @@ from regolith_studio.dem.engine import ENGINE_THREADS
 from regolith_studio.dem.engines.rapier.settings import RapierSettings
 from regolith_studio.dem.initial_packing import enclosing_radii, loose_column
 from regolith_studio.dem.lifting_cylinder import Units, lift_speed
-from regolith_studio.dem.run_checks import lowest_corners, overlap_depths
+from regolith_studio.dem.run_checks import lowest_corners
+from regolith_studio.dem.separation import overlap_depths
 from regolith_studio.dem.snapshot import PHASES, ParticleState
 from regolith_studio.errors import RegolithError
 from regolith_studio.geometry.arrays import FloatArray
