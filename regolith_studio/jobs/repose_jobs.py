@@ -124,7 +124,7 @@ def check_shapes(prepared: PreparedCase, engine: Engine) -> None:
         others = [each.label for each in ENGINES.values() if each.capabilities.compounds]
         raise InputError(
             f"{engine.label} simulates convex particles, and {prepared.dataset_name} holds compounds of "
-            f"convex parts; take the engine {' or '.join(others)}, or coarsen by another method."
+            f"convex parts; take one of the engines {', '.join(others)}, or coarsen by another method."
         )
 
 

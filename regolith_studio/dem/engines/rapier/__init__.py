@@ -28,6 +28,7 @@ REPRESENTS = EngineCapabilities(
     rolling=N_("none besides that of edges and faces"),
     coarse_graining=N_("by size"),
     missing=N_("Hertz and Mindlin stiffness, cohesion, rolling resistance; single precision"),
+    compounds=N_("one body of several convex parts, with mass and inertia of their union"),
 )
 
 

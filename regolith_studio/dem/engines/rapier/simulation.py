@@ -5,7 +5,9 @@ from dataclasses import replace
 
 import numpy as np
 import rapier3d as rapier
+from scipy.optimize import linprog
 from scipy.spatial import ConvexHull, HalfspaceIntersection
+from scipy.spatial.transform import Rotation
 
 from regolith_studio.dem.case import PreparedCase
 from regolith_studio.dem.engine import ENGINE_THREADS
@@ -15,7 +17,7 @@ from regolith_studio.dem.lifting_cylinder import Units, lift_speed
 from regolith_studio.dem.run_checks import lowest_corners
 from regolith_studio.dem.separation import overlap_depths
 from regolith_studio.dem.snapshot import PHASES, ParticleState
-from regolith_studio.errors import RegolithError
+from regolith_studio.errors import InputError, RegolithError
 from regolith_studio.geometry.arrays import FloatArray
 
 N_WALLS = 32
@@ -29,6 +31,10 @@ whose corners stand out of the rounded ones, by up to 7 %. Heaps of hulls withou
 UNIT_DIAMETER = (6 / np.pi) ** (1 / 3)
 """Equivalent diameter of a shape of unit volume."""
 REPEATABLE = "Equal seeds give equal bytes on one machine, with any number of threads."
+Parts = tuple[FloatArray, ...]
+"""Vertices of each convex part of a shape."""
+IN_PLACE = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0))
+"""Place and turn of a part in its body."""
 MAX_SPEED = 400.0
 """Limit of the solver where none is set."""
 
@@ -42,7 +48,8 @@ class RapierSolver:
         self.unit_length, self.unit_time = units.length, units.time
         self.n, self.time, self.phase = len(prepared), 0.0, PHASES[0]
         self.world = rapier.PhysicsWorld(gravity=(0.0, 0.0, -1.0))
-        self.top = _build(self.world, prepared)
+        self.cores = rounded_cores(prepared)
+        self.top = _build(self.world, prepared, self.cores)
         self.masses = np.pi / 6 * (prepared.diameters / prepared.mean_diameter) ** 3
         self._find_bodies()
 
@@ -86,8 +93,8 @@ class RapierSolver:
             points = (point for pair in pairs for each in pair.manifolds for point in each.points)
             return np.array([-point.dist for point in points if point.dist < 0.0])
         prepared, length = self.prepared, self.unit_length
-        cores = tuple(inner_parallel_body(shape, ROUNDING * UNIT_DIAMETER) for shape in prepared.shapes)
-        cased = replace(prepared, shapes=cores)
+        counts = tuple(tuple(map(len, parts)) for parts in self.cores)
+        cased = replace(prepared, shapes=tuple(map(np.concatenate, self.cores)), parts=counts)
         heap = ParticleState(
             self.points * length, prepared.diameters, self.orientations, prepared.class_index
         )
@@ -135,7 +142,7 @@ class RapierSolver:
         self._find_bodies()
 
 
-def _build(world: rapier.PhysicsWorld, prepared: PreparedCase) -> float:
+def _build(world: rapier.PhysicsWorld, prepared: PreparedCase, cores: tuple[Parts, ...]) -> float:
     """Particles in a loose column, the cylinder, and the plate; returns the height of the column."""
     length = prepared.mean_diameter
     column = loose_column(prepared)
@@ -146,7 +153,7 @@ def _build(world: rapier.PhysicsWorld, prepared: PreparedCase) -> float:
         prepared.class_index.tolist(), sizes.tolist(), places.tolist(), turns.tolist(), strict=True
     ):
         if (kind, size) not in forms:
-            forms[kind, size] = _form(prepared, kind, size)
+            forms[kind, size] = _form(prepared, cores, kind, size)
         shape, mass = forms[kind, size]
         collider = rapier.Collider.new(shape).mass_properties(mass)
         collider = _with_friction(collider, prepared, prepared.case.contact.static_friction)
@@ -162,25 +169,67 @@ def _build(world: rapier.PhysicsWorld, prepared: PreparedCase) -> float:
     return top
 
 
-def _form(prepared: PreparedCase, kind: int, size: float) -> tuple[rapier.SharedShape, rapier.MassProperties]:
+def _form(
+    prepared: PreparedCase, cores: tuple[Parts, ...], kind: int, size: float
+) -> tuple[rapier.SharedShape, rapier.MassProperties]:
     """Shape and mass of a particle, shared by all of a kind and size, which saves memory."""
     if prepared.case.shapes == "spheres":
         ball = rapier.SharedShape.ball(size * UNIT_DIAMETER / 2)
         return ball, ball.compute_mass_properties(1.0)
-    sharp = prepared.shapes[kind] * size
     edge = ROUNDING * size * UNIT_DIAMETER
-    rounded = rapier.SharedShape.round_convex_hull(inner_parallel_body(sharp, edge), edge)
-    return rounded, rapier.SharedShape.convex_hull(sharp).compute_mass_properties(1.0)
+    rounded = [rapier.SharedShape.round_convex_hull(core * size, edge) for core in cores[kind]]
+    if len(rounded) == 1:
+        sharp = rapier.SharedShape.convex_hull(prepared.shapes[kind] * size)
+        return rounded[0], sharp.compute_mass_properties(1.0)
+    moments, axes = np.linalg.eigh(prepared.inertias[kind] * size**5)
+    frame = Rotation.from_matrix(axes * np.linalg.det(axes)).as_quat().tolist()
+    union = rapier.MassProperties((0.0, 0.0, 0.0), size**3, moments.tolist(), frame)
+    return rapier.SharedShape.compound([(IN_PLACE, each) for each in rounded]), union
+
+
+def rounded_cores(prepared: PreparedCase) -> tuple[Parts, ...]:
+    """Vertices of the parts of each unit-volume shape, moved inwards by the radius of their edges.
+
+    None of spheres.
+
+    Raises
+    ------
+    InputError
+        If a part is thinner than its rounded edges.
+    """
+    if prepared.case.shapes == "spheres":
+        return ()
+    return tuple(
+        tuple(inner_parallel_body(part, ROUNDING * UNIT_DIAMETER) for part in parts)
+        for parts in prepared.part_vertices
+    )
 
 
 def inner_parallel_body(vertices: FloatArray, distance: float) -> FloatArray:
-    """Vertices of a convex polyhedron about the origin whose facets are moved inwards, shape (k, 3).
+    """Vertices of a convex polyhedron whose facets are moved inwards, shape (k, 3).
 
     With a ball of this radius added (Minkowski), it has the planes of the polyhedron and rounded edges.
+
+    Raises
+    ------
+    InputError
+        If nothing is left of it.
     """
     planes = np.unique(np.round(ConvexHull(vertices).equations, 9), axis=0)
     planes[:, 3] += distance
-    return np.asarray(HalfspaceIntersection(planes, np.zeros(3)).intersections)
+    # the point furthest from all planes, by a linear programme
+    found = linprog(
+        [0, 0, 0, -1.0],
+        np.column_stack([planes[:, :3], np.ones(len(planes))]),
+        -planes[:, 3],
+        bounds=(None, None),
+    )
+    if found.x is None or found.x[3] <= 0.0:
+        raise InputError(
+            "A shape or a part of one is so thin that nothing is left within Rapier's rounded edges; take"
+            " MuJoCo."
+        )
+    return np.asarray(HalfspaceIntersection(planes, found.x[:3]).intersections)
 
 
 def _walls(prepared: PreparedCase, height: float) -> list[rapier.Collider | rapier.ColliderBuilder]:
