@@ -58,13 +58,18 @@ def load_particles(
 
 
 def measure_first(paths: Sequence[Path]) -> Steps:
-    """Name and longest side of the first mesh, as its file gives it; ``None`` where it cannot be read."""
+    """Name and longest side of the first mesh, as its file gives it.
+
+    Where it cannot be read: why, as a sentence, if there is no other file, else ``None``.
+    """
     yield Started(N_("Reading particles"))
-    files = find_files(paths, [])
+    problems: list[FileProblem] = []
+    files = find_files(paths, problems)
     for file, result in read_each(files[:1], "um", False):
         if not isinstance(result, FileProblem):
             return file.path.stem, float(np.ptp(result.mesh.bounds, axis=0).max())
-    return None
+        problems.append(result)
+    return problems[0].sentence if len(files) < 2 and problems else None
 
 
 def load_sample() -> Steps:

@@ -260,8 +260,8 @@
         <translation>, eine, die gerade keine Facette begrenzt</translation>
     </message>
     <message>
-        <source>0 for the best number by Bayes&apos; criterion.</source>
-        <translation>0 für die beste Anzahl nach dem Kriterium von Bayes.</translation>
+        <source>0 for the number with the lowest Bayesian information criterion.</source>
+        <translation>0 für die Anzahl mit dem kleinsten Bayes-Informationskriterium.</translation>
     </message>
     <message>
         <source>0: whole pile</source>
@@ -424,10 +424,6 @@
         <translation>Eine Kalibrierung würde angehalten; sie kann später fortgesetzt werden.</translation>
     </message>
     <message>
-        <source>A card is made of a fitted sample: fit a model to one first.</source>
-        <translation>Eine Karte entsteht aus einer Probe mit Modell: passen Sie zuerst eines an.</translation>
-    </message>
-    <message>
         <source>A click on an object makes it an example of a class; all others are classified.</source>
         <translation>Ein Klick auf ein Objekt macht es zum Beispiel einer Klasse; alle anderen werden klassifiziert.</translation>
     </message>
@@ -458,6 +454,18 @@
     <message>
         <source>A fitted model: {name}.</source>
         <translation>Ein angepasstes Modell: {name}.</translation>
+    </message>
+    <message>
+        <source>A material card needs a model of a sample: fit one first.</source>
+        <translation>Eine Materialkarte braucht das Modell einer Probe: Passen Sie zuerst eines an.</translation>
+    </message>
+    <message>
+        <source>A mixture of components, each with its own sizes and spectrum, in the radius itself.</source>
+        <translation>Eine Mischung von Komponenten, jede mit eigenen Größen und eigenem Spektrum, im Radius selbst.</translation>
+    </message>
+    <message>
+        <source>A mixture of components, each with its own sizes and spectrum; their number by the Bayesian information criterion.</source>
+        <translation>Eine Mischung von Komponenten, jede mit eigenen Größen und eigenem Spektrum; ihre Anzahl nach dem Bayes-Informationskriterium.</translation>
     </message>
     <message>
         <source>A of the hull / A of its ellipsoid (after Kuo and Freeman)</source>
@@ -549,7 +557,7 @@
     </message>
     <message>
         <source>All default keys</source>
-        <translation>Alle üblichen Tasten</translation>
+        <translation>Alle Standardtasten</translation>
     </message>
     <message>
         <source>All descriptors</source>
@@ -728,8 +736,8 @@
         <translation>Höchstens {count:,} Partikel lassen sich hier simulieren; exportieren Sie den Datensatz für andere Programme.</translation>
     </message>
     <message>
-        <source>At {symbol} = {degree} the series has a negative radius somewhere: it is no surface.</source>
-        <translation>Bei {symbol} = {degree} hat die Reihe irgendwo einen negativen Radius: sie ist keine Oberfläche.</translation>
+        <source>At {symbol} = {degree} the series has a negative radius somewhere and describes no surface.</source>
+        <translation>Bei {symbol} = {degree} hat die Reihe irgendwo einen negativen Radius und beschreibt keine Oberfläche.</translation>
     </message>
     <message>
         <source>Automatic</source>
@@ -738,6 +746,10 @@
     <message>
         <source>Axes</source>
         <translation>Achsen</translation>
+    </message>
+    <message>
+        <source>BIC above its minimum</source>
+        <translation>BIC über seinem Minimum</translation>
     </message>
     <message>
         <source>Back</source>
@@ -754,10 +766,6 @@
     <message>
         <source>Background</source>
         <translation>Hintergrund</translation>
-    </message>
-    <message>
-        <source>Bayes&apos; criterion above its lowest</source>
-        <translation>Bayes-Kriterium über seinem kleinsten Wert</translation>
     </message>
     <message>
         <source>Before the lift</source>
@@ -1176,6 +1184,10 @@
         <translation>Wird kompiliert, einmal nach einer Installation</translation>
     </message>
     <message>
+        <source>Components</source>
+        <translation>Komponenten</translation>
+    </message>
+    <message>
         <source>Compound of convex parts</source>
         <translation>Verbund konvexer Teile</translation>
     </message>
@@ -1224,18 +1236,6 @@
         <translation>Einheitliche Orientierung</translation>
     </message>
     <message>
-        <source>Constituents of the mixture, separated by commas, the most numerous first.</source>
-        <translation>Komponenten der Mischung, durch Kommas getrennt, die häufigste zuerst.</translation>
-    </message>
-    <message>
-        <source>Constituents with sizes and spectra of their own, in the radius itself.</source>
-        <translation>Bestandteile mit eigenen Größen und Spektren, im Radius selbst.</translation>
-    </message>
-    <message>
-        <source>Constituents with sizes and spectra of their own; their number by Bayes&apos; criterion.</source>
-        <translation>Komponenten mit eigenen Größen und Spektren; ihre Anzahl nach dem Kriterium von Bayes.</translation>
-    </message>
-    <message>
         <source>Contact</source>
         <translation>Kontakt</translation>
     </message>
@@ -1246,6 +1246,10 @@
     <message>
         <source>Contains: {what}</source>
         <translation>Enthält: {what}</translation>
+    </message>
+    <message>
+        <source>Content</source>
+        <translation>Inhalt</translation>
     </message>
     <message>
         <source>Content of the volume</source>
@@ -1305,11 +1309,11 @@
     </message>
     <message>
         <source>Correct</source>
-        <translation>Ändern</translation>
+        <translation>Korrigieren</translation>
     </message>
     <message>
         <source>Correct for grain size</source>
-        <translation>Um die Korngröße berichtigen</translation>
+        <translation>Korngröße berücksichtigen</translation>
     </message>
     <message>
         <source>Correcting labels</source>
@@ -1336,8 +1340,8 @@
         <translation>Coulomb-Reibung jeder Berührfläche, ein Beiwert (der der Haftreibung)</translation>
     </message>
     <message>
-        <source>Coulomb friction while sliding, one coefficient (the static one), no memory at rest</source>
-        <translation>Coulomb-Reibung beim Gleiten, ein Beiwert (der der Haftreibung), kein Gedächtnis in Ruhe</translation>
+        <source>Coulomb friction while sliding, one coefficient (the static one), without contact history</source>
+        <translation>Coulomb-Reibung beim Gleiten, ein Beiwert (der der Haftreibung), ohne Kontaktgeschichte</translation>
     </message>
     <message>
         <source>Counting grey values</source>
@@ -1405,7 +1409,7 @@
     </message>
     <message>
         <source>Default keys</source>
-        <translation>Übliche Tasten</translation>
+        <translation>Standardtasten</translation>
     </message>
     <message>
         <source>Degree at which fits are cut and models draw; the paper uses 10.</source>
@@ -1454,10 +1458,6 @@
     <message>
         <source>Density by volume</source>
         <translation>Dichte nach Volumen</translation>
-    </message>
-    <message>
-        <source>Density over prior</source>
-        <translation>Dichte zur A-priori-Dichte</translation>
     </message>
     <message>
         <source>Describing objects</source>
@@ -2336,8 +2336,8 @@
         <translation>Körner, die der Rand des Scans schneidet, fielen weg, große öfter als kleine. Die übrigen haben dafür größere Gewichte (Miles-Lantuéjoul).</translation>
     </message>
     <message>
-        <source>Grains fill most of the frame and are connected. Tick Grains are dark if they are; otherwise change the level or reduce h.</source>
-        <translation>Körner füllen das meiste des Rahmens und hängen zusammen. Haken Sie „Körner sind dunkel“ an, wenn sie es sind; sonst ändern Sie den Schwellwert oder verkleinern h.</translation>
+        <source>Grains fill most of the frame and are connected. Tick “Grains are dark” if they are darker than what is between them; otherwise change the level or reduce h.</source>
+        <translation>Körner füllen das meiste des Rahmens und hängen zusammen. Haken Sie „Körner sind dunkel“ an, wenn sie dunkler sind als das, was zwischen ihnen ist; sonst ändern Sie den Schwellwert oder verkleinern h.</translation>
     </message>
     <message>
         <source>Grains in the frame by h: {counts}</source>
@@ -2420,12 +2420,12 @@
         <translation>Steifigkeit nach Hertz und Mindlin, Kohäsion, Rollwiderstand; einfache Genauigkeit</translation>
     </message>
     <message>
-        <source>Hertz and Mindlin stiffness, restitution, friction of rest apart from friction of motion</source>
-        <translation>Steifigkeit nach Hertz und Mindlin, Stoßzahl, Haftreibung getrennt von Gleitreibung</translation>
+        <source>Hertz and Mindlin stiffness, restitution, different static and dynamic friction</source>
+        <translation>Steifigkeit nach Hertz und Mindlin, Stoßzahl, verschiedene Haft- und Gleitreibung</translation>
     </message>
     <message>
-        <source>Hertz from Young&apos;s modulus (softened, recorded) with restitution, approximate with cohesion</source>
-        <translation>Hertz aus dem Elastizitätsmodul (erweicht, vermerkt) mit Stoßzahl, mit Kohäsion genähert</translation>
+        <source>Hertz with a reduced Young&apos;s modulus (recorded) and restitution; approximate with cohesion</source>
+        <translation>Hertz mit verringertem Elastizitätsmodul (wird vermerkt) und Stoßzahl; mit Kohäsion genähert</translation>
     </message>
     <message>
         <source>Hertz, Mindlin, restitution, cohesion, rolling resistance: qualitative; some 200 particles</source>
@@ -2472,10 +2472,6 @@
         <translation>Histogramm der Grauwerte mit dem Schwellwert</translation>
     </message>
     <message>
-        <source>Holds</source>
-        <translation>Inhalt</translation>
-    </message>
-    <message>
         <source>Horizontal axis</source>
         <translation>Waagerechte Achse</translation>
     </message>
@@ -2506,6 +2502,10 @@
     <message>
         <source>Independent normal coefficients; draws with a negative radius are rejected.</source>
         <translation>Unabhängige normalverteilte Koeffizienten; Ziehungen mit negativem Radius werden verworfen.</translation>
+    </message>
+    <message>
+        <source>Inspect</source>
+        <translation>Ansehen</translation>
     </message>
     <message>
         <source>Inspecting the volume</source>
@@ -2608,8 +2608,8 @@
         <translation>Seine Oberfläche berührt sich selbst in {count} Ecken.</translation>
     </message>
     <message>
-        <source>JKR, true stiffness: the modulus is soft</source>
-        <translation>JKR, wahre Steifigkeit: der Modul ist weich</translation>
+        <source>JKR, true stiffness: the modulus is reduced</source>
+        <translation>JKR, wahre Steifigkeit: der Modul ist verringert</translation>
     </message>
     <message>
         <source>Jaccard distance</source>
@@ -2760,10 +2760,6 @@
         <translation>Letzter Durchstoß</translation>
     </message>
     <message>
-        <source>Law of sizes</source>
-        <translation>Größengesetz</translation>
-    </message>
-    <message>
         <source>Leave out grains at the border</source>
         <translation>Körner am Rand weglassen</translation>
     </message>
@@ -2872,10 +2868,6 @@
         <translation>Logarithmisch</translation>
     </message>
     <message>
-        <source>Look</source>
-        <translation>Ansehen</translation>
-    </message>
-    <message>
         <source>Look &amp;from</source>
         <translation>&amp;Blickrichtung</translation>
     </message>
@@ -2917,7 +2909,7 @@
     </message>
     <message>
         <source>Lowest and highest value, with a comma between them</source>
-        <translation>Kleinster und größter Wert, mit einem Komma dazwischen</translation>
+        <translation>Kleinster und größter Wert, mit Semikolon dazwischen</translation>
     </message>
     <message>
         <source>Lunar soil (published ratios and sizes)</source>
@@ -3121,7 +3113,7 @@
     </message>
     <message>
         <source>Mindlin with history and Coulomb friction, one coefficient (the static one)</source>
-        <translation>Mindlin mit Gedächtnis und Coulomb-Reibung, ein Beiwert (der der Haftreibung)</translation>
+        <translation>Mindlin mit Kontaktgeschichte und Coulomb-Reibung, ein Beiwert (der der Haftreibung)</translation>
     </message>
     <message>
         <source>Minimum diameter</source>
@@ -3240,7 +3232,11 @@
         <translation>Namen der Vorlagen: {names}</translation>
     </message>
     <message>
-        <source>Names of the parts, the most numerous first</source>
+        <source>Names of the components, separated by commas, the most numerous first.</source>
+        <translation>Namen der Komponenten, durch Kommas getrennt, die häufigste zuerst.</translation>
+    </message>
+    <message>
+        <source>Names of the components, the most numerous first</source>
         <translation>Namen der Komponenten, die häufigste zuerst</translation>
     </message>
     <message>
@@ -3318,6 +3314,10 @@
     <message>
         <source>No open particle comes from a file: open some, or choose a recipe file.</source>
         <translation>Kein geöffnetes Partikel stammt aus einer Datei: öffnen Sie welche oder wählen Sie eine Rezeptdatei.</translation>
+    </message>
+    <message>
+        <source>No particle is open to report on: open one first.</source>
+        <translation>Es ist kein Partikel für einen Bericht geöffnet: öffnen Sie zuerst eines.</translation>
     </message>
     <message>
         <source>No particle is open: open some, or choose a material.</source>
@@ -3428,6 +3428,10 @@
         <translation>Anzahl</translation>
     </message>
     <message>
+        <source>Number of components</source>
+        <translation>Anzahl der Komponenten</translation>
+    </message>
+    <message>
         <source>Number of facets</source>
         <translation>Anzahl der Facetten</translation>
     </message>
@@ -3452,12 +3456,12 @@
         <translation>Anzahl der Partikel in Bild 7.</translation>
     </message>
     <message>
-        <source>Number of particles, taken at random, that Figs. 3 and 8 are made from.</source>
-        <translation>Anzahl der zufällig gewählten Partikel, aus denen Bild 3 und 8 entstehen.</translation>
+        <source>Number of particles with a similar hull ratio whose surfaces may be used.</source>
+        <translation>Anzahl der Partikel mit ähnlichem Hüllenverhältnis, deren Oberflächen verwendet werden können.</translation>
     </message>
     <message>
-        <source>Number of parts</source>
-        <translation>Anzahl der Bestandteile</translation>
+        <source>Number of particles, taken at random, that Figs. 3 and 8 are made from.</source>
+        <translation>Anzahl der zufällig gewählten Partikel, aus denen Bild 3 und 8 entstehen.</translation>
     </message>
     <message>
         <source>Number of processes</source>
@@ -3912,14 +3916,6 @@
         <translation>Gezeigte Partikel</translation>
     </message>
     <message>
-        <source>Particles that may lend their surface.</source>
-        <translation>Partikel, die ihre Oberfläche leihen können.</translation>
-    </message>
-    <message>
-        <source>Parts</source>
-        <translation>Komponenten</translation>
-    </message>
-    <message>
         <source>Parts overlap or touch</source>
         <translation>Teile überlappen oder berühren sich</translation>
     </message>
@@ -3968,6 +3964,10 @@
         <translation>Querkontraktionszahl</translation>
     </message>
     <message>
+        <source>Polyhedra</source>
+        <translation>Polyeder</translation>
+    </message>
+    <message>
         <source>Polyhedra (STL)</source>
         <translation>Polyeder (STL)</translation>
     </message>
@@ -4006,6 +4006,10 @@
     <message>
         <source>Positive by construction; size and spectrum are modelled separately, so that it extrapolates.</source>
         <translation>Stets positiv; Größe und Spektrum werden getrennt modelliert, sodass es extrapoliert.</translation>
+    </message>
+    <message>
+        <source>Posterior over prior density</source>
+        <translation>A-posteriori- durch A-priori-Dichte</translation>
     </message>
     <message>
         <source>Predicting</source>
@@ -4992,12 +4996,12 @@
         <translation>Größe</translation>
     </message>
     <message>
-        <source>Size jitter</source>
-        <translation>Größenstreuung</translation>
+        <source>Size distribution</source>
+        <translation>Größenverteilung</translation>
     </message>
     <message>
-        <source>Size of each</source>
-        <translation>Größe je Polyeder</translation>
+        <source>Size jitter</source>
+        <translation>Größenstreuung</translation>
     </message>
     <message>
         <source>Size of letters</source>
@@ -5484,20 +5488,16 @@
         <translation>Der Datensatz ist in {folder}.</translation>
     </message>
     <message>
-        <source>The dataset is not sound: {problem}</source>
-        <translation>Der Datensatz ist fehlerhaft: {problem}</translation>
+        <source>The dataset is not valid: {problem}</source>
+        <translation>Der Datensatz ist ungültig: {problem}</translation>
     </message>
     <message>
-        <source>The dataset is sound.</source>
-        <translation>Der Datensatz ist fehlerfrei.</translation>
+        <source>The dataset is valid.</source>
+        <translation>Der Datensatz ist gültig.</translation>
     </message>
     <message>
         <source>The dataset&apos;s polyhedra</source>
         <translation>Polyeder des Datensatzes</translation>
-    </message>
-    <message>
-        <source>The density narrows with each run.</source>
-        <translation>Mit jedem Lauf wird die Dichte schmaler.</translation>
     </message>
     <message>
         <source>The energy rose by {gain} m g d per particle without external work.</source>
@@ -5720,6 +5720,10 @@
         <translation>Das Polyeder ist noch nicht fertig.</translation>
     </message>
     <message>
+        <source>The probability density of the parameter appears after the first run.</source>
+        <translation>Die Wahrscheinlichkeitsdichte des Parameters erscheint nach dem ersten Lauf.</translation>
+    </message>
+    <message>
         <source>The proposal, T(k) and the decision with their numbers</source>
         <translation>Der Vorschlag, T(k) und die Entscheidung mit ihren Zahlen</translation>
     </message>
@@ -5890,10 +5894,6 @@
     <message>
         <source>There is nothing to export: open a particle first.</source>
         <translation>Es gibt nichts zu exportieren: öffnen Sie zuerst ein Partikel.</translation>
-    </message>
-    <message>
-        <source>There is nothing to report on: open a particle first.</source>
-        <translation>Es gibt nichts zu berichten: zuerst ein Partikel öffnen.</translation>
     </message>
     <message>
         <source>They are cut by the border. The others then have larger weights (Miles-Lantuéjoul).</source>
@@ -6108,8 +6108,8 @@
         <translation>V der Hülle</translation>
     </message>
     <message>
-        <source>V/CH: Kolmogorov-Smirnov distance in floors</source>
-        <translation>V/CH: Kolmogorow-Smirnow-Distanz in Einheiten des Rauschens</translation>
+        <source>V/CH: Kolmogorov-Smirnov distance over the sampling noise</source>
+        <translation>V/CH: Kolmogorow-Smirnow-Distanz, geteilt durch das Stichprobenrauschen</translation>
     </message>
     <message>
         <source>Value</source>
@@ -6305,7 +6305,7 @@
     </message>
     <message>
         <source>Write the range as its lowest and highest value, with a comma between them.</source>
-        <translation>Den Bereich als kleinsten und größten Wert mit einem Komma dazwischen schreiben.</translation>
+        <translation>Geben Sie den Bereich als kleinsten und größten Wert mit Semikolon dazwischen an.</translation>
     </message>
     <message>
         <source>Write the volume of labels and a table of them for other programs</source>
@@ -6476,16 +6476,12 @@
         <translation>wie gescannt</translation>
     </message>
     <message>
-        <source>as the folder</source>
-        <translation>wie der Ordner</translation>
-    </message>
-    <message>
         <source>aspect ratio</source>
         <translation>Seitenverhältnis</translation>
     </message>
     <message>
-        <source>aspect ratio, times nearer than the Gaussian field</source>
-        <translation>Seitenverhältnis, wievielmal näher als das Gaußfeld</translation>
+        <source>aspect ratio: distance of the Gaussian field over that of the model</source>
+        <translation>Seitenverhältnis: Distanz des Gaußfelds, geteilt durch die des Modells</translation>
     </message>
     <message>
         <source>at least {limit}</source>
@@ -6593,7 +6589,7 @@
     </message>
     <message>
         <source>coarse graining, lifting cylinder</source>
-        <translation>Vergröberung, Hubzylinder</translation>
+        <translation>Coarse-Graining, Hubzylinder</translation>
     </message>
     <message>
         <source>coefficients</source>
@@ -6604,8 +6600,8 @@
         <translation>Säule steht</translation>
     </message>
     <message>
-        <source>compared at {count} facets each, not at an error</source>
-        <translation>verglichen bei je {count} Facetten, nicht bei einem Fehler</translation>
+        <source>compared at {count} facets each</source>
+        <translation>verglichen bei je {count} Facetten</translation>
     </message>
     <message>
         <source>computed with other choices</source>
@@ -6630,6 +6626,10 @@
     <message>
         <source>convex hull volume</source>
         <translation>Volumen der konvexen Hülle</translation>
+    </message>
+    <message>
+        <source>correct for border grains</source>
+        <translation>Randkörner ausgleichen</translation>
     </message>
     <message>
         <source>count</source>
@@ -6716,8 +6716,8 @@
         <translation>Kanten von mehr als zwei Flächen</translation>
     </message>
     <message>
-        <source>edges, corners and flat faces; friction of rest apart from friction of motion</source>
-        <translation>Kanten, Ecken und ebene Flächen; Haftreibung getrennt von Gleitreibung</translation>
+        <source>edges, corners and flat faces; different static and dynamic friction</source>
+        <translation>Kanten, Ecken und ebene Flächen; verschiedene Haft- und Gleitreibung</translation>
     </message>
     <message>
         <source>elastic constants</source>
@@ -6885,7 +6885,7 @@
     </message>
     <message>
         <source>inside the heap {density:.2f} g/cm³, {contacts:.1f} contacts a particle</source>
-        <translation>im Haufen {density:.2f} g/cm³, {contacts:.1f} Kontakte je Partikel</translation>
+        <translation>in der Schüttung {density:.2f} g/cm³, {contacts:.1f} Kontakte je Partikel</translation>
     </message>
     <message>
         <source>intersecting faces</source>
@@ -7056,12 +7056,16 @@
         <translation>Modell</translation>
     </message>
     <message>
-        <source>moments of inertia are those of added-up spheres</source>
-        <translation>Trägheitsmomente sind die der zusammengezählten Kugeln</translation>
+        <source>moments of inertia are sums over the spheres</source>
+        <translation>Trägheitsmomente sind Summen über die Kugeln</translation>
     </message>
     <message>
         <source>n facets in general position have 2n−4 vertices and 4n−12 triangles.</source>
         <translation>n Facetten in allgemeiner Lage haben 2n−4 Ecken und 4n−12 Dreiecke.</translation>
+    </message>
+    <message>
+        <source>name of the folder</source>
+        <translation>Name des Ordners</translation>
     </message>
     <message>
         <source>nearly an ellipsoid</source>
@@ -7104,8 +7108,8 @@
         <translation>keines davon</translation>
     </message>
     <message>
-        <source>none: refused</source>
-        <translation>keine: abgelehnt</translation>
+        <source>none: compounds are refused</source>
+        <translation>keine: Verbünde werden abgelehnt</translation>
     </message>
     <message>
         <source>not below {bound:.3g} {unit} (line)</source>
@@ -7157,7 +7161,7 @@
     </message>
     <message>
         <source>part {part}, facet {number} of {count}: {area:,.4g} µm² exposed ({share:.1%}), normal ({x:.2f}, {y:.2f}, {z:.2f}), {offset:.4g} µm from the centre</source>
-        <translation>Teil {part}, Facette {number} von {count}: {area:,.4g} µm² frei liegend ({share:.1%}), Normale ({x:.2f}, {y:.2f}, {z:.2f}), {offset:.4g} µm vom Mittelpunkt</translation>
+        <translation>Teil {part}, Facette {number} von {count}: {area:,.4g} µm² frei liegend ({share:.1%}), Normale ({x:.2f}; {y:.2f}; {z:.2f}), {offset:.4g} µm von der Mitte</translation>
     </message>
     <message>
         <source>parts left out</source>
@@ -7202,6 +7206,10 @@
     <message>
         <source>proposed</source>
         <translation>vorgeschlagen</translation>
+    </message>
+    <message>
+        <source>provenance of the particles (in dataset.json)</source>
+        <translation>Herkunft der Partikel (steht in dataset.json)</translation>
     </message>
     <message>
         <source>pull-off force 3/2 π w R*, shared by the contact points; little effect on a heap: use LAMMPS</source>
@@ -7308,7 +7316,7 @@
         <translation>zweiter Deskriptor</translation>
     </message>
     <message>
-        <source>see tip</source>
+        <source>see tool tip</source>
         <translation>siehe Hinweis</translation>
     </message>
     <message>
@@ -7544,16 +7552,12 @@
         <translation>wahre Trägheitsmomente (fit.csv)</translation>
     </message>
     <message>
-        <source>undo the loss at the border</source>
-        <translation>Verlust am Rand ausgleichen</translation>
-    </message>
-    <message>
         <source>unilateral constraint with restitution; penetration is reported, stiffness is not used</source>
         <translation>einseitige Zwangsbedingung mit Stoßzahl; Eindringung wird gemeldet, die Steifigkeit nicht verwendet</translation>
     </message>
     <message>
-        <source>unilateral constraint, no bounce; penetration is reported, stiffness is not used</source>
-        <translation>einseitige Zwangsbedingung, kein Rückprall; Eindringung wird gemeldet, die Steifigkeit nicht verwendet</translation>
+        <source>unilateral constraint without restitution; penetration is reported, stiffness is not used</source>
+        <translation>einseitige Zwangsbedingung ohne Stoßzahl; Eindringung wird gemeldet, die Steifigkeit nicht verwendet</translation>
     </message>
     <message>
         <source>unknown</source>
@@ -7593,7 +7597,7 @@
     </message>
     <message>
         <source>wanted</source>
-        <translation>verlangt</translation>
+        <translation>gewünscht</translation>
     </message>
     <message>
         <source>wasserstein</source>
@@ -7642,10 +7646,6 @@
     <message>
         <source>weights, size distribution, descriptors, provenance (JSON)</source>
         <translation>Gewichte, Größenverteilung, Deskriptoren, Herkunft (JSON)</translation>
-    </message>
-    <message>
-        <source>where the particles come from (dataset.json has it)</source>
-        <translation>woher die Partikel kommen (steht in dataset.json)</translation>
     </message>
     <message>
         <source>without noise</source>
@@ -7764,12 +7764,12 @@
         <translation>{count} Verluste</translation>
     </message>
     <message>
-        <source>{count} measured particles with degrees up to {degree}, {left} left out; fitted to one half, judged on the other; {splits} {split}, {draws} draws once from each fit, seed {seed}.</source>
-        <translation>{count} gemessene Partikel mit Graden bis {degree}, {left} ausgelassen; angepasst an eine Hälfte, beurteilt an der anderen; {splits} {split}, je Anpassung einmal {draws} gezogen, Startwert {seed}.</translation>
+        <source>{count} measured particles with degrees up to {degree}, {left} left out; fitted to one half, evaluated on the other; {splits} {split}, {draws} draws once from each fit, seed {seed}.</source>
+        <translation>{count} gemessene Partikel mit Graden bis {degree}, {left} ausgelassen; angepasst an eine Hälfte, ausgewertet an der anderen; {splits} {split}, je Anpassung einmal {draws} gezogen, Startwert {seed}.</translation>
     </message>
     <message>
-        <source>{count} measured particles with degrees up to {degree}, {left} left out; fitted to one half, judged on the other; {splits} {split}, {draws} draws {repeats} times from each fit, seed {seed}.</source>
-        <translation>{count} gemessene Partikel mit Graden bis {degree}, {left} ausgelassen; angepasst an eine Hälfte, beurteilt an der anderen; {splits} {split}, je Anpassung {repeats} Mal {draws} gezogen, Startwert {seed}.</translation>
+        <source>{count} measured particles with degrees up to {degree}, {left} left out; fitted to one half, evaluated on the other; {splits} {split}, {draws} draws {repeats} times from each fit, seed {seed}.</source>
+        <translation>{count} gemessene Partikel mit Graden bis {degree}, {left} ausgelassen; angepasst an eine Hälfte, ausgewertet an der anderen; {splits} {split}, je Anpassung {repeats} Mal {draws} gezogen, Startwert {seed}.</translation>
     </message>
     <message>
         <source>{count} of the open particles come from no file and cannot be part of a batch.</source>
@@ -7785,7 +7785,7 @@
     </message>
     <message>
         <source>{count} of {total} runs formed no pile with an angle.</source>
-        <translation>{count} von {total} Läufen ergaben keinen Haufen mit einem Winkel.</translation>
+        <translation>{count} von {total} Läufen ergaben keinen Schüttkegel mit einem Winkel.</translation>
     </message>
     <message>
         <source>{count} pairs of faces cross each other.</source>
@@ -8129,7 +8129,7 @@
     </message>
     <message>
         <source>{unmet} of {total} requests not met exactly</source>
-        <translation>{unmet} von {total} Wünschen nicht genau erfüllt</translation>
+        <translation>{unmet} von {total} Anforderungen nicht genau erfüllt</translation>
     </message>
     <message>
         <source>{value:+.3g} percentage points ({low:+.3g} to {high:+.3g})</source>

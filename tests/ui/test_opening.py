@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from PySide6.QtCore import QTimer
-from PySide6.QtWidgets import QApplication, QDialog, QWidget
+from PySide6.QtWidgets import QApplication, QDialog, QDialogButtonBox, QWidget
 
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
@@ -31,6 +31,31 @@ def test_that_the_unit_that_makes_a_grain_is_suggested_with_its_size(shown, leng
     assert dialog.value() == unit
     size = {"m": "50.0", "mm": "120", "um": "80.0"}[unit]
     assert dialog.size_note.text().startswith(f"apollo_sample1 would be {size}")
+
+
+@pytest.mark.parametrize("kind", ["folder without meshes", "mesh cut short"])
+def test_that_the_unit_dialog_says_what_cannot_be_opened(opening, monkeypatch, tmp_path, kind):
+    commands, *_ = opening
+    path = tmp_path / "broken.stl"
+    path.write_bytes(stl_bytes(icosphere(1).triangles, "ball")[:500])
+    said = {"folder without meshes": "holds no mesh file", "mesh cut short": "is cut short"}[kind]
+    if kind == "folder without meshes":
+        path = tmp_path / "empty"
+        path.mkdir()
+    seen = []
+
+    def look(dialog):
+        buttons = dialog.findChild(QDialogButtonBox)
+        seen.append(
+            (dialog.size_note.text(), buttons.button(QDialogButtonBox.StandardButton.Open).isEnabled())
+        )
+        return QDialog.DialogCode.Rejected
+
+    monkeypatch.setattr(UnitDialog, "exec", look)
+    commands.open_paths([path])
+    ((sentence, can_open),) = seen
+    assert said in sentence
+    assert not can_open
 
 
 def test_that_every_page_has_a_chapter_of_the_guide_without_directives():

@@ -68,7 +68,7 @@ class UnitDialog(QDialog):
         form = QFormLayout()
         form.addRow(tr("Unit"), self.unit)
         form.addRow(self._voxel_label, self.voxel)
-        buttons = QDialogButtonBox(
+        buttons = self._buttons = QDialogButtonBox(
             QDialogButtonBox.StandardButton.Open | QDialogButtonBox.StandardButton.Cancel, parent=self
         )
         buttons.accepted.connect(self.accept)
@@ -98,14 +98,18 @@ class UnitDialog(QDialog):
             self.voxel.setValue(float(size))
         self._show_voxel()
 
-    def set_first(self, first: tuple[str, float] | None) -> None:
+    def set_first(self, first: tuple[str, float] | str | None) -> None:
         """Show how large a particle would be; suggest the unit that makes it a grain.
 
         Parameters
         ----------
         first
-            Name of the first particle, and its longest side as the file gives it.
+            Name of the first particle, and its longest side as the file gives it; or why there is none.
         """
+        if isinstance(first, str):
+            self.size_note.setText(first)
+            self._buttons.button(QDialogButtonBox.StandardButton.Open).setEnabled(False)
+            return
         self._first = first
         if first is not None and not self._touched and not _is_plausible(first[1], self.value()):
             plausible = [unit for unit in UNITS if unit != "voxel" and _is_plausible(first[1], unit)]

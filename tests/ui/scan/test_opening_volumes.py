@@ -7,6 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 import tifffile
+from PySide6.QtCore import QMimeData, QPoint, Qt, QUrl
+from PySide6.QtGui import QDragEnterEvent
 from PySide6.QtWidgets import QDialogButtonBox, QWidget
 
 from regolith_studio.imaging import slice_images
@@ -247,3 +249,13 @@ def test_that_the_second_sample_scan_is_in_the_menu_and_recipes_know_it_by_name(
     assert page.scan.volume.shape == (128, 128, 128)
     assert page.scan.volume.kind == "grey"
     assert entry_of(page.opening.given, GrainSettings()).file == "sample:gradient"
+
+
+@pytest.mark.parametrize(("count", "taken"), [(1, True), (2, False)])
+def test_that_several_dropped_files_are_left_to_the_window(page, tmp_path, count, taken):
+    data = QMimeData()
+    data.setUrls([QUrl.fromLocalFile(str(tmp_path / f"{number}.tif")) for number in range(count)])
+    copy, left, none = Qt.DropAction.CopyAction, Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier
+    event = QDragEnterEvent(QPoint(5, 5), copy, data, left, none)
+    page.dragEnterEvent(event)
+    assert event.isAccepted() is taken

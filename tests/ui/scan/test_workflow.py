@@ -27,6 +27,8 @@ def test_that_a_new_user_gets_from_the_sample_scan_to_particles(page, wait):
     assert not page.workflow.search.isEnabled()
     assert not page.workflow.convert.isEnabled()
     press(page.workflow.sample)
+    wait(lambda: page.scan is not None, SECONDS)
+    assert page.workflow.found.text() == "Searching …"  # not that there are none
     wait(lambda: page.preview.found is not None, SECONDS)
     assert "144 × 144 × 144 voxels of 2.3 µm" in page.workflow.volume.text()
     assert "grains from" in page.workflow.found.text()
@@ -182,7 +184,7 @@ def test_that_dark_grains_are_suspected_where_one_body_fills_the_frame(page, tmp
     np.save(tmp_path / "dark.npy", 255 - np.ascontiguousarray(sample_volume("grey").array[:90, :80, :70].T))
     page.opening.read(VolumeInput(tmp_path / "dark.npy", 2.3, kind="grey"))
     wait(lambda: page.preview.found is not None, SECONDS)
-    assert "Tick Grains are dark if they are" in page.workflow.found.text()
+    assert "Tick “Grains are dark” if they are darker" in page.workflow.found.text()
     page.controls.dark.click()
     wait(lambda: "dark" not in page.workflow.found.text(), SECONDS)
     assert page.preview.found.n_grains > 10

@@ -217,7 +217,7 @@ class ScanPage(PageWidget):
 
     def _show_state(self) -> None:
         least = self.controls.value().extraction.min_voxels
-        self.workflow.show_state(self.scan, self.preview.found, self.grains, least)
+        self.workflow.show_state(self.scan, self.preview.found, self.grains, least, self.preview.pending)
         if self.opening.first is not None:
             self.workflow.show_first(self.opening.first)
 
@@ -344,8 +344,11 @@ class ScanPage(PageWidget):
         return None
 
     def dragEnterEvent(self, event: QDragEnterEvent) -> None:
-        if event.mimeData().hasUrls():
+        """Take one file or folder; several go on to the window, which opens meshes or says what it cannot."""
+        if len(event.mimeData().urls()) == 1:
             event.acceptProposedAction()
+        else:
+            event.ignore()
 
     def dropEvent(self, event: QDropEvent) -> None:
         files = [Path(url.toLocalFile()) for url in event.mimeData().urls() if url.isLocalFile()]

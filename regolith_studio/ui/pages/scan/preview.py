@@ -4,7 +4,7 @@ from PySide6.QtCore import QObject, QTimer, Signal
 
 from regolith_studio.imaging.bounding_boxes import Box
 from regolith_studio.imaging.segmentation.segment import Segmentation, SegmentationSettings
-from regolith_studio.jobs.events import Job
+from regolith_studio.jobs.events import Failed, Job
 from regolith_studio.jobs.scan_jobs import Scan, preview_heights, preview_part
 from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.pages.scan.controls import SegmentationControls
@@ -16,7 +16,10 @@ DELAY = 120
 
 
 class FramePreview(QObject):
-    """Segments the frame of the slices; `found` holds its grains, ``None`` where there are none."""
+    """Segments the frame of the slices.
+
+    `found` holds its grains, ``None`` where there are none; `pending` says that others are being looked for.
+    """
 
     changed = Signal()
 
@@ -29,11 +32,13 @@ class FramePreview(QObject):
         self._timer = QTimer(self, interval=DELAY, singleShot=True)
         self._timer.timeout.connect(self._start)
         self.found: Segmentation | None = None
+        self.pending = False
 
     def schedule(self, scan: Scan | None) -> None:
         """Segment the frame soon, if the scan has grey values."""
         if scan is not None and scan.volume.kind == "grey":
             self._scan = scan
+            self.pending = True
             self._controls.show_heights(())
             self._timer.start()
 
@@ -41,6 +46,7 @@ class FramePreview(QObject):
         """Stop what was scheduled or has begun."""
         self._timer.stop()
         self._stop_jobs()
+        self.pending = False
 
     def forget(self) -> None:
         """Stop, and forget the grains."""
@@ -58,11 +64,24 @@ class FramePreview(QObject):
         job = Job(preview_part, (scan.volume, box, settings, scan.level(settings)))
         self._stop_jobs()
         self._context.start(
-            tr("Preview"), job, lambda found: self._take(found, scan, settings, box), lane="preview"
+            tr("Preview"),
+            job,
+            lambda found: self._take(found, scan, settings, box),
+            failed=self._fail,
+            stopped=self._end,
+            lane="preview",
         )
 
+    def _end(self) -> None:
+        self.pending = False
+        self.changed.emit()
+
+    def _fail(self, failure: Failed) -> None:
+        self._end()
+        self._context.toast.problem(failure.sentence, failure.details)
+
     def _take(self, found: Segmentation | None, scan: Scan, settings: SegmentationSettings, box: Box) -> None:
-        self.found = found
+        self.found, self.pending = found, False
         self._slices.show_preview(found, box)
         self.changed.emit()
         if found is not None and settings.splitting.enabled:

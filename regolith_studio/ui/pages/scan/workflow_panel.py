@@ -73,9 +73,17 @@ class WorkflowPanel(QWidget):
         self.show_them.clicked.connect(self.showRequested)
 
     def show_state(
-        self, scan: Scan | None, preview: Segmentation | None, grains: Segmentation | None, least: int
+        self,
+        scan: Scan | None,
+        preview: Segmentation | None,
+        grains: Segmentation | None,
+        least: int,
+        searching: bool = False,
     ) -> None:
-        """Describe the volume and the grains, and how many have fewer than `least` voxels."""
+        """Describe the volume and the grains, and how many have fewer than `least` voxels.
+
+        `searching` says that a preview is being computed.
+        """
         is_grey = scan is not None and scan.volume.kind == "grey"
         self.search.setEnabled(is_grey)
         self.save.setEnabled(grains is not None)
@@ -97,6 +105,8 @@ class WorkflowPanel(QWidget):
                     tr("Click into a slice to move the frame."),
                 )
             )
+        elif searching:
+            self.found.setText(tr("Searching …"))
         else:
             self.found.setText(
                 tr("No grain in the frame so far. Move the level, or click into a slice to move the frame.")
@@ -139,8 +149,8 @@ def _too_large(found: Segmentation) -> str:
     if found.sizes.sum() < _DENSEST * voxels and found.sizes.max() < _LARGEST * voxels:
         return ""
     return tr(
-        "Grains fill most of the frame and are connected. Tick Grains are dark if they are; "
-        "otherwise change the level or reduce h."
+        "Grains fill most of the frame and are connected. Tick “Grains are dark” if they are darker than "
+        "what is between them; otherwise change the level or reduce h."
     )
 
 
