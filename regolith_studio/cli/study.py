@@ -273,7 +273,7 @@ def population(
     descriptors: DescriptorKeys = "",
     run: RunOptions,
 ) -> None:
-    """Drawn against measured particles: models fitted to one half, judged on the other (Figs. 4-6)."""
+    """Drawn against measured particles: models fitted to one half, evaluated on the other (Figs. 4-6)."""
     from regolith_studio.descriptors.catalogue import CATALOGUE
     from regolith_studio.errors import InputError
     from regolith_studio.jobs.model_jobs import GenerationRequest

@@ -185,7 +185,9 @@ def require_solid(mesh: Mesh) -> Mesh:
     if len(mesh.faces) < 4:
         raise GeometryError(f"A particle needs at least four triangles, this mesh has {len(mesh.faces)}.")
     if not is_closed(mesh):
-        raise GeometryError("The mesh is open or its triangles are not wound alike: repair it first.")
+        raise GeometryError(
+            "The mesh is open or its triangles are not oriented consistently: repair it first."
+        )
     size = float(np.ptp(mesh.bounds, axis=0).max())
     if not mesh.volume > 1e-12 * size**3:
         state = "is inside out" if mesh.volume < -1e-12 * size**3 else "encloses no volume"

@@ -140,7 +140,7 @@ def measure_population(particles: Sequence[Particle], workers: int | Executor = 
         else:
             kept.append((at, one.descriptors))
     if not kept:
-        raise InputError("No particle can be described, so none can stand for the others.")
+        raise InputError("No particle can be described, so no representatives can be chosen.")
     return MeasuredPopulation(tuple(at for at, _ in kept), tuple(found for _, found in kept), tuple(omitted))
 
 

@@ -65,7 +65,7 @@ def kind_of_all(paths: Sequence[Path]) -> FileKind:
     if FileKind.UNKNOWN in kinds:
         lost = paths[kinds.index(FileKind.UNKNOWN)].name
         raise InputError(
-            f"{lost} is nothing that can be opened here: meshes, tables of coefficients, volumes, datasets, "
+            f"{lost} cannot be opened here: meshes, tables of coefficients, volumes, datasets, "
             "projects, recipes, fits and models can."
         )
     if len(set(kinds)) > 1:

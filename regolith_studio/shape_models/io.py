@@ -83,4 +83,4 @@ def model_from(document: Mapping[str, Any]) -> FittedModel:
         OverflowError,
         GeometryError,
     ) as error:
-        raise FileError("The numbers in it make no model of its kind; fit it again.") from error
+        raise FileError("Its values are impossible for a model of its kind; fit it again.") from error

@@ -132,7 +132,8 @@ class MaterialCard(BaseModel):
             )
         except ValidationError as error:
             raise InputError(
-                f"The sample makes no card: {format_validation_error(error.errors(include_url=False))}."
+                "No material card can be made of the sample: "
+                f"{format_validation_error(error.errors(include_url=False))}."
             ) from error
 
     def model(self, l_max: int | None = None) -> FittedModel:

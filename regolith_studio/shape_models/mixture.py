@@ -47,9 +47,9 @@ class MixtureSettings:
     n_components: int = field(
         default=0,
         metadata={
-            "label": N_("Parts"),
+            "label": N_("Components"),
             "maximum": 50,
-            "tip": N_("0 for the best number by Bayes' criterion."),
+            "tip": N_("0 for the number with the lowest Bayesian information criterion."),
         },
     )
     max_components: int = field(

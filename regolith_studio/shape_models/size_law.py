@@ -259,8 +259,8 @@ def size_law_from(values: Mapping[str, Any]) -> SizeLaw:
                 *(float(values[name]) for name in ("scale", "spread", "smallest", "largest"))
             )
     except (KeyError, TypeError, ValueError) as error:
-        raise InputError(f"The law of sizes is broken: {error}.") from error
-    raise InputError(f"There is no law of sizes called {values['type']!r}.")
+        raise InputError(f"The size distribution is invalid: {error}.") from error
+    raise InputError(f"There is no size distribution called {values['type']!r}.")
 
 
 def _modes(logs: FloatArray, k: int) -> tuple[LogNormalSizes, float]:

@@ -376,12 +376,12 @@ def _check_arguments(
     n_draws, n_splits, n_repeats = counts
     if len(sample) < MIN_PARTICLES:
         raise InputError(
-            f"Judging models needs at least {MIN_PARTICLES} particles, half to fit and half to compare with; "
-            f"this sample has {len(sample)}."
+            f"Evaluating models needs at least {MIN_PARTICLES} particles, half to fit and half to compare "
+            f"with; this sample has {len(sample)}."
         )
     if n_draws < MIN_PARTICLES or n_splits < 1 or n_repeats < 1:
         raise InputError(
-            f"Judging models needs at least {MIN_PARTICLES} draws, one split and one drawing, got "
+            f"Evaluating models needs at least {MIN_PARTICLES} draws, one split and one drawing, got "
             f"{n_draws}, {n_splits} and {n_repeats}."
         )
 

@@ -127,14 +127,19 @@ def _targets(study: PopulationStudy, model: ModelEvaluation) -> Iterator[tuple[s
     if paper is not None and paper is not model and "aspect_ratio" in study.keys:
         column = study.keys.index("aspect_ratio")
         gain = paper.distances.wasserstein.mean(axis=0)[0, column] / far[0, column]
-        yield N_("aspect ratio, times nearer than the Gaussian field"), gain, AT_LEAST, LEAST_GAIN
+        yield (
+            N_("aspect ratio: distance of the Gaussian field over that of the model"),
+            gain,
+            AT_LEAST,
+            LEAST_GAIN,
+        )
     if columns := [study.keys.index(key) for key in AT_NOISE if key in study.keys]:
         worst = (far / np.percentile(noise, 95, axis=0))[:, columns].max()
         yield N_("r_eq, A, AR, S: the worst, over the 95th percentile of noise"), worst, AT_MOST, 1.0
     if "convexity" in study.keys:
         column = study.keys.index("convexity")
         gap = model.distances.kolmogorov[:, 0, column].mean() / study.floor.kolmogorov[:, 0, column].mean()
-        yield N_("V/CH: Kolmogorov-Smirnov distance in floors"), gap, AT_MOST, MOST_FLOORS
+        yield N_("V/CH: Kolmogorov-Smirnov distance over the sampling noise"), gap, AT_MOST, MOST_FLOORS
     if pairs := [i for i, pair in enumerate(study.pairs) if set(pair) <= set(PAPERS_PAIRS)]:
         worst = 100 * model.distances.energy.mean(axis=0)[pairs].max()
         yield N_("pairs of r_eq, A, AR: the largest energy distance [%]"), worst, AT_MOST, MOST_ENERGY
@@ -145,12 +150,12 @@ def _targets(study: PopulationStudy, model: ModelEvaluation) -> Iterator[tuple[s
 def _notes(study: PopulationStudy) -> tuple[str, ...]:
     splits = len(study.models[0].novelty) if study.models else 0
     once = N_(
-        "{count} measured particles with degrees up to {degree}, {left} left out; fitted to one half, judged"
-        " on the other; {splits} {split}, {draws} draws once from each fit, seed {seed}."
+        "{count} measured particles with degrees up to {degree}, {left} left out; fitted to one half, "
+        "evaluated on the other; {splits} {split}, {draws} draws once from each fit, seed {seed}."
     )
     often = N_(
-        "{count} measured particles with degrees up to {degree}, {left} left out; fitted to one half, judged"
-        " on the other; {splits} {split}, {draws} draws {repeats} times from each fit, seed {seed}."
+        "{count} measured particles with degrees up to {degree}, {left} left out; fitted to one half, "
+        "evaluated on the other; {splits} {split}, {draws} draws {repeats} times from each fit, seed {seed}."
     )
     return (
         Message(

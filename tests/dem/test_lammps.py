@@ -153,11 +153,11 @@ def test_that_what_lammps_writes_is_read_and_losses_are_noticed(tmp_path) -> Non
     [
         (
             "Step 1\nERROR on proc 0: Rigid body atoms 410 110 missing on proc 0 at step 42807 (f.cpp:3418)",
-            r"^The particles flew apart; take a smaller step than 0\.15 .*: LAMMPS said: ERROR .* missing on",
+            r"^The particles flew apart; take a smaller step than 0\.15 .*: LAMMPS reports: ERROR .* missing",
         ),
         ("ERROR: Lost atoms: original 99 current 98 (src/thermo.cpp:494)", "flew apart; take a smaller step"),
-        ("ERROR: Unknown fix style (src/modify.cpp:9)", "^LAMMPS ended before its time: ERROR: Unknown fix"),
-        ("", "^LAMMPS ended before its time: it said nothing$"),
+        ("ERROR: Unknown fix style (src/modify.cpp:9)", "^LAMMPS ended early: ERROR: Unknown fix"),
+        ("", "^LAMMPS ended early: it said nothing$"),
     ],
 )
 def test_that_the_message_says_what_to_do_when_lammps_loses_its_particles(output, expected) -> None:

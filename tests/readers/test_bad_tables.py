@@ -223,10 +223,10 @@ SHORT = "is cut short"
 
 
 def vtps() -> Iterator[Bad]:
-    yield from strangers(".vtp", "its XML does not hold together|defines entities")
+    yield from strangers(".vtp", "its XML is malformed|defines entities")
     good = vtp(array("0 0 0 1 1 1"))
     for share in (10, 30, 50, 70, 90, 98):
-        yield f"cut-{share}.vtp", good[: len(good) * share // 100], "its XML does not hold together"
+        yield f"cut-{share}.vtp", good[: len(good) * share // 100], "its XML is malformed"
     for kind in ("ImageData", "RectilinearGrid", "Table"):
         yield f"kind-{kind}.vtp", vtp(array("0 0 0"), kind=kind), "neither poly data nor an unstructured grid"
     for number, kind in enumerate(("", "Float16", "String", "float")):

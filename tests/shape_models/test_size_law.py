@@ -77,7 +77,7 @@ def test_that_a_law_read_back_draws_the_same(key: str) -> None:
     [{}, {"type": "cauchy"}, {"type": "rosin_rammler"}, {"type": "log_normal_mixture", "weights": [1.0]}],
 )
 def test_that_a_broken_law_is_refused(values: dict[str, object]) -> None:
-    with pytest.raises(InputError, match="law of sizes"):
+    with pytest.raises(InputError, match="size distribution"):
         size_law_from(values)
 
 

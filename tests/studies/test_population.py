@@ -188,7 +188,7 @@ def test_that_targets_compare_with_the_papers_model_and_the_noise(
     assert (thrown[4] == "yes") == (model.rejected.sum() == 0)
     column = study.keys.index("convexity")
     ratio = model.distances.kolmogorov[:, 0, column].mean() / study.floor.kolmogorov[:, 0, column].mean()
-    found = rows["V/CH: Kolmogorov-Smirnov distance in floors"]
+    found = rows["V/CH: Kolmogorov-Smirnov distance over the sampling noise"]
     assert found[2] == pytest.approx(ratio)
     assert (found[3], found[4]) == ("at most 2", "yes" if ratio <= 2 else "no")
 

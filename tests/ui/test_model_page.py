@@ -272,7 +272,7 @@ def test_that_what_cannot_be_done_is_said(page):
         "There are no drawn particles yet",
         "Models are evaluated on measured particles",
         "There is no model to save",
-        "A card is made of a fitted sample",
+        "A material card needs a model of a sample",
     ]
 
 

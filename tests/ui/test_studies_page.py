@@ -98,7 +98,7 @@ def test_that_studies_say_how_many_facets_they_take_where_polyhedra_stop_at_an_e
     assert page.bar.remark.text() == ""
     window.session.choose(stop_at="error")
     settled(window)
-    assert page.bar.remark.text() == "compared at 24 facets each, not at an error"
+    assert page.bar.remark.text() == "compared at 24 facets each"
     window.session.choose(stop_at="facets")
     settled(window)
     assert page.bar.remark.text() == ""

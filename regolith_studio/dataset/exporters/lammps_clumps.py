@@ -136,7 +136,7 @@ EXPORTER = Exporter(
     loses=(
         N_("weights and size distributions: only a sample is drawn (sizes.csv has them)"),
         N_("flat facets and edges"),
-        N_("JKR, true stiffness: the modulus is soft"),
+        N_("JKR, true stiffness: the modulus is reduced"),
     ),
     load_command="cd {shell} && lmp -in in.particles -var steps 1000",
     files=_files,

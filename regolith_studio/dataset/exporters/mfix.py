@@ -144,7 +144,7 @@ EXPORTER = Exporter(
     loses=(
         N_("weights and size distributions: only a sample is drawn (sizes.csv has them)"),
         N_("flat facets and edges"),
-        N_("moments of inertia are those of added-up spheres"),
+        N_("moments of inertia are sums over the spheres"),
         N_("elastic constants"),
     ),
     load_command="cp {shell}/gsp_config.csv {shell}/particle_input.csv PROJECT",

@@ -97,7 +97,7 @@ EXPORTER = Exporter(
     loses=(
         N_("flat facets and edges"),
         N_("mass, unless each compound gets the density that the README states"),
-        N_("moments of inertia are those of added-up spheres"),
+        N_("moments of inertia are sums over the spheres"),
         N_("weights and size distributions (sizes.csv has them)"),
         N_("contact parameters"),
     ),

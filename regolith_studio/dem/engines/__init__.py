@@ -52,7 +52,7 @@ def engine_rows() -> list[dict[str, Any]]:
                 "version": found.version,
                 "problem": found.problem,
                 **asdict(engine.capabilities),
-                "compounds": engine.capabilities.compounds or N_("none: refused"),
+                "compounds": engine.capabilities.compounds or N_("none: compounds are refused"),
             }
         )
     return rows

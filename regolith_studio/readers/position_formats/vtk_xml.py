@@ -37,7 +37,7 @@ def parse(data: bytes) -> ParsedPositions:
     try:
         root = ElementTree.fromstring(text)
     except ElementTree.ParseError:
-        raise FileError("is a broken VTK file: its XML does not hold together.") from None
+        raise FileError("is a broken VTK file: its XML is malformed.") from None
     if root.tag != "VTKFile" or root.get("type") not in ("PolyData", "UnstructuredGrid"):
         raise FileError("is not a VTK file of points: it is neither poly data nor an unstructured grid.")
     tail = (b"", b"") if appended is None else (appended[1], data[appended.end() :])

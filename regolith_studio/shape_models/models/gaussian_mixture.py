@@ -96,7 +96,7 @@ class GaussianMixtureModel:
 
     key = KEY
     label = N_("Mixture of Gaussian fields")
-    summary = N_("Constituents with sizes and spectra of their own, in the radius itself.")
+    summary = N_("A mixture of components, each with its own sizes and spectrum, in the radius itself.")
     Settings = MixtureSettings
 
     def fit(self, sample: Sample, settings: MixtureSettings | None = None) -> GaussianMixture:

@@ -81,7 +81,7 @@ class HullFieldSettings:
 
     l_max: int = 10
     size_law: str = field(
-        default="kernel", metadata={"label": N_("Law of sizes"), "choices": tuple(SIZE_LAWS)}
+        default="kernel", metadata={"label": N_("Size distribution"), "choices": tuple(SIZE_LAWS)}
     )
 
 

@@ -47,7 +47,7 @@ class LogFieldSettings:
     l_max: int = 10
     spectrum: str = field(default="resampled", metadata={"label": N_("Spectrum"), "choices": SPECTRA})
     size_law: str = field(
-        default="kernel", metadata={"label": N_("Law of sizes"), "choices": tuple(SIZE_LAWS)}
+        default="kernel", metadata={"label": N_("Size distribution"), "choices": tuple(SIZE_LAWS)}
     )
     size_dependent: bool = field(default=True, metadata={"label": N_("Spectrum depends on size")})
 

@@ -83,7 +83,10 @@ class MixtureFieldModel:
 
     key = KEY
     label = N_("Mixture of fields")
-    summary = N_("Constituents with sizes and spectra of their own; their number by Bayes' criterion.")
+    summary = N_(
+        "A mixture of components, each with its own sizes and spectrum; their number by the Bayesian "
+        "information criterion."
+    )
     Settings = MixtureSettings
 
     def fit(self, sample: Sample, settings: MixtureSettings | None = None) -> MixtureField:

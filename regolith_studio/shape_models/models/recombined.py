@@ -56,7 +56,7 @@ class RecombinedSettings(SurfaceSettings):
         metadata={
             "label": N_("Neighbours"),
             "minimum": 1,
-            "tip": N_("Particles that may lend their surface."),
+            "tip": N_("Number of particles with a similar hull ratio whose surfaces may be used."),
         },
     )
     n_candidates: int = field(

@@ -135,7 +135,7 @@ def components_figure(study: PopulationStudy) -> Figure | None:
         axis.plot(numbers, curve - curve.min(), "o-", color=colour, label=MODELS[model.key].label)
         axis.plot(numbers[best], 0.0, "o", color=colour, markersize=10, fillstyle="none")
     axis.set_xlabel("number of parts")
-    axis.set_ylabel("Bayes' criterion above its lowest")
+    axis.set_ylabel("BIC above its minimum")
     axis.xaxis.set_major_locator(MaxNLocator(integer=True))
     axis.legend(frameon=False)
     return figure

@@ -73,7 +73,7 @@ def summary(count: int, choices: Choices, cost: str = "") -> list[tuple[str, str
     method = tr("{method}, seed {seed}", method=tr(METHODS[choices.method].label), seed=choices.seed)
     return [
         (tr("Particles"), files),
-        (tr("Size of each"), facet_limit_text(choices)),
+        (tr("Polyhedra"), facet_limit_text(choices)),
         (tr("Target"), target),
         (tr("Method"), method),
         (tr("Weights"), (weights or tr("none")) + f" ({preset})"),
@@ -129,7 +129,7 @@ class ExportDialog(QDialog):
         self.name = QLineEdit()
         self.name.setObjectName("export_name")
         self.name.setAccessibleName(tr("Name of the dataset"))
-        self.name.setPlaceholderText(tr("as the folder"))
+        self.name.setPlaceholderText(tr("name of the folder"))
         self.overwrite = QCheckBox(tr("Replace the dataset that is there"))
         self.overwrite.setObjectName("export_overwrite")
         self.state = remark()

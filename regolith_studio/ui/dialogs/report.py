@@ -80,7 +80,7 @@ class ReportDialog(RunDialog):
             If it cannot be given yet, saying why.
         """
         if not self._count:
-            raise InputError(tr("There is nothing to report on: open a particle first."))
+            raise InputError(tr("No particle is open to report on: open one first."))
         folder = self.folder.value()
         if folder is None or folder.is_file():
             raise InputError(tr("Enter a folder for the results."))

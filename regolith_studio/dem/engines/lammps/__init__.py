@@ -15,13 +15,13 @@ REPRESENTS = EngineCapabilities(
     shape=N_(
         "rigid clumps of overlapping spheres (12 by default) with the polyhedra's volume, mass and inertia"
     ),
-    normal=N_("Hertz from Young's modulus (softened, recorded) with restitution, approximate with cohesion"),
+    normal=N_("Hertz with a reduced Young's modulus (recorded) and restitution; approximate with cohesion"),
     tangential=N_("Mindlin with history and Coulomb friction, one coefficient (the static one)"),
     cohesion=N_("Johnson, Kendall and Roberts between spheres"),
     rolling=N_("spring, dashpot and slider (where resistance is above 0)"),
     coarse_graining=N_("by size; scaling the surface energy keeps cohesion over weight"),
     compounds=N_("rigid clumps of spheres that fill the union of the parts, with its mass and inertia"),
-    missing=N_("edges, corners and flat faces; friction of rest apart from friction of motion"),
+    missing=N_("edges, corners and flat faces; different static and dynamic friction"),
 )
 
 

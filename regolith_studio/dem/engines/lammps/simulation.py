@@ -263,8 +263,8 @@ def early_end(lines: list[str], step_share: float) -> RegolithError:
     errors = [line for line in lines if "ERROR" in line] or lines[-1:] or ["it said nothing"]
     own = errors[0].strip()
     if any(sign in own for sign in _LOST_ATOMS_ERRORS):
-        return FlewApartError(_flew_apart(step_share, f"LAMMPS said: {own}"))
-    return RegolithError(f"LAMMPS ended before its time: {own}")
+        return FlewApartError(_flew_apart(step_share, f"LAMMPS reports: {own}"))
+    return RegolithError(f"LAMMPS ended early: {own}")
 
 
 def _flew_apart(step_share: float, sign: str) -> str:

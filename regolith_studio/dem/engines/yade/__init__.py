@@ -15,7 +15,9 @@ SECONDS_PER_PARTICLE_AND_STEP = 4e-4
 REPRESENTS = EngineCapabilities(
     shape=N_("the convex polyhedra themselves"),
     normal=N_("force in proportion to the overlapping volume: neither Hertz nor restitution"),
-    tangential=N_("Coulomb friction while sliding, one coefficient (the static one), no memory at rest"),
+    tangential=N_(
+        "Coulomb friction while sliding, one coefficient (the static one), without contact history"
+    ),
     cohesion=N_("none"),
     rolling=N_("none besides that of edges and faces"),
     coarse_graining=N_("by size"),

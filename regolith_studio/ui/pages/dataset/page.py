@@ -388,10 +388,10 @@ class DatasetPage(PageWidget):
     def _report_problems(self, problems: Sequence[str]) -> None:
         if problems:
             self._context.toast.problem(
-                tr("The dataset is not sound: {problem}", problem=problems[0]), "\n".join(problems)
+                tr("The dataset is not valid: {problem}", problem=problems[0]), "\n".join(problems)
             )
         else:
-            self._context.toast.note(tr("The dataset is sound."))
+            self._context.toast.note(tr("The dataset is valid."))
 
     def _add_export(self, one: ExportResult) -> None:
         self._exports.append(one)

@@ -172,7 +172,7 @@ def degree_sentence(step: DegreeStep) -> str:
     """Description of the fit at a degree."""
     if step.mesh is None:
         return tr(
-            "At {symbol} = {degree} the series has a negative radius somewhere: it is no surface.",
+            "At {symbol} = {degree} the series has a negative radius somewhere and describes no surface.",
             symbol=DEGREE,
             degree=step.l_max,
         )

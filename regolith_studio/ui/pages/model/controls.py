@@ -187,7 +187,7 @@ class DrawControls(QWidget):
         self.draw, self.adopt = QPushButton(tr("Draw")), QPushButton(tr("Use as population"))
         self.findings = remark()
         self.names = QLineEdit()
-        self._names_label = QLabel(tr("Parts"))
+        self._names_label = QLabel(tr("Components"))
         self._configure()
         self._place()
         self.names.editingFinished.connect(self._rename)
@@ -255,16 +255,14 @@ class DrawControls(QWidget):
             "limited": tr("Limit the sizes"),
             "smallest": tr("Smallest equivalent radius"),
             "largest": tr("Largest equivalent radius"),
-            "names": tr("Names of the parts, the most numerous first"),
+            "names": tr("Names of the components, the most numerous first"),
             "draw": tr("Draw particles"),
             "adopt": tr("Use the drawn particles as population"),
         }
         for name, words in names.items():
             getattr(self, name).setObjectName(f"model_{name}")
             getattr(self, name).setAccessibleName(words)
-        self.names.setToolTip(
-            tr("Constituents of the mixture, separated by commas, the most numerous first.")
-        )
+        self.names.setToolTip(tr("Names of the components, separated by commas, the most numerous first."))
         self.draw.setToolTip(tr("Fits the model first where that has not been done."))
         self.adopt.setToolTip(tr("Open the drawn particles: to be coarsened and made a dataset."))
 

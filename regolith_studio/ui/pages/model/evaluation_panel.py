@@ -44,7 +44,7 @@ FIGURES = {
     "volume": N_("By volume"),
     "pairs": N_("Pairs (plot)"),
     "quantiles": N_("Quantiles"),
-    "components": N_("Parts"),
+    "components": N_("Components"),
 }
 TABLES: dict[str, tuple[str, Callable[[PopulationStudy], Table]]] = {
     "targets": (N_("Targets"), target_table),

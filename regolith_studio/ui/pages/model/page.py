@@ -190,7 +190,7 @@ class ModelPage(PageWidget):
         """Ask for a file and write a card of the sample."""
         sample = self._sample()
         if sample is None or self._fitted is None:
-            self._context.toast.problem(tr("A card is made of a fitted sample: fit a model to one first."))
+            self._context.toast.problem(tr("A material card needs a model of a sample: fit one first."))
             return
         save_card(self, self._context, sample, self._fitted.source)
 

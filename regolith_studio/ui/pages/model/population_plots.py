@@ -25,7 +25,7 @@ AXES = {
     "volume": ("", N_("Density by volume")),
     "quantiles": (N_("Measured {quantity}"), N_("Drawn")),
     "pairs": ("", ""),
-    "components": (N_("Number of parts"), N_("Bayes' criterion above its lowest")),
+    "components": (N_("Number of components"), N_("BIC above its minimum")),
 }
 """Labels of what is no descriptor."""
 

@@ -80,7 +80,9 @@ class CalibrationPanel(QWidget):
         self.stop.setObjectName("repose_calibration_stop")
         self.prediction = CurvePlot(tr("Static friction"), tr("Angle [°]"), tr("Each run adds a point."))
         self.posterior = CurvePlot(
-            tr("Static friction"), tr("Density over prior"), tr("The density narrows with each run.")
+            tr("Static friction"),
+            tr("Posterior over prior density"),
+            tr("The probability density of the parameter appears after the first run."),
         )
         self.status = remark()
         self.status.setObjectName("repose_calibration_status")
@@ -167,7 +169,7 @@ class CalibrationPanel(QWidget):
             return
         label = tr(PARAMETERS[calibration.parameters[0].name][0])
         self.prediction.set_labels(label, tr("Angle [°]"))
-        self.posterior.set_labels(label, tr("Density over prior"))
+        self.posterior.set_labels(label, tr("Posterior over prior density"))
         self.prediction.set_curves(_prediction_curves(calibration, self.prediction.theme))
         self.posterior.set_curves(_posterior_curves(calibration, self.posterior.theme))
         self.posterior.set_marker(calibration.next_values[0])

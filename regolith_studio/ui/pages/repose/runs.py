@@ -166,7 +166,7 @@ def _cells(run: RunSummary) -> tuple[str, ...]:
         number_text(case["test"]["gravity"], "g"),
         str(case["seed"]),
         str(document["engine"]["label"]),
-        "" if checks is None else tr("passed") if checks["passed"] else tr("see tip"),
+        "" if checks is None else tr("passed") if checks["passed"] else tr("see tool tip"),
     )
 
 

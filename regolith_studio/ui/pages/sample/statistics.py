@@ -59,7 +59,7 @@ class StatisticsPanel(QWidget):
         self.weighting.setAccessibleName(tr("Weighting of the statistics"))
         for weighting in WEIGHTINGS:
             self.weighting.addItem(tr(_WEIGHTING_LABELS[weighting]), weighting)
-        self.border = QCheckBox(tr("undo the loss at the border"))
+        self.border = QCheckBox(tr("correct for border grains"))
         self.border.setObjectName("statistics_border")
         self.border.setToolTip(
             tr(

@@ -22,7 +22,7 @@ from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec
 
 NO_TOOL = ""
 TOOLS = (
-    (NO_TOOL, N_("Look"), N_("A click shows the slices through a voxel.")),
+    (NO_TOOL, N_("Inspect"), N_("A click shows the slices through a voxel.")),
     ("merge", N_("Merge"), N_("Click two grains that are one.")),
     ("delete", N_("Delete"), N_("Click a grain.")),
     ("seeds", N_("Split by seeds"), N_("Click two places in a grain that are two grains.")),

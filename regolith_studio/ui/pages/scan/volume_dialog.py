@@ -189,7 +189,7 @@ class VolumeDialog(QDialog):
         if header is not None and header.format in WITH_AXES:
             form.addRow(tr("Axes"), self.axes)
         form.addRow(tr("Voxel size x, y, z"), _row([*self.edges, self.unit]))
-        form.addRow(tr("Holds"), self.kind)
+        form.addRow(tr("Content"), self.kind)
         layout = QVBoxLayout(self)
         layout.addWidget(QLabel(self._path.name))
         layout.addWidget(self.facts)

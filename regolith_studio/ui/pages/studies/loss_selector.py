@@ -77,7 +77,7 @@ class LossSelector(QWidget):
     def show_facets(self, choices: Choices) -> None:
         """Show the number of facets of the studies if polyhedra stop at an error."""
         stops = choices.stop_at == "error"
-        words = tr("compared at {count} facets each, not at an error", count=choices.facet_count)
+        words = tr("compared at {count} facets each", count=choices.facet_count)
         self.remark.setText(words if stops else "")
 
     def _menu(self) -> QMenu:
