@@ -98,7 +98,7 @@ def coarsening_steps(
         if step.half_spaces is not None:
             polyhedron = polyhedron_of(target.in_particle_frame(step.half_spaces))
         elif step.compound is not None:
-            polyhedron = step.compound.moved(rotation=target.axes.T, scale=target.scale)
+            polyhedron = step.compound().moved(rotation=target.axes.T, scale=target.scale)
         yield CoarseningProgress(step.step, step.steps, step.loss, polyhedron, target.centre)
 
 

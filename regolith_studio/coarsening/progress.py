@@ -1,5 +1,6 @@
 """Progress of a coarsening: the steps of a method, and the proposals of simulated annealing."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -65,7 +66,7 @@ class MethodStep:
     move
         What was proposed and decided, where the method works by proposals.
     compound
-        The union of convex parts, in place of `half_spaces`, where the method makes one.
+        Makes the union of convex parts, in place of `half_spaces`, where the method makes one.
     """
 
     step: int
@@ -73,7 +74,7 @@ class MethodStep:
     loss: float
     half_spaces: HalfSpaces | None = None
     move: Move | None = None
-    compound: ConvexCompound | None = None
+    compound: Callable[[], ConvexCompound] | None = None
 
 
 @dataclass(frozen=True)

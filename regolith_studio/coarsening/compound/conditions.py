@@ -135,13 +135,13 @@ def point_of(
         Boxes that are followed; searched for everywhere where not given or lost.
     """
     compound = measure_compound(planes)
-    hull = None if compound is None else hull_of(compound.vertices)
-    if compound is None or hull is None or not compound.volume > 0.0:
+    if compound is None or not compound.volume > 0.0:
         return None
     if parts_overlap(compound) or not is_one_body(compound):
         return None
-    boxes = _boxes(problem, compound, hull, near)
-    if boxes is None:
+    hull = hull_of(compound.vertices)
+    boxes = None if hull is None else _boxes(problem, compound, hull, near)
+    if hull is None or boxes is None:
         return None
     tangents = tangents_of(planes.normals) if tangents is None else tangents
     scales = np.empty(len(planes.offsets))
@@ -163,7 +163,11 @@ def searched(problem: CompoundProblem, point: CompoundPoint) -> CompoundPoint | 
     """The same union with boxes searched for everywhere."""
     if not problem.needs_box:
         return point
-    return point_of(problem, point.planes, point.tangents)
+    compound, hull = point.compound, point.hull
+    boxes = _boxes(problem, compound, hull, None)
+    if boxes is None:
+        return None
+    return _with_conditions(problem, compound, hull, point.tangents, point.scales, boxes)
 
 
 _NO_BOXES = LocalBoxes(np.empty(0), np.empty((0, 3, 3)), np.empty((0, 3)), np.empty((0, 13), np.int64))

@@ -3,14 +3,19 @@
 from typing import NamedTuple
 
 import numpy as np
-from scipy.spatial import ConvexHull, QhullError
 
 from regolith_studio.coarsening.compound.measures import MeasuredCompound
 from regolith_studio.coarsening.core.box import Solid
-from regolith_studio.coarsening.core.polyhedron_measures import add_vertex_charges
+from regolith_studio.coarsening.core.intersection import FINE
+from regolith_studio.coarsening.core.polyhedron_measures import add_vertex_charges, measure_polyhedron
 from regolith_studio.geometry.arrays import FloatArray, IntArray
 from regolith_studio.geometry.kernels import kernel_noalloc
 from regolith_studio.geometry.vectors import cross, dot, mixed, row
+
+MAX_CORNERS = 400
+"""Of parts that have 200 facets in all, in general position."""
+JOGGLE = 1.0 + 1e-11 * np.random.default_rng(0).uniform(size=MAX_CORNERS)
+"""By what distances of corners are divided to find the triangles, so that no four corners lie in a plane."""
 
 
 class HullOfParts(NamedTuple):
@@ -22,53 +27,53 @@ class HullOfParts(NamedTuple):
         Of the hull.
     faces, area_vectors
         Triangles by their corners, outward, (m, 3), and their normals times their areas, (m, 3).
+    edges
+        Rows (from, to, triangle a, triangle b), counter-clockwise around a, shape (3 m / 2, 4).
     """
 
     volume: float
     faces: IntArray
     area_vectors: FloatArray
+    edges: IntArray
 
 
 def hull_of(vertices: FloatArray) -> HullOfParts | None:
-    """The hull, or ``None`` where it is flat."""
-    try:
-        hull = ConvexHull(vertices)
-    except QhullError:
+    """The hull, or ``None`` where it is flat.
+
+    Its triangles are the corners of the dual polyhedron <x_i - c, y> <= 1, where c is the mean of the corners
+    x_i: faster than Qhull for some 60 corners.
+    """
+    middle = vertices.mean(axis=0)
+    spokes = vertices - middle
+    distance = np.sqrt(np.einsum("ij,ij->i", spokes, spokes))
+    if not distance.min() > 0.0:
         return None
-    faces, vectors = hull.simplices.astype(np.int64), np.empty((len(hull.simplices), 3))
-    volume = _fill_outward(vertices, hull.equations, faces, vectors)
-    return HullOfParts(volume, faces, vectors)
+    dual = measure_polyhedron(spokes / distance[:, None], JOGGLE[: len(vertices)] / distance)
+    if dual.status != FINE:
+        return None
+    vectors = np.empty((len(dual.triples), 3))
+    volume = _fill_area_vectors(spokes, dual.triples, vectors)
+    return HullOfParts(volume, dual.triples, vectors, dual.edges[:, [2, 3, 1, 0]])
 
 
 @kernel_noalloc
-def _fill_outward(vertices: FloatArray, equations: FloatArray, faces: IntArray, vectors: FloatArray) -> float:
-    """Volume; turns triangles outward and fills their normals times their areas."""
+def _fill_area_vectors(points: FloatArray, faces: IntArray, vectors: FloatArray) -> float:
+    """Fill the normals of triangles times their areas; the volume that the triangles enclose."""
     volume = 0.0
     for f in range(len(faces)):
-        a, b, c = row(vertices, faces[f, 0]), row(vertices, faces[f, 1]), row(vertices, faces[f, 2])
+        a, b, c = row(points, faces[f, 0]), row(points, faces[f, 1]), row(points, faces[f, 2])
         normal = cross(mixed(b, 1.0, a, -1.0), mixed(c, 1.0, a, -1.0))
-        way = 0.5
-        if dot(normal, row(equations, f)) < 0.0:
-            faces[f, 1], faces[f, 2] = faces[f, 2], faces[f, 1]
-            way = -0.5
         for x in range(3):
-            vectors[f, x] = way * normal[x]
-        volume += way * dot(a, normal) / 3.0
+            vectors[f, x] = 0.5 * normal[x]
+        volume += dot(a, normal) / 6.0
     return volume
 
 
 def hull_solid(hull: HullOfParts, vertices: FloatArray) -> Solid:
     """For the search of boxes; corners that are not on the hull do not matter to it."""
-    origin, end = hull.faces.reshape(-1), np.roll(hull.faces, -1, axis=1).reshape(-1)
-    face = np.repeat(np.arange(len(hull.faces)), 3)
-    forward, backward = origin * len(vertices) + end, end * len(vertices) + origin
-    order = np.argsort(forward)
-    twin = face[order[np.searchsorted(forward, backward, sorter=order)]]
-    once = face < twin
-    edges = np.column_stack([origin, end, face, twin])[once]
     areas = np.linalg.norm(hull.area_vectors, axis=1)
     normals = hull.area_vectors / np.maximum(areas, 1e-300)[:, None]
-    return Solid(vertices, normals, areas, edges)
+    return Solid(vertices, normals, areas, hull.edges)
 
 
 def add_hull_charges(compound: MeasuredCompound, hull: HullOfParts, size: float, charges: FloatArray) -> None:

@@ -103,37 +103,40 @@ def measure_compound(planes: Planes) -> MeasuredCompound | None:
     )
 
 
-def meeting_parts(compound: MeasuredCompound) -> BoolArray:
-    """Of which parts the surfaces intersect where it is exposed, shape (k, k)."""
-    part = _part_of_planes(compound.planes)
-    meet = np.zeros((len(compound.planes.inner),) * 2, dtype=np.bool_)
-    one, two = part[compound.edge_planes[compound.edge_planes[:, 2] < 0, :2]].T
-    meet[one, two] = meet[two, one] = True
-    return meet
-
-
 def parts_overlap(compound: MeasuredCompound) -> bool:
     """Whether parts that are to touch overlap: the surfaces of two meet that no plane separates."""
     partner = compound.planes.partner
     if partner is None:
         return False
-    meet = meeting_parts(compound)
-    meet[_part_of_planes(compound.planes)[partner >= 0], partner[partner >= 0]] = False
+    part = _part_of_planes(compound.planes)
+    meet = _meeting_parts(compound, part)
+    meet[part[partner >= 0], partner[partner >= 0]] = False
     return bool(meet.any())
 
 
 def is_one_body(compound: MeasuredCompound) -> bool:
     """Whether all parts that have an exposed surface hang together."""
-    meet = meeting_parts(compound) | np.eye(len(compound.planes.inner), dtype=np.bool_)
+    part = _part_of_planes(compound.planes)
+    meet = _meeting_parts(compound, part)
+    meet.flat[:: len(meet) + 1] = True
     for _ in range(3):  # paths of up to 8 edges: as many as there can be parts
         meet = meet @ meet
-    areas = np.bincount(_part_of_planes(compound.planes), np.maximum(compound.areas, 0.0))
-    seen = areas > HIDDEN
-    return bool(meet[np.ix_(seen, seen)].all())
+    seen = np.bincount(part, np.maximum(compound.areas, 0.0)) > HIDDEN
+    return bool(meet[seen][:, seen].all())
+
+
+def _meeting_parts(compound: MeasuredCompound, part: IntArray) -> BoolArray:
+    """Of which parts the surfaces intersect where they are exposed, shape (k, k)."""
+    k = len(compound.planes.inner)
+    meet = np.zeros((k, k), dtype=np.bool_)
+    pairs = part[compound.edge_planes[compound.edge_planes[:, 2] < 0, :2]]
+    meet[pairs[:, 0], pairs[:, 1]] = meet[pairs[:, 1], pairs[:, 0]] = True
+    return meet
 
 
 def _part_of_planes(planes: Planes) -> IntArray:
-    return np.repeat(np.arange(len(planes.inner)), np.diff(planes.first))
+    first = planes.first
+    return np.arange(len(first) - 1).repeat(first[1:] - first[:-1])
 
 
 HIDDEN = 1e-9

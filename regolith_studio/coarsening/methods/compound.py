@@ -2,6 +2,7 @@
 
 from collections.abc import Generator
 from dataclasses import dataclass, field
+from functools import partial
 
 import numpy as np
 
@@ -118,7 +119,7 @@ def _compound(
             break
         history.append(_loss(target, weights, found))
         step = min(len(history), effort.starts)
-        yield MethodStep(step, effort.starts, history[-1], compound=compound_of(found.point.planes))
+        yield MethodStep(step, effort.starts, history[-1], compound=partial(compound_of, found.point.planes))
     solid = compound_of(best.point.planes)
     achieved = describe(solid)
     steps = {"starts": float(min(len(history), effort.starts)), "better": float(len(history))}

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.spatial import ConvexHull
 
 from regolith_studio.coarsening.compound.conditions import (
     KEYS,
@@ -9,6 +10,7 @@ from regolith_studio.coarsening.compound.conditions import (
     point_of,
     stepped,
 )
+from regolith_studio.coarsening.compound.hull import hull_of
 from regolith_studio.coarsening.compound.line_overlap import shared_with_lines
 from regolith_studio.coarsening.compound.measures import Planes, is_one_body, measure_compound
 from regolith_studio.coarsening.compound.scan_lines import scan_lines
@@ -81,6 +83,35 @@ def test_that_facets_that_nearly_touch_are_exposed_where_the_gap_is_open(angle: 
 def test_that_a_part_that_does_not_hold_its_inner_point_is_refused() -> None:
     planes = random_planes(0)
     assert measure_compound(planes._replace(inner=planes.inner + 9.0)) is None
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_that_the_hull_of_all_corners_is_that_of_qhull(seed: int) -> None:
+    compound = measure_compound(random_planes(seed, 2 + seed))
+    assert compound is not None
+    found, wanted = hull_of(compound.vertices), ConvexHull(compound.vertices)
+    assert found is not None
+    assert found.volume == pytest.approx(wanted.volume, rel=1e-13)
+    assert np.unique(found.faces).tolist() == sorted(wanted.vertices.tolist())
+    assert np.linalg.norm(found.area_vectors, axis=1).sum() == pytest.approx(wanted.area, rel=1e-13)
+    for start, end, one, other in found.edges:
+        assert [start, end] in [np.roll(found.faces[one], -k)[:2].tolist() for k in range(3)]
+        assert [end, start] in [np.roll(found.faces[other], -k)[:2].tolist() for k in range(3)]
+    assert len(np.unique(found.edges[:, :2], axis=0)) == 3 * len(found.faces) // 2
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_that_corners_in_one_plane_and_on_one_line_have_a_hull(seed: int) -> None:
+    """Two bars at a right angle: six corners a plane, three a line, two in one place."""
+    bars = [np.indices((2, 2, 2)).reshape(3, 8).T * edges for edges in ((6.0, 2.0, 1.0), (2.0, 6.0, 1.0))]
+    found = hull_of(np.concatenate(bars) @ rotation(seed).T)
+    assert found is not None
+    assert found.volume == pytest.approx(36.0 - 8.0, rel=1e-9)
+
+
+def test_that_corners_in_one_plane_have_no_hull() -> None:
+    corners = np.indices((2, 2, 1)).reshape(3, 4).T.astype(float)
+    assert hull_of(corners @ rotation(1).T) is None
 
 
 def test_that_lines_measure_the_shared_volume_of_a_boolean() -> None:
