@@ -14,8 +14,11 @@ from zarr.codecs import BloscCodec, GzipCodec, ZstdCodec
 from regolith_studio.errors import FileError
 from regolith_studio.jobs.extraction_jobs import volume_sha256
 from regolith_studio.readers.sandbox.parent import Sandbox
+from regolith_studio.readers.volume_formats.ome_zarr import FORMAT
+from regolith_studio.readers.volumes import slabs
 from regolith_studio.readers.volumes.files import volume_files
 from regolith_studio.readers.volumes.read import describe_volume, open_slabs, read_volume
+from regolith_studio.readers.voxels.header import VoxelHeader
 from regolith_studio.session.file_kinds import FileKind, kind_of
 from tests.readers.test_txm import marked
 from tests.readers.test_volume_mutations import answer_of, check_sentence, mutated, sandboxed_answer_of
@@ -139,6 +142,31 @@ def test_that_absent_chunks_hold_the_fill_value(tmp_path: Path) -> None:
     expected = marked(SHAPE)
     expected[:4, :4, :4] = 7
     assert np.array_equal(read_volume(path, kind="grey").array.T, expected)
+
+
+@pytest.mark.parametrize("axes", ["zyx", "xyz"])
+def test_that_a_layer_of_chunks_is_unpacked_once_for_all_its_slices(
+    axes: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    slices = marked(SHAPE)
+    stored = slices if axes == "zyx" else slices.T
+    volume = FORMAT.open(ome_zarr(tmp_path / "scan.zarr", array=stored, axes=axes, chunks=(4, 4, 4)), {})
+    unpacked: list[tuple[int, int]] = []
+    unpack = volume._unpacked
+    monkeypatch.setattr(volume, "_unpacked", lambda *part: unpacked.append(part) or unpack(*part))
+    for z in range(SHAPE[0]):
+        assert np.array_equal(volume.read(z, z + 1), slices[z : z + 1])
+    assert np.array_equal(volume.read(1, 6), slices[1:6])  # of two layers: not kept
+    assert np.array_equal(volume.read(4, 8), slices[4:8])
+    assert unpacked == [(0, 4), (4, 8), (8, 9), (1, 6), (4, 8)]
+
+
+def test_that_pieces_end_where_deep_layers_do(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(slabs, "SLAB_BYTES", 30)
+    monkeypatch.setattr(slabs, "MAX_LAYER_BYTES", 60)
+    header = VoxelHeader((16, 2, 5), np.dtype(np.uint8))
+    deep = slabs.SlabReader(Path("a"), {}, header, "ome_zarr", False, 7)
+    assert list(deep.pieces(0, 16)) == [(0, 3), (3, 6), (6, 7), (7, 10), (10, 13), (13, 14), (14, 16)]
 
 
 def changed(version: str, file: str, change: Callable[[Any], object]) -> Callable[[Path], None]:

@@ -20,6 +20,7 @@ from regolith_studio.readers.units import unit_named
 from regolith_studio.readers.volume_formats import VolumeFormat
 from regolith_studio.readers.voxels.folders import is_zarr
 from regolith_studio.readers.voxels.header import (
+    MAX_CACHED_BYTES,
     DatasetEntry,
     Sizes,
     VoxelHeader,
@@ -68,28 +69,49 @@ class _Level:
 
 
 class ZarrVoxels:
-    """A level of an opened hierarchy; `layer` is the depth of its chunks along z."""
+    """A level of an opened hierarchy; `layer` is the depth of its chunks along z.
+
+    Slices are unpacked with all of their chunks: the layer that some were read of is kept for the next
+    request, if it has at most :data:`MAX_CACHED_BYTES`.
+    """
 
     def __init__(self, array: Any, level: _Level, header: VoxelHeader) -> None:
         self.header, self.layer = header, level.depth
         self._array, self._level = array, level
+        self._kept: tuple[int, NDArray[Any]] | None = None
 
     def read(self, z0: int, z1: int) -> NDArray[Any]:
         """Slices z0 to z1, shape (z1 - z0, ny, nx)."""
-        axes, every = self._level.axes, slice(None)
-        picked = {"z": slice(z0, z1), "y": every, "x": every, "c": self._level.channel, "t": 0}
+        first = z0 // self.layer * self.layer
+        stop = min(first + self.layer, self.header.shape[0])
+        n_bytes = (stop - first) * self.header.slice_bytes
         try:
-            part = np.asarray(self._array[tuple(picked[axis] for axis in axes)])
+            if z1 <= stop and z1 - z0 < stop - first and n_bytes <= MAX_CACHED_BYTES:
+                part = self._layer_from(first, stop)[z0 - first : z1 - first]
+            else:
+                part = self._unpacked(z0, z1)
         except (FileError, MemoryError):
             raise
         except Exception:  # noqa: BLE001 (each codec has errors of its own)
             raise FileError(f"is damaged: its slices {z0 + 1} to {z1} cannot be unpacked.") from None
-        kept = [axis for axis in axes if axis in "zyx"]
-        ordered = part.transpose([kept.index(axis) for axis in "zyx"])
-        return np.ascontiguousarray(ordered, dtype=self.header.dtype)
+        return np.ascontiguousarray(part, dtype=self.header.dtype)
 
     def close(self) -> None:
         """Do nothing: no file is kept open."""
+
+    def _layer_from(self, first: int, stop: int) -> NDArray[Any]:
+        if self._kept is None or self._kept[0] != first:
+            self._kept = None  # two layers are never in memory
+            self._kept = first, self._unpacked(first, stop)
+        return self._kept[1]
+
+    def _unpacked(self, z0: int, z1: int) -> NDArray[Any]:
+        """Slices as the array has them, turned to slices, rows, columns."""
+        axes, every = self._level.axes, slice(None)
+        picked = {"z": slice(z0, z1), "y": every, "x": every, "c": self._level.channel, "t": 0}
+        part = np.asarray(self._array[tuple(picked[axis] for axis in axes)])
+        kept = [axis for axis in axes if axis in "zyx"]
+        return part.transpose([kept.index(axis) for axis in "zyx"])
 
 
 def open_ome_zarr(path: Path, options: Mapping[str, Any]) -> ZarrVoxels:

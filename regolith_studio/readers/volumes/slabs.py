@@ -1,7 +1,7 @@
 """Slabs of a volume, read by the sandbox process, or directly where voxels are stored uncompressed."""
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -65,13 +65,13 @@ class SlabReader:
     """
 
     path: Path
-    request: dict[str, Any]
-    header: VoxelHeader
+    request: dict[str, Any] = field(hash=False)
+    header: VoxelHeader = field(hash=False)
     format: str
     in_order: bool
     layer: int
     sandbox: Sandbox | None = None
-    plain: PlainVoxels | None = None
+    plain: PlainVoxels | None = field(default=None, hash=False)
 
     def pieces(self, z0: int, z1: int) -> Iterator[tuple[int, int]]:
         """Ranges of slices that make at most `SLAB_BYTES` bytes each, ending where layers of chunks do."""
@@ -81,7 +81,8 @@ class SlabReader:
             step = max(layer, step - step % layer)
         start = z0
         while start < z1:
-            end = min(z1, start - start % layer + step if layer <= step else start + step)
+            of_layer = start % layer
+            end = min(z1, start - of_layer + step if layer <= step else start + min(step, layer - of_layer))
             yield start, end
             start = end
 
