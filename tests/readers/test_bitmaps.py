@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from regolith_studio.errors import FileError
-from regolith_studio.readers.volumes.read import read_volume
+from regolith_studio.readers.volumes.read import describe_volume, read_volume
 
 VOXELS = np.random.default_rng(3).integers(0, 255, (3, 6, 7)).astype(np.uint8)
 
@@ -22,6 +22,13 @@ def folder(tmp_path: Path) -> Path:
 
 def test_that_bitmaps_are_slices(folder: Path) -> None:
     assert np.array_equal(read_volume(folder, voxel_size=1.0, kind="grey").array.T, VOXELS)
+
+
+def test_that_one_slice_alone_leads_to_its_folder(folder: Path) -> None:
+    with pytest.raises(
+        FileError, match=r"slice_1\.bmp is a single picture; open the folder that holds all slices"
+    ):
+        describe_volume(folder / "slice_1.bmp")
 
 
 @pytest.mark.parametrize(

@@ -13,13 +13,14 @@ from regolith_studio.readers.error_messages import message_about, printable
 from regolith_studio.readers.formats import mesh_suffixes
 from regolith_studio.readers.sandbox.messages import SandboxMessage
 from regolith_studio.readers.units import UNITS
-from regolith_studio.readers.volume_formats import VOLUME_FORMATS, WITH_AXES, VolumeFormat, volume_suffixes
+from regolith_studio.readers.volume_formats import VOLUME_FORMATS, WITH_AXES, VolumeFormat
 from regolith_studio.readers.voxels.header import OpenVolume, Sizes, VoxelHeader, checked_header
 from regolith_studio.readers.voxels.stored import PlainVoxels
 
 MIN_VOXEL_EDGE, MAX_VOXEL_EDGE, MAX_EDGE_RATIO = 1e-5, 1e6, 1e4
 """Range of plausible voxel edges in micrometres, and the largest ratio of two."""
 _HEAD = 1024
+_PICTURES = (".png", ".bmp", ".jpg", ".jpeg")
 _opened: dict[str, tuple[OpenVolume, VolumeFormat]] = {}
 """At most one volume, by the request that opened it."""
 
@@ -121,9 +122,11 @@ def volume_format_of(path: Path) -> tuple[VolumeFormat, tuple[str, ...]]:
         return named, ()
     if name.endswith(tuple(mesh_suffixes())):
         raise FileError("is a mesh, not a volume: it is a particle already, open or describe it as it is.")
+    if name.endswith(_PICTURES):
+        raise FileError("is a single picture; open the folder that holds all slices of the scan.")
+    known = ", ".join(sorted(row.suffixes[0] for row in rows.values() if row.suffixes))
     raise FileError(
-        f"has an unsupported file type ({printable(path.suffix) or 'no suffix'}); volumes end in "
-        f"{', '.join(sorted(volume_suffixes()))}."
+        f"has an unsupported file type ({printable(path.suffix) or 'no suffix'}); volumes end in {known}."
     )
 
 
