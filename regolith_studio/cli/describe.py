@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from regolith_studio.cli.dataclass_options import with_dataclass_options
-from regolith_studio.cli.inputs import ReadingOptions, exit_code, start_reader
+from regolith_studio.cli.inputs import ReadingOptions, exit_code
 from regolith_studio.cli.options import Jobs, Json, Meshes, Seed, claim_file, output_path
 from regolith_studio.cli.terminal import print_errors, print_json, print_table, run_with_progress
 from regolith_studio.harmonics.fit_options import MAX_TABLE_DEGREE
@@ -70,7 +70,9 @@ def describe(
     """Measure particles: volume, area, sphericity, diameters ..., and the health of their meshes."""
     if weighting not in ("number", "volume"):
         raise typer.BadParameter(f"Particles weigh by number or by volume, not by {weighting!r}.")
-    start_reader()
+    from regolith_studio.readers.sandbox.parent import shared_sandbox
+
+    shared_sandbox().start_in_background()  # while this process still imports
     from regolith_studio.jobs.particle_jobs import measure_sample
     from regolith_studio.session.outputs.descriptors import described, short_table
     from regolith_studio.session.results import ParticleEntry

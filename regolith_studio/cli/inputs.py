@@ -1,7 +1,5 @@
 """Reading the particles that a command line names."""
 
-import contextlib
-import threading
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -9,7 +7,6 @@ from typing import TYPE_CHECKING
 
 from regolith_studio.cli.options import Repair, Unit, usage_errors
 from regolith_studio.cli.terminal import print_errors, run_with_progress
-from regolith_studio.errors import RegolithError
 
 if TYPE_CHECKING:
     from regolith_studio.readers.particles import LoadedParticles
@@ -44,17 +41,6 @@ class ReadingOptions:
         loaded: LoadedParticles = run_with_progress(reading)
         print_errors(problem.with_path for problem in loaded.problems)
         return loaded
-
-
-def start_reader() -> None:
-    """Start the process that reads files while this one still imports."""
-    from regolith_studio.readers.sandbox.parent import shared_sandbox
-
-    def start() -> None:
-        with contextlib.suppress(RegolithError, OSError):  # the first reader raises it again
-            shared_sandbox().start()
-
-    threading.Thread(target=start, name="start reader", daemon=True).start()
 
 
 def exit_code(paths: Sequence[Path], loaded: "LoadedParticles", failures: int = 0) -> int:

@@ -11,6 +11,7 @@ import tifffile
 from regolith_studio.errors import FileError, InputError
 from regolith_studio.readers.particles import read_mesh
 from regolith_studio.readers.volume_formats import volume_suffixes
+from regolith_studio.readers.volumes import read
 from regolith_studio.readers.volumes.files import volume_files
 from regolith_studio.readers.volumes.header import RawLayout, guess_kind, layout_from_name
 from regolith_studio.readers.volumes.read import describe_volume, open_slabs, read_volume
@@ -337,3 +338,15 @@ def test_that_the_guide_lists_every_ending_of_a_volume() -> None:
     page = (Path(__file__).parents[2] / "docs" / "reading.md").read_text(encoding="utf-8")
     table = page.partition("## Volumes")[2].partition("A volume is indexed")[0]
     assert [suffix for suffix in sorted(volume_suffixes()) if f"`{suffix}`" not in table] == []
+
+
+def test_that_the_kind_of_a_file_is_judged_once_until_the_file_changes(tmp_path, monkeypatch) -> None:
+    judged = []
+    monkeypatch.setattr(read, "guess_kind", lambda slices: judged.append(len(slices)) or "grey")
+    np.save(tmp_path / "a.npy", SLICES)
+    describe_volume(tmp_path / "a.npy")
+    assert open_slabs(tmp_path / "a.npy", voxel_size=1.0).kind == "grey"
+    assert judged == [3]
+    np.save(tmp_path / "a.npy", SLICES[:2])
+    open_slabs(tmp_path / "a.npy", voxel_size=1.0)
+    assert judged == [3, 2]

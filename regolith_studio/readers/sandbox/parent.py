@@ -11,7 +11,7 @@ import threading
 from pathlib import Path
 from typing import Any
 
-from regolith_studio.errors import FileError, MissingRequirement, os_error_reason
+from regolith_studio.errors import FileError, MissingRequirement, RegolithError, os_error_reason
 from regolith_studio.io.machine_memory import machine_memory
 from regolith_studio.readers.error_messages import message_about
 from regolith_studio.readers.sandbox.messages import SandboxMessage, receive, send
@@ -60,6 +60,15 @@ class Sandbox:
         """Start the child now instead of at the first request."""
         with self._lock:
             self._running_process()
+
+    def start_in_background(self) -> None:
+        """Start the child while the caller goes on; why it does not start is raised by the first request."""
+
+        def start() -> None:
+            with contextlib.suppress(RegolithError, OSError):
+                self.start()
+
+        threading.Thread(target=start, name="start reader", daemon=True).start()
 
     def request(self, task: str, path: Path, **options: Any) -> SandboxMessage:
         """Let the child do `task` on the file at `path`.

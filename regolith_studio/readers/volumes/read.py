@@ -4,6 +4,7 @@ import math
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -259,6 +260,7 @@ def open_slabs(
     return VolumeFile((nx, ny, nz), dtype, edges, kind, _name_of(file), file.header.notes, file)
 
 
+@lru_cache(maxsize=4)  # a file is opened for its header, and again for its voxels
 def _guess_kind(file: SlabReader) -> VolumeKind:
     """The kind, judged by slices from the middle, or from what comes first where that is quicker."""
     depth, slice_bytes = file.header.shape[0], file.header.slice_bytes

@@ -17,12 +17,20 @@ from regolith_studio.imaging.segmentation.segment import segment
 from regolith_studio.imaging.volume import Volume
 from regolith_studio.jobs import scan_jobs
 from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput
+from regolith_studio.readers.sandbox.parent import Sandbox, volume_sandbox
 from regolith_studio.readers.volumes.header import RawLayout
 from regolith_studio.session.batch.preprocessing import entry_of
 from regolith_studio.ui.pages.scan.volume_dialog import VolumeDialog
 from tests.ui.scan.mouse import grains_seen, paint, press
 
 SECONDS = 120.0
+
+
+def test_that_the_process_that_reads_volumes_starts_with_the_page(request, monkeypatch):
+    started = []
+    monkeypatch.setattr(Sandbox, "start_in_background", lambda sandbox: started.append(sandbox))
+    request.getfixturevalue("page")
+    assert started == [volume_sandbox()]
 
 
 def test_that_a_region_is_read_again_and_a_wrong_one_is_explained(page, part, wait, monkeypatch):

@@ -41,7 +41,7 @@ class GrainsView:
     def set_volume(self, volume: Volume) -> None:
         """Show the empty box of another volume."""
         self._size = np.array(volume.shape) * volume.voxel_size
-        extent = " × ".join(number_text(float(edge), ".4g") for edge in self._size)
+        extent = " × ".join(number_text(edge, ".4g" if edge < 1e4 else ".0f") for edge in self._size.tolist())
         self._extent = tr("{edges} µm", edges=extent)
         self.frame.view.set_pose(framing_pose(np.array([np.zeros(3), self._size]), turning=True))
         self.clear()

@@ -13,6 +13,7 @@ from regolith_studio.imaging.sample_volumes import sample_file
 from regolith_studio.jobs.events import Job
 from regolith_studio.jobs.extraction_settings import VolumeInput
 from regolith_studio.jobs.scan_jobs import FirstLook, Scan, read_header, read_sample_scan, read_scan
+from regolith_studio.readers.sandbox.parent import volume_sandbox
 from regolith_studio.readers.volume_formats import volume_suffixes
 from regolith_studio.readers.volumes.header import VolumeHeader, layout_from_name
 from regolith_studio.readers.volumes.region import RegionSettings, crop_of_rectangle
@@ -45,6 +46,7 @@ class VolumeOpening(QObject):
         self.first: FirstLook | None = None
         self.given = self.wanted = VolumeInput(Path())
         self.region = self.wanted_region = RegionSettings()
+        volume_sandbox().start_in_background()  # so that the first file need not wait for it
 
     def ask_for_file(self) -> None:
         """Ask for a volume and open it."""
