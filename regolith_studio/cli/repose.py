@@ -256,7 +256,7 @@ def study(
     """Measure the angle of repose against a parameter or for several datasets; resumes a stopped study."""
     from regolith_studio.errors import InputError
     from regolith_studio.jobs.repose_study import ReposeVariant, study_repose, with_value, write_study
-    from regolith_studio.studies.repose import repose_table
+    from regolith_studio.studies.repose import repose_means, repose_table
     from regolith_studio.studies.repose_surface import fit_repose_surface, surface_document, surface_table
 
     del jobs  # one run after the other, so that what is there already is known
@@ -283,6 +283,8 @@ def study(
         print_json({"folder": str(output), "files": files})
         return
     print_table(repose_table(done))
+    if (means := repose_means(done)) is not None:
+        print_table(means)
     if surface is not None:
         print_table(surface_table(surface))
         typer.echo(surface_in_words(surface_document(surface)))

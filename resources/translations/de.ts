@@ -3004,6 +3004,10 @@
         <translation>Mittlere Wasserstein-Distanz zur zurückgehaltenen Hälfte, geteilt durch die zwischen zufälligen Hälften: 1 ist Rauschen</translation>
     </message>
     <message>
+        <source>Mean angle of repose</source>
+        <translation>Mittlerer Schüttwinkel</translation>
+    </message>
+    <message>
         <source>Mean energy distance of pairs of descriptors: 0 for equal distributions</source>
         <translation>Mittlere Energiedistanz von Paaren von Deskriptoren: 0 bei gleichen Verteilungen</translation>
     </message>

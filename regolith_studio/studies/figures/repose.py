@@ -13,7 +13,7 @@ from regolith_studio.dem.evaluation.section import Section
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.io.tables import write_table
 from regolith_studio.studies.figures.files import write_figure
-from regolith_studio.studies.repose import ReposeStudy, repose_table
+from regolith_studio.studies.repose import ReposeStudy, repose_means, repose_table
 
 MILLIMETRE = 1e3
 LEFT, RIGHT, BOTH = "#0072b2", "#e69f00", "#009e73"
@@ -130,8 +130,10 @@ def repose_study_figure(study: ReposeStudy) -> Figure:
 
 
 def write_repose_study(study: ReposeStudy, folder: Path, stem: str = "repose_study") -> tuple[Path, ...]:
-    """Table (CSV, JSON) and figure (PNG, SVG)."""
+    """Table (CSV, JSON) and figure (PNG, SVG), and a table of means where values were repeated."""
+    means = repose_means(study)
     return (
         *write_table(repose_table(study), folder, stem),
+        *(() if means is None else write_table(means, folder, f"{stem}_means")),
         *write_figure(repose_study_figure(study), folder, stem),
     )
