@@ -16,7 +16,13 @@ from regolith_studio.cli.options import (
     usage_errors,
 )
 from regolith_studio.cli.repose_calibrate import calibrate
-from regolith_studio.cli.repose_options import CaseOptions, Particles, evaluation_settings, varied_values
+from regolith_studio.cli.repose_options import (
+    CaseOptions,
+    Particles,
+    check_results_folder,
+    evaluation_settings,
+    varied_values,
+)
 from regolith_studio.cli.terminal import (
     CommandGroup,
     print_errors,
@@ -263,6 +269,7 @@ def study(
     key, points = varied_values(vary)
     if points and against:
         raise typer.BadParameter("--against compares datasets as they are; leave out --vary.")
+    check_results_folder(output, datasets)
     keys, statistics = _statistics(against, datasets)
     request = how.request(n_particles=particles, seed=seed)
     rows = []

@@ -7,8 +7,10 @@ import typer
 
 from regolith_studio.cli.dataclass_options import with_dataclass_options
 from regolith_studio.cli.options import Folder, Jobs, Json, Seed, usage_errors
-from regolith_studio.cli.repose_options import CaseOptions, Particles, varied_values
+from regolith_studio.cli.repose_options import CaseOptions, Particles, check_results_folder, varied_values
 from regolith_studio.cli.terminal import print_errors, print_json, print_table, run_with_progress
+
+RANGE_FORM = "a parameter and its range as KEY=LOW,HIGH"
 
 
 @with_dataclass_options
@@ -83,6 +85,7 @@ def calibrate(
         density_target,
     )
 
+    check_results_folder(output, datasets)
     targets = [angle_target(angle, angle_error)]
     if bulk_density is not None:
         targets.append(density_target(bulk_density, bulk_density_error))
@@ -105,9 +108,11 @@ def _ranges(entries: list[str] | None) -> dict[str, tuple[float, float]]:
     """Ranges of ``KEY=LOW,HIGH`` entries."""
     ranges = {}
     for entry in entries or ():
-        key, ends = varied_values(entry)
+        key, ends = varied_values(entry, RANGE_FORM)
         if len(ends) != 2 or not all(type(end) in (int, float) for end in ends):
-            raise typer.BadParameter(f"Write a parameter and its range as KEY=LOW,HIGH, got {entry!r}.")
+            raise typer.BadParameter(f"Write {RANGE_FORM}, got {entry!r}.")
+        if key in ranges:
+            raise typer.BadParameter(f"The range of {key} is given twice.")
         ranges[key] = (float(ends[0]), float(ends[1]))
     return ranges
 

@@ -1,8 +1,9 @@
 """Options of the commands of ``repose``, and the requests that they define."""
 
 import dataclasses
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -75,13 +76,19 @@ class CaseOptions:
         )
 
 
-def varied_values(text: str) -> tuple[str, list[Any]]:
-    """Name and values of ``KEY=V1,V2``; nothing of an empty text."""
+def check_results_folder(output: Path, datasets: Sequence[Path]) -> None:
+    """Refuse to write many runs into the folder of a dataset, as bad use."""
+    if any(output.resolve() == each.resolve() for each in datasets):
+        raise typer.BadParameter(f"{output} is the folder of a dataset; name another one for the results.")
+
+
+def varied_values(text: str, form: str = "what varies as KEY=V1,V2") -> tuple[str, list[Any]]:
+    """Name and values of ``KEY=V1,V2``; nothing of an empty text. `form`: what should have been written."""
     if not text:
         return "", []
     key, equals, points = text.partition("=")
     if not equals or not all(point.strip() for point in points.split(",")):
-        raise typer.BadParameter(f"Write what varies as KEY=V1,V2, got {text!r}.")
+        raise typer.BadParameter(f"Write {form}, got {text!r}.")
     return key, [values([f"{key}={point}"], "value")[key] for point in points.split(",")]
 
 

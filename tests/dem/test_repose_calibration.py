@@ -161,6 +161,8 @@ def test_that_several_datasets_make_the_facets_a_parameter(
         (("--parameter", "shapes=1,2"), "cannot be calibrated"),
         (("--parameter", "stickiness=1,2"), "cannot be varied"),
         (("--parameter", "static_friction=a,b"), "KEY=LOW,HIGH"),
+        (("--parameter", "static_friction"), "KEY=LOW,HIGH"),
+        (("--parameter", "gravity=1,2", "--parameter", "gravity=1,3"), "gravity is given twice"),
     ],
 )
 def test_that_ranges_of_parameters_are_checked_before_any_run(

@@ -69,6 +69,16 @@ def test_that_runs_of_a_stopped_study_wait_in_the_journal_for_the_others(
     assert (study / RUNS[0] / "snapshots" / "000000.npz").is_file()
 
 
+@pytest.mark.parametrize("command", ["study", "calibrate --angle 30"])
+def test_that_results_are_not_written_into_the_folder_of_a_dataset(
+    boxes_folder: Path, capsys: pytest.CaptureFixture[str], command: str
+) -> None:
+    before = names(boxes_folder)
+    assert run(["repose", *command.split(), str(boxes_folder), "-o", str(boxes_folder)]) == 2
+    assert "is the folder of a dataset" in " ".join(capsys.readouterr().err.split())
+    assert names(boxes_folder) == before
+
+
 def test_that_a_study_of_other_values_keeps_the_runs_of_an_earlier_one(
     words: list[str], tmp_path: Path
 ) -> None:
