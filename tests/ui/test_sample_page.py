@@ -188,7 +188,7 @@ def test_that_no_point_covers_a_name_of_zingg(shown, height):
         (),
     )
     shown(panel)
-    QApplication.processEvents()
+    panel.grab()  # pyqtgraph places texts when it paints, which the display may ask for later
     words = [each for each in panel._items if isinstance(each, pg.TextItem)]
     assert len(words) == 4
     (points,) = [each for each in panel._items if isinstance(each, pg.ScatterPlotItem)]
