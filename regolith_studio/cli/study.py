@@ -134,7 +134,7 @@ OverlapFactors = Annotated[
     str,
     typer.Option(
         "--factors",
-        help="Factors on the weight of the overlap; the exact method adds and drops constraints instead.",
+        help="Factors on the overlap weight; the exact method adds and drops constraints instead.",
         metavar="LIST",
     ),
 ]

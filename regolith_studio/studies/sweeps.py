@@ -212,7 +212,7 @@ SWEEPS: Mapping[str, Sweep] = {
         Sweep(
             "tradeoff",
             N_("Overlap against descriptors"),
-            N_("Factors on the weight of the overlap"),
+            N_("Factors on the overlap weight"),
             OVERLAP_FACTORS,
             tradeoff_variants,
             tradeoff_table,

@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from typing import Protocol
 
 from PySide6.QtCore import Signal
-from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QFormLayout, QHBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidget
 
 from regolith_studio.coarsening.weights import JACCARD
 from regolith_studio.descriptors.catalogue import CATALOGUE, LOSS_KEYS
@@ -17,7 +17,7 @@ from regolith_studio.ui.pages.studies.sensitivity_table import SensitivityTable
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import tr, tr_count, translate
 from regolith_studio.ui.widgets.definitions import definition
-from regolith_studio.ui.widgets.labels import plain_symbol, rich_symbol
+from regolith_studio.ui.widgets.labels import plain_symbol, remark, rich_symbol
 from regolith_studio.ui.widgets.number_fields import NumbersLine
 from regolith_studio.ui.widgets.plots.curves import PlotCurve
 from regolith_studio.ui.widgets.study_frame import StudyFrame
@@ -135,18 +135,19 @@ class SweepPanel(QWidget):
         self.values.setObjectName(f"{key}_values")
         self.values.setAccessibleName(tr(self._variation.asks))
         self.values.setToolTip(tr("Numbers with commas between them; Return starts the study"))
-        self.asked = QLabel(tr(self._variation.asks))
+        self.asked, self.note = QLabel(tr(self._variation.asks)), remark(tr(ON_AND_OFF))
         self.part = PARTS[key]()
         self.part.setAccessibleName(tr(self._variation.title))
         self.frame = StudyFrame(key, self.part)
-        asking = QHBoxLayout()
+        asking = QFormLayout()
         asking.setContentsMargins(8, 6, 8, 0)
-        asking.setSpacing(8)
-        asking.addWidget(self.asked)
-        asking.addWidget(self.values, 1)
+        asking.setRowWrapPolicy(QFormLayout.RowWrapPolicy.WrapLongRows)
+        asking.addRow(self.asked, self.values)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.setSpacing(0)
+        asking.addRow(self.note)
+        self.note.hide()
         layout.addLayout(asking)
         layout.addWidget(self._make_answer())
         layout.addWidget(self.frame, 1)
@@ -156,8 +157,9 @@ class SweepPanel(QWidget):
     def show_method(self, method: str) -> None:
         """Show the field of values if the method uses them."""
         takes = self._variation.takes_values(method)
-        self.values.setVisible(takes)
-        self.asked.setText(tr(self._variation.asks if takes else ON_AND_OFF))
+        for each in (self.asked, self.values):
+            each.setVisible(takes)
+        self.note.setVisible(not takes)
 
     def show_study(self, study: CoarseningStudy | None, outdated: bool) -> None:
         """Show the results, or nothing."""
