@@ -168,7 +168,13 @@ def tabs(name: str, pages: Sequence[tuple[QWidget, str]]) -> QTabWidget:
     made.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Ignored)
     for page, title in pages:
         made.addTab(page, title)
+    name_tabs(made)
     return made
+
+
+def name_tabs(made: QTabWidget) -> None:
+    """Name the bar of tabs by its titles for programs that read the screen aloud."""
+    made.tabBar().setAccessibleName(", ".join(map(made.tabText, range(made.count()))))
 
 
 def scrolled_column(panels: Sequence[QWidget], least: int = CONTROLS_WIDTH - 30) -> QScrollArea:

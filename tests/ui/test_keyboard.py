@@ -15,7 +15,9 @@ from PySide6.QtWidgets import (
     QHeaderView,
     QLineEdit,
     QPlainTextEdit,
+    QPushButton,
     QScrollBar,
+    QTabBar,
     QTableView,
     QVBoxLayout,
     QWidget,
@@ -26,16 +28,18 @@ from regolith_studio.session.choices import Choices
 from regolith_studio.session.session import Session
 from regolith_studio.session.tasks import Task
 from regolith_studio.ui.app import open_window
+from regolith_studio.ui.dialogs.help import CitationLinks
 from regolith_studio.ui.dialogs.unit import UnitDialog
 from regolith_studio.ui.main_window import MainWindow
 from regolith_studio.ui.pages import PAGES
 from regolith_studio.ui.views.camera_mouse import WHEEL_ZOOM
 from regolith_studio.ui.views.view_frame import ViewFrame
+from regolith_studio.ui.widgets.labels import CitingLabel
 from regolith_studio.ui.widgets.study_frame import StudyFrame
 
 KINDS = (
     *(QAbstractButton, QComboBox, QAbstractSpinBox, QAbstractSlider),
-    *(QLineEdit, QAbstractItemView, QPlainTextEdit),
+    *(QLineEdit, QAbstractItemView, QPlainTextEdit, QTabBar),
 )
 PARTS = (QScrollBar, QHeaderView)
 STEPS = 300
@@ -223,6 +227,25 @@ def test_that_every_dialog_can_be_used_without_a_mouse(shown, preferences, wait,
         wait(lambda checked=checked: checked, 20.0)
         assert checked == [None], (name, checked)
     check_dialog(shown(UnitDialog([tmp_path / "grain.stl"], "um", window)), "unit", wait)
+
+
+def test_that_tab_comes_to_each_reference_and_return_opens_its_citation(shown):
+    place, opened = shown(QWidget()), []
+    links = CitationLinks(lambda: opened.append(True), place)
+    before, after = QPushButton("before"), QPushButton("after")
+    column = QVBoxLayout(place)
+    for each in (before, CitingLabel("Eq. 9 and Fig. 7"), CitingLabel("without a reference"), after):
+        column.addWidget(each)
+    place.activateWindow()
+    assert QTest.qWaitForWindowActive(place, 5000)
+    before.setFocus()
+    for count in (1, 2):
+        QTest.keyClick(QApplication.focusWidget(), Qt.Key.Key_Tab)
+        QTest.keyClick(QApplication.focusWidget(), Qt.Key.Key_Return)
+        assert len(opened) == count
+    QTest.keyClick(QApplication.focusWidget(), Qt.Key.Key_Tab)
+    assert QApplication.focusWidget() is after
+    links.deleteLater()
 
 
 def test_that_the_keys_stay_with_a_study_while_it_runs(shown):

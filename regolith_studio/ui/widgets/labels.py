@@ -4,7 +4,7 @@ import html
 import re
 
 from PySide6.QtCore import QEvent, QLocale, QSize, Qt
-from PySide6.QtGui import QPainter, QPaintEvent, QResizeEvent
+from PySide6.QtGui import QFocusEvent, QPainter, QPaintEvent, QResizeEvent
 from PySide6.QtWidgets import QLabel, QSizePolicy, QWidget
 
 from regolith_studio.ui.translation.numbers import localized, number_text
@@ -51,7 +51,7 @@ def with_citations(words: str) -> str:
 
 
 class CitingLabel(QLabel):
-    """A label whose references to the paper open its citation."""
+    """A label whose references to the paper open its citation; Tab comes to them, and Return opens it."""
 
     def __init__(self, text: str = "") -> None:
         super().__init__()
@@ -60,7 +60,17 @@ class CitingLabel(QLabel):
 
     def setText(self, text: str) -> None:
         """Show another text."""
-        super().setText(with_citations(text))
+        linked = with_citations(text)
+        super().setText(linked)
+        flag = Qt.TextInteractionFlag
+        keys = flag.LinksAccessibleByKeyboard if "<a " in linked else flag.NoTextInteraction
+        self.setTextInteractionFlags(flag.LinksAccessibleByMouse | keys)
+
+    def focusInEvent(self, event: QFocusEvent) -> None:
+        """Choose a link at once: Qt would wait for a second Tab."""
+        super().focusInEvent(event)
+        if event.reason() in (Qt.FocusReason.TabFocusReason, Qt.FocusReason.BacktabFocusReason):
+            self.focusNextPrevChild(event.reason() == Qt.FocusReason.TabFocusReason)
 
     def changeEvent(self, event: QEvent) -> None:
         """Lay the text out again in another palette: links keep the colour that they were laid out in."""

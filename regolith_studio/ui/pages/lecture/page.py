@@ -11,6 +11,7 @@ from regolith_studio.jobs.events import Failed, Job
 from regolith_studio.jobs.lecture_jobs import trace_annealing, trace_degrees
 from regolith_studio.session.results import ParticleEntry
 from regolith_studio.ui.latest_job import LatestJob
+from regolith_studio.ui.layout import name_tabs
 from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.pages.lecture.annealing import AnnealingView
 from regolith_studio.ui.pages.lecture.degrees import DegreesView
@@ -270,6 +271,7 @@ class LecturePage(PageWidget):
         titles = (tr("Annealing"), tr("Degrees of the fit"), tr("Random field"))
         for widget, title in zip((self.annealing, self.degrees, self.field), titles, strict=True):
             self.tabs.addTab(widget, title)
+        name_tabs(self.tabs)
         row = QHBoxLayout()
         row.setSpacing(10)
         for each in self._head:
