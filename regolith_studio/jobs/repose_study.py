@@ -157,7 +157,9 @@ def study_run(
             except StopIteration as end:
                 return dict(end.value.document)
             if isinstance(step, Progress):
-                message = f"{row.varied} {row.value}: {step.message}"
+                message = Message(
+                    "{varied} {value}: {step}", varied=Message(row.varied), value=row.value, step=step.message
+                )
                 yield Progress(PROGRESS_STEPS * number + step.done, PROGRESS_STEPS * total, message)
     except EngineError as error:
         return error.document

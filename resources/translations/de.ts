@@ -1924,8 +1924,8 @@
         <translation>Faktoren auf je ein Gewicht</translation>
     </message>
     <message>
-        <source>Factors on the weight of the overlap</source>
-        <translation>Faktoren auf das Gewicht der Überdeckung</translation>
+        <source>Factors on the overlap weight</source>
+        <translation>Faktoren auf die Überdeckung</translation>
     </message>
     <message>
         <source>Features within slices only</source>
@@ -7716,8 +7716,8 @@
         <translation>{count:,} Partikel sind zum Öffnen zu viele, höchstens {most:,}. Für mehr: regolith-studio generate.</translation>
     </message>
     <message>
-        <source>{count:,} particles of {name}</source>
-        <translation>{count:,} Partikel aus {name}</translation>
+        <source>{count:,} particles of the dataset “{name}”</source>
+        <translation>{count:,} Partikel des Datensatzes „{name}“</translation>
     </message>
     <message>
         <source>{count:,} virtual particles are open now.</source>

@@ -1,6 +1,7 @@
 """The page "Angle of repose": set up, preview, run, replay, sections with cuts, runs, refusals."""
 
 import json
+import time
 from dataclasses import replace
 
 import numpy as np
@@ -20,13 +21,15 @@ from regolith_studio.errors import JobCancelled, RegolithError
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
-from regolith_studio.jobs.events import Partial
+from regolith_studio.jobs.events import Partial, Progress
 from regolith_studio.jobs.runners.run_job import InlineRunner
+from regolith_studio.jobs.runners.thread import ThreadRunner
 from regolith_studio.messages import to_json
 from regolith_studio.session.session import Session
 from regolith_studio.studies.calibration import CalibrationParameter
 from regolith_studio.studies.repose import runs_from
 from regolith_studio.studies.repose_calibration import CalibrationRun, ReposeCalibration, angle_target
+from regolith_studio.ui.app import MainThreadInvoker
 from regolith_studio.ui.bindings import Bindings
 from regolith_studio.ui.commands import Commands
 from regolith_studio.ui.dialogs.folder import FolderDialog
@@ -45,8 +48,17 @@ QUICK = {"time_step": 0.04, "iterations": 15, "rest_energy": 2e-3, "rest_time": 
 
 
 @pytest.fixture
-def page(shown, preferences, tmp_path):
-    session = Session(InlineRunner())
+def threads(app):  # noqa: ARG001
+    """A runner whose jobs run beside the window; pages that are made without it have one that waits."""
+    poster = MainThreadInvoker()
+    yield ThreadRunner(poster.post)
+    poster.deleteLater()
+
+
+@pytest.fixture
+def page(shown, preferences, tmp_path, request):
+    threaded = "threads" in request.fixturenames
+    session = Session(request.getfixturevalue("threads") if threaded else InlineRunner())
     window = shown(QWidget())
     toast = Toast(window)
     bindings = Bindings(session, toast.problem, window)
@@ -423,6 +435,28 @@ def test_that_a_calibration_shows_runs_density_and_the_next_run(page):
     assert (last.label, half.label) == ("runs: 4", "runs: 2")
     assert last.x[int(np.argmax(last.y))] == pytest.approx(0.6, abs=0.1)
     assert "after 4 runs; next run at" in page.calibration.status.text()
+
+
+@pytest.mark.parametrize(
+    ("name", "job"), [("study", "run_repose_study"), ("calibration", "locked_calibration")]
+)
+@pytest.mark.usefixtures("threads")
+def test_that_its_button_stops_a_study_and_frees_the_form(page, dataset, wait, monkeypatch, name, job):
+    def endless(*_):
+        while True:
+            time.sleep(0.01)
+            yield Progress(1, 2)
+
+    monkeypatch.setattr(f"regolith_studio.ui.pages.repose.{name}_controller.{job}", endless)
+    small(page, dataset)
+    panel = getattr(page, name)
+    getattr(page, f"start_{name}")()
+    assert page.busy()
+    panel.stop.click()
+    wait(lambda: not page.busy(), 5.0)
+    assert not panel.start.isHidden()
+    assert panel.stop.isHidden()
+    assert panel.status.text().startswith("Stopped")
 
 
 @pytest.mark.slow

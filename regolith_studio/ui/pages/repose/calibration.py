@@ -133,7 +133,7 @@ class CalibrationPanel(QWidget):
     def show_calibration(self, calibration: ReposeCalibration | None) -> None:
         """Show what is known after other runs."""
         self._calibration = calibration
-        if calibration is not None:
+        if calibration is not None and calibration.runs:
             self.show_status(_in_words(calibration))
         self._draw()
 

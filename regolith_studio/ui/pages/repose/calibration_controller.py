@@ -27,7 +27,7 @@ class CalibrationController:
 
     def __init__(self, context: PageContext, panel: CalibrationPanel, setup: SetupPanel) -> None:
         self._context, self._panel, self._setup = context, panel, setup
-        self._running = False
+        self._running, self._task = False, 0
         panel.stopWanted.connect(self.stop)
 
     def busy(self) -> str:
@@ -48,7 +48,7 @@ class CalibrationController:
         self._panel.show_calibration(None)
         self._panel.set_running(True)
         self._panel.show_status(tr("Every run is kept in {folder}.", folder=folder))
-        self._context.start(
+        self._task = self._context.start(
             tr("Angle of repose: calibration"),
             Job(locked_calibration, (request, folder)),
             self._finished,
@@ -60,7 +60,7 @@ class CalibrationController:
 
     def stop(self) -> None:
         """Stop; the next start resumes."""
-        self._context.stop(LANE)
+        self._context.session.cancel(self._task)
 
     def _finished(self, calibration: ReposeCalibration) -> None:
         self._end()
@@ -73,6 +73,7 @@ class CalibrationController:
 
     def _stopped(self) -> None:
         self._end()
+        self._panel.show_status(tr("Stopped; finished runs are kept, and the start button resumes."))
 
     def _end(self) -> None:
         self._running = False

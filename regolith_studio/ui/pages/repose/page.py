@@ -294,7 +294,11 @@ class ReposePage(PageWidget):
         self.player.show_moment(
             pile,
             tr("Before the lift"),
-            tr("{count:,} particles of {name}", count=len(pile), name=translate(prepared.dataset_name)),
+            tr(
+                "{count:,} particles of the dataset “{name}”",
+                count=len(pile),
+                name=translate(prepared.dataset_name),
+            ),
         )
 
     # --- a run ---------------------------------------------------------------------------------

@@ -36,7 +36,7 @@ class ReposeStudyController:
     ) -> None:
         self._context, self._panel, self._setup, self._show_run = context, panel, setup, show_run
         self._folder: Path | None = None
-        self._running = False
+        self._running, self._task = False, 0
         panel.stopWanted.connect(self.stop)
         panel.chosen.connect(self._choose)
 
@@ -62,7 +62,7 @@ class ReposeStudyController:
         self._panel.show_study(None)
         self._panel.set_running(True)
         self._panel.show_status(tr("Every run is kept in {folder}.", folder=self._folder))
-        self._context.start(
+        self._task = self._context.start(
             tr("Angle of repose: study"),
             Job(run_repose_study, (request, self._folder)),
             self._finished,
@@ -74,7 +74,7 @@ class ReposeStudyController:
 
     def stop(self) -> None:
         """Stop; the next start resumes the study."""
-        self._context.stop(LANE)
+        self._context.session.cancel(self._task)
 
     def _request(self) -> ReposeStudyRequest:
         key, values, repeats = self._panel.request()
