@@ -13,7 +13,8 @@ from regolith_studio.jobs.runners import Handle, Pausable, Runner
 class Task:
     """One running job; `total` is 0 while its length is unknown.
 
-    `pausable` says whether it can be paused between two of its steps, `paused` whether it is.
+    `pausable` says whether it can be paused between two of its steps, `paused` whether it is, `stopping`
+    that it ends after its present step.
     """
 
     id: int
@@ -24,6 +25,7 @@ class Task:
     message: str = ""
     pausable: bool = False
     paused: bool = False
+    stopping: bool = False
 
 
 @dataclass(frozen=True)
@@ -87,6 +89,8 @@ class TaskBoard:
         """Cancel one task; its `stopped` reaction follows when it has stopped."""
         if handle := self._handles.get(number):
             handle.cancel()
+        if number in self._tasks:
+            self._update(number, stopping=True)
 
     def pause(self, number: int) -> None:
         """Pause one task after its current step, where its runner can do that."""

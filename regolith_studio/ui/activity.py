@@ -79,7 +79,7 @@ class _Row:
         self.bar.setRange(0, task.total)
         self.bar.setValue(task.done)
         rest = time_left(task.done, task.total, self.clock.seconds())
-        self.left.setText(tr("paused") if task.paused else rest)
+        self.left.setText(tr("Stopping …") if task.stopping else tr("paused") if task.paused else rest)
         self.pause.setVisible(task.pausable)
         self.pause.setChecked(task.paused)
         self.pause.setText(tr("Resume") if task.paused else tr("Pause"))

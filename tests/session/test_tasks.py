@@ -72,6 +72,7 @@ def test_that_a_cancelled_task_is_listed_until_it_has_stopped() -> None:
     tasks.cancel(number)
     assert puppet.cancelled == [0]
     assert tasks.is_running("load")
+    assert tasks.running[0].stopping
     puppet.listeners[0](Stopped())
     assert not tasks.is_running("load")
     assert received == ["stopped"]

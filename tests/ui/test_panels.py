@@ -239,6 +239,13 @@ def test_that_a_task_appears_after_a_moment_and_can_be_stopped(shown, wait):
     assert panel.text.text() == "Separating touching grains (50\N{NO-BREAK SPACE}%)"
     QTest.mouseClick(panel.stop, Qt.MouseButton.LeftButton)
     assert asked == [7]
+    stopping = Task(7, "scan", "Separating touching grains", stopping=True)
+    panel.setValue([stopping])
+    assert panel.text.text() == "Separating touching grains – Stopping …"
+    panel.setValue([stopping, Task(8, "study", "RMSRE against l_max")])
+    wait(lambda: panel.text.text().startswith("RMSRE"))  # the next one that can be stopped
+    QTest.mouseClick(panel.stop, Qt.MouseButton.LeftButton)
+    assert asked == [7, 8]
     panel.setValue([])
     assert panel.text.text() == IDLE
     assert not panel.bar.isVisible()

@@ -22,7 +22,7 @@ IDLE = N_("Ready")
 
 
 class TasksPanel(QWidget):
-    """Shows the oldest running task and the number of others."""
+    """Shows the oldest task that has not been told to stop, and the number of others."""
 
     cancelRequested = Signal(int)  # noqa: N815
 
@@ -89,18 +89,23 @@ class TasksPanel(QWidget):
         if not seen:
             self.text.setText(tr(IDLE))
             return
-        first, others = seen[0], len(seen) - 1
+        first, others = _oldest(seen), len(seen) - 1
         self.bar.setRange(0, first.total)
         self.bar.setValue(first.done)
         count = f" ({_progress(first)})" if first.total else ""
         message = f": {translate(first.message)}" if first.message else ""
         more = "   " + tr("and {count} more", count=others) if others else ""
         held = " – " + tr("paused") if first.paused else ""
+        held = " – " + tr("Stopping …") if first.stopping else held
         self.text.setText(f"{translate(first.title)}{count}{message}{held}{more}")
 
     def _request(self) -> None:
         if self._tasks:
-            self.cancelRequested.emit(self._tasks[0].id)
+            self.cancelRequested.emit(_oldest(self._tasks).id)
+
+
+def _oldest(tasks: Sequence[Task]) -> Task:
+    return next((task for task in tasks if not task.stopping), tasks[0])
 
 
 def _progress(task: Task) -> str:

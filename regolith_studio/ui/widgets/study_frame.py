@@ -69,6 +69,7 @@ class StudyFrame(QWidget):
         hidden.hide()
         self.remark.setVisible(not running)
         self.bar.setVisible(running)
+        self.stop.setText(tr("Stopping …") if task is not None and task.stopping else tr("Stop"))
         if task is not None:
             self._task = task.id
             self.bar.setRange(0, task.total)
