@@ -1080,8 +1080,8 @@
         <translation>Schließung</translation>
     </message>
     <message>
-        <source>Closing the window stops it.</source>
-        <translation>Das Schließen des Fensters bricht das ab.</translation>
+        <source>Closing the window stops or discards this.</source>
+        <translation>Das Schließen des Fensters bricht das ab oder verwirft es.</translation>
     </message>
     <message>
         <source>Coarse graining</source>

@@ -27,7 +27,7 @@ def may_close(parent: QWidget, reasons: Sequence[str]) -> bool:
     title = tr("Close Regolith Studio?")
     box = QMessageBox(QMessageBox.Icon.Question, title, "\n".join(reasons), parent=parent)
     box.setObjectName("closing")
-    box.setInformativeText(tr("Closing the window stops it."))
+    box.setInformativeText(tr("Closing the window stops or discards this."))
     stay = box.addButton(tr("Keep working"), QMessageBox.ButtonRole.RejectRole)
     leave = box.addButton(tr("Stop and close"), QMessageBox.ButtonRole.DestructiveRole)
     stay.setObjectName("closing_stay")
