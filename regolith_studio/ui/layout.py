@@ -196,13 +196,15 @@ def scrolled_column(panels: Sequence[QWidget], least: int = CONTROLS_WIDTH - 30)
 
 
 def scrolled(part: QWidget) -> QScrollArea:
-    """A part with a scroll bar at its right where it is higher than its place."""
+    """A part on the ground of its place, with a scroll bar at its right where it is higher than that."""
     area = QScrollArea()
     area.setWidgetResizable(True)
     area.setFrameShape(QScrollArea.Shape.NoFrame)
     area.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
     area.setFocusPolicy(Qt.FocusPolicy.NoFocus)
     area.setWidget(part)
+    for each in (area.viewport(), part):  # QScrollArea has set it
+        each.setAutoFillBackground(False)
     return area
 
 
