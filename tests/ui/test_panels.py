@@ -11,6 +11,7 @@ from PySide6.QtGui import QFontMetrics
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QAbstractButton, QAbstractSpinBox, QComboBox, QSlider
 
+from regolith_studio.coarsening.coarsen import coarsen
 from regolith_studio.coarsening.weights import LossWeights, presets
 from regolith_studio.descriptors.describe import describe
 from regolith_studio.geometry.mesh_health import inspect
@@ -32,6 +33,7 @@ from regolith_studio.ui.panels.loss import LossPanel
 from regolith_studio.ui.panels.loss_curve import LossCurvePanel
 from regolith_studio.ui.panels.particle_list import ParticleListPanel
 from regolith_studio.ui.panels.tasks import IDLE, TasksPanel
+from regolith_studio.ui.panels.verdict import VerdictPanel
 from regolith_studio.ui.widgets.forms import SettingsForm
 from regolith_studio.ui.widgets.plots.bars import BarPlot, BarSeries
 
@@ -226,6 +228,19 @@ def test_that_health_is_told_by_an_icon():
     assert health_word(ParticleEntry("a", mended, inspect(mended.mesh))) == "repaired"
     open_mesh = type(mended.mesh)(mended.mesh.vertices, mended.mesh.faces[1:])
     assert health_word(ParticleEntry("a", Particle("a", open_mesh), inspect(open_mesh))) == "unsound"
+
+
+def test_that_the_verdict_on_one_particle_never_stands_for_another(shown):
+    panel, choices = shown(VerdictPanel()), Choices(method="quadric", selected="a")
+    found = coarsen(icosphere(2), 12, "quadric")
+    loss = f"{found.loss:#.4g}"
+    panel.show_results(Results(best=found, coarsened=found), choices)
+    assert panel.figures[0].text() == loss
+    panel.show_results(Results(best=found), choices.replaced(n_facets=13))
+    assert panel.figures[0].text() == loss  # dimmed until the next one is there
+    panel.show_results(Results(best=found), choices.replaced(selected="b"))
+    assert panel.figures[0].text() == "–"
+    assert "not finished" in panel.sentence.text()
 
 
 def test_that_a_task_appears_after_a_moment_and_can_be_stopped(shown, wait):

@@ -21,15 +21,17 @@ class VerdictPanel(Headline):
         for place, tip in enumerate(tips):
             self.caption(place, self.captions[place].text(), tip)
         self._shown: PolyhedronVerdict | None = None
+        self._particle = ""
 
     def show_results(self, results: Results, choices: Choices) -> None:
         """Show the verdict on the finished polyhedron."""
         done = results.coarsened
         if done is not None:
+            self._particle = choices.selected
             self._shown = polyhedron_verdict(
                 done, choices.weights, results.against_particle, results.fewer_facets
             )
-        elif results.best is None:
+        elif results.best is None or choices.selected != self._particle:
             self._shown = None
         found = self._shown
         if found is None:
