@@ -28,10 +28,14 @@ OUTSIDE = 1e-9
 """Vertices farther outside than this are outside."""
 APART = 1e-5
 """Ties that leave less of a turn than this, at size 1, are none."""
+MAX_TURN = 0.12
+"""Boxes that turn by more in one go, in radians, are looked for anew."""
 MAX_SWAPS = 6
 MAX_RELEASES = 6
 NONE, UNSTABLE = -1, -2
 """In place of a tie that is to be released."""
+EDGE = 1e-6
+"""Shares beyond 0 or 1, and distances beyond an edge at size 1, up to this are rounding."""
 SETTLED = 1e-11
 """Last turn of a box that has settled, in radians."""
 
@@ -302,7 +306,11 @@ def walk_to_minimum(
         pose = pose_of(points, contact, frame)
         tie, at_end = tie_to_release(pose, contact)
         if tie == NONE:
-            return True
+            tie = tie_to_tip(vertices, contact, frame, points, pose)
+            if tie == NONE:
+                return True
+            fill_points(vertices, contact, points)
+            pose = pose_of(points, contact, frame)
         if tie == UNSTABLE or not change_tie(vertices, contact, frame, pose, tie, at_end):
             return False
     return False
@@ -393,24 +401,105 @@ def tie_to_release(pose: Pose, contact: IntArray) -> tuple[int, bool]:
     some mixture of the slopes that this makes must vanish. Of a side on a facet any three vertices may be
     named, so that a mixture with a negative share does not tell anything.
     """
-    slope = mixed(mixed(pose.slopes[0], 1.0, pose.slopes[1], 1.0), 1.0, pose.slopes[2], 1.0)
-    rows = pose.conditions
-    if contact[0] == 2:
-        if not dot(rows[2], pose.free) > 0.0:
-            return UNSTABLE, False
-        rows = (rows[0], rows[1], pose.free)
-    one, two, three = cross(rows[1], rows[2]), cross(rows[2], rows[0]), cross(rows[0], rows[1])
-    volume = dot(rows[0], one)
-    worst, found, at_end = 1e-6, NONE, False
+    if contact[0] == 2 and not dot(pose.conditions[2], pose.free) > 0.0:
+        return UNSTABLE, False
+    shares = tie_shares(pose, contact)
+    worst, found, at_end = EDGE, NONE, False
     for t in range(contact[0]):
         side, alone = contact[7 + 2 * t], True
         for other in range(contact[0]):
             alone = alone and (other == t or contact[7 + 2 * other] != side)
-        share = dot(slope, one if t == 0 else (two if t == 1 else three)) / volume
-        share *= pose.extents[side // 2] * (-1.0 if side % 2 == 0 else 1.0)
-        if alone and max(-share, share - 1.0) > worst:
-            worst, found, at_end = max(-share, share - 1.0), t, share > 0.5
+        if alone and max(-shares[t], shares[t] - 1.0) > worst:
+            worst, found, at_end = max(-shares[t], shares[t] - 1.0), t, shares[t] > 0.5
     return found, at_end
+
+
+@kernel_noalloc
+def tie_shares(pose: Pose, contact: IntArray) -> Vector:
+    """Share of each tied vertex, against that at the end of its axis, in the mixture of slopes that vanishes.
+
+    0 for a third tie that is none.
+    """
+    slope = mixed(mixed(pose.slopes[0], 1.0, pose.slopes[1], 1.0), 1.0, pose.slopes[2], 1.0)
+    rows = pose.conditions
+    third = rows[2] if contact[0] == 3 else pose.free
+    one, two, three = cross(rows[1], third), cross(third, rows[0]), cross(rows[0], rows[1])
+    volume = dot(rows[0], one)
+    shares = (dot(slope, one) / volume, dot(slope, two) / volume, dot(slope, three) / volume)
+    return (
+        shares[0] * signed_extent(pose, contact, 0),
+        shares[1] * signed_extent(pose, contact, 1),
+        shares[2] * signed_extent(pose, contact, 2),
+    )
+
+
+@kernel_noalloc
+def signed_extent(pose: Pose, contact: IntArray, tie: int) -> float:
+    """Extent along the axis of a tie, less than 0 for its upper side; 0 for a tie that is none."""
+    if tie >= contact[0]:
+        return 0.0
+    side = contact[7 + 2 * tie]
+    return pose.extents[side // 2] * (-1.0 if side % 2 == 0 else 1.0)
+
+
+@kernel_noalloc
+def tie_to_tip(
+    vertices: FloatArray, contact: IntArray, frame: FloatArray, points: FloatArray, pose: Pose
+) -> int:
+    """The tie that a box gives up which tips over an edge of the facet under a side; NONE if it rests.
+
+    The mixture of slopes that vanishes is a point in the facet's plane. The box rests if the facet holds it;
+    if it lies beyond an edge, the box becomes smaller when it turns about that edge. Then the row of contacts
+    is changed to name the two vertices of the edge, and a third one in the tie to be given up.
+    """
+    first, second = tied_to_one_side(contact)
+    if second == NONE:
+        return NONE
+    side, shares = contact[7 + 2 * first], tie_shares(pose, contact)
+    axis, end = row(frame, side // 2), row(points, side)
+    at = mixed(tied_pair(points, contact, first), shares[first], end, 1.0)
+    at = mixed(at, 1.0, tied_pair(points, contact, second), shares[second])
+    a, b, c = contact[1 + side], contact[8 + 2 * first], contact[8 + 2 * second]
+    for _ in range(len(vertices)):
+        for _ in range(2):  # c opposite the edge that is farthest within
+            if beyond(vertices, a, b, c, axis, at) < max(
+                beyond(vertices, b, c, a, axis, at), beyond(vertices, c, a, b, axis, at)
+            ):
+                a, b, c = b, c, a
+        if beyond(vertices, a, b, c, axis, at) < EDGE:
+            return NONE
+        farther, most = NONE, EDGE
+        for v in range(len(vertices)):
+            apart = mixed(row(vertices, v), 1.0, end, -1.0)
+            if abs(dot(apart, axis)) < TOUCHING and v != a and v != b:
+                here = beyond(vertices, a, b, c, axis, row(vertices, v))
+                if here > most:
+                    farther, most = v, here
+        if farther == NONE:
+            contact[1 + side], contact[8 + 2 * first], contact[8 + 2 * second] = a, b, c
+            return second
+        c = farther
+    return NONE
+
+
+@kernel_noalloc
+def tied_to_one_side(contact: IntArray) -> tuple[int, int]:
+    """The two ties of a side on a facet; NONE where no side is on one."""
+    for first in range(contact[0]):
+        for second in range(first + 1, contact[0]):
+            if contact[7 + 2 * first] == contact[7 + 2 * second]:
+                return first, second
+    return NONE, NONE
+
+
+@kernel_noalloc
+def beyond(vertices: FloatArray, a: int, b: int, c: int, axis: Vector, at: Vector) -> float:
+    """Distance of a point in the plane of three vertices from the edge (a, b), beyond it as seen from c."""
+    start = row(vertices, a)
+    edge = mixed(row(vertices, b), 1.0, start, -1.0)
+    out = cross(edge, axis)
+    across = dot(out, mixed(at, 1.0, start, -1.0)) / max(length(out), 1e-300)
+    return across if dot(out, mixed(row(vertices, c), 1.0, start, -1.0)) < 0.0 else -across
 
 
 @kernel_noalloc

@@ -29,12 +29,11 @@ from regolith_studio.coarsening.core.box_arcs import (
     worth_a_look,
 )
 from regolith_studio.coarsening.core.box_contacts import (
-    NONE,
+    MAX_TURN,
     ROW,
     pose_of,
-    rested,
-    tie_to_release,
     touched,
+    walk_to_minimum,
 )
 from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray
 from regolith_studio.geometry.kernels import kernel_noalloc
@@ -53,8 +52,6 @@ NO_ARC = 1e-7
 NO_FACET = 1e-13
 NEAR = float(np.cos(np.radians(7.0)))
 WINDOW = float(np.radians(7.0))
-SETTLING = 1e-3
-"""Most that a box turns to come to rest, in radians."""
 MAX_BOXES = 64
 """Largest number of boxes returned."""
 SAME_VOLUME, SAME_FRAME = 1e-6, 1.0 - 1e-9
@@ -149,7 +146,8 @@ def local_boxes(solid: Solid, margin: float, sample_angle: float, near: FloatArr
     boxes = boxes.selected(order[: max(1, np.count_nonzero(within))])
     kept = np.empty(len(boxes.volumes), np.bool_)
     settle_boxes(solid.vertices, boxes, np.empty((9, 3)), np.empty((3, 3)), np.empty((3, 3)), kept)
-    return boxes.selected(kept)
+    boxes = boxes.selected(kept)
+    return boxes if len(boxes.volumes) == 1 else boxes.selected(np.argsort(boxes.volumes))
 
 
 def empty_boxes(k: int) -> LocalBoxes:
@@ -177,15 +175,17 @@ def settle_boxes(
     vertices: FloatArray,
     boxes: LocalBoxes,
     points: FloatArray,
-    ties: FloatArray,
+    start: FloatArray,
     settled: FloatArray,
     kept: BoolArray,
 ) -> None:
-    """Settle boxes on the vertices that they touch; not kept are those, but the first, that are no minimum.
+    """Turn boxes to the minima next to them; kept are those that none before them came to.
+
+    Boxes that do not settle are left without ties.
 
     Parameters
     ----------
-    points, ties, settled
+    points, start, settled
         Scratch, shapes (9, 3), (3, 3) and (3, 3).
     kept
         Filled, shape (k,).
@@ -193,18 +193,24 @@ def settle_boxes(
     for k in range(len(boxes.frames)):
         kept[k] = True
         contact, frame = boxes.contacts[k], boxes.frames[k]
-        touched(vertices, frame, contact, ties)
-        for axis in range(3):
-            settled[axis, 0], settled[axis, 1], settled[axis, 2] = row(frame, axis)
-        if rested(vertices, contact, settled, points, SETTLING):
-            pose = pose_of(points, contact, settled)
-            for axis in range(3):
-                frame[axis, 0], frame[axis, 1], frame[axis, 2] = row(settled, axis)
-            kept[k] = k == 0 or tie_to_release(pose, contact)[0] == NONE
-            boxes.extents[k, 0], boxes.extents[k, 1], boxes.extents[k, 2] = pose.extents
-            boxes.volumes[k] = pose.extents[0] * pose.extents[1] * pose.extents[2]
-        else:
+        touched(vertices, frame, contact, start)
+        copy_frame(frame, settled)
+        if not walk_to_minimum(vertices, contact, settled, points, start, MAX_TURN):
             contact[0] = 0
+            continue
+        copy_frame(settled, frame)
+        pose = pose_of(points, contact, frame)
+        boxes.extents[k, 0], boxes.extents[k, 1], boxes.extents[k, 2] = pose.extents
+        boxes.volumes[k] = pose.extents[0] * pose.extents[1] * pose.extents[2]
+        for i in range(k):
+            kept[k] = kept[k] and not (kept[i] and is_same_box(boxes, i, boxes.volumes[k], frame))
+
+
+@kernel_noalloc
+def copy_frame(source: FloatArray, target: FloatArray) -> None:
+    """Copy axes, shape (3, 3)."""
+    for axis in range(3):
+        target[axis, 0], target[axis, 1], target[axis, 2] = row(source, axis)
 
 
 @kernel_noalloc

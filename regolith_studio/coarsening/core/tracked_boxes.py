@@ -4,14 +4,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from regolith_studio.coarsening.core.box_contacts import VERTICES, pose_of, walk_to_minimum
+from regolith_studio.coarsening.core.box_contacts import MAX_TURN, VERTICES, pose_of, walk_to_minimum
 from regolith_studio.coarsening.core.box_search import LocalBoxes, is_same_box, same_boxes
 from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray
 from regolith_studio.geometry.kernels import kernel_noalloc
 from regolith_studio.geometry.vectors import along, mixed, row
 
-MAX_TURN = 0.12
-"""Boxes that turn by more in one go, in radians, are looked for anew."""
 ALIKE = 0.985
 """Cosine of the largest angle between the axes of one box before and after a step."""
 

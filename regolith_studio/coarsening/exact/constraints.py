@@ -41,7 +41,7 @@ PUSHED_CLEARANCE = 2e-4
 """Where they are not, they are pushed to this share."""
 CLOSE = 2e-3
 """Other boxes within this share take part in the steps."""
-TRACKED = 6e-3
+TRACKED = 0.02
 """Other boxes within this share are looked for at every step."""
 MAX_RIVALS = 8
 
@@ -133,11 +133,12 @@ def measure(problem: Problem, normals: FloatArray, offsets: FloatArray) -> Const
 
 
 def search_everywhere(problem: Problem, point: ConstrainedPoint) -> ConstrainedPoint:
-    """The same polyhedron with boxes searched for everywhere."""
+    """The same polyhedron with boxes searched for everywhere, besides those that it has."""
     if not problem.needs_box or point.polyhedron.status != FINE:
         return point
     polyhedron = point.polyhedron
-    return _with_constraints(problem, polyhedron, point.tangents, _all_boxes(problem, polyhedron))
+    boxes = merge_boxes(point.boxes, _all_boxes(problem, polyhedron))
+    return _with_constraints(problem, polyhedron, point.tangents, boxes)
 
 
 def constrained(

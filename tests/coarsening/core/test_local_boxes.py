@@ -11,6 +11,7 @@ from regolith_studio.coarsening.core.box_contacts import (
     pose_of,
     rotate,
     tie_to_release,
+    touched,
     walk_to_minimum,
 )
 from regolith_studio.coarsening.core.box_gradient import fill_extent_gradients, gradient_workspace
@@ -211,3 +212,24 @@ def test_that_a_box_that_was_turned_away_walks_back_to_a_minimum(seed: int) -> N
             volume = np.prod(np.ptp(vertices @ frame.T, axis=0))
             arrived += np.abs(known.volumes / volume - 1.0).min() < 1e-9
     assert arrived >= 20
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_that_a_box_on_a_facet_tips_over_an_edge_where_that_makes_it_smaller(seed: int) -> None:
+    solid, _ = solid_of(*random_planes((12, 20)[seed % 2], seed))
+    rng, tipped = np.random.default_rng(seed), 0
+    for facet in np.flatnonzero(solid.areas > 1e-3):
+        touch, axis = empty_touch(), tuple(solid.normals[facet].tolist())
+        on_facet = box_at(axis, solid, np.inf, scratch_for(solid), touch)
+        frame, contact = touch.frame.copy(), np.zeros(13, dtype=np.int64)
+        touched(solid.vertices, frame, contact, np.empty((3, 3)))
+        if not walk_to_minimum(solid.vertices, contact, frame, np.empty((9, 3)), np.empty((3, 3)), 0.3):
+            continue
+        volume = np.prod(np.ptp(solid.vertices @ frame.T, axis=0))
+        assert volume < on_facet * (1.0 + 1e-12)
+        tipped += volume < on_facet * (1.0 - 1e-6)
+        for turn in rng.normal(size=(200, 3)):
+            other = frame.copy()
+            rotate(other, tuple((1e-5 * turn / np.linalg.norm(turn)).tolist()))
+            assert np.prod(np.ptp(solid.vertices @ other.T, axis=0)) > volume * (1.0 - 1e-11)
+    assert tipped > 0
