@@ -26,9 +26,13 @@ def max_step(point: ConstrainedPoint) -> float:
 
 
 def project(
-    problem: Problem, point: ConstrainedPoint, metric: FloatArray, iterations: int
+    problem: Problem,
+    point: ConstrainedPoint,
+    metric: FloatArray,
+    iterations: int,
+    tolerance: float = TOLERANCE,
 ) -> ConstrainedPoint:
-    """At most `iterations` Gauss-Newton steps until all residuals are below :data:`TOLERANCE`.
+    """At most `iterations` Gauss-Newton steps until all residuals are below `tolerance`.
 
     Parameters
     ----------
@@ -36,7 +40,7 @@ def project(
         Shape (3 n, 3 n): steps are least in its inverse.
     """
     for _ in range(iterations):
-        if point.worst < TOLERANCE or point.worst == np.inf:
+        if point.worst < tolerance or point.worst == np.inf:
             break
         then = _gauss_newton_step(problem, point, metric)
         if then is None:

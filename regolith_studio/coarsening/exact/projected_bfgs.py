@@ -24,11 +24,15 @@ Objective = Callable[[Problem, ConstrainedPoint], tuple[float, Callable[[], Floa
 
 PROJECTION_STEPS = 6
 """Gauss-Newton steps back to the constraints after each step."""
-UNVERIFIED = 4
+UNVERIFIED = 8
 """Steps between two searches for boxes everywhere."""
 SHORTEST_STEP = 2e-4
 MAX_RADIUS, RESTART_RADIUS = 0.25, 0.02
 SHRINK = 0.35
+GOOD = 0.5
+"""Steps that bring this share of what the quadratic model predicts may be followed by longer ones."""
+ON_THE_WAY = 1e-5
+"""Residuals up to this are left during a descent; they are removed when boxes are searched for everywhere."""
 MIN_GAIN = 1e-7
 """A descent of the Jaccard distance ends where a step brings less."""
 CURVATURE = 0.03
@@ -164,15 +168,18 @@ def _step(problem: Problem, state: DescentState, objective: Objective) -> tuple[
     share = min(1.0, state.radius / length)
     then = after_step(problem, point, share * step)
     if then is not None:
-        then = project(problem, then, metric, PROJECTION_STEPS)
-        if then.worst < TOLERANCE:
+        then = project(problem, then, metric, PROJECTION_STEPS, ON_THE_WAY)
+        if then.worst < ON_THE_WAY:
             value, slope = objective(problem, then)
             if value < state.value:
                 gradient = slope()
                 _, after = tangent_step(then, gradient, metric)
                 metric = bfgs_update(metric, share * step, after - lagrangian)
-                radius = min(MAX_RADIUS, max(state.radius, 2.0 * share * length))
-                done = state.value - value < MIN_GAIN and objective is overlap_objective
+                predicted = share * (0.5 * share - 1.0) * (step @ state.gradient)
+                radius = state.radius
+                if state.value - value > GOOD * predicted:
+                    radius = min(MAX_RADIUS, max(radius, 2.0 * share * length))
+                done = state.value - value < MIN_GAIN and objective not in (min_surface, max_surface)
                 return True, DescentState(then, value, gradient, metric, radius, done)
     return False, state._replace(metric=metric, radius=SHRINK * min(state.radius, share * length))
 

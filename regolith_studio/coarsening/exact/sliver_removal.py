@@ -1,29 +1,18 @@
 """Small facets become larger, as far as constraints and overlap allow: slivers are of no use to a solver."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 
 from regolith_studio.coarsening.core.polyhedron_measures import add_force
-from regolith_studio.coarsening.exact.constraint_projection import (
-    TOLERANCE,
-    after_step,
-    max_step,
-    project,
-    project_and_verify,
-)
+from regolith_studio.coarsening.exact.constraint_projection import TOLERANCE, max_step
 from regolith_studio.coarsening.exact.constraints import ConstrainedPoint, Problem, measure
 from regolith_studio.coarsening.exact.projected_bfgs import (
-    MAX_RADIUS,
-    PROJECTION_STEPS,
-    SHRINK,
-    UNVERIFIED,
-    bfgs_update,
-    first_metric,
+    Objective,
+    begin_descent,
+    descend,
     gradient_of,
     overlap_objective,
-    tangent_step,
 )
 from regolith_studio.coarsening.exact.single_start import Candidate, candidate_of, count_facets
 from regolith_studio.coarsening.polyhedra import facet_areas
@@ -40,18 +29,6 @@ WEIGHT = 5e-3
 """Of the mean square of ln(:data:`MIN_SHARE` / share), beside the Jaccard distance."""
 COST = 1e-3
 """By how much the Jaccard distance may rise."""
-SHORTEST = 1e-5
-"""Of a step, in units of the side of the cube of the particle's volume; shorter ones end the descent."""
-
-
-@dataclass(frozen=True)
-class _Evaluation:
-    """A polyhedron on the way: its Jaccard distance, that with the penalty, and a derivative."""
-
-    point: ConstrainedPoint
-    jaccard: float
-    value: float
-    gradient: Callable[[], FloatArray]
 
 
 def has_small_facets(normals: FloatArray, offsets: FloatArray) -> bool:
@@ -76,73 +53,32 @@ def remove_slivers(problem: Problem, begun: Candidate, steps: int, cost: float =
     point = measure(problem, begun.normals, begun.offsets)
     if not point.worst < TOLERANCE:
         return begun
-    min_area = MIN_SHARE * point.polyhedron.surface_area / len(point.offsets)
-    now = verified = _evaluated(problem, point, min_area)
-    limit, count = now.jaccard + cost, count_facets(point)
-
-    def allowed(then: _Evaluation, before: _Evaluation) -> bool:
-        return then.value < before.value and then.jaccard <= limit and count_facets(then.point) >= count
-
-    metric, radius, unverified = first_metric(problem, point), max_step(point) / 4, 0
-    for _ in range(steps):
-        slope = now.gradient()
-        step, lagrangian = tangent_step(now.point, slope, metric)
-        size = float(np.abs(step).max())
-        if not np.isfinite(size) or size < SHORTEST or step @ slope >= 0.0:
-            break
-        share = min(1.0, radius / size)
-        then = _after_step(problem, now.point, share * step, metric, min_area)
-        if then is None or not allowed(then, now):
-            radius = SHRINK * min(radius, share * size)
-            if radius < SHORTEST:
-                break
-            continue
-        _, after = tangent_step(then.point, then.gradient(), metric)
-        metric = bfgs_update(metric, share * step, after - lagrangian)
-        radius = min(MAX_RADIUS, max(radius, 2.0 * share * size))
-        now, unverified = then, unverified + 1
-        if unverified == UNVERIFIED:
-            now, unverified = _verified(problem, now, metric, min_area), 0
-            if not allowed(now, verified):
-                return candidate_of(problem, verified.point)
-            verified = now
-    end = _verified(problem, now, metric, min_area)
-    return candidate_of(problem, (end if allowed(end, verified) else verified).point)
+    objective = _overlap_and_penalty(point, begun.jaccard_distance + cost)
+    state = begin_descent(problem, point, objective, max_step(point) / 4)
+    return candidate_of(problem, descend(problem, state, objective, steps).point)
 
 
-def _verified(problem: Problem, now: _Evaluation, metric: FloatArray, min_area: float) -> _Evaluation:
-    """Searched for boxes everywhere; of infinite value where constraints are lost by that."""
-    point = project_and_verify(problem, now.point, metric, PROJECTION_STEPS)
-    if point.worst < TOLERANCE:
-        return _evaluated(problem, point, min_area)
-    return _Evaluation(point, np.inf, np.inf, now.gradient)
+def _overlap_and_penalty(begun: ConstrainedPoint, limit: float) -> Objective:
+    """Jaccard distance and penalty; infinite where that distance is above `limit` or facets are lost."""
+    n = len(begun.offsets)
+    min_area, count = MIN_SHARE * begun.polyhedron.surface_area / n, count_facets(begun)
 
+    def objective(problem: Problem, point: ConstrainedPoint) -> tuple[float, Callable[[], FloatArray]]:
+        polyhedron = point.polyhedron
+        areas = np.maximum(polyhedron.areas, 1e-12)
+        short = np.maximum(0.0, np.log(min_area / areas))
+        jaccard, slope = overlap_objective(problem, point)
 
-def _after_step(
-    problem: Problem, point: ConstrainedPoint, step: FloatArray, metric: FloatArray, min_area: float
-) -> _Evaluation | None:
-    """One step and back to the constraints; ``None`` where that fails."""
-    then = after_step(problem, point, step)
-    if then is None:
-        return None
-    then = project(problem, then, metric, PROJECTION_STEPS)
-    return _evaluated(problem, then, min_area) if then.worst < TOLERANCE else None
+        def gradient() -> FloatArray:
+            charges, gains = np.zeros((n, 4)), -2.0 * WEIGHT * short / (n * areas)
+            normals, vertices, edges = polyhedron.normals, polyhedron.vertices, polyhedron.edges
+            add_area_charges(normals, vertices, edges, polyhedron.centroids, gains, charges)
+            return slope() + gradient_of(point, charges)
 
+        allowed = jaccard <= limit and count_facets(point) >= count
+        return jaccard + WEIGHT * float(np.mean(short**2)) if allowed else np.inf, gradient
 
-def _evaluated(problem: Problem, point: ConstrainedPoint, min_area: float) -> _Evaluation:
-    """Jaccard distance and penalty."""
-    polyhedron, n = point.polyhedron, len(point.offsets)
-    areas = np.maximum(polyhedron.areas, 1e-12)
-    short = np.maximum(0.0, np.log(min_area / areas))
-    jaccard, slope = overlap_objective(problem, point)
-
-    def gradient() -> FloatArray:
-        charges, gains = np.zeros((n, 4)), -2.0 * WEIGHT * short / (n * areas)
-        normals, vertices, edges = polyhedron.normals, polyhedron.vertices, polyhedron.edges
-        add_area_charges(normals, vertices, edges, polyhedron.centroids, gains, charges)
-        return slope() + gradient_of(point, charges)
-
-    return _Evaluation(point, jaccard, jaccard + WEIGHT * float(np.mean(short**2)), gradient)
+    return objective
 
 
 @kernel_noalloc
