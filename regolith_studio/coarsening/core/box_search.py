@@ -157,7 +157,7 @@ def empty_boxes(k: int) -> LocalBoxes:
 
 def same_boxes(some: LocalBoxes, others: LocalBoxes) -> BoolArray:
     """Which of `some` are among the `others`: same volume and axes; shape (k,)."""
-    near = np.abs(others.volumes / some.volumes[:, None] - 1.0) < SAME_VOLUME
+    near = np.abs(others.volumes - some.volumes[:, None]) < SAME_VOLUME * some.volumes[:, None]
     return np.asarray((near & (likeness(some.frames, others.frames) >= SAME_FRAME)).any(axis=1))
 
 
