@@ -73,7 +73,7 @@ class Level:
         return max(1, round(self.starts * min(1.0, 20 / n_facets)))
 
 
-LEVELS = {"fast": Level(1, 2, 12, 28, 28, 0, 0), "best": Level(9, 2, 12, 16, 60, 4, 120)}
+LEVELS = {"fast": Level(1, 2, 12, 28, 28, 0, 0), "best": Level(6, 2, 12, 16, 60, 3, 80)}
 CHECK_ANGLES = (FINE_ANGLE, DENSE_ANGLE)
 """Of the searches for boxes that confirm a result."""
 RELAXATION_FACETS = (12, 20)

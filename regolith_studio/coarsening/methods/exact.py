@@ -22,7 +22,7 @@ class ExactSettings:
     Parameters
     ----------
     level
-        ``fast`` (one start) or ``best`` (that start, then nine more, the best continued: better overlap).
+        ``fast`` (one start) or ``best`` (that start, then six more, the best continued: better overlap).
     retries
         Further starts where no polyhedron meets all conditions.
 
