@@ -30,7 +30,6 @@ from regolith_studio.ui.widgets.forms import ParameterForm
 from regolith_studio.ui.widgets.labels import ElidedLabel, heading, remark
 from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec
 from regolith_studio.ui.widgets.presets import PresetForm
-from regolith_studio.ui.widgets.wrapping_row import WrappingRow
 
 FIRST = ("rocky", "yade")
 NARROW = 84
@@ -84,8 +83,12 @@ class ExportPanel(QWidget):
                 _column((self.contact, self.test, self.times, remark(f"* {tr(NOT_GIVEN)}"))),
             )
         )
-        self.foot = WrappingRow((self.lossy,), (self.export,), margins=(4, 6, 12, 10))
+        self.foot = QWidget()
         """Belongs below the scrolled column: the button stays in sight however many formats there are."""
+        last = QVBoxLayout(self.foot)
+        last.setContentsMargins(4, 6, 12, 10)
+        last.addWidget(self.lossy)
+        last.addWidget(self.export)
         self.coarse_graining.setValue(1)
         self.particles.setValue(200)
         for slider in (self.coarse_graining, self.particles):
