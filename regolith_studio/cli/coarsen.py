@@ -42,6 +42,7 @@ def coarsen(
     with staged_folder(output, "coarsen") as stage:
         write_coarsening(stage, request, done)
     failed = [each for each in done if each.coarsened is None]
+    print_errors(f"{each.name}: {note}" for each in loaded.particles for note in each.notes)
     print_errors(f"{each.name}: {each.problem}" for each in failed)
     if json:
         print_json(coarsening_document(request, done))

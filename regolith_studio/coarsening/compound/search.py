@@ -35,10 +35,10 @@ FEW_LINES, MANY_LINES = 3_600, 15_000
 """Lines that meet a compact particle, for the starts and for the last descent."""
 FREE_STEPS, START_STEPS, LAST_STEPS = 15, 40, 80
 """Of a start without other conditions than the volume and with all, and of the last descent."""
-FINALISTS = 2
 NUMBERS = 4
 """At most so many numbers of parts are tried: a given number of facets makes round particles, and those with
 shallow hollows, only if it is not shared out among many parts."""
+CONFIRMATIONS = 8
 RETRIES = 6
 """Further starts where none meets all conditions."""
 
@@ -170,12 +170,23 @@ def _last_descent(fine: CompoundProblem, begun: CompoundCandidate) -> Iterator[C
 
 
 def confirmed(problem: CompoundProblem, point: CompoundPoint) -> CompoundPoint:
-    """The compound projected once more, as closely as can be, with a dense search for boxes."""
+    """The compound projected once more, as closely as can be, with a dense search for boxes.
+
+    A box that is about to be no minimum any more has a volume that hardly changes while it turns, so that its
+    edges are found only slowly: it is found again and again until the conditions hold twice running.
+    """
     dense = problem._replace(sample_angle=DENSE_ANGLE)
-    again = point_of(dense, point.planes, point.tangents)
-    if again is None:
-        return point
-    return project(dense, again, overlap_of(problem, again).metric, LONG_PROJECTION)
+    for _ in range(CONFIRMATIONS):
+        again = point_of(dense, point.planes, point.tangents)
+        if again is None:
+            break
+        metric = overlap_of(problem, again).metric
+        point = project(dense, again, metric, LONG_PROJECTION)
+        followed = point_of(dense, point.planes, point.tangents, point.tracked)
+        if followed is None or followed.worst <= TOLERANCE:
+            break
+        point = project(dense, followed, metric, LONG_PROJECTION)
+    return point
 
 
 def compound_of(planes: Planes) -> ConvexCompound:
