@@ -1,10 +1,10 @@
-"""Angle of repose of compounds against one convex polyhedron for each of the same particles (docs/repose.md).
+"""Angle of repose of compounds and of one convex polyhedron for each particle (docs/repose_studies.md).
 
-    python -m benchmarks.compound_heaps RUNS [RESULT.json] [SEEDS]
+    python -m benchmarks.compound_heaps RUNS [RESULT.json] [SEEDS] [ENGINE]
 
-The two agglutinates that ship, 40 facets, both methods; 500 particles on MuJoCo, the same seeds for both, so
-that classes, sizes and the order of filling are equal. Datasets and runs that are in the folder RUNS already
-are read and not made again. The result is written anew after every pair of runs.
+The two agglutinates that ship, 40 facets, both methods; 500 particles on MuJoCo or another engine, the same
+seeds for both, so that classes, sizes and the order of filling are equal. Datasets and runs that are in the
+folder RUNS already are read and not made again. The result is written anew after every pair of runs.
 """
 
 import json
@@ -23,7 +23,7 @@ METHODS, FACETS, PARTICLES = ("exact", "compound"), 40, 500
 NAMES = ("agglutinate-1", "agglutinate-2")
 
 
-def main(runs: Path, result: Path | None, n_seeds: int) -> None:
+def main(runs: Path, result: Path | None, n_seeds: int, engine: str) -> None:
     """Make what is missing and print a line for each pair of runs, and the mean difference."""
     for method in METHODS:
         if not (runs / method).is_dir():
@@ -32,7 +32,7 @@ def main(runs: Path, result: Path | None, n_seeds: int) -> None:
             call("dataset", "build", *meshes, "-o", runs / method, *how)
     rows: list[dict[str, Any]] = []
     for seed in range(1, n_seeds + 1):
-        rows += [row(runs, method, seed) for method in METHODS]
+        rows += [row(runs, method, seed, engine) for method in METHODS]
         summary = summary_of(rows)
         print(rows[-2], rows[-1], summary, sep="\n", flush=True)
         if result is not None:
@@ -45,11 +45,12 @@ def call(*words: object) -> None:
     subprocess.run([sys.executable, "-m", "regolith_studio", *map(str, words)], check=True)
 
 
-def row(runs: Path, method: str, seed: int) -> dict[str, Any]:
+def row(runs: Path, method: str, seed: int, engine: str) -> dict[str, Any]:
     """One run, made where it is missing."""
     folder = runs / f"{method}-{seed}"
     if not (folder / DOCUMENT).is_file():
-        call("repose", "run", runs / method, "-o", folder, "-n", PARTICLES, "--seed", seed)
+        how = ["-n", PARTICLES, "--seed", seed, "--engine", engine]
+        call("repose", "run", runs / method, "-o", folder, *how)
     document = read_run(folder).document
     checks, measured = document["checks"], document["measurement"]
     return {
@@ -59,6 +60,7 @@ def row(runs: Path, method: str, seed: int) -> dict[str, Any]:
         "interval_deg": None if measured is None else [round(each, 2) for each in measured["interval_deg"]],
         "solid_fraction": round(checks["solid_fraction"], 4),
         "at_rest": checks["at_rest"],
+        "max_overlap": round(checks["max_overlap"], 4),
         "problems": checks["problems"],
     }
 
@@ -96,4 +98,5 @@ if __name__ == "__main__":
         Path(sys.argv[1]),
         Path(sys.argv[2]) if len(sys.argv) > 2 else None,
         int(sys.argv[3]) if len(sys.argv) > 3 else 5,
+        sys.argv[4] if len(sys.argv) > 4 else "mujoco",
     )

@@ -128,8 +128,7 @@ class CoarseningResult:
             return Message(
                 N_(
                     "The particle has tunnels (genus {particle}), the union of the convex parts has genus"
-                    " {union}: no condition preserves tunnels, which may be closed or moved. More parts may"
-                    " preserve them."
+                    " {union}: no condition preserves tunnels, which may be closed or moved."
                 ),
                 particle=self.genus[0],
                 union=self.genus[1],

@@ -253,13 +253,16 @@ def check_compounds(dataset: Dataset, exporters: Sequence[Exporter]) -> None:
     DatasetError
         If one cannot; the message says why.
     """
-    refusing = next((each for each in exporters if each.convex_only), None)
+    refusing = [each for each in exporters if each.convex_only]
     compounds = [one for one in dataset.representatives if isinstance(one.shape, ConvexCompound)]
-    if refusing is not None and compounds:
-        raise DatasetError(
-            f"{refusing.label} cannot hold {compounds[0].name}, a compound of convex parts: "
-            f"{refusing.convex_only} Leave the format {refusing.key} out, or coarsen by another method."
+    if refusing and compounds:
+        reasons = " ".join(
+            f"{each.label} cannot hold {compounds[0].name}, a compound of convex parts: {each.convex_only}"
+            for each in refusing
         )
+        keys = ", ".join(each.key for each in refusing)
+        formats = f"format {keys}" if len(refusing) == 1 else f"formats {keys}"
+        raise DatasetError(f"{reasons} Leave the {formats} out, or coarsen by another method.")
 
 
 def _with_readme(

@@ -5692,8 +5692,8 @@
         <translation>Das Partikel</translation>
     </message>
     <message>
-        <source>The particle has tunnels (genus {particle}), the union of the convex parts has genus {union}: no condition preserves tunnels, which may be closed or moved. More parts may preserve them.</source>
-        <translation>Das Partikel hat Tunnel (Geschlecht {particle}), die Vereinigung der konvexen Teile hat das Geschlecht {union}: keine Bedingung erhält Tunnel, sie werden geschlossen oder verlegt. Mehr Teile können sie erhalten.</translation>
+        <source>The particle has tunnels (genus {particle}), the union of the convex parts has genus {union}: no condition preserves tunnels, which may be closed or moved.</source>
+        <translation>Das Partikel hat Tunnel (Geschlecht {particle}), die Vereinigung der konvexen Teile hat das Geschlecht {union}: keine Bedingung erhält Tunnel; sie können geschlossen oder verlegt werden.</translation>
     </message>
     <message>
         <source>The particles are scattered: only {share} % of them are in the heap.</source>

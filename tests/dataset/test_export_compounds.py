@@ -248,4 +248,7 @@ def test_that_one_format_of_convex_particles_stops_all_before_anything_is_writte
     source = write_dataset(tmp_path / "set", dataset)
     with pytest.raises(DatasetError, match="Leave the format hoomd out"):
         list(export_dataset_folder(source, ["gltf", "hoomd"], tmp_path / "out", OPTIONS))
+    with pytest.raises(DatasetError, match="Leave the formats edem, hoomd out") as refused:
+        list(export_dataset_folder(source, ["edem", "gltf", "hoomd"], tmp_path / "out", OPTIONS))
+    assert str(refused.value).count("a compound of convex parts: ") == 2
     assert not (tmp_path / "out").exists()
