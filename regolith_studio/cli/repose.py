@@ -369,7 +369,8 @@ def run_in_words(document: dict[str, Any]) -> str:
         in_words(measurement) if measurement["status"] == "pile" else measurement["reason"],
         f"filled to            {100 * checks['fill_height']:.2f} cm, packed {checks['solid_fraction']:.2f}",
         f"particles            {checks['particles_out']} of {checks['particles_in']}",
-        f"overlap at rest      {100 * checks['max_overlap']:.2f} % of the mean diameter at most",
+        f"overlap at rest      {100 * checks['max_overlap']:.2f} % of the mean diameter at most, "
+        f"above 2 % in {100 * checks['deep_contacts']:.2f} % of the contacts",
         f"energy gained        {checks['energy_gain']:.1e} m g d a particle",
     ]
     if heap is not None:

@@ -50,6 +50,8 @@ class RunChecks:
         Number at the beginning, and of those on or above the plate at the end.
     mean_overlap, max_overlap
         At rest.
+    deep_contacts
+        Share of the contacts that overlap by more than 0.02 then.
     energy_gain
         Maximum rise of the total energy while no moving wall touches the particles; it should only fall.
     kinetic_energy
@@ -68,6 +70,7 @@ class RunChecks:
     particles_out: int
     mean_overlap: float
     max_overlap: float
+    deep_contacts: float
     energy_gain: float
     kinetic_energy: float
     at_rest: bool

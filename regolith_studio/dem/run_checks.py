@@ -11,8 +11,12 @@ from regolith_studio.dem.snapshot import ParticleState
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.messages import N_, Message, Number
 
-MAX_OVERLAP = 0.02
-"""Maximum accepted overlap at rest, in mean diameters."""
+DEEP_OVERLAP, MAX_DEEP_CONTACTS = 0.02, 0.01
+"""Overlap in mean diameters above which a contact is deep, and maximum accepted share of these at rest.
+The share does not depend on the number of particles; docs/repose.md says why these limits."""
+MAX_OVERLAP = 0.1
+"""Maximum accepted overlap of any two particles at rest, in mean diameters: half the radius of the inscribed
+ball of a flat particle. What is deeper has begun to pass through another."""
 MAX_ENERGY_GAIN = 0.05
 """Maximum accepted rise of the energy between two samples, in m g d per particle: rounding of the solver."""
 
@@ -41,13 +45,11 @@ def check_run(
         Sentences of the engine, which come first.
     """
     kept, sentences = int(np.count_nonzero(heights > -1.0)), list(problems)
-    largest = float(overlaps.max(initial=0.0))
     if kept < len(heights):
         template = N_("{lost} of {count} particles fell through the plate.")
         sentences.append(Message(template, lost=len(heights) - kept, count=len(heights)))
-    if largest > MAX_OVERLAP:
-        template = N_("Particles overlap by up to {overlap} % of the mean diameter.")
-        sentences.append(Message(template, overlap=Number(100 * largest, ".1f")))
+    largest, deep = float(overlaps.max(initial=0.0)), _deep_share(overlaps)
+    sentences += _overlap_problems(largest, deep)
     if energy_gain > MAX_ENERGY_GAIN:
         template = N_("The energy rose by {gain} m g d per particle without external work.")
         sentences.append(Message(template, gain=Number(energy_gain, ".2g")))
@@ -58,6 +60,7 @@ def check_run(
         particles_out=kept,
         mean_overlap=float(overlaps.mean()) if len(overlaps) else 0.0,
         max_overlap=largest,
+        deep_contacts=deep,
         energy_gain=energy_gain,
         kinetic_energy=kinetic_energy,
         at_rest=at_rest,
@@ -65,6 +68,25 @@ def check_run(
         solid_fraction=filling[1],
         problems=tuple(sentences),
     )
+
+
+def _deep_share(overlaps: FloatArray) -> float:
+    """Share of the contacts that overlap which are deeper than :data:`DEEP_OVERLAP`."""
+    touching = np.count_nonzero(overlaps > 0.0)
+    return float(np.count_nonzero(overlaps > DEEP_OVERLAP) / touching) if touching else 0.0
+
+
+def _overlap_problems(largest: float, deep: float) -> list[str]:
+    """Sentences on overlaps that are too many or too deep."""
+    sentences: list[str] = []
+    if deep > MAX_DEEP_CONTACTS:
+        template = N_("{share} % of the contacts are deeper than {depth} % of the mean diameter.")
+        depth = Number(100 * DEEP_OVERLAP, "g")
+        sentences.append(Message(template, share=Number(100 * deep, ".1f"), depth=depth))
+    if largest > MAX_OVERLAP:
+        template = N_("Particles overlap by up to {overlap} % of the mean diameter.")
+        sentences.append(Message(template, overlap=Number(100 * largest, ".1f")))
+    return sentences
 
 
 def measure_filling(prepared: PreparedCase, particles: ParticleState) -> tuple[float, float]:

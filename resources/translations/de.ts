@@ -8108,6 +8108,10 @@
         <translation>{share:.0%}-Intervall</translation>
     </message>
     <message>
+        <source>{share} % of the contacts are deeper than {depth} % of the mean diameter.</source>
+        <translation>{share} % der Kontakte sind tiefer als {depth} % des mittleren Durchmessers.</translation>
+    </message>
+    <message>
         <source>{share} quant.</source>
         <translation>{share}-Quant.</translation>
     </message>

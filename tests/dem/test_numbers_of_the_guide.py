@@ -25,7 +25,7 @@ from regolith_studio.dem.engines.lammps.program import LammpsSettings
 from regolith_studio.dem.engines.mujoco.simulation import MAX_MOVE, SMALLEST_SHARE
 from regolith_studio.dem.engines.yade.program import YadeSettings
 from regolith_studio.dem.evaluation.settings import MAX_CURVATURE, EvaluationSettings
-from regolith_studio.dem.run_checks import MAX_OVERLAP
+from regolith_studio.dem.run_checks import DEEP_OVERLAP, MAX_DEEP_CONTACTS, MAX_OVERLAP
 from regolith_studio.dem.scaling_report import rayleigh_time, scaling_report
 
 ROOT = Path(__file__).parents[2]
@@ -120,7 +120,8 @@ def test_that_sentences_have_the_limits_of_the_code() -> None:
         f"rigid clumps of {lammps.spheres} overlapping spheres",
         f"(`restarts`, {lammps.restarts} times at most)",
         f"(`restarts`, {YadeSettings().restarts} times at most)",
-        f"at most {100 * MAX_OVERLAP:g} % of the mean diameter",
+        f"at most {100 * MAX_DEEP_CONTACTS:g} % of the contacts of the heap at rest are deeper than "
+        f"{100 * DEEP_OVERLAP:g} % of the mean diameter, and none is deeper than {100 * MAX_OVERLAP:g} %",
         f"flanks within {NEIGHBOURHOOD:g} degrees counted as one",
         f"fewer than {EvaluationSettings().min_particles} particles",
     ):
@@ -225,7 +226,25 @@ def test_that_the_sentence_on_rapier_s_edges_has_the_results_of_its_runs() -> No
         f"and 3,000 at {angles[1]} with {depths[1]}"
     ) in one_line(REPOSE)
     assert f"{few['processor_s']:.0f} and {many['processor_s']:.0f} s of processor time" in one_line(REPOSE)
-    assert all(run["max_overlap"] > MAX_OVERLAP and len(run["problems"]) == 1 for run in (few, many))
+    assert all(DEEP_OVERLAP < run["max_overlap"] < MAX_OVERLAP for run in (few, many))
+
+
+def test_that_the_table_of_deep_contacts_has_the_results_of_its_runs() -> None:
+    found = json.loads((ROOT / "benchmarks/results/repose_deep_contacts.json").read_text("utf-8"))["phases"]
+    rows = rows_of(REPOSE, "| heaps | settled filling | while the cylinder rises | at rest |")
+    kinds = [("mujoco", 1000), ("rapier", 1000), ("rapier", 10_000)]
+    for (engine, particles), (_, *cells) in zip(kinds, rows, strict=True):
+        runs = [run for run in found if (run["engine"], run["particles"]) == (engine, particles)]
+        for phase, cell in zip(("settle", "lift", "rest"), cells, strict=True):
+            shares = [100 * run["deep_share"] for run in runs if run["phase"] == phase]
+            if not shares:
+                assert cell == "not run to the end"
+                continue
+            ends = (
+                dict.fromkeys((min(shares), max(shares))) if len(shares) == 1 else (min(shares), max(shares))
+            )
+            deepest = max(run["max"] for run in runs if run["phase"] == phase)
+            assert cell == f"{' to '.join(f'{end:.2f}' for end in ends)} %, {100 * deepest:.1f} %"
 
 
 def test_that_the_table_of_spheres_has_the_results_of_its_benchmark() -> None:

@@ -46,7 +46,7 @@ def cone_engine(
     heap = ParticleState(points, column.diameters, column.orientations, column.class_index)
     save_snapshot(folder, 0, heap)
     yield Snapshot(heap, 0.5, "half")
-    checks = RunChecks(N, N, 0.0, 0.0, 0.0, 0.0, True, 0.02, 0.60 - 0.1 * friction)
+    checks = RunChecks(N, N, 0.0, 0.0, 0.0, 0.0, 0.0, True, 0.02, 0.60 - 0.1 * friction)
     return SimulationResult(heap, checks, 1, 1.0)
 
 

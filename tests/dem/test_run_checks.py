@@ -21,13 +21,33 @@ def test_that_a_sound_run_has_nothing_to_say() -> None:
 
 def test_that_every_failed_check_is_a_sentence() -> None:
     wrong = SOUND | {"energy_gain": 0.2, "at_rest": False}
-    checks = check_run(np.array([0.5, -3.0]), np.array([0.05]), **wrong, problems=["The solver was hot."])
-    first, lost, overlap, energy, moving = checks.problems
+    checks = check_run(np.array([0.5, -3.0]), np.array([0.15]), **wrong, problems=["The solver was hot."])
+    first, lost, deep, overlap, energy, moving = checks.problems
     assert first == "The solver was hot."
     assert lost == "1 of 2 particles fell through the plate."
-    assert "5.0 %" in overlap
+    assert deep == "100.0 % of the contacts are deeper than 2 % of the mean diameter."
+    assert overlap == "Particles overlap by up to 15.0 % of the mean diameter."
     assert "0.2 m g d" in energy
     assert "still moving" in moving
+
+
+@pytest.mark.parametrize("copies", [1, 100])
+@pytest.mark.parametrize(("deep", "passed"), [(0, True), (9, True), (11, False)])
+def test_that_the_share_of_deep_contacts_decides_whatever_the_number_of_particles(
+    copies: int, deep: int, passed: bool
+) -> None:
+    """Of a thousand contacts that overlap one in a hundred may be deep; gaps are no contacts."""
+    some = np.concatenate([np.full(deep, 0.03), np.full(1000 - deep, 0.001), np.zeros(5000), [-0.01]])
+    checks = check_run(np.array([0.5]), np.tile(some, copies), **SOUND)
+    assert checks.deep_contacts == pytest.approx(deep / 1000)
+    assert (checks.problems == ()) is passed
+
+
+def test_that_one_contact_at_which_particles_pass_through_each_other_fails_a_run() -> None:
+    some = np.append(np.full(10_000, 0.001), 0.11)
+    assert [*map(str, check_run(np.array([0.5]), some, **SOUND).problems)] == [
+        "Particles overlap by up to 11.0 % of the mean diameter."
+    ]
 
 
 def test_that_a_filling_is_as_solid_as_its_volume_over_the_cylinder_s(boxes: Dataset) -> None:
