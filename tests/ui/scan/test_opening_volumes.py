@@ -267,3 +267,13 @@ def test_that_several_dropped_files_are_left_to_the_window(page, tmp_path, count
     event = QDragEnterEvent(QPoint(5, 5), copy, data, left, none)
     page.dragEnterEvent(event)
     assert event.isAccepted() is taken
+
+
+def test_that_the_preview_comes_back_when_the_search_for_all_grains_is_stopped(page, part, wait):
+    page.opening.read(VolumeInput(part, 2.3, kind="grey"))
+    wait(lambda: page.scan is not None, SECONDS)
+    page.find_grains()
+    (task,) = (each for each in page.context.session.tasks if each.lane == "scan:grains")
+    page.context.session.cancel(task.id)
+    wait(lambda: page.workflow.found.text().startswith("In the frame"), SECONDS)
+    assert page.grains is None

@@ -14,7 +14,7 @@ from regolith_studio.errors import RegolithError
 from regolith_studio.imaging.segmentation.segment import Segmentation, SegmentationSettings
 from regolith_studio.imaging.segmentation.strokes import ERASER
 from regolith_studio.imaging.volume import Volume
-from regolith_studio.jobs.events import Job
+from regolith_studio.jobs.events import Failed, Job
 from regolith_studio.jobs.extraction_settings import GrainSettings
 from regolith_studio.jobs.scan_jobs import GrainSegmentation, Scan, find_grains, view_labels
 from regolith_studio.ui.layout import CONTROLS_WIDTH, padded, scrolled_column, side_by_side, tabs
@@ -118,7 +118,12 @@ class ScanPage(PageWidget):
         settings = self.controls.value().segmentation
         job = Job(find_grains, (self.scan, settings))
         self._context.start(
-            tr("Finding grains"), job, lambda found: self._show_grains(found, settings), lane="grains"
+            tr("Finding grains"),
+            job,
+            lambda found: self._show_grains(found, settings),
+            failed=self._find_nothing,
+            stopped=self._schedule_preview,
+            lane="grains",
         )
 
     def save_settings(self) -> None:
@@ -162,7 +167,6 @@ class ScanPage(PageWidget):
         self.controls.set_kind(self.scan.volume.kind)
         self._show_level()
         self._schedule_preview()
-        self._show_state()
 
     def _on_looked(self) -> None:
         self._stop_work()
@@ -185,7 +189,6 @@ class ScanPage(PageWidget):
         self._context.stop("grains")
         self._show_level()
         self._schedule_preview()
-        self._show_state()
 
     def _on_preview(self) -> None:
         self._hide_probabilities(self.controls.value().segmentation)
@@ -205,6 +208,10 @@ class ScanPage(PageWidget):
         self.controls.show_automatic_level(found.segmentation.level)
         self._show_state()
 
+    def _find_nothing(self, failure: Failed) -> None:
+        self._context.toast.problem(failure.sentence, failure.details)
+        self._schedule_preview()
+
     def _make_surface(self, labels: Volume) -> None:
         """Contour labels in the background for the view of all grains."""
         show = self.slices.show_surface
@@ -214,6 +221,7 @@ class ScanPage(PageWidget):
     def _schedule_preview(self) -> None:
         if self.grains is None:
             self.preview.schedule(self.scan)
+        self._show_state()
 
     def _show_state(self) -> None:
         least = self.controls.value().extraction.min_voxels
