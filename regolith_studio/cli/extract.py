@@ -162,6 +162,7 @@ def extract(
     Volumes that an earlier run has finished are not extracted again.
     """
     from regolith_studio.io.atomic import staged_folder
+    from regolith_studio.jobs.unfinished_maps import unfinished_file
     from regolith_studio.session.batch.scan_groups import find_scans
     from regolith_studio.session.outputs.particles import ExtractionFolder
 
@@ -187,7 +188,8 @@ def extract(
             return
         with staged_folder(output, "extract") as stage:
             folder = ExtractionFolder(stage)
-            done = run_with_progress(folder.extract(given, chosen, output.parent, executor, labels))
+            kept = unfinished_file(output)
+            done = run_with_progress(folder.extract(given, chosen, output.parent, executor, labels, kept))
             document = folder.finish(given, chosen, done)
     if done.facts is not None and done.facts.n_not_finite:
         print_errors(

@@ -22,6 +22,7 @@ from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from regolith_studio.errors import MissingRequirement
 from regolith_studio.imaging.volume import Origin, Volume, VolumeKind
+from regolith_studio.io.checkpoint import Checkpoint
 
 ParallelMap = Callable[[Callable[[Any], Any], Iterable[Any]], Iterable[Any]]
 """As the built-in ``map``, lazily and in order; others apply picklable functions in several processes."""
@@ -127,11 +128,14 @@ class ScratchArrays:
     ----------
     folder
         The temporary folder, if there is one.
+    checkpoint
+        Keeps the slabs of a probability map as they are finished, if somebody has opened one.
     """
 
     def __init__(self, folder: Path | None = None) -> None:
         self._count = 0
         self.folder: Path | None = None
+        self.checkpoint: Checkpoint | None = None
         self._clear = None
         if folder is not None:
             self.folder = Path(tempfile.mkdtemp(dir=folder, prefix="regolith-")).absolute()

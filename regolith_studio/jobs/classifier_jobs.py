@@ -1,6 +1,7 @@
 """Jobs of classifiers of voxels: train on painted labels or strokes, predict slices, write maps."""
 
 from collections.abc import Mapping, Sequence
+from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -32,6 +33,7 @@ from regolith_studio.jobs.events import Partial, Progress, Started, Steps
 from regolith_studio.jobs.extraction_jobs import volume_sha256
 from regolith_studio.jobs.extraction_settings import VolumeInput
 from regolith_studio.jobs.scan_jobs import read_all, scratch_arrays
+from regolith_studio.jobs.unfinished_maps import finished_slabs, unfinished_file
 from regolith_studio.messages import N_, Message
 from regolith_studio.readers.volumes.region import RegionSettings
 
@@ -68,6 +70,8 @@ def train_on_labels(
 def map_probabilities(scan: VolumeInput, training: TrainingSet, path: Path, scratch: Path) -> Steps:
     """Write the probability of each voxel of a scan to be grain, 0 to 255; returns the path.
 
+    The map of a large scan goes on where an earlier call for the same file was interrupted.
+
     Parameters
     ----------
     path
@@ -84,7 +88,12 @@ def map_probabilities(scan: VolumeInput, training: TrainingSet, path: Path, scra
     """
     yield Started(Message(N_("Reading {name}"), name=scan.path.name))
     source = scan.opened()
-    with scratch_arrays(source, scratch) as arrays:
+    with ExitStack() as stack:
+        arrays = stack.enter_context(scratch_arrays(source, scratch))
+        whole, place = (source, volume_sha256(scan.path)), unfinished_file(path)
+        arrays.checkpoint = stack.enter_context(
+            finished_slabs(place, scan, RegionSettings(), whole, training)
+        )
         volume: Volume = yield from read_all(source, arrays)
         steps = probability_map(train(training), volume, arrays)
         yield Started(N_("Predicting grains"))

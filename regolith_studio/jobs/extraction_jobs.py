@@ -2,6 +2,7 @@
 
 import hashlib
 from collections.abc import Callable, Generator
+from contextlib import ExitStack
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -28,6 +29,7 @@ from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput
 from regolith_studio.jobs.label_jobs import write_labels
 from regolith_studio.jobs.particle_jobs import MeasuredParticle, measure_particle
 from regolith_studio.jobs.scan_jobs import read_all, scratch_arrays, scratch_folder, segment_volume
+from regolith_studio.jobs.unfinished_maps import finished_slabs
 from regolith_studio.messages import N_, Message
 from regolith_studio.readers.file_bytes import sha256_of
 from regolith_studio.readers.volumes.files import member_folder, member_names
@@ -126,6 +128,7 @@ def extract_measured(
     sink: Callable[[_Made], None],
     workers: int | Executor = 1,
     labels_file: Path | None = None,
+    unfinished: Path | None = None,
 ) -> Steps:
     """As :func:`extract_each`, but each particle is measured where it is made.
 
@@ -135,11 +138,14 @@ def extract_measured(
         As in :func:`extract_each`, of a particle and what was measured of it.
     labels_file
         Where to write the label volume, if anywhere (:func:`~regolith_studio.jobs.label_jobs.write_labels`).
+    unfinished
+        Where to keep finished slabs of the map that a classifier makes of a large scan, if anywhere; the same
+        call goes on from there after an interruption.
     """
     yield from compile_first("describe")
     measure = partial(_made_of_measured, make)
     with open_executor(workers) as executor:
-        return (yield from _extract(given, recipe, scratch, executor, measure, sink, labels_file))
+        return (yield from _extract(given, recipe, scratch, executor, measure, sink, labels_file, unfinished))
 
 
 def _made_of_measured(
@@ -161,7 +167,7 @@ def extract_labels(
     return (yield from _handed_over(extraction_steps(labels, settings, path.stem, source, grey=grey)))
 
 
-def _source_of(path: Path, volume: Volume) -> Source:
+def _source_of(path: Path, volume: SliceSource) -> Source:
     edges = "x".join(f"{float(edge):g}" for edge in np.ravel(np.asarray(volume.voxel_size)))
     return Source(str(path), volume_sha256(path), f"voxel:{edges}")
 
@@ -185,14 +191,20 @@ def _extract(
     make: Callable[[ExtractedParticle], Any] | None = None,
     sink: Callable[[Any], None] | None = None,
     labels_file: Path | None = None,
+    unfinished: Path | None = None,
 ) -> Steps:
     yield from compile_first("scan")
     yield Started(Message(N_("Reading {name}"), name=given.path.name))
     source = recipe.region.of(given.opened())
     run = map if executor.in_this_thread else executor.map
-    with _scratch(source, given.path, folder, executor) as scratch:
+    origin = _source_of(given.path, source)
+    with ExitStack() as stack:
+        scratch = stack.enter_context(_scratch(source, given.path, folder, executor))
+        training = recipe.segmentation.classifier if source.kind == "grey" else None
+        scratch.checkpoint = stack.enter_context(
+            finished_slabs(unfinished, given, recipe.region, (source, origin.sha256), training)
+        )
         volume: Volume = yield from read_all(source, scratch, run)
-        origin = _source_of(given.path, volume)
         facts: SegmentationSummary | None = None
         labels, grey = volume, None
         if volume.kind == "grey":

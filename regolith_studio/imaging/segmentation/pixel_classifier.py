@@ -32,6 +32,7 @@ from regolith_studio.imaging.volume_slabs import (
     ThickSlab,
     slab_ranges,
 )
+from regolith_studio.io.checkpoint import Checkpoint, CheckpointRecord
 from regolith_studio.messages import N_
 
 ClassifierKind = Literal["network", "logistic"]
@@ -40,6 +41,7 @@ MAX_CLASSES = 8
 MAX_PER_CLASS = 5_000
 """Painted voxels of a class that a classifier is trained on; of more, so many are drawn."""
 
+_MAP = "probabilities"
 _TILE = 128
 _SLAB_VOXELS = 2**22
 _ITERATIONS = 300
@@ -389,6 +391,8 @@ def probability_map(
 
     Parameters
     ----------
+    scratch
+        Slabs that its checkpoint holds, if it has one, are taken from there; others are added to it.
     run
         Applies the classifier to slabs.
 
@@ -400,10 +404,28 @@ def probability_map(
     check_voxel_size(classifier.voxel_size, source)
     found = SharedArray(scratch.zeros(source.shape, np.uint8))
     ranges = slab_ranges(source.shape, _SLAB_VOXELS)
+    done = _restore_slabs(found, ranges, scratch.checkpoint)
+    waiting = [k for k in range(len(ranges)) if k not in done]
     predict = partial(_predict_slab, classifier, SharedArray(source.array), found)
-    for done, _ in enumerate(run(predict, ranges), start=1):
-        yield done, len(ranges)
+    for k, _ in zip(waiting, run(predict, [ranges[k] for k in waiting]), strict=True):
+        if scratch.checkpoint is not None:
+            scratch.checkpoint.add([CheckpointRecord(k, {}, {_MAP: found.slices(*ranges[k]).tobytes("F")})])
+        done.add(k)
+        yield len(done), len(ranges)
     return probability_volume(found.array, source)
+
+
+def _restore_slabs(
+    found: SharedArray, ranges: list[tuple[int, int]], checkpoint: Checkpoint | None
+) -> set[int]:
+    """Write the slabs of a checkpoint; returns their numbers."""
+    done: set[int] = set()
+    for record in checkpoint.records() if checkpoint else ():
+        first, stop = ranges[record.index]
+        values = np.frombuffer(record.blobs[_MAP], np.uint8)
+        found.write(first, values.reshape((*found.shape[:2], stop - first), order="F"))
+        done.add(record.index)
+    return done
 
 
 def _predict_slab(

@@ -25,6 +25,7 @@ from regolith_studio.jobs.events import Started, Steps
 from regolith_studio.jobs.executor import Executor
 from regolith_studio.jobs.extraction_jobs import volume_sha256
 from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput
+from regolith_studio.jobs.unfinished_maps import unfinished_file
 from regolith_studio.messages import N_, Message
 from regolith_studio.readers.volumes.files import volume_files
 from regolith_studio.session.outputs.descriptors import UNITS
@@ -112,9 +113,11 @@ def extract_groups(
             if _is_extracted(output / given.group, given, settings):
                 kept.append(given.group)
                 continue
-            with staged_folder(output / given.group, "extract") as stage:
+            group = output / given.group
+            with staged_folder(group, "extract") as stage:
                 folder = ExtractionFolder(stage)
-                steps = folder.extract(given, settings, output, workers)
+                place = unfinished_file(group)
+                steps = folder.extract(given, settings, output, workers, unfinished=place)
                 done = yield from _numbered(steps, given.group, number, len(scans))
                 folder.finish(given, settings, done)
             extracted.append(given.group)

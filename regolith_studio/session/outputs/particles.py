@@ -85,6 +85,7 @@ class ExtractionFolder:
         scratch: Path,
         workers: int | Executor = 1,
         labels_file: Path | None = None,
+        unfinished: Path | None = None,
     ) -> Steps:
         """Write the particles of a volume, each where it is made; returns :class:`ExtractedFile`.
 
@@ -93,7 +94,7 @@ class ExtractionFolder:
         write = partial(write_particle, self._folder)
         return (
             yield from extract_measured(
-                volume, recipe, scratch, write, self._records.append, workers, labels_file
+                volume, recipe, scratch, write, self._records.append, workers, labels_file, unfinished
             )
         )
 
