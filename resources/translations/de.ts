@@ -6864,6 +6864,10 @@
         <translation>größter Abstand zweier Punkte</translation>
     </message>
     <message>
+        <source>grey level {level}</source>
+        <translation>Grauwert {level}</translation>
+    </message>
+    <message>
         <source>grey values</source>
         <translation>Grauwerte</translation>
     </message>
@@ -7202,6 +7206,10 @@
     <message>
         <source>predicted</source>
         <translation>vorhergesagt</translation>
+    </message>
+    <message>
+        <source>probability {level}</source>
+        <translation>Wahrscheinlichkeit {level}</translation>
     </message>
     <message>
         <source>problem</source>
@@ -7724,12 +7732,12 @@
         <translation>{count:,} virtuelle Partikel sind jetzt geöffnet.</translation>
     </message>
     <message>
-        <source>{counts} at grey level {level}; {small} too small.</source>
-        <translation>{counts} beim Grauwert {level}; {small} zu klein.</translation>
+        <source>{counts} at {threshold}; {small} too small.</source>
+        <translation>{counts} bei {threshold}; {small} zu klein.</translation>
     </message>
     <message>
-        <source>{counts} at grey level {level}; {small} too small. {voxels} voxels hold no finite number (NaN or infinity) and are in no grain.</source>
-        <translation>{counts} beim Grauwert {level}; {small} zu klein. {voxels} Voxel enthalten keine endliche Zahl (NaN oder unendlich) und liegen in keinem Korn.</translation>
+        <source>{counts} at {threshold}; {small} too small. {voxels} voxels hold no finite number (NaN or infinity) and are in no grain.</source>
+        <translation>{counts} bei {threshold}; {small} zu klein. {voxels} Voxel enthalten keine endliche Zahl (NaN oder unendlich) und liegen in keinem Korn.</translation>
     </message>
     <message>
         <source>{count} faces are duplicated.</source>

@@ -4,6 +4,7 @@ import ast
 import re
 import shutil
 import string
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -128,7 +129,9 @@ def test_that_what_was_found_in_a_scan_is_told_anew(grains, bodies, speaking):
         f" {'Körper' if bodies == 1 else 'Körpern'}"
     )
     assert translate(found.counts) == counts
-    assert translate(found.summary) == f"{counts} beim Grauwert 103,5; 2 zu klein."
+    assert translate(found.summary) == f"{counts} bei Grauwert 103,5; 2 zu klein."
+    of_map = replace(found, probability=0.5)
+    assert translate(of_map.summary) == f"{counts} bei Wahrscheinlichkeit 0,5; 2 zu klein."
     made = Extraction((), (1, 2), (3,), grains).summary
     assert translate(made) == f"{grains} Partikel; weggelassen: 2 am Rand, 1 zu klein."
 

@@ -130,6 +130,8 @@ class Segmentation:
         ConnectedComponents and grains that were dropped for their size.
     n_not_finite
         Voxels without a finite number (NaN, infinities), which are in no grain.
+    probability
+        At which grains begin, where the values are probabilities; else none.
     """
 
     labels: Volume
@@ -139,6 +141,7 @@ class Segmentation:
     n_bodies: int
     n_small: int
     n_not_finite: int = 0
+    probability: float | None = None
 
     @property
     def n_grains(self) -> int:
@@ -160,19 +163,25 @@ class Segmentation:
     @property
     def summary(self) -> str:
         """One sentence for the user."""
-        template = N_("{counts} at grey level {level}; {small} too small.")
+        template = N_("{counts} at {threshold}; {small} too small.")
         if self.n_not_finite:
             template = N_(
-                "{counts} at grey level {level}; {small} too small. {voxels} voxels hold no finite number "
+                "{counts} at {threshold}; {small} too small. {voxels} voxels hold no finite number "
                 "(NaN or infinity) and are in no grain."
             )
         return Message(
             template,
             counts=self.counts,
-            level=Number(self.level, "g"),
+            threshold=_threshold_words(self.level, self.probability),
             small=self.n_small,
             voxels=Number(self.n_not_finite, ","),
         )
+
+
+def _threshold_words(level: float, probability: float | None) -> str:
+    if probability is not None:
+        return Message(N_("probability {level}"), level=Number(probability, "g"))
+    return Message(N_("grey level {level}"), level=Number(level, "g"))
 
 
 Steps = Generator[SegmentationProgress, None, Segmentation]
@@ -219,15 +228,19 @@ def segmentation_steps(
     sizes, n_parts = yield from _parted(numbers, found, settings, scratch, run)
     scratch.drop(found.numbers.array)
     least = settings.cleaning.min_voxels
+    probability = settings.threshold.value if settings.threshold.method == "probability" else None
     if not len(sizes):
+        threshold = _threshold_words(found.level, probability)
         raise InputError(
-            f"No grain of {least} voxels or more was found in {source.name} at grey level {found.level:g}; "
+            f"No grain of {least} voxels or more was found in {source.name} at {threshold}; "
             "is the threshold right, and are grains brighter than what is between them?"
         )
     small = int((found.bodies.sizes < least).sum()) + n_parts - len(sizes)
     labels = Volume(numbers, found.edges, "labels", f"{source.name}, labels", source.origin)
     n_bodies = int((found.bodies.sizes >= least).sum())
-    result = Segmentation(labels, sizes, found.level, found.seen, n_bodies, small, found.n_not_finite)
+    result = Segmentation(
+        labels, sizes, found.level, found.seen, n_bodies, small, found.n_not_finite, probability
+    )
     if settings.objects is None and not settings.edits:
         return result
     sizes = yield from _correct(numbers, volume, settings)

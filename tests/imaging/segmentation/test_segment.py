@@ -216,6 +216,7 @@ def test_that_a_probability_map_takes_the_place_of_the_threshold() -> None:
     found = segment(Volume(likely, (1, 1, 1), "grey", "p"), settings)
     assert found.n_grains == 60
     assert np.array_equal(found.labels.array > 0, truth)
+    assert "connected bodies at probability 0.5; " in found.summary
     by_bytes = segment(Volume((likely * 255).astype(np.uint8), (1, 1, 1), "grey", "p"), settings)
     assert np.array_equal(by_bytes.labels.array, found.labels.array)
 
