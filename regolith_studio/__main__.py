@@ -1,5 +1,6 @@
 """``python -m regolith_studio`` and the installed command ``regolith-studio``."""
 
+import os
 import signal
 import sys
 
@@ -12,8 +13,10 @@ def main() -> None:
 
     A signal ends a command as :class:`StopSignals` says. Until the window can be closed, Ctrl+C ends the
     process as the system does: nothing is written yet, and an exception might be raised in a slot of Qt,
-    which drops it.
+    which drops it. Linear algebra takes one thread, which several would only wait for on a busy machine, and
+    which gives the bytes that workers of a pool give; a variable of the environment that is set stands.
     """
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # read when numpy is imported
     signals = StopSignals()
     try:
         if sys.argv[1:2] not in ([], ["open"]):

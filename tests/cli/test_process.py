@@ -93,6 +93,26 @@ def test_that_the_version_is_printed() -> None:
 
 
 @pytest.mark.slow
+def test_that_linear_algebra_takes_one_thread_unless_the_environment_says_so() -> None:
+    code = (
+        "import contextlib, sys; sys.argv[1:] = ['--version']; from regolith_studio.__main__ import main\n"
+        "with contextlib.suppress(SystemExit): main()\n"
+        "import numpy; from threadpoolctl import threadpool_info\n"
+        "print(*(each['num_threads'] for each in threadpool_info()))"
+    )
+    free = {name: value for name, value in os.environ.items() if not name.endswith("_NUM_THREADS")}
+    for environment, expected in ((free, "1"), (free | {"OPENBLAS_NUM_THREADS": "2"}, "2")):
+        done = subprocess.run(
+            [sys.executable, "-c", code],
+            capture_output=True,
+            text=True,
+            cwd=ROOT,
+            env=environment,
+            check=True,
+        )
+        assert done.stdout.splitlines()[-1] == expected
+
+
 def test_that_check_answers_without_a_display_and_survives_a_broken_opengl() -> None:
     blind = {key: value for key, value in os.environ.items() if key not in ("DISPLAY", "WAYLAND_DISPLAY")}
     result = start("check", "--json", env=blind)
