@@ -71,11 +71,15 @@ def training_from(document: Mapping[str, Any], name: str) -> TrainingSet:
     except (KeyError, TypeError, ValueError, AttributeError):
         raise FileError(f"{name} is a damaged classifier: a part is missing or of the wrong kind.") from None
     if names != features.names or rows.ndim != 2 or rows.shape[1] != 4 + len(names) or sizes.shape != (3,):
-        raise FileError(f"{name} is a classifier for other features: {', '.join(map(str, names))}.")
+        raise FileError(
+            f"{name} is a classifier for other features than this program computes; train it again."
+        )
     whole: NDArray[np.int64] = rows[:, :4].astype(np.int64)
-    return TrainingSet(
-        whole[:, :3], whole[:, 3], rows[:, 4:].astype(np.float32), classes, sizes, scan, settings
-    )
+    vectors = rows[:, 4:].astype(np.float32)
+    try:
+        return TrainingSet(whole[:, :3], whole[:, 3], vectors, classes, sizes, scan, settings)
+    except InputError as error:
+        raise InputError(f"{name} is no classifier that can be used: {error}") from None
 
 
 def _shortest(value: np.float32) -> float:

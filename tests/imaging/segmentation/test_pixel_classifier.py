@@ -238,7 +238,7 @@ def test_that_other_voxel_sizes_and_scans_of_other_size_are_refused() -> None:
         ({"format": "something"}, "is no classifier"),
         ({"classes": 3}, "damaged classifier"),
         ({"voxels": [[1, 2, 3]]}, "for other features"),
-        ({"features": ["hessian 1"]}, "for other features: hessian 1"),
+        ({"features": ["hessian 1"]}, "for other features than this program computes; train it again"),
     ],
 )
 def test_that_a_wrong_document_gets_one_sentence(change: dict[str, object], sentence: str) -> None:
@@ -246,6 +246,16 @@ def test_that_a_wrong_document_gets_one_sentence(change: dict[str, object], sent
     document = training_document(paint_from_labels(volume, painted_middle(balls), THREE))
     with pytest.raises(FileError, match=sentence):
         training_from(document | change, "strokes.json")
+
+
+def test_that_a_file_whose_voxels_are_of_one_kind_is_named() -> None:
+    volume, balls = two_minerals()
+    document = training_document(paint_from_labels(volume, painted_middle(balls), THREE))
+    document["voxels"] = [each for each in document["voxels"] if each[3] == 0]
+    with pytest.raises(
+        InputError, match=r"strokes\.json is no classifier that can be used: No grain is painted"
+    ):
+        training_from(document, "strokes.json")
 
 
 def test_that_scikit_learn_is_asked_for_where_it_is_missing(monkeypatch: pytest.MonkeyPatch) -> None:
