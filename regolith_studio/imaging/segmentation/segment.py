@@ -49,6 +49,7 @@ from regolith_studio.imaging.segmentation.thresholding import (
     histogram,
     level_of,
     span,
+    threshold_words,
     weak_level,
 )
 from regolith_studio.imaging.volume import Volume
@@ -172,16 +173,10 @@ class Segmentation:
         return Message(
             template,
             counts=self.counts,
-            threshold=_threshold_words(self.level, self.probability),
+            threshold=threshold_words(self.level, self.probability),
             small=self.n_small,
             voxels=Number(self.n_not_finite, ","),
         )
-
-
-def _threshold_words(level: float, probability: float | None) -> str:
-    if probability is not None:
-        return Message(N_("probability {level}"), level=Number(probability, "g"))
-    return Message(N_("grey level {level}"), level=Number(level, "g"))
 
 
 Steps = Generator[SegmentationProgress, None, Segmentation]
@@ -230,7 +225,7 @@ def segmentation_steps(
     least = settings.cleaning.min_voxels
     probability = settings.threshold.value if settings.threshold.method == "probability" else None
     if not len(sizes):
-        threshold = _threshold_words(found.level, probability)
+        threshold = threshold_words(found.level, probability)
         raise InputError(
             f"No grain of {least} voxels or more was found in {source.name} at {threshold}; "
             "is the threshold right, and are grains brighter than what is between them?"

@@ -9,6 +9,7 @@ from skimage import filters
 
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats, locked_integers
+from regolith_studio.messages import N_, Message, Number
 
 ThresholdMethod = Literal["otsu", "multi-otsu", "manual", "probability"]
 THRESHOLD_METHODS: tuple[ThresholdMethod, ...] = get_args(ThresholdMethod)
@@ -208,3 +209,10 @@ def grain_voxels(values: NDArray[Any], level: float, settings: ThresholdSettings
     """
     grain = np.asarray(values < level if settings.dark else values >= level)
     return grain & np.isfinite(values) if values.dtype.kind == "f" else grain
+
+
+def threshold_words(level: float, probability: float | None) -> str:
+    """The level with what it is of, for a sentence: a grey value, or a probability where there is one."""
+    if probability is not None:
+        return Message(N_("probability {level}"), level=Number(probability, "g"))
+    return Message(N_("grey level {level}"), level=Number(level, "g"))
