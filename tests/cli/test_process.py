@@ -113,6 +113,7 @@ def test_that_linear_algebra_takes_one_thread_unless_the_environment_says_so() -
         assert done.stdout.splitlines()[-1] == expected
 
 
+@pytest.mark.slow
 def test_that_check_answers_without_a_display_and_survives_a_broken_opengl() -> None:
     blind = {key: value for key, value in os.environ.items() if key not in ("DISPLAY", "WAYLAND_DISPLAY")}
     result = start("check", "--json", env=blind)
