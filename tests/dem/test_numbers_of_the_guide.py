@@ -232,9 +232,9 @@ def test_that_the_sentence_on_rapier_s_edges_has_the_results_of_its_runs() -> No
 def test_that_the_table_of_deep_contacts_has_the_results_of_its_runs() -> None:
     found = json.loads((ROOT / "benchmarks/results/repose_deep_contacts.json").read_text("utf-8"))["phases"]
     rows = rows_of(REPOSE, "| heaps | settled filling | while the cylinder rises | at rest |")
-    kinds = [("mujoco", 1000), ("rapier", 1000), ("rapier", 10_000)]
-    for (engine, particles), (_, *cells) in zip(kinds, rows, strict=True):
-        runs = [run for run in found if (run["engine"], run["particles"]) == (engine, particles)]
+    names = ("mujoco-1000", "dataset_sample8", "dataset_sample20", "big10000")
+    for name, (_, *cells) in zip(names, rows, strict=True):
+        runs = [run for run in found if run["run"].startswith(name)]
         for phase, cell in zip(("settle", "lift", "rest"), cells, strict=True):
             shares = [100 * run["deep_share"] for run in runs if run["phase"] == phase]
             if not shares:
@@ -245,6 +245,23 @@ def test_that_the_table_of_deep_contacts_has_the_results_of_its_runs() -> None:
             )
             deepest = max(run["max"] for run in runs if run["phase"] == phase)
             assert cell == f"{' to '.join(f'{end:.2f}' for end in ends)} %, {100 * deepest:.1f} %"
+
+
+def test_that_the_table_of_facets_has_the_results_of_its_runs() -> None:
+    rows = rows_of(REPOSE, "| facets | seeds | angles | mean | filling, packed | contacts a particle |")
+    samples: list[dict[str, list[float]]] = []
+    for facets, _, *cells in rows:
+        runs = [run for run in results("repose_facets.json") if run["facets"] == int(facets)]
+        keys = ("angle_deg", "solid_fraction", "coordination_number")
+        samples.append({key: [run[key] for run in runs] for key in keys})
+        angle, packed, contacts = (np.mean(samples[-1][key]) for key in keys)
+        angles = ", ".join(f"{each:.1f}" for each in samples[-1]["angle_deg"])
+        assert cells == [angles, f"{angle:.1f}", f"{packed:.3f}", f"{contacts:.1f}"]
+    few, many = samples
+    for key, text in (("solid_fraction", "{:.3f} to {:.3f}"), ("angle_deg", "{:.1f} to {:.1f}")):
+        low, high = stats.ttest_ind(few[key], many[key]).confidence_interval()
+        ends = (-high, -low) if key == "solid_fraction" else (low, high)
+        assert text.format(*ends) in one_line(REPOSE)
 
 
 def test_that_the_table_of_spheres_has_the_results_of_its_benchmark() -> None:
