@@ -506,7 +506,7 @@ def test_that_the_whole_column_of_particles_is_in_the_picture_before_the_lift(sh
 def test_that_the_problems_of_a_saved_run_are_shown_in_the_language_of_the_window(speaking, tmp_path):
     checks = check_run(
         np.array([-5.0, 1.0]),
-        np.array([0.034]),
+        np.array([0.134]),
         energy_gain=0.0,
         kinetic_energy=0.0,
         at_rest=True,
@@ -518,8 +518,9 @@ def test_that_the_problems_of_a_saved_run_are_shown_in_the_language_of_the_windo
     assert checks_text(run) == " ".join(checks.problems)
     speaking("de")
     assert checks_text(run) == (
-        "1 von 2 Partikeln fielen durch die Platte. Partikel überlappen um bis zu 3,4 % "
-        "des mittleren Durchmessers."
+        "1 von 2 Partikeln fielen durch die Platte. "
+        "100,0 % der Kontakte sind tiefer als 2 % des mittleren Durchmessers. "
+        "Partikel überlappen um bis zu 13,4 % des mittleren Durchmessers."
     )
 
 
