@@ -24,7 +24,7 @@ from regolith_studio.messages import N_, Message
 if TYPE_CHECKING:
     from regolith_studio.geometry.mesh import Mesh
 
-TASKS = {"read": 10, "fit": 27, "describe": 33, "quadric": 18, "annealing": 12, "exact": 77, "compound": 12}
+TASKS = {"read": 10, "fit": 27, "describe": 33, "quadric": 18, "annealing": 12, "exact": 86, "compound": 21}
 TASKS |= {"degrees": 3, "model": 7, "scan": 10, "representatives": 3}
 """What can be compiled, in the order in which the window needs it, and the files of machine code that each
 adds to those of the tasks before it. Annealing has no kernel that the exact method does not need too.
