@@ -164,9 +164,9 @@ def test_that_groups_are_not_written_to_a_folder_that_was_removed(
 ) -> None:
     complete = getattr(ExtractionFolder, step)
 
-    def remove(*arguments: object) -> object:
+    def remove(*arguments: object, **options: object) -> object:
         shutil.rmtree(tmp_path / "all", ignore_errors=True)
-        return complete(*arguments)
+        return complete(*arguments, **options)
 
     monkeypatch.setattr(ExtractionFolder, step, remove)
     result = command("extract", scans, "-o", tmp_path / "all", *ASKED)

@@ -95,7 +95,7 @@ def test_that_the_report_begins_with_the_choices_of_the_window(shown, tmp_path):
 
 def test_that_what_a_report_lacks_is_said_before_it_is_made(shown, tmp_path):
     dialog = shown(ReportDialog(0, Choices(), tmp_path / "out"))
-    assert "open a particle" in dialog.state.text()
+    assert "open one first" in dialog.state.text()
     assert not dialog.go.isEnabled()
     dialog = shown(ReportDialog(1, Choices(), tmp_path / "out"))
     dialog.restore_fields({"heap": 3})
