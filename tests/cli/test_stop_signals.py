@@ -130,6 +130,7 @@ def test_that_a_second_signal_does_not_disturb_the_tidying_up(tmp_path: Path) ->
 
 
 @pytest.mark.skipif(os.name == "nt", reason="signals are a matter of POSIX")
+@pytest.mark.slow
 def test_that_the_processes_of_a_killed_command_end_in_the_middle_of_a_step(tmp_path: Path) -> None:
     child = start(STUCK.replace("{waits}", WAITS["ends by itself"]), tmp_path)
     family = psutil.Process(child.pid).children(recursive=True)
@@ -240,6 +241,7 @@ program.main()
 
 
 @pytest.mark.skipif(os.name == "nt", reason="signals are a matter of POSIX")
+@pytest.mark.slow
 def test_that_an_interruption_that_a_library_swallows_is_no_failed_particle(
     grains: Path, tmp_path: Path
 ) -> None:

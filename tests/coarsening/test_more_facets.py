@@ -66,6 +66,7 @@ def test_that_the_loss_of_a_sweep_falls_on_real_particles(
         check_that_it_falls(ladder_of(read_mesh(path, "um").mesh))
 
 
+@pytest.mark.slow
 def test_that_only_fewer_facets_with_the_same_weights_are_begun_with(particle: Mesh) -> None:
     size = ALL.relabelled("size", weights=LossWeights.of(volume=1.0))
     rows = (size.relabelled("eight", n_facets=8), ALL.relabelled("twelve", n_facets=12))

@@ -54,10 +54,11 @@ def test_that_a_ball_becomes_nearly_as_round_as_goldberg_allows(n_facets: int) -
     ("axes", "n_facets"),
     [
         ((1.25, 1.1, 1.0), 20),
-        pytest.param((1.3, 1.0, 0.9), 30, marks=pytest.mark.slow),
-        pytest.param((1.0, 0.9, 0.8), 30, marks=pytest.mark.slow),
+        ((1.3, 1.0, 0.9), 30),
+        ((1.0, 0.9, 0.8), 30),
     ],
 )
+@pytest.mark.slow
 def test_that_no_box_is_overlooked_where_the_sphericity_cannot_be_met(
     axes: tuple[float, float, float], n_facets: int
 ) -> None:
@@ -95,8 +96,7 @@ def test_that_what_cannot_be_met_ends_at_the_least_loss_that_was_shown() -> None
     ("n_facets", "seed"),
     [
         (12, 0),
-        *(pytest.param(*each, marks=pytest.mark.slow) for each in ((12, 2), (20, 1), (30, 2))),
-        (50, 2),
+        *(pytest.param(*each, marks=pytest.mark.slow) for each in ((12, 2), (20, 1), (30, 2), (50, 2))),
     ],
 )
 def test_that_an_urchin_keeps_volume_and_length_and_all_that_is_missed_is_named(

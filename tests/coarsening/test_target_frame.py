@@ -44,6 +44,7 @@ def test_that_a_moved_turned_and_scaled_particle_has_the_same_polyhedron(particl
     assert there.half_spaces.points == pytest.approx(points, abs=1e-9)
 
 
+@pytest.mark.slow
 def test_that_the_order_of_vertices_and_triangles_does_not_matter(particle: Mesh) -> None:
     rng = np.random.default_rng(6)
     order = rng.permutation(len(particle.vertices))

@@ -36,6 +36,7 @@ def test_that_particles_start_apart_and_within_the_cylinder() -> None:
     assert top < 3.5 * (4 / 3 * np.pi * reach**3).sum() / (np.pi * 25)
 
 
+@pytest.mark.slow
 def test_that_particles_start_apart_in_a_cylinder_that_is_many_particles_wide() -> None:
     """2,000 lie in one layer here, as many as a filling of 100,000 has in its cylinder."""
     reach = np.full(3000, 0.5)

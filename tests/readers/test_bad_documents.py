@@ -192,7 +192,11 @@ def special(key: str, good: bytes) -> Iterator[Bad]:
     if key == "model":
         yield "unknown", changed(document, "model", "crystal"), "there is no model called 'crystal'"
         for number, values in enumerate(({}, {"mean": "x"}, {"mean": 1.0, "spectrum": 3})):
-            yield f"numbers {number}", changed(document, "values", values), "are impossible for a model of its kind"
+            yield (
+                f"numbers {number}",
+                changed(document, "values", values),
+                "are impossible for a model of its kind",
+            )
     if key == "card":
         yield "negative", changed(document, "median_radius", -2.0), "radius must be at least 1e-12, not -2"
         yield "far", changed(document, "median_radius", 1e300), r"median_radius must be at most 1e\+12"

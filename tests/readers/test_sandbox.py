@@ -204,6 +204,7 @@ def test_that_the_child_goes_when_its_parent_goes(ending, stl):
     _wait_until_gone(_left_behind(ending, stl))
 
 
+@pytest.mark.slow
 def test_that_a_hanging_child_ends_itself_after_its_parent_has_gone(stl):
     hang = (
         "threading.Thread(target=lambda: sandbox.request('sleep', Path(sys.argv[1])), daemon=True).start()\n"

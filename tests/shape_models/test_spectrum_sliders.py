@@ -10,7 +10,10 @@ from regolith_studio.shape_models.sample import Sample
 from regolith_studio.shape_models.spectrum_sliders import can_be_edited, relative_amplitudes, with_amplitudes
 
 
-@pytest.mark.parametrize("key", sorted(MODELS))
+@pytest.mark.parametrize(
+    "key",
+    [pytest.param(key, marks=pytest.mark.slow) if key == "hull_field" else key for key in sorted(MODELS)],
+)
 def test_that_every_model_shows_about_the_amplitudes_of_its_sample(
     key: str, rough_sample: Callable[..., Sample]
 ) -> None:

@@ -181,6 +181,7 @@ def test_that_drawing_fits_the_selected_source_first_and_goes_on_after_its_draws
     assert page._fitted.n_fitted == 15
 
 
+@pytest.mark.slow
 def test_that_particles_drawn_from_open_ones_and_opened_are_not_fitted_instead_of_them(page, wait):
     session = page._context.session
     session.adopt([egg(n) for n in range(3)])

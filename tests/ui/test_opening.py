@@ -183,6 +183,7 @@ def outcome(steps):
             return end.value
 
 
+@pytest.mark.slow
 def test_that_drawn_particles_that_were_replaced_come_back_by_undo(opening, tmp_path):
     commands, session, _ = opening
     made, origin = drawn()

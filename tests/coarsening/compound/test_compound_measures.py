@@ -130,7 +130,7 @@ def test_that_the_lines_of_a_mesh_alternate_between_entering_and_leaving() -> No
         assert lines.sign[one:two].tolist() == [-1.0, 1.0] * ((two - one) // 2)
 
 
-@pytest.mark.parametrize("seed", [0, 2, 3])
+@pytest.mark.parametrize("seed", [0, *(pytest.param(each, marks=pytest.mark.slow) for each in (2, 3))])
 def test_that_derivatives_of_conditions_and_overlap_agree_with_differences(seed: int) -> None:
     lines = scan_lines(stone(), 2000)
     problem = CompoundProblem(lines, np.zeros(6), np.arange(6), FINE_ANGLE)
