@@ -1,4 +1,4 @@
-"""Overlaps of heaps while they form and at rest, and what the deepest contacts carry: docs/repose_engines.md.
+"""Overlaps of heaps while they form and at rest, and what the deepest contacts carry: docs/repose_rapier.md.
 
     python -m benchmarks.deep_contacts RESULT.json DEPTH RUN...
 
