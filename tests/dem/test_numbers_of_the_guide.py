@@ -240,11 +240,9 @@ def test_that_the_table_of_deep_contacts_has_the_results_of_its_runs() -> None:
             if not shares:
                 assert cell == "not run to the end"
                 continue
-            ends = (
-                dict.fromkeys((min(shares), max(shares))) if len(shares) == 1 else (min(shares), max(shares))
-            )
+            ends = dict.fromkeys(f"{each:.2f}" for each in (min(shares), max(shares)))
             deepest = max(run["max"] for run in runs if run["phase"] == phase)
-            assert cell == f"{' to '.join(f'{end:.2f}' for end in ends)} %, {100 * deepest:.1f} %"
+            assert cell == f"{' to '.join(ends)} %, {100 * deepest:.1f} %"
 
 
 def test_that_the_table_of_facets_has_the_results_of_its_runs() -> None:
