@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from scipy.stats import t
 
-from regolith_studio.dem.run_io import DOCUMENT, read_run
+from regolith_studio.dem.run_io import FINAL, read_run
 from regolith_studio.resources import resource
 
 METHODS, FACETS, PARTICLES = ("exact", "compound"), 40, 500
@@ -46,10 +46,10 @@ def call(*words: object) -> None:
 
 
 def row(runs: Path, method: str, seed: int, engine: str) -> dict[str, Any]:
-    """One run, made where it is missing."""
+    """One run, made or gone on with where it is not complete."""
     folder = runs / f"{method}-{seed}"
-    if not (folder / DOCUMENT).is_file():
-        how = ["-n", PARTICLES, "--seed", seed, "--engine", engine]
+    if not (folder / FINAL).is_file():
+        how = ["-n", PARTICLES, "--seed", seed, "--engine", engine, "--overwrite"]
         call("repose", "run", runs / method, "-o", folder, *how)
     document = read_run(folder).document
     checks, measured = document["checks"], document["measurement"]
