@@ -51,7 +51,7 @@ class RunChecks:
     mean_overlap, max_overlap
         At rest.
     deep_contacts
-        Share of the contacts that overlap by more than 0.02 then.
+        Share of the overlapping contacts at rest that are deeper than 0.02 mean diameters.
     energy_gain
         Maximum rise of the total energy while no moving wall touches the particles; it should only fall.
     kinetic_energy

@@ -81,7 +81,8 @@ def test_that_small_facets_grow_and_nothing_is_lost(n_facets: int, monkeypatch: 
         values = measured(planes.normals, planes.offsets, 2.0)
         for key in ("volume", "sphericity", "min_diameter", "max_diameter"):
             assert values[key] == pytest.approx(target.descriptors[key], rel=1e-6)
-    assert sum(small[True]) < 0.6 * sum(small[False])  # of one in six the overlap would fall too much
+    # Two of six keep theirs: the overlap would fall too much.
+    assert sum(small[True]) < 0.6 * sum(small[False])
 
 
 def test_that_the_polyhedron_with_larger_facets_is_the_last_step(

@@ -5,8 +5,10 @@ from pathlib import Path
 import pytest
 
 from benchmarks.sliding_friction import box_dataset
+from regolith_studio.dataset.build import build_dataset
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.folder_io import write_dataset
+from tests.dataset.example import elbow_entry, entry
 
 
 @pytest.fixture(scope="session")
@@ -19,3 +21,9 @@ def boxes() -> Dataset:
 def boxes_folder(boxes: Dataset, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The same on disk."""
     return write_dataset(tmp_path_factory.mktemp("data") / "boxes", boxes)
+
+
+@pytest.fixture(scope="session")
+def elbows() -> Dataset:
+    """A compound of two parts and a convex body."""
+    return build_dataset([elbow_entry(), entry(1)], name="elbows")

@@ -27,15 +27,10 @@ from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.jobs.repose_jobs import check_shapes
-from tests.dataset.example import Coarse, cuboid, elbow_entry, elbow_moments, entry
+from tests.dataset.example import Coarse, cuboid, elbow_entry, elbow_moments
 from tests.geometry.solids import rotation
 
 CASE = ReposeCase(n_particles=40, test=LiftingCylinderTest(diameter=0.04, height=0.2))
-
-
-@pytest.fixture(scope="module")
-def elbows() -> Dataset:
-    return build_dataset([elbow_entry(), entry(1)], name="elbows")
 
 
 @pytest.fixture(scope="module")
