@@ -22,7 +22,9 @@ LOOK = 0.5
 """Simulated time between two samples of the energies and speeds."""
 CLEAR = 0.5
 """Distance between rim and pile, in mean diameters, at which the cylinder is removed."""
-FALL, SETTLE, REST = 25.0, 6.0, 18.0
+SETTLE, REST = 8.0, 25.0
+FILLED = 25.0
+"""Mean kinetic energy of a particle at which filling ends, in energies at rest: nothing falls any more."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,6 +53,9 @@ class LiftingSettings:
     ----------
     max_fill_speed
         Speed limit during filling, in sqrt(g d).
+    fill_friction
+        Share of the friction between particles that acts during filling. The smaller it is, the denser is the
+        filling, and the sooner it is at rest.
     rest_energy
         Mean kinetic energy of a particle, in units of its weight times d, below which a heap is at rest.
     rest_time
@@ -63,6 +68,9 @@ class LiftingSettings:
 
     max_fill_speed: float = field(
         default=6.0, metadata={"label": N_("Filling speed"), "minimum": 0.1, "maximum": 100.0}
+    )
+    fill_friction: float = field(
+        default=0.5, metadata={"label": N_("Friction while filling"), "minimum": 0.01, "maximum": 1.0}
     )
     rest_energy: float = field(
         default=2e-4, metadata={"label": N_("Energy at rest"), "minimum": 1e-9, "maximum": 0.1, "decimals": 9}
@@ -110,7 +118,7 @@ class Solver(Protocol):
         ...
 
     def begin(self, phase: str) -> None:
-        """Set the speed of walls and the limit of that of particles for a phase; no walls in ``rest``."""
+        """Set the speed of walls, and the friction and maximum speed of particles; no walls in ``rest``."""
         ...
 
     def time_step(self) -> float:
@@ -171,15 +179,22 @@ RECORDS = ("phase", "end", "energy", "energy_gain", "steps", "next_picture", "ca
 """Fields of a run that its state keeps beside that of the solver."""
 
 
+def friction_in(phase: str, prepared: PreparedCase, settings: LiftingSettings) -> float:
+    """Friction between particles in a phase."""
+    share = settings.fill_friction if phase == "fill" else 1.0
+    return share * prepared.case.contact.static_friction
+
+
 def lift_speed(prepared: PreparedCase) -> float:
     """Of the cylinder in sqrt(g d)."""
     return prepared.case.test.lift_speed / Units.of(prepared).speed
 
 
 def expected_duration(prepared: PreparedCase) -> float:
-    """Of the whole test; the rim must rise above the pile, which is about 0.6 of the filling's height."""
-    lift = 0.75 * prepared.fill_height / prepared.mean_diameter / lift_speed(prepared)
-    return float(FALL + SETTLE + lift + REST)
+    """Of the whole test: what falls is limited to 6 sqrt(g d), and the rim must rise above the pile, which is
+    about 0.6 of the filling's height."""
+    height = prepared.fill_height / prepared.mean_diameter
+    return float(5.0 + 0.22 * height + SETTLE + 0.75 * height / lift_speed(prepared) + REST)
 
 
 def simulate_lifting(run: LiftingRun) -> Generator[Snapshot, None, SimulationResult]:
@@ -208,7 +223,7 @@ def resume_lifting(run: LiftingRun, state: EngineState) -> Generator[Snapshot, N
 
 def _go_on(run: LiftingRun, *, resumed: bool = False) -> Generator[Snapshot, None, SimulationResult]:
     while True:
-        done = _is_clear if run.phase == "lift" else _is_calm
+        done = {"fill": _is_filled, "lift": _is_clear}.get(run.phase, _is_calm)
         if not (resumed and run.steps and done(run)):  # a snapshot comes before this question
             yield from advance(run, done)
         resumed = False
@@ -251,6 +266,11 @@ def advance(run: LiftingRun, done: Callable[[LiftingRun], bool]) -> Generator[Sn
             yield _snapshot(run)
         if done(run):
             return
+
+
+def _is_filled(run: LiftingRun) -> bool:
+    """Whether no particle falls any more."""
+    return run.solver.energies()[1] / len(run.prepared) < FILLED * run.settings.rest_energy
 
 
 def _is_calm(run: LiftingRun) -> bool:

@@ -3,8 +3,6 @@
 import mujoco
 import numpy as np
 import pytest
-from scipy.spatial import cKDTree
-from scipy.spatial.distance import pdist, squareform
 
 from benchmarks.sliding_friction import FRICTION, SEEDS, TUMBLED, slide
 from regolith_studio.dataset.dataset import Dataset
@@ -15,33 +13,15 @@ from regolith_studio.dem.engines.mujoco.model import (
     ADHESION_GAP,
     N_WALLS,
     PARTICLE,
+    PLATE,
     POINTS_PER_PAIR,
+    WALL,
     adhesion,
     build_model,
 )
 from regolith_studio.dem.engines.mujoco.settings import MujocoSettings
-from regolith_studio.dem.initial_packing import start_places
 from regolith_studio.dem.lifting_cylinder import Units
 from regolith_studio.errors import InputError
-
-
-def test_that_particles_start_apart_and_within_the_cylinder() -> None:
-    generator = np.random.default_rng(1)
-    reach = generator.uniform(0.4, 1.2, 400)
-    places, top = start_places(reach, 5.0, generator)
-    apart = squareform(pdist(places)) - reach[:, None] - reach[None, :] + 10 * np.eye(400)
-    assert apart.min() > 0.0
-    assert (np.hypot(places[:, 0], places[:, 1]) + reach).max() <= 5.0
-    assert (places[:, 2] - reach).min() >= 0.0
-    assert top < 3.5 * (4 / 3 * np.pi * reach**3).sum() / (np.pi * 25)
-
-
-@pytest.mark.slow
-def test_that_particles_start_apart_in_a_cylinder_that_is_many_particles_wide() -> None:
-    """2,000 lie in one layer here, as many as a filling of 100,000 has in its cylinder."""
-    reach = np.full(3000, 0.5)
-    places, _ = start_places(reach, 26.0, np.random.default_rng(1))
-    assert cKDTree(places).query(places, k=2)[0][:, 1].min() > 1.0
 
 
 def test_that_bodies_have_the_mass_and_inertia_of_their_polyhedra(boxes: Dataset) -> None:
@@ -55,6 +35,30 @@ def test_that_bodies_have_the_mass_and_inertia_of_their_polyhedra(boxes: Dataset
     squares = (edges * (volumes ** (1 / 3))[:, None]) ** 2
     inertia = volumes[:, None] / 12 * (squares.sum(axis=1)[:, None] - squares)
     assert np.sort(model.body_inertia[bodies], axis=1) == pytest.approx(np.sort(inertia, axis=1), rel=1e-6)
+
+
+def test_that_particles_feel_half_their_friction_while_they_are_filled_in_only(boxes: Dataset) -> None:
+    prepared = prepare(boxes, ReposeCase(n_particles=60, contact=ContactParameters(static_friction=0.6)))
+    solver = simulation.MujocoSolver(prepared, MujocoSettings(fill_friction=0.5))
+    felt = {}
+    for phase in ("fill", "settle", "lift"):
+        solver.begin(phase)
+        kinds = solver.model.geom_contype
+        felt[phase] = [set(solver.model.geom_friction[kinds == kind, 0]) for kind in (PARTICLE, WALL, PLATE)]
+    assert felt == {
+        "fill": [{0.3}, {0.3}, {0.8}],
+        "settle": [{0.6}, {0.3}, {0.8}],
+        "lift": [{0.6}, {0.3}, {0.8}],
+    }
+
+
+def test_that_mujoco_goes_on_with_the_friction_of_the_phase(boxes: Dataset) -> None:
+    prepared = prepare(boxes, ReposeCase(n_particles=60, contact=ContactParameters(static_friction=0.6)))
+    solver, other = (simulation.MujocoSolver(prepared, MujocoSettings()) for _ in range(2))
+    solver.begin("fill")
+    other.phase = "fill"
+    other.load(solver.state())
+    assert (other.model.geom_friction == solver.model.geom_friction).all()
 
 
 def test_that_bodies_lie_where_their_shapes_are_drawn(boxes: Dataset) -> None:

@@ -94,6 +94,18 @@ def test_that_sliding_boxes_feel_the_friction_that_is_set(boxes: Dataset) -> Non
     assert np.tan(slope) - speed / solver.time / np.cos(slope) == pytest.approx(0.8, abs=0.01)
 
 
+def test_that_rapier_fills_with_half_the_friction_of_particles_and_all_of_wall_and_plate(
+    boxes: Dataset,
+) -> None:
+    """A wall or the plate multiplies its coefficient by that of the particle."""
+    solver = solver_of(boxes, static_friction=0.6, wall_friction=0.3, plate_friction=0.9)
+    for phase, share in (("fill", 0.5), ("settle", 1.0)):
+        solver.begin(phase)
+        bodies = (solver.particles[0], solver.cylinder, solver.plate)
+        own, wall, plate = (solver.world.colliders[body.colliders[-1]].friction for body in bodies)
+        assert (own, own * wall, own * plate) == pytest.approx((0.6 * share, 0.3, 0.9))
+
+
 def test_that_a_column_of_boxes_stands(boxes: Dataset) -> None:
     solver = solver_of(boxes, n=20)
     half = half_heights(solver)

@@ -4,9 +4,9 @@ import mujoco
 import numpy as np
 
 from regolith_studio.dem.case import PreparedCase
-from regolith_studio.dem.engines.mujoco.model import build_model
+from regolith_studio.dem.engines.mujoco.model import PARTICLE, build_model
 from regolith_studio.dem.engines.mujoco.settings import MujocoSettings
-from regolith_studio.dem.lifting_cylinder import Units, lift_speed
+from regolith_studio.dem.lifting_cylinder import Units, friction_in, lift_speed
 from regolith_studio.dem.snapshot import PHASES
 from regolith_studio.errors import RegolithError
 from regolith_studio.geometry.arrays import FloatArray
@@ -26,7 +26,7 @@ class MujocoSolver:
 
     def __init__(self, prepared: PreparedCase, settings: MujocoSettings) -> None:
         mujoco.set_mju_user_warning(_be_silent)
-        self.settings, self.lift_speed = settings, lift_speed(prepared)
+        self.prepared, self.settings, self.lift_speed = prepared, settings, lift_speed(prepared)
         self.unit_time, self.phase = Units.of(prepared).time, PHASES[0]
         built = build_model(prepared, settings)
         self.model, self.walls, self.top = built.model, built.walls, built.top
@@ -61,6 +61,7 @@ class MujocoSolver:
         """The surface of walls moves with them, as friction must feel."""
         self.phase = phase
         self.model.geom_surfacevel[self.walls, 2] = self.lift_speed if phase == "lift" else 0.0
+        self._set_friction()
         if phase == "rest":
             self.data.mocap_pos[0, 2] += 10.0 * self.top
 
@@ -110,6 +111,11 @@ class MujocoSolver:
         mujoco.mj_setState(self.model, self.data, values[:-3], STATE)
         self.model.geom_surfacevel[self.walls, 2] = values[-3]
         self.data.energy[:] = values[-2:]
+        self._set_friction()
+
+    def _set_friction(self) -> None:
+        particles = self.model.geom_contype == PARTICLE
+        self.model.geom_friction[particles, 0] = friction_in(self.phase, self.prepared, self.settings)
 
     def _limit_speed(self) -> None:
         velocity = self.data.qvel.reshape(-1, 6)[:, :3]

@@ -13,7 +13,7 @@ from regolith_studio.dem.case import PreparedCase
 from regolith_studio.dem.engine import ENGINE_THREADS
 from regolith_studio.dem.engines.rapier.settings import RapierSettings
 from regolith_studio.dem.initial_packing import enclosing_radii, loose_column
-from regolith_studio.dem.lifting_cylinder import Units, lift_speed
+from regolith_studio.dem.lifting_cylinder import Units, friction_in, lift_speed
 from regolith_studio.dem.run_checks import lowest_corners
 from regolith_studio.dem.separation import overlap_depths
 from regolith_studio.dem.snapshot import PHASES, ParticleState
@@ -56,9 +56,8 @@ class RapierSolver:
     def _find_bodies(self) -> None:
         """Handles of the bodies, and the threads and numerics of the world."""
         bodies = self.world.rigid_bodies
-        handles = [rapier.RigidBodyHandle.from_raw_parts(k, 0) for k in range(self.n + 1)]
-        self.particles = [bodies[handle] for handle in handles[:-1]]
-        self.cylinder = bodies[handles[-1]]
+        handles = [rapier.RigidBodyHandle.from_raw_parts(k, 0) for k in range(self.n + 2)]
+        *self.particles, self.cylinder, self.plate = [bodies[handle] for handle in handles]
         self.world.set_num_threads(int(os.environ.get(ENGINE_THREADS, "1")))
         numerics = self.world.integration_parameters
         numerics.num_solver_iterations = self.settings.iterations
@@ -105,9 +104,23 @@ class RapierSolver:
         self.phase = phase
         limit = self.settings.max_fill_speed if phase == "fill" else MAX_SPEED
         self.world.integration_parameters.normalized_max_linear_velocity = limit
+        self._set_friction(phase)
         self.cylinder.linvel = rapier.Vec3(0.0, 0.0, self.lift_speed if phase == "lift" else 0.0)
         if phase == "rest":
             self.cylinder.translation = rapier.Vec3(0.0, 0.0, self.rim + 10.0 * self.top)
+
+    def _set_friction(self, phase: str) -> None:
+        """That of particles in this phase; wall and plate are felt as before, as a product with it."""
+        test, friction = self.prepared.case.test, friction_in(phase, self.prepared, self.settings)
+        if friction == 0.0:
+            return
+        bodies = [
+            (self.cylinder, test.wall_friction / friction),
+            (self.plate, test.plate_friction / friction),
+        ]
+        for body, value in bodies + [(body, friction) for body in self.particles]:
+            for handle in body.colliders:
+                self.world.colliders[handle].friction = value
 
     def time_step(self) -> float:
         return self.settings.time_step
