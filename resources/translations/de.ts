@@ -2252,6 +2252,10 @@
         <translation>Reibung</translation>
     </message>
     <message>
+        <source>Friction while filling</source>
+        <translation>Reibung beim Füllen</translation>
+    </message>
+    <message>
         <source>From</source>
         <translation>Von</translation>
     </message>
