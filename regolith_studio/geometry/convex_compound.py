@@ -11,7 +11,12 @@ from numpy.typing import ArrayLike
 from regolith_studio.errors import GeometryError
 from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
+from regolith_studio.geometry.merge_vertices import merged_vertices
 from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.topology import Connectivity
+
+LEDGE = 1e-7
+"""Edges of the union shorter than this share of its size are collapsed: parts that touch overlap by less."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,9 +122,12 @@ class ConvexCompound:
         if union.status() != manifold3d.Error.NoError or union.is_empty():
             raise GeometryError("The union of the convex parts cannot be made.")
         found = union.to_mesh64()
-        vertices = np.asarray(found.vert_properties)[:, :3] * size + middle
-        triangles = np.asarray(found.tri_verts).astype(np.int64)
-        return Mesh(vertices, triangles), np.asarray(found.face_id).astype(np.int64)
+        vertices, triangles, exposed = _without_ledges(
+            np.asarray(found.vert_properties)[:, :3],
+            np.asarray(found.tri_verts).astype(np.int64),
+            np.asarray(found.face_id).astype(np.int64),
+        )
+        return Mesh(vertices * size + middle, triangles), exposed
 
     @property
     def _bounds(self) -> tuple[FloatArray, FloatArray]:
@@ -180,6 +188,21 @@ class ConvexCompound:
         turn = np.eye(3) if rotation is None else np.asarray(rotation, dtype=np.float64)
         places = ((self.places + np.asarray(shift, dtype=np.float64)) * scale) @ turn.T
         return ConvexCompound(tuple(part.moved(rotation=turn, scale=scale) for part in self.parts), places)
+
+
+def _without_ledges(
+    vertices: FloatArray, triangles: IntArray, facets: IntArray
+) -> tuple[FloatArray, IntArray, IntArray]:
+    """The same surface, with a size of 1, without edges that single precision cannot hold.
+
+    Where parts touch, one stands out of the other by :data:`LEDGE` or less; programs that merge corners while
+    they read a mesh would find it open there.
+    """
+    merged, corners = merged_vertices(vertices, triangles, LEDGE)
+    kept = (corners != np.roll(corners, 1, axis=1)).all(axis=1)
+    if kept.all() or not Connectivity.of(corners[kept], len(merged)).closed:
+        return vertices, triangles, facets
+    return merged, corners[kept], facets[kept]
 
 
 Polyhedron = ConvexPolyhedron | ConvexCompound

@@ -4,7 +4,9 @@ import pickle
 
 import numpy as np
 import pytest
+import trimesh
 from numpy.typing import ArrayLike
+from scipy.spatial import ConvexHull
 
 from regolith_studio.descriptors.describe import describe
 from regolith_studio.geometry import ConvexCompound, ConvexPolyhedron, HalfSpaces
@@ -48,6 +50,34 @@ def test_that_touching_cubes_become_one_cuboid_without_the_side_between_them() -
     assert cuboids.volume == pytest.approx(16.0)
     assert cuboids.surface_area == pytest.approx(40.0)
     assert cuboids.inertia == pytest.approx(np.diag([8.0, 20.0, 20.0]) * 16.0 / 12.0)
+
+
+def halves(seed: int) -> ConvexCompound:
+    """Two different polyhedra that meet in a plane, where they overlap by 2e-8."""
+    rng, parts = np.random.default_rng(seed), []
+    for side in (-1.0, 1.0):
+        cut = [side * 1.0, 0.0, 0.0]
+        normals = np.vstack([CUBE, rng.normal(size=(8, 3)), cut])
+        normals /= np.linalg.norm(normals, axis=1)[:, None]
+        offsets = np.concatenate([rng.uniform(0.8, 1.0, len(normals) - 1), [0.3 + 1e-8]])
+        parts.append(ConvexPolyhedron.from_half_spaces(HalfSpaces(normals, offsets)))
+    return ConvexCompound(tuple(parts), np.array([[0.3, 0.0, 0.0], [-0.3, 0.0, 0.0]]))
+
+
+@pytest.mark.parametrize("seed", [0, 6, 8, 9, 12, 14])
+def test_that_parts_that_touch_leave_a_surface_that_is_closed_in_single_precision(seed: int) -> None:
+    """trimesh merges corners nearer than 1e-8 while it reads a mesh: ledges of that width would open it."""
+    union = halves(seed).moved(rotation=rotation(seed))
+    soup = union.mesh.triangles.astype(np.float32).reshape(-1, 3)
+    for read in (
+        trimesh.Trimesh(union.mesh.vertices, union.mesh.faces),
+        trimesh.Trimesh(soup, np.arange(len(soup)).reshape(-1, 3)),
+    ):
+        assert read.is_watertight
+        assert read.is_winding_consistent
+        assert read.volume == pytest.approx(
+            sum(ConvexHull(each.vertices).volume for each in union.part_meshes), rel=1e-6
+        )
 
 
 def test_that_the_overlap_of_parts_counts_once_in_the_inertia() -> None:
