@@ -179,6 +179,11 @@ def test_that_the_keywords_of_mfix_describe_every_phase_and_every_pair(
     for phase in range(1, count + 1):
         assert given[f"solids_model({phase})"] == "'GSP'"
         assert float(given[f"ro_s0({phase})"]) < DENSITY, "overlapping spheres are added up"
+    domain = [re.fullmatch(r"# domain at least (\w): (\S+) to (\S+) m", line) for line in lines[1:4]]
+    placed = pack_on_lattice(dataset, OPTIONS).position
+    for axis, said in enumerate(domain):
+        assert said is not None
+        assert float(said[2]) < placed[:, axis].min() < placed[:, axis].max() < float(said[3])
     restitution = [key for key in given if key.startswith("des_en_input(")]
     assert restitution == [f"des_en_input({k})" for k in range(1, count * (count + 1) // 2 + 1)]
 

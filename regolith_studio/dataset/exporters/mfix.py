@@ -115,7 +115,10 @@ def _keywords(
     pairs = len(bounds) * (len(bounds) + 1) // 2
     lines = [
         "# Phases of the glued-sphere model; kn, kt_fac or Hertzian stiffness are yours to choose",
-        *(f"# domain at least {a}: {x!r} to {y!r} m" for a, x, y in zip("xyz", low, high, strict=True)),
+        *(
+            f"# domain at least {axis}: {start!r} to {end!r} m"
+            for axis, start, end in zip("xyz", low.tolist(), high.tolist(), strict=True)
+        ),
         f"mmax = {len(bounds)}",
         *(f"solids_model({k}) = 'GSP'" for k in phases),
         *(f"d_p0({k}) = {float(bounds[k - 1] * medians[k - 1])!r}" for k in phases),
