@@ -245,7 +245,7 @@ def dataset_provenance(
         processing_steps=(
             "Meshes read and repaired.",
             *(fit if request.target == "fit" else ()),
-            f"CoarseningResult to {request.stopping_criterion} by the method {request.method}.",
+            f"Coarsened to {request.stopping_criterion} by the method {request.method}.",
             "Turned to principal axes and scaled to unit volume.",
         ),
         seed=request.seed,

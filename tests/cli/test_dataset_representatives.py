@@ -45,6 +45,7 @@ def test_that_two_representatives_stand_for_balls_and_needles(command, crowd: Pa
     assert int(needles.name[-1]) >= 6
     assert len(needles.sizes.diameters_um) == 3
     assert "2 representatives of 9 particles" in dataset.provenance.processing_steps[1]
+    assert "Coarsened to 20 facets by the method quadric." in dataset.provenance.processing_steps
     assert dataset.provenance.representation.n_particles == 9
     assert 0 < dataset.provenance.representation.source_errors["aspect_ratio"] < 1
     assert dataset.provenance.representation.errors["sphericity"] > 1  # the polyhedra of balls are no balls
