@@ -304,16 +304,20 @@ def export(
 
     del jobs  # taken by every command
     with usage_errors():
-        chosen = chosen_exporters([key.strip() for key in to.split(",") if key.strip()])
+        keys = [key.strip() for key in to.split(",") if key.strip()]
+        chosen = chosen_exporters(keys)
         changes: dict[str, object] = dict(values(set_, "setting"))
         settings = ExportOptions(
             coarse_graining_factor=coarse_graining, n_particles=particles, max_error=max_error, seed=seed
         )
         settings = settings.replaced(**changes)
-    keys = [each.key for each in chosen]
     done = run_with_progress(export_dataset_folder(folder, keys, output, settings, lossy))
+    written = {one.key for one in done}
     for each in chosen:
-        print_errors(f"{each.label} does not carry: {lost}." for lost in each.loses)
+        if each.key in written:
+            print_errors(f"{each.label} does not carry: {lost}." for lost in each.loses)
+        else:
+            print_errors([f"{each.label} is left out, since it cannot hold compounds: {each.convex_only}"])
     if json:
         print_json(
             [

@@ -14,7 +14,7 @@ from regolith_studio.dataset.size_distributions import (
 )
 from regolith_studio.errors import DatasetError
 from regolith_studio.geometry.arrays import FloatArray
-from regolith_studio.geometry.convex_compound import Polyhedron
+from regolith_studio.geometry.convex_compound import ConvexCompound, Polyhedron
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.particle import Source
 
@@ -247,6 +247,11 @@ class Dataset:
     def weights(self) -> FloatArray:
         """Class weights alpha_i as given, shape (n,)."""
         return np.array([representative.weight for representative in self.representatives])
+
+    @property
+    def compounds(self) -> tuple[Representative, ...]:
+        """The representatives whose shapes are unions of convex parts."""
+        return tuple(one for one in self.representatives if isinstance(one.shape, ConvexCompound))
 
     def class_weights(self, weighting: Weighting) -> FloatArray:
         """Class weights that count particles (``number``) or their volume, shape (n,)."""

@@ -16,7 +16,6 @@ from regolith_studio.dataset.folder_io import IGNORED_FILES
 from regolith_studio.dataset.parameters import ContactParameters, LiftingCylinderTest, ScriptTimes
 from regolith_studio.dataset.size_distributions import size_classes
 from regolith_studio.errors import DatasetError, FileError, InputError, os_error_reason
-from regolith_studio.geometry.convex_compound import ConvexCompound
 from regolith_studio.io.atomic import exchange, filled_folder, recover_folder
 from regolith_studio.io.json_text import canonical_json, parse_strict_json
 from regolith_studio.io.tables import csv_bytes
@@ -254,10 +253,10 @@ def check_compounds(dataset: Dataset, exporters: Sequence[Exporter]) -> None:
         If one cannot; the message says why.
     """
     refusing = [each for each in exporters if each.convex_only]
-    compounds = [one for one in dataset.representatives if isinstance(one.shape, ConvexCompound)]
-    if refusing and compounds:
+    if refusing and dataset.compounds:
+        name = dataset.compounds[0].name
         reasons = " ".join(
-            f"{each.label} cannot hold {compounds[0].name}, a compound of convex parts: {each.convex_only}"
+            f"{each.label} cannot hold {name}, a compound of convex parts: {each.convex_only}"
             for each in refusing
         )
         keys = ", ".join(each.key for each in refusing)

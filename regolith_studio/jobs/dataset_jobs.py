@@ -272,7 +272,8 @@ def export_dataset_folder(
 ) -> Steps:
     """Export the dataset in `source` to ``target/<key>`` for each key; returns the exports.
 
-    All formats are complete before the first takes its place, so that a stop leaves the earlier ones.
+    All formats are complete before the first takes its place, so that a stop leaves the earlier ones. ``all``
+    leaves out those that cannot hold compounds if the dataset has any.
 
     Raises
     ------
@@ -287,6 +288,8 @@ def export_dataset_folder(
     for exporter in exporters:
         check_loss_accepted(exporter, accept_loss)
     dataset, digest = read_dataset(source), dataset_hash(source)
+    if "all" in keys and dataset.compounds:
+        exporters = tuple(each for each in exporters if not each.convex_only)
     check_compounds(dataset, exporters)
     with ExitStack() as stack:
         finishes: list[Callable[[], ExportResult]] = []

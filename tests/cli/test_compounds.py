@@ -6,11 +6,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from regolith_studio.dataset.build import build_dataset
+from regolith_studio.dataset.exporters import EXPORTERS
+from regolith_studio.dataset.folder_io import write_dataset
 from regolith_studio.descriptors.catalogue import LOSS_KEYS
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.io.stl import stl_bytes
 from regolith_studio.resources import resource
 from tests.coarsening.compound.unions import dumbbell
+from tests.dataset.example import elbow_entry
 
 COMPOUND = ("--method", "compound", "--target", "particle")
 
@@ -98,3 +102,21 @@ def test_that_repairs_of_a_mesh_are_said(command, tmp_path: Path) -> None:
     result = command("coarsen", tmp_path / "open.stl", "-o", tmp_path / "out", "--method", "quadric")
     assert "open: It is not closed: " in result.err
     assert "open: Filled 4 holes " in result.err
+
+
+def test_that_all_formats_are_those_that_can_hold_the_compounds_and_the_others_are_said(
+    command, tmp_path: Path
+) -> None:
+    folder = write_dataset(tmp_path / "set", build_dataset([elbow_entry()], name="elbow"))
+    out = tmp_path / "out"
+    few = ("--particles", 2, "--set", "n_spheres=3")
+    result = command("dataset", "export", folder, "--to", "all", "--lossy", *few, "-o", out)
+    assert result.code == 0
+    refusing = {"edem", "hoomd", "lammps"}
+    assert {path.name for path in out.iterdir()} == set(EXPORTERS) - refusing
+    said = [line for line in result.err.splitlines() if "is left out, since it cannot hold compounds" in line]
+    assert sorted(said) == sorted(
+        f"{EXPORTERS[key].label} is left out, since it cannot hold compounds: {EXPORTERS[key].convex_only}"
+        for key in refusing
+    )
+    assert not any("EDEM" in line and "does not carry" in line for line in result.err.splitlines())

@@ -14,7 +14,6 @@ from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.export import ExportResult
 from regolith_studio.dataset.quality import QualityPoint
 from regolith_studio.errors import RegolithError
-from regolith_studio.geometry.convex_compound import ConvexCompound
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.jobs.dataset_jobs import (
     DatasetBuildResult,
@@ -367,8 +366,7 @@ class DatasetPage(PageWidget):
         self._exports = []
         self._show_result()
         self.distribution.show_classes(self._classes())
-        compounds = any(isinstance(one.shape, ConvexCompound) for one in dataset.representatives)
-        self.targets.set_ready(True, compounds)
+        self.targets.set_ready(True, bool(dataset.compounds))
 
     def _show_result(self) -> None:
         """What has been written, and where."""
