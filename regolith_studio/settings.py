@@ -5,6 +5,7 @@ are made from these fields; see :func:`setting`.
 """
 
 import math
+import numbers
 from collections.abc import Iterator, Mapping
 from dataclasses import Field, field, fields
 from typing import Any
@@ -56,6 +57,12 @@ def setting(
 def settings_of_kind(kind: Any) -> Iterator[Field[Any]]:
     """The fields of a dataclass that were made by :func:`setting`."""
     return (each for each in fields(kind) if "label" in each.metadata)
+
+
+def is_whole(value: Any) -> bool:
+    """Whether a value is a whole number: 4 or 4.0, but neither 4.5 nor True nor "4"."""
+    number = isinstance(value, numbers.Real) and not isinstance(value, bool)
+    return number and math.isfinite(value) and value == int(value)
 
 
 def check_settings(values: Any) -> None:

@@ -1,6 +1,8 @@
 """Coarsen one particle by any of the methods."""
 
 import dataclasses
+import math
+import numbers
 from collections.abc import Generator, Mapping
 from typing import Any
 
@@ -25,6 +27,7 @@ from regolith_studio.geometry.half_spaces import HalfSpaces
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle, solid_of
 from regolith_studio.geometry.topology import genus
+from regolith_studio.settings import is_whole
 
 DEFAULT_METHOD = "exact"
 DEFAULT_PRESET = "all"
@@ -112,9 +115,9 @@ def _prepare(
     fewer: HalfSpaces | None,
 ) -> tuple[Target, Generator[MethodStep, None, CoarseningResult]]:
     """The target, and the method's steps with the measured result at their end."""
-    chosen = _method(method)
+    chosen, n_facets = _method(method), _checked_facets(n_facets)
     weights = LossWeights.from_preset(DEFAULT_PRESET) if weights is None else weights
-    _check(n_facets, chosen, weights, seed)
+    _check(chosen, weights, seed)
     target = particle if isinstance(particle, Target) else Target.of(solid_of(particle))
     random, chosen_settings = np.random.SeedSequence(seed), settings_of(method, settings)
     if fewer is not None and isinstance(chosen, GrowingMethod):
@@ -153,10 +156,20 @@ def settings_of(method: str, settings: Any = None) -> Any:
     for name, value in changes.items():
         if name not in known:
             raise InputError(f"The method {method} has no setting {name!r}; it has {', '.join(known)}.")
-        if isinstance(value, str) != isinstance(known[name], str):
-            wanted = "a word" if isinstance(known[name], str) else "a number"
+        if wanted := _wrong_kind(value, known[name]):
             raise InputError(f"The setting {name} of the method {method} must be {wanted}, got {value!r}.")
+        if type(known[name]) is int:
+            changes[name] = int(value)
     return kind(**changes)
+
+
+def _wrong_kind(value: Any, default: Any) -> str:
+    """What a setting must be, if `value` is of another kind than its default; else nothing."""
+    if isinstance(default, str):
+        return "" if isinstance(value, str) else "a word"
+    if type(default) is int:
+        return "" if is_whole(value) else "a whole number"
+    return "" if isinstance(value, numbers.Real) and math.isfinite(value) else "a number"
 
 
 def _method(key: str) -> CoarseningMethod:
@@ -165,10 +178,14 @@ def _method(key: str) -> CoarseningMethod:
     return METHODS[key]
 
 
-def _check(n_facets: int, method: CoarseningMethod, weights: LossWeights, seed: int) -> None:
+def _checked_facets(n_facets: int) -> int:
     low, high = FACETS_LIMITS
-    if isinstance(n_facets, bool) or n_facets != int(n_facets) or not low <= n_facets <= high:
+    if not is_whole(n_facets) or not low <= n_facets <= high:
         raise InputError(f"The number of facets must be a whole number from {low} to {high}, got {n_facets}.")
+    return int(n_facets)
+
+
+def _check(method: CoarseningMethod, weights: LossWeights, seed: int) -> None:
     if weights.all_zero and method.key != "quadric":
         raise InputError("All weights of the loss are 0, so there is nothing to optimise; raise one of them.")
     if seed < 0:

@@ -18,6 +18,7 @@ from regolith_studio.coarsening.weights import JACCARD, LossWeights
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.messages import N_, Message, Number
+from regolith_studio.settings import is_whole
 
 
 @dataclass(frozen=True)
@@ -39,7 +40,7 @@ def facets_for_triangles(n_triangles: int) -> int:
     InputError
         If the budget is no whole number or does not reach for 5 facets.
     """
-    if isinstance(n_triangles, bool) or n_triangles != int(n_triangles):
+    if not is_whole(n_triangles):
         raise InputError(f"The number of triangles must be a whole number, got {n_triangles}.")
     n_facets = (int(n_triangles) + 12) // 4
     low, high = FACETS_LIMITS

@@ -31,8 +31,8 @@ def waist(tmp_path_factory: pytest.TempPathFactory) -> Path:
     [
         (("--set", "parts=1"), "The number of parts must be a whole number from 2 to 8, got 1."),
         (("--set", "parts=9"), "The number of parts must be a whole number from 2 to 8, got 9."),
-        (("--set", "parts=2.5"), "The number of parts must be a whole number from 2 to 8, got 2.5."),
-        (("--set", "parts=many"), "parts of the method compound must be a number, got 'many'."),
+        (("--set", "parts=2.5"), "parts of the method compound must be a whole number, got 2.5."),
+        (("--set", "parts=many"), "parts of the method compound must be a whole number, got 'many'."),
         (("--set", "joint=glue"), "The parts either overlap or touch, got 'glue'."),
         (("--set", "joint=1"), "joint of the method compound must be a word, got 1."),
         (("--set", "level=slow"), "The level must be one of fast, best, got 'slow'."),

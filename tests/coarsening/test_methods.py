@@ -7,10 +7,11 @@ import numpy as np
 import pytest
 from scipy.spatial import ConvexHull, HalfspaceIntersection
 
-from regolith_studio.coarsening.coarsen import coarsen, coarsening_steps
+from regolith_studio.coarsening.coarsen import coarsen, coarsening_steps, settings_of
 from regolith_studio.coarsening.exact.sliver_removal import COST
 from regolith_studio.coarsening.methods import METHODS
 from regolith_studio.coarsening.methods.annealing import AnnealingSettings
+from regolith_studio.coarsening.methods.compound import CompoundSettings
 from regolith_studio.coarsening.result import CoarseningResult
 from regolith_studio.coarsening.target import Target
 from regolith_studio.coarsening.weights import LossWeights
@@ -182,6 +183,14 @@ def test_that_the_measured_errors_are_those_of_the_target(exact: CoarseningResul
     [
         ({"n_facets": 4}, "number of facets must be a whole number from 5 to 200, got 4"),
         ({"n_facets": 201}, "got 201"),
+        ({"n_facets": 12.5}, "whole number from 5 to 200, got 12.5"),
+        ({"n_facets": "12"}, "whole number from 5 to 200, got 12"),
+        ({"n_facets": float("nan")}, "whole number from 5 to 200, got nan"),
+        ({"settings": {"retries": 2.5}}, "retries of the method exact must be a whole number, got 2.5"),
+        ({"settings": {"retries": None}}, "retries of the method exact must be a whole number, got None"),
+        ({"method": "compound", "settings": {"parts": True}}, "parts .* must be a whole number, got True"),
+        ({"method": "compound", "settings": {"parts": float("nan")}}, "parts .* whole number, got nan"),
+        ({"method": "annealing", "settings": {"cooling": float("nan")}}, "must be a number, got nan"),
         ({"method": "magic"}, "no coarsening method 'magic'"),
         ({"weights": LossWeights.of()}, "All weights"),
         ({"settings": {"speed": 1}}, "no setting 'speed'"),
@@ -195,6 +204,13 @@ def test_that_bad_requests_are_refused_in_one_sentence(
 ) -> None:
     with pytest.raises(InputError, match=sentence):
         coarsen(particle, **options)  # type: ignore[arg-type]
+
+
+def test_that_whole_numbers_may_be_written_with_a_point(particle: Mesh, exact: CoarseningResult) -> None:
+    """As JSON and spreadsheets write them."""
+    found = coarsen(particle, 20.0, "exact", seed=1, settings={"retries": 8.0})  # type: ignore[arg-type]
+    assert found.mesh.content_hash == exact.mesh.content_hash
+    assert settings_of("compound", {"parts": 3.0}) == CompoundSettings(parts=3)
 
 
 def test_that_bad_meshes_are_refused_in_one_sentence() -> None:

@@ -20,6 +20,7 @@ from regolith_studio.descriptors.comparison import relative_errors
 from regolith_studio.descriptors.describe import Descriptors, describe
 from regolith_studio.errors import InputError
 from regolith_studio.messages import N_, Message, join_messages
+from regolith_studio.settings import is_whole
 
 PARTS_LIMITS = (2, 8)
 CONVEX = 1e-6
@@ -59,7 +60,7 @@ class CompoundSettings:
 
     def __post_init__(self) -> None:
         low, high = PARTS_LIMITS
-        if isinstance(self.parts, bool) or self.parts != int(self.parts) or not low <= self.parts <= high:
+        if not is_whole(self.parts) or not low <= self.parts <= high:
             raise InputError(
                 f"The number of parts must be a whole number from {low} to {high}, got {self.parts}."
             )
