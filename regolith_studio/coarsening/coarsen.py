@@ -16,7 +16,7 @@ from regolith_studio.coarsening.polyhedra import polyhedron_of
 from regolith_studio.coarsening.progress import CoarseningProgress, MethodStep
 from regolith_studio.coarsening.result import CoarseningResult, MethodResult, SphericityFree
 from regolith_studio.coarsening.target import Target
-from regolith_studio.coarsening.weights import WEIGHT_KEYS, LossWeights
+from regolith_studio.coarsening.weights import JACCARD, WEIGHT_KEYS, LossWeights
 from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.descriptors.comparison import relative_errors
 from regolith_studio.descriptors.describe import Descriptors, describe
@@ -205,6 +205,8 @@ def _measured(
         unit = result.polyhedron or ConvexPolyhedron.from_half_spaces(solid)
         overlap = target.jaccard_distance(unit.half_spaces)
         bounds = attainable_errors(target.descriptors, n_facets, weights)
+        if result.makes_compounds:
+            bounds |= dict.fromkeys((JACCARD, "volume", "convex_hull_volume"), 0.0)
     polyhedron = unit.moved(rotation=target.axes.T, scale=target.scale)
     achieved = result.achieved or describe(unit)
     errors = relative_errors(target.descriptors, achieved)

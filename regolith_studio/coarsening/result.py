@@ -38,6 +38,8 @@ class MethodResult:
         Of the solid by :func:`regolith_studio.descriptors.describe.describe`, where it has measured it.
     without_sphericity
         A polyhedron that keeps all that is asked for but the sphericity, where keeping that may cost overlap.
+    makes_compounds
+        Whether the method makes unions too: then a convex solid is not bound to miss V or CH.
     """
 
     solid: HalfSpaces | ConvexCompound
@@ -48,6 +50,7 @@ class MethodResult:
     polyhedron: ConvexPolyhedron | None = None
     achieved: Descriptors | None = None
     without_sphericity: HalfSpaces | None = None
+    makes_compounds: bool = False
 
 
 @dataclass(frozen=True)

@@ -5996,6 +5996,10 @@
         <translation>Schalten Sie „Schnitt“ in der Werkzeugleiste ein.</translation>
     </message>
     <message>
+        <source>Two parts need {faces} facets; with fewer the result is one convex polyhedron, which misses {missed}.</source>
+        <translation>Zwei Teile brauchen {faces} Facetten; mit weniger ist das Ergebnis ein konvexes Polyeder, das {missed} verfehlt.</translation>
+    </message>
+    <message>
         <source>Two surfaces on either side of a line</source>
         <translation>Zwei Oberflächen beiderseits einer Linie</translation>
     </message>

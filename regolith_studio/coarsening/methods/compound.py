@@ -1,7 +1,7 @@
 """Unions of few convex parts that keep all descriptors, the convex hull volume among them."""
 
 from collections.abc import Generator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 
 import numpy as np
@@ -97,7 +97,8 @@ class CompoundMethod:
         if target.solidity > 1.0 - CONVEX or parts < PARTS_LIMITS[0]:
             search = Search(target, weights, n_facets, [LEVELS[settings.level]], RETRIES, seed)
             yield from search.steps()
-            return (yield from search.finish())
+            result = yield from search.finish()
+            return replace(result, makes_compounds=True, reason=_reason_of_one(target, weights, result))
         effort, touching = EFFORTS[settings.level], settings.joint == "touch"
         run = search_compound(target, weights, parts, n_facets, effort, seed, touching)
         return (yield from _compound(target, n_facets, weights, parts, effort, run))
@@ -146,17 +147,8 @@ def _reason(
     target: Target, weights: LossWeights, achieved: Descriptors, parts: int, n_facets: int
 ) -> str | None:
     """One sentence that names every descriptor that is missed; ``None`` where all asked for are met."""
-    errors = relative_errors(target.descriptors, achieved)
-    missed = {key: errors[key] for key in KEYS if weights[key] > 0 and errors[key] > EXACT}
-    if not missed:
+    if not (missed := _missed(target, weights, achieved)):
         return None
-    listed = join_messages(
-        (
-            Message(MISSED_BY, name=Message(NAMES[key]), error=f"{100 * missed[key]:.2g}")
-            for key in sorted(missed, key=lambda key: -missed[key])
-        ),
-        ", ",
-    )
     return Message(
         N_(
             "No compound of {parts} parts with {faces} facets was found that meets all descriptors; this one"
@@ -164,7 +156,37 @@ def _reason(
         ),
         parts=parts,
         faces=n_facets,
-        missed=listed,
+        missed=missed,
+    )
+
+
+def _reason_of_one(target: Target, weights: LossWeights, result: MethodResult) -> str | None:
+    """Why a polyhedron stands for a particle that is not convex, before the reason of the exact method."""
+    if target.solidity > 1.0 - CONVEX or result.achieved is None:
+        return result.reason
+    if not (missed := _missed(target, weights, result.achieved)):
+        return result.reason
+    few = Message(
+        N_(
+            "Two parts need {faces} facets; with fewer the result is one convex polyhedron, which misses"
+            " {missed}."
+        ),
+        faces=PARTS_LIMITS[0] * MIN_FACETS,
+        missed=missed,
+    )
+    return few if result.reason is None else join_messages((few, result.reason), " ")
+
+
+def _missed(target: Target, weights: LossWeights, achieved: Descriptors) -> str:
+    """The weighted descriptors that are missed and by how much, the largest error first; may be empty."""
+    errors = relative_errors(target.descriptors, achieved)
+    missed = [key for key in KEYS if weights[key] > 0 and errors[key] > EXACT]
+    return join_messages(
+        (
+            Message(MISSED_BY, name=Message(NAMES[key]), error=f"{100 * errors[key]:.2g}")
+            for key in sorted(missed, key=lambda key: -errors[key])
+        ),
+        ", ",
     )
 
 

@@ -11,6 +11,7 @@ from regolith_studio.coarsening.compound.line_overlap import compound_distance
 from regolith_studio.coarsening.compound.measures import measure_compound, parts_overlap
 from regolith_studio.coarsening.compound.search import numbers_of_parts
 from regolith_studio.coarsening.compound.start import shared_out
+from regolith_studio.coarsening.stopping_criteria import coarsen_below
 from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.descriptors.catalogue import LOSS_KEYS
 from regolith_studio.descriptors.comparison import relative_errors
@@ -38,6 +39,19 @@ def test_that_a_compound_keeps_all_six_descriptors_where_a_convex_body_cannot(me
     convex = coarsen(mesh, 24)
     assert convex.errors["convex_hull_volume"] > 0.05
     assert found.jaccard_distance < 0.8 * convex.jaccard_distance
+
+
+def test_that_too_few_facets_for_two_parts_are_said_and_do_not_pass_for_the_fewest(mesh: Mesh) -> None:
+    few = coarsen(mesh, 9, "compound")
+    off = 100 * (1 - describe(few.mesh)["convex_hull_volume"] / describe(mesh)["convex_hull_volume"])
+    assert few.reason == (
+        "Two parts need 10 facets; with fewer the result is one convex polyhedron, which misses"
+        f" convex hull volume by {off:.2g} %."
+    )
+    enough = coarsen_below(mesh, 0.01, method="compound", settings={"parts": 2})
+    assert enough.n_parts == 2
+    assert max(relative_errors(describe(mesh), describe(enough.mesh), LOSS_KEYS).values()) < 0.01
+    assert coarsen_below(mesh, 0.01).errors["convex_hull_volume"] == pytest.approx(off / 100, rel=1e-3)
 
 
 def test_that_the_distance_is_that_of_a_boolean_and_parts_lie_where_the_particle_lies(mesh: Mesh) -> None:
