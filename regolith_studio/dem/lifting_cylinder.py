@@ -185,6 +185,22 @@ def friction_in(phase: str, prepared: PreparedCase, settings: LiftingSettings) -
     return share * prepared.case.contact.static_friction
 
 
+def halved_step(step: float, speeds: FloatArray, max_move: float, smallest_share: float) -> float:
+    """The step, halved until 99 in 100 particles move by at most `max_move` mean diameters in it.
+
+    It is never less than `smallest_share` of the step; speeds are in sqrt(g d), shape (n,).
+    """
+    halvings = np.ceil(np.log2(max(1.0, float(np.quantile(speeds, 0.99)) * step / max_move)))
+    return float(step * max(0.5**halvings, smallest_share))
+
+
+def steps_note(times: dict[float, float]) -> str:
+    """Sentence on the steps of a run, from the simulated time with each of them."""
+    shares = {step: time / sum(times.values()) for step, time in sorted(times.items(), reverse=True)}
+    parts = ", ".join(f"{step:.3g} for {100 * share:.1f} %" for step, share in shares.items())
+    return f"Time step in sqrt(d/g), by what moved: {parts} of the simulated time."
+
+
 def lift_speed(prepared: PreparedCase) -> float:
     """Of the cylinder in sqrt(g d)."""
     return prepared.case.test.lift_speed / Units.of(prepared).speed

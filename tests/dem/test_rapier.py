@@ -74,7 +74,7 @@ def test_that_boxes_begin_to_slide_at_the_angle_of_friction(boxes: Dataset, fric
         solver.begin("rest")
         slope = np.arctan(friction) + np.radians(offset)
         solver.world.gravity = (np.sin(slope), 0.0, -np.cos(slope))
-        solver.advance(0.025, 1200)
+        solver.advance(0.05, 600)
         slides[offset] = solver.points[:, 0]
     assert slides[-0.2].max() < 0.05
     assert slides[0.2].min() > 0.5
@@ -89,7 +89,7 @@ def test_that_sliding_boxes_feel_the_friction_that_is_set(boxes: Dataset) -> Non
     solver.begin("rest")
     slope = np.radians(50.0)
     solver.world.gravity = (np.sin(slope), 0.0, -np.cos(slope))
-    solver.advance(0.025, 400)
+    solver.advance(0.05, 200)
     speed = np.mean([body.linvel.x for body in solver.particles])
     assert np.tan(slope) - speed / solver.time / np.cos(slope) == pytest.approx(0.8, abs=0.01)
 
@@ -112,7 +112,7 @@ def test_that_a_column_of_boxes_stands(boxes: Dataset) -> None:
     tops = np.cumsum(2 * half)
     place(solver, np.column_stack([np.zeros(20), np.zeros(20), tops - half]))
     solver.begin("rest")
-    solver.advance(0.025, 4000)
+    solver.advance(0.05, 2000)
     assert np.abs(solver.points[:, :2]).max() < 0.02
     assert solver.points[-1, 2] == pytest.approx(tops[-1] - half[-1], rel=2e-3)
 
@@ -235,7 +235,7 @@ def test_that_equal_seeds_give_equal_bytes_with_any_number_of_threads(
         monkeypatch.setenv("RAYON_NUM_THREADS", threads)
         result, _ = finish(engine_named("rapier").simulate(prepared, quick("rapier")))
         found.add(result.particles.points.tobytes() + result.particles.orientations.tobytes())
-        assert "Equal seeds give equal bytes" in result.notes[0]
+        assert "Equal seeds give equal bytes" in result.notes[-1]
     assert len(found) == 1
 
 

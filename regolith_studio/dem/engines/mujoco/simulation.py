@@ -6,7 +6,13 @@ import numpy as np
 from regolith_studio.dem.case import PreparedCase
 from regolith_studio.dem.engines.mujoco.model import PARTICLE, build_model
 from regolith_studio.dem.engines.mujoco.settings import MujocoSettings
-from regolith_studio.dem.lifting_cylinder import Units, friction_in, lift_speed
+from regolith_studio.dem.lifting_cylinder import (
+    Units,
+    friction_in,
+    halved_step,
+    lift_speed,
+    steps_note,
+)
 from regolith_studio.dem.snapshot import PHASES
 from regolith_studio.errors import RegolithError
 from regolith_studio.geometry.arrays import FloatArray
@@ -74,9 +80,8 @@ class MujocoSolver:
         step = self.settings.time_step
         if self.phase == "fill":
             return step
-        speed = float(np.quantile(np.linalg.norm(self.data.qvel.reshape(-1, 6)[:, :3], axis=1), 0.99))
-        halvings = np.ceil(np.log2(max(1.0, speed * step / MAX_MOVE)))
-        return float(step * max(0.5**halvings, SMALLEST_SHARE))
+        speeds = np.linalg.norm(self.data.qvel.reshape(-1, 6)[:, :3], axis=1)
+        return halved_step(step, speeds, MAX_MOVE, SMALLEST_SHARE)
 
     def advance(self, step: float, count: int) -> None:
         self.model.opt.timestep = step
@@ -94,9 +99,7 @@ class MujocoSolver:
         return [Message(N_("MuJoCo's memory for contacts was full."))] if crowded else []
 
     def notes(self, times: dict[float, float]) -> list[str]:
-        shares = {step: time / sum(times.values()) for step, time in sorted(times.items(), reverse=True)}
-        parts = ", ".join(f"{step:.3g} for {100 * share:.1f} %" for step, share in shares.items())
-        return [f"Time step in sqrt(d/g), by what moved: {parts} of the simulated time."]
+        return [steps_note(times)]
 
     def state(self) -> bytes:
         values = np.empty(mujoco.mj_stateSize(self.model, STATE))

@@ -13,8 +13,10 @@ class RapierSettings(LiftingSettings):
 
     Parameters
     ----------
+    rest_energy
+        As of all engines; twice as large, since single particles of a heap at rest tremble.
     time_step
-        Of the integration.
+        Between two searches for contacts; halved once or twice while particles move fast.
     iterations
         Small steps of the solver in a time step.
 
@@ -24,10 +26,13 @@ class RapierSettings(LiftingSettings):
         If a value is out of its range.
     """
 
-    time_step: float = field(
-        default=0.025, metadata={"label": N_("Time step"), "minimum": 1e-4, "maximum": 0.1, "decimals": 4}
+    rest_energy: float = field(
+        default=4e-4, metadata={"label": N_("Energy at rest"), "minimum": 1e-9, "maximum": 0.1, "decimals": 9}
     )
-    iterations: int = field(default=4, metadata={"label": N_("Iterations"), "minimum": 1, "maximum": 100})
+    time_step: float = field(
+        default=0.05, metadata={"label": N_("Time step"), "minimum": 1e-4, "maximum": 0.1, "decimals": 4}
+    )
+    iterations: int = field(default=8, metadata={"label": N_("Iterations"), "minimum": 1, "maximum": 100})
 
     def __post_init__(self) -> None:
         check_limits(self, "Rapier setting")

@@ -13,7 +13,13 @@ from regolith_studio.dem.case import PreparedCase
 from regolith_studio.dem.engine import ENGINE_THREADS
 from regolith_studio.dem.engines.rapier.settings import RapierSettings
 from regolith_studio.dem.initial_packing import enclosing_radii, loose_column
-from regolith_studio.dem.lifting_cylinder import Units, friction_in, lift_speed
+from regolith_studio.dem.lifting_cylinder import (
+    Units,
+    friction_in,
+    halved_step,
+    lift_speed,
+    steps_note,
+)
 from regolith_studio.dem.run_checks import lowest_corners
 from regolith_studio.dem.separation import overlap_depths
 from regolith_studio.dem.snapshot import PHASES, ParticleState
@@ -35,6 +41,9 @@ Parts = tuple[FloatArray, ...]
 """Vertices of each convex part of a shape."""
 IN_PLACE = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0))
 """Place and turn of a part in its body."""
+MAX_MOVE, SMALLEST_SHARE = 0.1, 1 / 4
+"""Largest way in a step of all but one in a hundred particles, in mean diameters, and smallest share of the
+time step that is set. The solver's small steps within a step stay as long as they are."""
 MAX_SPEED = 400.0
 """Limit of the solver where none is set."""
 
@@ -60,7 +69,6 @@ class RapierSolver:
         *self.particles, self.cylinder, self.plate = [bodies[handle] for handle in handles]
         self.world.set_num_threads(int(os.environ.get(ENGINE_THREADS, "1")))
         numerics = self.world.integration_parameters
-        numerics.num_solver_iterations = self.settings.iterations
         # heaps are calmer and overlap less with both; sharp columns walk and fall with recycled contacts
         numerics.contact_recycling = False
         numerics.friction_in_bias_pass = True
@@ -123,10 +131,16 @@ class RapierSolver:
                 self.world.colliders[handle].friction = value
 
     def time_step(self) -> float:
-        return self.settings.time_step
+        """The step that is set, halved until what moves does not go too far in it."""
+        speeds = np.array([body.linvel.to_tuple() for body in self.particles])
+        return halved_step(self.settings.time_step, np.linalg.norm(speeds, axis=1), MAX_MOVE, SMALLEST_SHARE)
 
     def advance(self, step: float, count: int) -> None:
-        self.world.integration_parameters.dt = step
+        numerics = self.world.integration_parameters
+        numerics.dt = step
+        numerics.num_solver_iterations = max(
+            1, round(self.settings.iterations * step / self.settings.time_step)
+        )
         for _ in range(count):
             self.world.step()
             if not self.world.quarantine.is_empty():
@@ -140,8 +154,7 @@ class RapierSolver:
         return []
 
     def notes(self, times: dict[float, float]) -> list[str]:
-        del times  # one step for all speeds: what slides fast feels the friction that is set
-        return [REPEATABLE]
+        return [steps_note(times), REPEATABLE]
 
     def state(self) -> bytes:
         return np.float64(self.time).tobytes() + self.world.snapshot()
