@@ -106,6 +106,18 @@ def test_that_rapier_fills_with_half_the_friction_of_particles_and_all_of_wall_a
         assert (own, own * wall, own * plate) == pytest.approx((0.6 * share, 0.3, 0.9))
 
 
+def test_that_nothing_is_faster_than_a_fall_from_the_top_of_the_filling_while_the_cylinder_rises(
+    boxes: Dataset,
+) -> None:
+    solver = solver_of(boxes, n=30)
+    solver.begin("lift")
+    solver.particles[-1].linvel = (0.0, 0.0, 50.0)
+    solver.advance(0.01, 1)
+    speed = solver.particles[-1].linvel.z * solver.unit_length / solver.unit_time
+    height = solver.prepared.fill_height
+    assert speed == pytest.approx(np.sqrt(2.0 * TEST.gravity * height), rel=0.02)
+
+
 def test_that_a_column_of_boxes_stands(boxes: Dataset) -> None:
     solver = solver_of(boxes, n=20)
     half = half_heights(solver)
