@@ -135,7 +135,7 @@ class RapierSolver:
     def time_step(self) -> float:
         """The step that is set, halved until what moves does not go too far in it.
 
-        Not while particles fall into the cylinder: overlaps of that time are gone when the filling has settled.
+        Not while particles fall into the cylinder: these overlaps are gone when the filling has settled.
         """
         if self.phase == "fill":
             return self.settings.time_step
