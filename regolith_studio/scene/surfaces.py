@@ -24,7 +24,6 @@ LINE_WIDTH = 1.6
 
 
 SHADES = "shades"
-DARKEST = 0.55
 """Brightness of the darkest part of a compound; the first has that of the material."""
 SHARP_EDGE = 50.0
 """Degrees between the normals of two triangles above which their edge is drawn sharp: a cube's, no scan's."""
@@ -241,11 +240,12 @@ def facet_edges(polyhedron: ConvexPolyhedron) -> FloatArray:
 
 
 def part_shades(compound: ConvexCompound) -> NDArray[np.uint8]:
-    """Colour of each triangle of a compound, (m, 3) of 0 to 255: each part its own shade."""
-    brightness = np.linspace(1.0, DARKEST, compound.n_parts)
-    colour = np.array(pv.Color(palette.POLYHEDRON_MATERIAL.colour).int_rgb)
-    shades = np.round(brightness[:, None] * colour).astype(np.uint8)
-    return np.asarray(shades[compound.facet_parts[compound.triangle_facets]])
+    """Colour of each triangle of a compound, (m, 3) of 0 to 255: each part its own tone."""
+    tones = np.array([pv.Color(tone).int_rgb for tone in palette.PART_TONES])
+    places = np.linspace(0.0, len(tones) - 1.0, compound.n_parts)
+    shades = [np.interp(places, np.arange(len(tones)), channel) for channel in tones.T]
+    colours = np.round(np.column_stack(shades)).astype(np.uint8)
+    return np.asarray(colours[compound.facet_parts[compound.triangle_facets]])
 
 
 def exposed_edges(compound: ConvexCompound) -> FloatArray:
