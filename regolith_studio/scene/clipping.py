@@ -33,6 +33,8 @@ DIRECTIONS = {
 """Directions a section can be moved in; those of the box are its edges."""
 SHADE = 0.84
 """Brightness of a cut against that of its surface."""
+NEARER = (-1.0, -1.0)
+"""Polygon offset of a cap over another in the same plane: half-way from VTK's usual one to that of lines."""
 FRAME_SHARE = 1.08
 """Half the edge of the frame over the radius of the particle."""
 
@@ -82,8 +84,10 @@ def reach_along(mesh: Mesh, normal: ArrayLike) -> tuple[float, float]:
     return float(heights.min()), float(heights.max())
 
 
-def show_cap(plotter: Any, cut: CrossSection | None, colour: str, layer: str = "") -> None:
-    """The cut, filled; holes stay holes."""
+def show_cap(
+    plotter: Any, cut: CrossSection | None, colour: str, layer: str = "", opacity: float = 1.0
+) -> None:
+    """The cut, filled; holes stay holes. A cap of another layer lies over that of the first one."""
     name = layer + CAP
     if cut is None or not len(cut.segments):
         hide_named(plotter, name)
@@ -93,7 +97,10 @@ def show_cap(plotter: Any, cut: CrossSection | None, colour: str, layer: str = "
     filled.Update()
     actor = show_named(plotter, name, pv.wrap(filled.GetOutput()), _shaded(colour))
     actor.prop.lighting = False
+    actor.prop.opacity = opacity
     actor.mapper.resolve = "polygon_offset"
+    if layer:
+        actor.mapper.SetRelativeCoincidentTopologyPolygonOffsetParameters(*NEARER)
 
 
 def show_cut(plotter: Any, shape: str, cut: CrossSection | None, colour: str) -> None:

@@ -36,6 +36,7 @@ def show_cuts(
     other: str,
     cuts: Mapping[str, CrossSection],
     colours: Mapping[str, str],
+    overlay: bool = False,
 ) -> None:
     """Fill the cuts of the bodies that are shown, and draw the outlines of all.
 
@@ -47,10 +48,12 @@ def show_cuts(
         By the name of the body.
     colours
         Of the outlines.
+    overlay
+        Whether the other body is a veil over the own one.
     """
-    for name, layer in ((own, ""), (other, OTHER)):
+    for name, layer, opacity in ((own, "", 1.0), (other, OTHER, VEIL if overlay else 1.0)):
         cut = cuts.get(name) if name else None
-        clipping.show_cap(plotter, cut, MATERIALS[name].colour if name else "", layer)
+        clipping.show_cap(plotter, cut, MATERIALS[name].colour if name else "", layer, opacity)
     for name, colour in colours.items():
         clipping.show_cut(plotter, name, cuts.get(name), colour)
 

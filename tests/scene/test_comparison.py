@@ -7,7 +7,7 @@ import pyvista as pv
 from regolith_studio.geometry.cross_section import cross_section
 from regolith_studio.geometry.ray_casting import radial_hits
 from regolith_studio.geometry.sphere_points import icosphere
-from regolith_studio.scene import clipping, facets, plotter_setup, surfaces
+from regolith_studio.scene import clipping, comparison, facets, plotter_setup, surfaces
 from regolith_studio.scene.cameras import apply_pose, framing_pose, pose_of
 from regolith_studio.scene.clipping import SectionPlane
 from regolith_studio.scene.comparison import OTHER, Divider, arrange, show_cuts, show_other
@@ -83,6 +83,27 @@ def test_that_a_section_is_as_large_as_the_cut_and_hides_the_half_before_it(plot
     arrange(plotter, divider, wipe=False, overlay=False, section=None)
     assert not plotter.actors[clipping.CAP].GetVisibility()
     assert np.abs(picture(plotter) - seen).max() > 20
+
+
+@pytest.mark.parametrize("opacity", [comparison.VEIL, 1.0])
+def test_that_the_cut_of_a_veil_lies_evenly_over_the_other_cut(
+    plotter, divider, ball, cube, monkeypatch, opacity
+):
+    """Both lie in one plane: which is drawn must not change from pixel to pixel."""
+    monkeypatch.setattr(comparison, "VEIL", opacity)
+    surfaces.show_polyhedron(plotter, cube)
+    show_other(plotter, SceneShape(PARTICLE, ball), True)
+    apply_pose(plotter, framing_pose(ball.vertices, "isometric"))
+    normal = (0.6, -0.64, 0.48)
+    cuts = {PARTICLE: cross_section(ball, normal, 3.0), POLYHEDRON: cross_section(cube.mesh, normal, 3.0)}
+    show_cuts(plotter, POLYHEDRON, PARTICLE, cuts, {}, overlay=True)
+    arrange(plotter, divider, wipe=False, overlay=True, section=SectionPlane(normal, 3.0))
+    middle = SIZE // 2
+    seen = picture(plotter)[middle - 18 : middle + 18, middle - 18 : middle + 18].reshape(-1, 3)
+    assert np.ptp(seen, axis=0).max() <= 2
+    show_cuts(plotter, POLYHEDRON, "", cuts, {})
+    alone = picture(plotter)[middle, middle]
+    assert np.abs(seen[0] - alone).max() > 5, "the veil is seen"
 
 
 def test_that_the_frame_of_a_section_lies_in_its_plane_and_holds_the_particle(ball):

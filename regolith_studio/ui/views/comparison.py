@@ -137,7 +137,8 @@ class Comparison:
         framed = self._sections.framed
         colours = {each: str(getattr(theme, each)) for each in NAMES}
         drawn = "" if own is None else name
-        show_cuts(plotter, drawn, partner if other is not None else "", self._sections.cuts(), colours)
+        beside = partner if other is not None else ""
+        show_cuts(plotter, drawn, beside, self._sections.cuts(), colours, self.overlay)
         show_frame(plotter, framed[1] if framed else None, ink)
         wiped = self.wipe and other is not None
         arrange(plotter, self.dividers[name], wiped, self.overlay, framed[0] if framed else None)
