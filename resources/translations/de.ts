@@ -8088,6 +8088,10 @@
         <translation>{number}. Voxel gemalt bei {place}</translation>
     </message>
     <message>
+        <source>{parts} parts, {count} facets</source>
+        <translation>{parts} Teile, {count} Facetten</translation>
+    </message>
+    <message>
         <source>{path} is a file: enter a new or empty folder.</source>
         <translation>{path} ist eine Datei: geben Sie einen neuen oder leeren Ordner ein.</translation>
     </message>

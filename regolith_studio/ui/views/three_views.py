@@ -143,12 +143,18 @@ class ThreeViews(QSplitter):
         self.pointer.clear()
         self._draw_polyhedron()
         parts = solid.n_parts if isinstance(solid, ConvexCompound) else 1
-        several = tr("Compound, {parts} parts, {count} facets", parts=parts, count=solid.n_facets)
+        facets = tr("{count} facets", count=solid.n_facets)
+        if parts > 1:
+            title = tr("Compound, {parts} parts, {count} facets", parts=parts, count=solid.n_facets)
+            short = tr("{parts} parts, {count} facets", parts=parts, count=solid.n_facets)
+        else:
+            title, short = tr("Polyhedron, {count} facets", count=solid.n_facets), facets
         self.frames[POLYHEDRON].set_texts(
-            several if parts > 1 else tr("Polyhedron, {count} facets", count=solid.n_facets),
+            title,
             tr("{count} vertices, {triangles} triangles", count=solid.n_vertices, triangles=solid.n_triangles)
             + _missing_facets_text(results),
-            tr("{count} facets", count=solid.n_facets),
+            short,
+            facets,
         )
         self.comparison.set_shapes(self._shapes, POLYHEDRON)
 
