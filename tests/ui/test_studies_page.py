@@ -11,11 +11,14 @@ from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 
 from regolith_studio.errors import FileError
+from regolith_studio.session.choices import Choices
+from regolith_studio.session.study_requests import varied_rows
 from regolith_studio.studies.loss_variants import PAPER_LOSSES, losses, paper_variants
 from regolith_studio.studies.sweeps import sufficient_facets
 from regolith_studio.ui.app import open_window
 from regolith_studio.ui.pages.studies.loss_selector import LossSelector
 from regolith_studio.ui.pages.studies.page import write_studies
+from regolith_studio.ui.pages.studies.sweep_panel import ROW_COLOURS
 from regolith_studio.ui.theme import DARK
 
 SECONDS = 170.0
@@ -168,6 +171,12 @@ def test_that_a_variation_can_be_stopped_and_another_is_refused_with_a_reason(wi
     page.variations["facets"].frame.cancelRequested.emit(task.id)
     settled(window)
     assert not page.variations["facets"].frame.stop.isVisibleTo(page)
+
+
+def test_that_no_two_rows_of_the_trade_off_share_a_colour():
+    rows = varied_rows("tradeoff", Choices(method="exact"), "1", with_compound=True)
+    assert rows[-1].label == "Compound of convex parts"
+    assert len(rows) <= len(set(ROW_COLOURS)) == len(ROW_COLOURS)
 
 
 @pytest.mark.slow

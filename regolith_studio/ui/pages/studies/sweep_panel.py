@@ -23,6 +23,8 @@ from regolith_studio.ui.widgets.plots.curves import PlotCurve
 from regolith_studio.ui.widgets.study_frame import StudyFrame
 
 OVERLAP = "Jaccard"
+ROW_COLOURS = (*DESCRIPTOR_COLOURS, "#8f5ec9")
+"""One for each request of the exact method in the trade-off, and one for the compound."""
 ON_AND_OFF = N_("The method meets descriptors exactly: each is requested or not, whatever its weight.")
 
 
@@ -92,7 +94,7 @@ class TradeoffPlot(BandPlot):
         series = [
             Series(
                 translate(row.label),
-                DESCRIPTOR_COLOURS[r % len(DESCRIPTOR_COLOURS)],
+                ROW_COLOURS[r % len(ROW_COLOURS)],
                 (float(x[r]),),
                 (float(y[r]),),
                 (float(low[r]),),
@@ -141,6 +143,7 @@ class SweepPanel(QWidget):
         self.frame = StudyFrame(key, self.part)
         asking = QFormLayout()
         asking.setContentsMargins(8, 6, 8, 0)
+        asking.setHorizontalSpacing(8)
         asking.setRowWrapPolicy(QFormLayout.RowWrapPolicy.WrapLongRows)
         asking.addRow(self.asked, self.values)
         layout = QVBoxLayout(self)
