@@ -173,9 +173,16 @@ def test_that_a_format_of_convex_particles_says_why_it_does_not_take_compounds(p
     assert "Not for compounds" in page.losses.label.text()
     assert "Not for compounds" in page.targets.boxes["hoomd"].toolTip()
     assert "Not for compounds" not in page.targets.boxes["mujoco"].toolTip()
+    page.targets.setValue({"targets": ["lammps", "pfc"]})
+    assert "cannot hold the compounds" in page.targets.export.toolTip(), "what no consent changes comes first"
+    page.targets.boxes["lammps"].setChecked(False)
+    assert "overlapping spheres" in page.targets.export.toolTip()
+    page.targets.setValue({"targets": ["mujoco", "hoomd"]})
+    assert page.gallery.shown[0].caption.endswith("\n2 parts, 12 facets")
     convex = build_dataset([entry(1)], name="convex")
     page._take_dataset(write_dataset(tmp_path / "other", convex), convex)
     assert page.targets.export.isEnabled()
+    assert "parts" not in page.gallery.shown[0].caption
 
 
 def test_that_the_rows_of_many_exports_are_as_high_as_their_buttons(page, tmp_path) -> None:

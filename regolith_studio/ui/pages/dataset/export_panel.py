@@ -191,14 +191,14 @@ class ExportPanel(QWidget):
         altering = [key for key in self.chosen() if EXPORTERS[key].alters]
         self.lossy.setEnabled(bool(altering))
         problem = ""
-        if not self._allowed():
-            problem = f"{tr(EXPORTERS[altering[0]].label)}: {tr(EXPORTERS[altering[0]].alters)}"
-        elif refusing := self.refusing():
+        if refusing := self.refusing():
             problem = tr(
                 "{label} cannot hold the compounds of this dataset: {why}",
                 label=tr(EXPORTERS[refusing[0]].label),
                 why=tr(EXPORTERS[refusing[0]].convex_only),
             )
+        elif not self._allowed():
+            problem = f"{tr(EXPORTERS[altering[0]].label)}: {tr(EXPORTERS[altering[0]].alters)}"
         self.export.setEnabled(getattr(self, "_ready", False) and bool(self.chosen()) and not problem)
         self.export.setToolTip(problem)
         self.chosenChanged.emit()

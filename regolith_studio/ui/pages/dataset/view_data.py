@@ -45,7 +45,13 @@ def shapes(dataset: Dataset) -> list[GalleryItem]:
             vertices=solid.n_vertices,
             count=one.n_members,
         )
-        words = localized(f"{100 * weight:.1f} %\n") + tr("{count} facets", count=solid.n_facets)
+        parts = len(solid.part_meshes)
+        facets = (
+            tr("{parts} parts, {count} facets", parts=parts, count=solid.n_facets)
+            if parts > 1
+            else tr("{count} facets", count=solid.n_facets)
+        )
+        words = localized(f"{100 * weight:.1f} %\n") + facets
         shown.append((float(weight), GalleryItem(solid.mesh, words, tip, coarsened=True)))
     return _by_share(shown)
 
