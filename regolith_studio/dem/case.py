@@ -168,6 +168,13 @@ class PreparedCase:
         return float(np.array(self.n_facets)[self.class_index].mean())
 
     @property
+    def further_parts(self) -> float:
+        """Mean number of convex parts of a particle besides its first one; 0 for spheres."""
+        if not self.parts or self.case.shapes == "spheres":
+            return 0.0
+        return float(np.array([len(counts) for counts in self.parts])[self.class_index].mean()) - 1.0
+
+    @property
     def fill_height(self) -> float:
         """Expected height of the settled filling in metres."""
         volume = self.mass / self.case.contact.density

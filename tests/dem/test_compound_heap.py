@@ -27,7 +27,7 @@ from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.jobs.repose_jobs import check_shapes
-from tests.dataset.example import Coarse, cuboid, elbow_entry, elbow_moments
+from tests.dataset.example import Coarse, cuboid, elbow_entry, elbow_moments, entry
 from tests.geometry.solids import rotation
 
 CASE = ReposeCase(n_particles=40, test=LiftingCylinderTest(diameter=0.04, height=0.2))
@@ -61,6 +61,18 @@ def test_that_a_body_has_a_geom_a_part_and_mass_and_inertia_of_the_union(prepare
         wanted = elbow_moments() * volumes[k] ** (5 / 3)
         assert np.sort(model.body_inertia[bodies[k]]) == pytest.approx(wanted, rel=1e-9)
         assert model.body_ipos[bodies[k]] == pytest.approx([0.0, 0.0, 0.0], abs=1e-12)
+
+
+@pytest.mark.parametrize(("engine", "dearer"), [("mujoco", 1.37), ("rapier", 2.5)])
+def test_that_the_time_of_a_heap_grows_with_the_parts_as_it_was_measured(engine: str, dearer: float) -> None:
+    """Processor time of 150 (MuJoCo) and 300 (Rapier) agglutinates of four parts over that of convex ones."""
+    convex = prepare(build_dataset([entry(1)], name="convex"), CASE)
+    four = replace(convex, parts=((2, 2, 2, len(convex.shapes[0]) - 6),))
+    chosen = engine_named(engine)
+    one, more = (chosen.seconds(each, chosen.Settings()) - 1.0 for each in (convex, four))
+    assert more / one == pytest.approx(dearer, rel=0.1)
+    balls = replace(four, case=replace(CASE, shapes="spheres"))
+    assert balls.further_parts == 0.0
 
 
 def test_that_the_parts_of_a_body_lie_where_the_dataset_has_them(prepared: PreparedCase) -> None:
