@@ -1,6 +1,7 @@
 """Polyhedra of some particles for each loss, as a picture (Fig. 7)."""
 
 from pathlib import Path
+from textwrap import fill
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -18,8 +19,8 @@ VIEW = np.array([[-0.5, 0.866, 0.0], [-0.296, -0.171, 0.94], [0.814, 0.47, 0.342
 """Rows: to the right, up, and towards the eye."""
 LIGHT = np.array([0.35, 0.25, 0.9])
 COLOUR, EDGE = np.array([0.902, 0.624, 0.0]), "0.15"
-CELL = 1.7
-"""Inches."""
+CELL, LETTERS = 1.7, 22
+"""Inches, and letters in a line of a label that is no wider than its room."""
 PIXELS, SAMPLES = 240, 3
 """Of the picture of a union along each side, and of a pixel along each of its own."""
 
@@ -42,9 +43,7 @@ def gallery_figure(study: GalleryStudy) -> Figure:
                 axis.set_xlabel(f"J {found.jaccard_distance:.3f}", fontsize=7)
         axes[0, column].set_title(name, fontsize=8)
     for row, label in enumerate(study.rows):
-        axes[row, 0].set_ylabel(
-            label.replace(" and ", "\nand "), rotation=0, ha="right", va="center", fontsize=8
-        )
+        axes[row, 0].set_ylabel(fill(label, LETTERS), rotation=0, ha="right", va="center", fontsize=8)
     return figure
 
 
@@ -99,7 +98,7 @@ def _shaded(compound: ConvexCompound, seen: IntArray) -> FloatArray:
     samples[..., 3] = seen >= 0
     samples[..., :3] = np.where(seen[..., None] >= 0, colours[seen], 0.0)
     for axis in (0, 1):
-        for shift in (-1, 1):
+        for shift in (-2, -1, 1, 2):  # as wide as those of convex polyhedra
             samples[(seen >= 0) & (np.roll(seen, shift, axis) != seen), :3] = float(EDGE)
     pixels = samples.reshape(PIXELS, SAMPLES, PIXELS, SAMPLES, 4)
     cover = pixels[..., 3].mean(axis=(1, 3))

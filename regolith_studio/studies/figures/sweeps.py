@@ -20,6 +20,8 @@ from regolith_studio.studies.sweeps import (
     significant,
 )
 
+BELOW = 0.02
+"""Room below 0, as a share of the axis: the marker of a row without errors is whole."""
 MIN_SPAN = 0.01
 """Percentage points: where all changes are smaller, they are drawn as none."""
 
@@ -50,7 +52,7 @@ def tradeoff_figure(study: CoarseningStudy) -> Figure:
         )
     axis.set_xlabel("mean Jaccard distance (%)")
     axis.set_ylabel("mean RMSRE of the six descriptors (%)")
-    axis.set_ylim(bottom=0)
+    axis.set_ylim(bottom=-BELOW * axis.get_ylim()[1])
     axis.grid(True, alpha=0.3)
     figure.legend(loc="outside right upper", frameon=False, fontsize="small")
     return figure
