@@ -33,7 +33,12 @@ def coarsen(
     """Coarsen meshes to convex polyhedra that keep the chosen descriptors (section 2.4)."""
     from regolith_studio.io.atomic import staged_folder
     from regolith_studio.jobs.coarsening_jobs import coarsen_sample
-    from regolith_studio.session.outputs.coarsening import coarsening_document, error_table, write_coarsening
+    from regolith_studio.session.outputs.coarsening import (
+        coarsening_document,
+        error_table,
+        remarks,
+        write_coarsening,
+    )
 
     choices = how.choices(preset, seed=seed, **stopping.changes)
     request = choices.coarsening_request
@@ -49,8 +54,6 @@ def coarsen(
     else:
         if len(done) > len(failed):
             print_table(error_table(done))
-        results = [(each.name, each.coarsened) for each in done if each.coarsened]
-        print_errors(f"{name}: {coarse.reason}" for name, coarse in results if coarse.reason)
-        print_errors(f"{name}: {coarse.warning}" for name, coarse in results if coarse.warning)
+        print_errors(remarks(done))
         typer.echo(f"{len(done) - len(failed)} of {len(done)} particles coarsened in {output}")
     raise typer.Exit(exit_code(meshes, loaded, len(failed)))

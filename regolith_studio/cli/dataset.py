@@ -107,7 +107,7 @@ def build(
         measure_population,
         measure_quality,
     )
-    from regolith_studio.session.outputs.coarsening import coarsening_document
+    from regolith_studio.session.outputs.coarsening import coarsening_document, remarks
 
     choices = how.choices(preset, seed=seed, **stopping.changes)
     with usage_errors():
@@ -125,10 +125,12 @@ def build(
         build_dataset_folder(loaded.particles, choices.coarsening_request, output, options)
     )
     failed = [each for each in built.outcomes if each.coarsened is None]
+    print_errors(f"{each.name}: {note}" for each in loaded.particles for note in each.notes)
     print_errors(f"{each.name}: {each.problem}" for each in failed)
     if json:
         print_json({"folder": str(output)} | coarsening_document(choices.coarsening_request, built.outcomes))
     else:
+        print_errors(remarks(built.outcomes))
         typer.echo(f"{len(built.dataset)} of {len(loaded.particles)} particles in the dataset {output}")
     raise typer.Exit(exit_code(meshes, loaded, len(failed)))
 

@@ -120,3 +120,13 @@ def test_that_all_formats_are_those_that_can_hold_the_compounds_and_the_others_a
         for key in refusing
     )
     assert not any("EDEM" in line and "does not carry" in line for line in result.err.splitlines())
+
+
+def test_that_a_dataset_says_what_was_repaired_and_what_its_shapes_miss(command, tmp_path: Path) -> None:
+    (tmp_path / "open.stl").write_bytes(stl_bytes(dumbbell().triangles[40:], "test"))
+    few = ("--facets", 9)
+    result = command("dataset", "build", tmp_path / "open.stl", "-o", tmp_path / "set", *COMPOUND, *few)
+    assert result.code == 0
+    lines = result.err.splitlines()
+    assert any(line.startswith("open: Filled 4 holes ") for line in lines)
+    assert any(line.startswith("open: Two parts need 10 facets; with fewer the result is") for line in lines)

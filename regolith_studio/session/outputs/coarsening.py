@@ -18,7 +18,7 @@ from regolith_studio.io.stl import stl_bytes
 from regolith_studio.io.tables import Cell, Column, Table
 from regolith_studio.jobs.coarsening_jobs import CoarsenedParticle, CoarseningRequest
 
-STL_HEADER = "Regolith Studio, convex polyhedron, micrometres"
+STL_HEADER = "Regolith Studio, coarsened particle, micrometres"
 
 
 def write_coarsening(folder: Path, request: CoarseningRequest, done: Sequence[CoarsenedParticle]) -> None:
@@ -61,6 +61,13 @@ def request_document(request: CoarseningRequest) -> dict[str, Any]:
     if request.largest_error is None:
         del values["largest_error"]
     return values
+
+
+def remarks(done: Sequence[CoarsenedParticle]) -> list[str]:
+    """Why requests are not met, and what users should know of results, one sentence each with the name."""
+    results = [(each.name, each.coarsened) for each in done if each.coarsened]
+    reasons = [f"{name}: {coarse.reason}" for name, coarse in results if coarse.reason]
+    return reasons + [f"{name}: {coarse.warning}" for name, coarse in results if coarse.warning]
 
 
 def error_table(done: Sequence[CoarsenedParticle]) -> Table:
