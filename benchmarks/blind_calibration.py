@@ -1,0 +1,79 @@
+"""Do calibrations with real heaps find the friction that they are not told? docs/calibration.md.
+
+    python -m benchmarks.blind_calibration DATASET RUNS RESULT.json [CASES] [ENGINE]
+
+Frictions are drawn from equal parts of the range, one a case. The wanted angle of a case is the mean of
+HEAPS heaps of 1,000 particles of that friction; its standard error is the standard deviation of such
+heaps about their means, from all cases, over the square root of HEAPS. The calibration has other seeds.
+Runs that are in the folder RUNS already are kept. The result is written anew after each calibration.
+"""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from regolith_studio.dem.run_io import DOCUMENT, read_run
+
+LOW, HIGH, SEED = 0.05, 1.2, 7
+HEAPS = 4
+
+
+def main(dataset: Path, runs: Path, result: Path, cases: int, engine: str) -> None:
+    """Print a line a case, and write them all."""
+    parts = np.arange(cases) + np.random.default_rng(SEED).random(cases)
+    frictions = (LOW + (HIGH - LOW) * parts / cases).round(3)
+    common = ["-n", 1000, "--engine", engine]
+    angles = np.array(
+        [
+            [
+                angle_of(dataset, runs / f"heap_{friction}_{k}", friction, 1000 + k, common)
+                for k in range(HEAPS)
+            ]
+            for friction in frictions
+        ]
+    )
+    error = float(np.sqrt(angles.var(axis=1, ddof=1).mean() / HEAPS))
+    rows: list[dict[str, Any]] = []
+    for number in np.random.default_rng(SEED).permutation(cases):
+        friction, wanted = float(frictions[number]), float(angles[number].mean())
+        folder = runs / f"calibration_{number}"
+        goal = ["--angle", f"{wanted:.2f}", "--angle-error", f"{error:.2f}"]
+        call("calibrate", dataset, "-o", folder, *goal, "--seed", 10 * number, *common)
+        found = json.loads((folder / "calibration.json").read_text("utf-8"))
+        low, high = found["parameters"][0]["interval"]
+        rows.append(
+            {
+                "friction": friction,
+                "wanted_deg": round(wanted, 2),
+                "error_deg": round(error, 2),
+                "interval": [round(low, 3), round(high, 3)],
+                "covered": bool(low <= friction <= high),
+                "width": round((high - low) / (0.9 * (HIGH - LOW)), 3),
+            }
+        )
+        print(rows[-1], flush=True)
+        content = {"angles_deg": angles.round(2).tolist(), "calibrations": rows}
+        result.write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
+
+
+def angle_of(dataset: Path, folder: Path, friction: float, seed: int, common: list[Any]) -> float:
+    """Angle of a heap, made where it is not there."""
+    if not (folder / DOCUMENT).is_file():
+        call(
+            "run", dataset, "-o", folder, "--contact", f"static_friction={friction}", "--seed", seed, *common
+        )
+    return float(read_run(folder).document["measurement"]["angle_deg"])
+
+
+def call(*words: object) -> None:
+    """A command of `repose`."""
+    subprocess.run([sys.executable, "-m", "regolith_studio", "repose", *map(str, words)], check=True)
+
+
+if __name__ == "__main__":
+    rest = [*sys.argv[4:], *("10", "rapier")[len(sys.argv) - 4 :]]
+    main(Path(sys.argv[1]), Path(sys.argv[2]), Path(sys.argv[3]), int(rest[0]), rest[1])
