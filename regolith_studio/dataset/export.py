@@ -202,7 +202,7 @@ def prepared_export(
     check_compounds(dataset, [exporter])
     with _reported(target):
         recover_folder(target)
-        _check_replaceable(target)
+        check_export_folder(target, FORMAT)
         content = _with_readme(dataset, exporter, chosen, dataset_hash)
         with filled_folder(target, content) as stage:
 
@@ -312,7 +312,14 @@ def _readme(
     return "\n".join([*lines, *(f"  {name}" for name in shown), f"  {RECORD}", ""])
 
 
-def _check_replaceable(target: Path) -> None:
+def check_export_folder(target: Path, format_name: str) -> None:
+    """Check that a folder is new, empty, or holds an export of this program in a format and nothing else.
+
+    Raises
+    ------
+    DatasetError
+        If it holds anything else.
+    """
     if not target.exists():
         return
     if not target.is_dir():
@@ -324,7 +331,7 @@ def _check_replaceable(target: Path) -> None:
     }
     if not found:
         return
-    foreign = sorted(found - _own_files(target / RECORD) - {RECORD})
+    foreign = sorted(found - _own_files(target / RECORD, format_name) - {RECORD})
     if RECORD not in found or foreign:
         name = foreign[0] if foreign else RECORD
         raise DatasetError(
@@ -336,13 +343,13 @@ def _names(settings: Any) -> set[str]:
     return {each.name for each in fields(settings)}
 
 
-def _own_files(record: Path) -> set[str]:
+def _own_files(record: Path, format_name: str) -> set[str]:
     try:
         content = parse_strict_json(record.read_text(encoding="utf-8"), str(record))
     except (OSError, UnicodeDecodeError, FileError):
         return set()
     files = content.get("files") if isinstance(content, dict) else None
-    if not isinstance(files, Mapping) or content.get("format") != FORMAT:
+    if not isinstance(files, Mapping) or content.get("format") != format_name:
         return set()
     return set(files)
 

@@ -1,8 +1,9 @@
 """Unions of convex polyhedra: particles that are not convex, as DEM codes take them."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -107,32 +108,9 @@ class ConvexCompound:
         GeometryError
             If the union cannot be made (manifold3d).
         """
-        import manifold3d
-
-        low, high = self._bounds
-        middle, size = (low + high) / 2, float((high - low).max())
-        solids, first = [], 0
-        for part, mesh in zip(self.parts, self.part_meshes, strict=True):
-            points = np.ascontiguousarray((mesh.vertices - middle) / size)
-            facets = (part.triangle_facets + first).astype(np.uint64)
-            faces = mesh.faces.astype(np.uint64)
-            solids.append(manifold3d.Manifold(manifold3d.Mesh64(points, faces, face_id=facets)))
-            first += part.n_facets
-        union = manifold3d.Manifold.batch_boolean(solids, manifold3d.OpType.Add)
-        if union.status() != manifold3d.Error.NoError or union.is_empty():
-            raise GeometryError("The union of the convex parts cannot be made.")
-        found = union.to_mesh64()
-        vertices, triangles, exposed = _without_ledges(
-            np.asarray(found.vert_properties)[:, :3],
-            np.asarray(found.tri_verts).astype(np.int64),
-            np.asarray(found.face_id).astype(np.int64),
-        )
-        return Mesh(vertices * size + middle, triangles), exposed
-
-    @property
-    def _bounds(self) -> tuple[FloatArray, FloatArray]:
-        points = self.vertices
-        return points.min(axis=0), points.max(axis=0)
+        first = np.cumsum([0, *(part.n_facets for part in self.parts)])
+        facets = [part.triangle_facets + start for part, start in zip(self.parts, first, strict=False)]
+        return _united(self.part_meshes, facets)
 
     @property
     def mesh(self) -> Mesh:
@@ -188,6 +166,50 @@ class ConvexCompound:
         turn = np.eye(3) if rotation is None else np.asarray(rotation, dtype=np.float64)
         places = ((self.places + np.asarray(shift, dtype=np.float64)) * scale) @ turn.T
         return ConvexCompound(tuple(part.moved(rotation=turn, scale=scale) for part in self.parts), places)
+
+
+def union_of_meshes(meshes: Sequence[Mesh]) -> Mesh:
+    """Surface of the union of closed meshes that overlap or touch (manifold3d).
+
+    Raises
+    ------
+    GeometryError
+        If the union cannot be made.
+    """
+    first = np.cumsum([0, *(len(mesh.faces) for mesh in meshes)])
+    return _united(meshes, [np.arange(low, high) for low, high in pairwise(first.tolist())])[0]
+
+
+def _united(meshes: Sequence[Mesh], facets: Sequence[IntArray]) -> tuple[Mesh, IntArray]:
+    """Surface of the union of meshes, and the facet of each of its triangles.
+
+    Raises
+    ------
+    GeometryError
+        If the union cannot be made (manifold3d).
+    """
+    import manifold3d
+
+    points = np.concatenate([mesh.vertices for mesh in meshes])
+    low, high = points.min(axis=0), points.max(axis=0)
+    middle, size = (low + high) / 2, float((high - low).max())
+    solids = []
+    for mesh, of_triangles in zip(meshes, facets, strict=True):
+        corners = np.ascontiguousarray((mesh.vertices - middle) / size)
+        faces = mesh.faces.astype(np.uint64)
+        solids.append(
+            manifold3d.Manifold(manifold3d.Mesh64(corners, faces, face_id=of_triangles.astype(np.uint64)))
+        )
+    union = manifold3d.Manifold.batch_boolean(solids, manifold3d.OpType.Add)
+    if union.status() != manifold3d.Error.NoError or union.is_empty():
+        raise GeometryError("The union of the convex parts cannot be made.")
+    found = union.to_mesh64()
+    vertices, triangles, exposed = _without_ledges(
+        np.asarray(found.vert_properties)[:, :3],
+        np.asarray(found.tri_verts).astype(np.int64),
+        np.asarray(found.face_id).astype(np.int64),
+    )
+    return Mesh(vertices * size + middle, triangles), exposed
 
 
 def _without_ledges(

@@ -1,7 +1,6 @@
 """glTF for Blender and other viewers: the drawn particles as instances of the shapes."""
 
 import json
-import struct
 
 import numpy as np
 
@@ -10,13 +9,12 @@ from regolith_studio.dataset.export import NOTES, Exporter, ExportOptions, shape
 from regolith_studio.dataset.packing import pack_on_lattice
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.convex_compound import Polyhedron
+from regolith_studio.io.glb import Z_UP_TO_Y_UP, MeshBuffer, glb_bytes
 from regolith_studio.messages import N_
 
 ENLARGED = 1000.0
 """Metres of the file for a metre of the particles: Blender cannot show particles of their true size well."""
 
-_FLOAT, _ARRAY_BUFFER = 5126, 34962
-_Z_UP_TO_Y_UP = [-np.sqrt(0.5), 0.0, 0.0, np.sqrt(0.5)]
 _NOTE = b"""particles.glb: 1 m in the file is 1 mm of the particles, so that a viewer's clipping planes fit.
 The file is y up as glTF demands; Blender turns it back to z up. Facets are shaded flat.
 Of compounds the surface of the union is drawn.
@@ -24,21 +22,14 @@ Each particle is a node with its mesh's key, diameter and dataset name under 'ex
 
 
 def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
-    keys, binary = shape_names(dataset), bytearray()
-    document: dict[str, list[dict[str, object]]] = {"bufferViews": [], "accessors": [], "meshes": []}
+    keys, meshes = shape_names(dataset), MeshBuffer()
     for key, one in zip(keys, dataset.representatives, strict=True):
-        positions, normals = _corners(one.shape)
-        attributes = {
-            "POSITION": _store(document, binary, positions),
-            "NORMAL": _store(document, binary, normals),
-        }
-        document["meshes"].append({"name": key, "primitives": [{"attributes": attributes, "material": 0}]})
-    nodes = _nodes(dataset, options, keys)
+        meshes.add(key, *_corners(one.shape))
     content = {
         "asset": {"version": "2.0", "generator": "regolith-studio"},
         "scene": 0,
         "scenes": [{"nodes": [0]}],
-        "nodes": nodes,
+        "nodes": _nodes(dataset, options, keys),
         "materials": [
             {
                 "name": "regolith",
@@ -49,16 +40,16 @@ def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
                 },
             }
         ],
-        "buffers": [{"byteLength": len(binary)}],
-        **document,
+        **meshes.document(),
     }
-    return {"particles.glb": _glb(content, bytes(binary)), NOTES: _NOTE}
+    text = json.dumps(content, separators=(",", ":"), allow_nan=False).encode("utf-8")
+    return {"particles.glb": glb_bytes(text, meshes.binary), NOTES: _NOTE}
 
 
 def _nodes(dataset: Dataset, options: ExportOptions, keys: list[str]) -> list[dict[str, object]]:
     bodies = pack_on_lattice(dataset, options)
     nodes: list[dict[str, object]] = [
-        {"name": "particles", "rotation": _Z_UP_TO_Y_UP, "children": list(range(1, len(bodies) + 1))}
+        {"name": "particles", "rotation": list(Z_UP_TO_Y_UP), "children": list(range(1, len(bodies) + 1))}
     ]
     for index, (which, place, turn, scale) in enumerate(
         zip(bodies.class_index, bodies.position, bodies.orientation, bodies.scale, strict=True)
@@ -84,46 +75,6 @@ def _corners(shape: Polyhedron) -> tuple[FloatArray, FloatArray]:
     """Three corners a triangle and the normal of its facet at each, shape (3 t, 3)."""
     normals = shape.facet_normals[shape.triangle_facets]
     return shape.mesh.triangles.reshape(-1, 3), np.repeat(normals, 3, axis=0)
-
-
-def _store(document: dict[str, list[dict[str, object]]], binary: bytearray, values: FloatArray) -> int:
-    """Append an array of vectors to the buffer; index of its accessor."""
-    stored = values.astype("<f4")
-    view: dict[str, object] = {
-        "buffer": 0,
-        "byteOffset": len(binary),
-        "byteLength": stored.nbytes,
-        "target": _ARRAY_BUFFER,
-    }
-    binary += stored.tobytes()
-    document["bufferViews"].append(view)
-    accessor: dict[str, object] = {
-        "bufferView": len(document["bufferViews"]) - 1,
-        "componentType": _FLOAT,
-        "count": len(stored),
-        "type": "VEC3",
-        "min": stored.min(axis=0).tolist(),
-        "max": stored.max(axis=0).tolist(),
-    }
-    document["accessors"].append(accessor)
-    return len(document["accessors"]) - 1
-
-
-def _glb(content: dict[str, object], binary: bytes) -> bytes:
-    """Header, JSON chunk, binary chunk; each padded to four bytes."""
-    text = json.dumps(content, separators=(",", ":"), allow_nan=False).encode("utf-8")
-    text += b" " * (-len(text) % 4)
-    binary += b"\0" * (-len(binary) % 4)
-    total = 12 + 8 + len(text) + 8 + len(binary)
-    return b"".join(
-        (
-            struct.pack("<4sII", b"glTF", 2, total),
-            struct.pack("<I4s", len(text), b"JSON"),
-            text,
-            struct.pack("<I4s", len(binary), b"BIN\0"),
-            binary,
-        )
-    )
 
 
 _LOAD = "blender --python-expr \"import bpy; bpy.ops.import_scene.gltf(filepath=r'{folder}/particles.glb')\""
