@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from regolith_studio.harmonics.surface import reconstruct
     from regolith_studio.jobs.repose_calibration import calibrate_repose
     from regolith_studio.readers.particles import read_mesh, read_particles, sample_particles
+    from regolith_studio.scene.repose_export import export_repose
     from regolith_studio.shape_models.models.gaussian_field import GaussianRadiusModel
     from regolith_studio.web.notebook import show
 
@@ -37,6 +38,7 @@ __all__ = [
     "calibrate_repose",
     "coarsen",
     "describe",
+    "export_repose",
     "fit_harmonics",
     "measure_repose",
     "read_dataset",
@@ -55,6 +57,7 @@ _LAZY_EXPORTS = {
     "calibrate_repose": "jobs.repose_calibration:calibrate_repose",
     "coarsen": "coarsening.coarsen:coarsen",
     "describe": "descriptors.describe:describe",
+    "export_repose": "scene.repose_export:export_repose",
     "fit_harmonics": "harmonics.fit:fit_harmonics",
     "measure_repose": "dem.angle_of_repose:measure_repose",
     "read_dataset": "dataset.folder_io:read_dataset",

@@ -97,6 +97,36 @@ def engines(json: Json = False, jobs: Jobs = 1, seed: Seed = 0) -> None:
             typer.echo(f"  {heading.lower():17}{row[key]}")
 
 
+@app.command("export")
+def export(
+    run: Annotated[Path, typer.Argument(metavar="RUN", help="Folder of a finished or stopped run.")],
+    output: Folder,
+    every: Annotated[
+        int,
+        typer.Option(
+            "--every",
+            min=1,
+            max=1_000_000,
+            help="Export every so many snapshots; the last moment is always exported.",
+            metavar="N",
+        ),
+    ] = 1,
+    json: Json = False,
+    jobs: Jobs = 1,
+    seed: Seed = 0,
+) -> None:
+    """Export a run as a series for ParaView and for OVITO, and its last moment as GLB."""
+    from regolith_studio.scene.repose_export import repose_export_steps
+
+    del jobs, seed  # taken by every command
+    done = run_with_progress(repose_export_steps(run, output, every))
+    if json:
+        print_json({"folder": str(done.folder), "n_particles": done.n_particles, "times_s": done.times})
+        return
+    count = f"{len(done.times):,} moments of {done.n_particles:,} particles"
+    typer.echo(f"{count} in {done.folder}; README.txt there says how to open them.")
+
+
 @app.command("measure")
 def measure(
     file: Annotated[

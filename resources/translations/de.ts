@@ -1872,6 +1872,14 @@
         <translation>Abbildung und JSON exportieren</translation>
     </message>
     <message>
+        <source>Export for Para&amp;View and OVITO …</source>
+        <translation>Für Para&amp;View und OVITO exportieren …</translation>
+    </message>
+    <message>
+        <source>Export for ParaView and OVITO</source>
+        <translation>Für ParaView und OVITO exportieren</translation>
+    </message>
+    <message>
         <source>Export into this folder</source>
         <translation>In diesen Ordner exportieren</translation>
     </message>
@@ -1890,6 +1898,10 @@
     <message>
         <source>Exporting</source>
         <translation>Export</translation>
+    </message>
+    <message>
+        <source>Exporting the run</source>
+        <translation>Der Lauf wird exportiert</translation>
     </message>
     <message>
         <source>Extracting particles</source>
@@ -5752,6 +5764,10 @@
         <translation>Die Ergebnisse hängen nicht von der Anzahl der Prozesse ab, und ein abgebrochener Lauf lässt sich fortsetzen.</translation>
     </message>
     <message>
+        <source>The run is in {name}; README.txt says how to open it.</source>
+        <translation>Der Lauf liegt in {name}; README.txt sagt, wie man ihn öffnet.</translation>
+    </message>
+    <message>
         <source>The run was stopped before it was measured.</source>
         <translation>Der Lauf wurde vor der Messung abgebrochen.</translation>
     </message>
@@ -5894,6 +5910,10 @@
     <message>
         <source>There is no model to save: fit one first.</source>
         <translation>Es gibt kein Modell zu speichern: passen Sie zuerst eines an.</translation>
+    </message>
+    <message>
+        <source>There is no run to export: run a test or choose one in the list.</source>
+        <translation>Es gibt keinen Lauf zum Exportieren: Starten Sie einen Versuch, oder wählen Sie einen Lauf in der Liste.</translation>
     </message>
     <message>
         <source>There is no run to play: run a test or choose a run in the list.</source>
@@ -6310,6 +6330,10 @@
     <message>
         <source>Working on particles</source>
         <translation>Partikel werden bearbeitet</translation>
+    </message>
+    <message>
+        <source>Write all moments of the shown run for ParaView and OVITO, and the last one as GLB</source>
+        <translation>Alle Zeitpunkte des gezeigten Laufs für ParaView und OVITO schreiben, den letzten als GLB</translation>
     </message>
     <message>
         <source>Write settings for the next scan</source>

@@ -22,6 +22,7 @@ ELSEWHERE = {
     "pixel_classifier.md": "needs a painted scan; tests/cli/test_classify.py has one",
     "calibration.md": "heaps of minutes; tests/dem/test_repose_calibration.py has quick ones",
     "repose.md": "heaps of minutes; tests/dem has smaller ones",
+    "repose_export.md": "needs a run; tests/scene/test_repose_export.py has one",
     "repose_studies.md": "heaps of minutes; tests/dem has smaller ones",
 }
 """Pages whose commands run in other tests, besides those of :data:`SHORT`."""

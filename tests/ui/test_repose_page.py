@@ -293,6 +293,23 @@ def test_that_the_player_refuses_the_final_state_of_another_run(page, tmp_path):
     assert "not the final state of the run" in page.player.clock.text()
 
 
+def test_that_the_shown_run_is_exported_for_other_programs(page, tmp_path, monkeypatch, wait):
+    out = tmp_path / "out"
+    monkeypatch.setattr(FolderDialog, "ask", lambda *_: str(out))
+    page.export_heap()
+    assert "no run to export" in page._context.toast.sentence.text()
+    run = tmp_path / "run"
+    run.mkdir()
+    case = {"shapes": "spheres", "test": {}}
+    save_result(run, {"format": FORMAT, "state": "stopped", "case": case}, pile_of(30.0), 1.0)
+    np.savez(run / "shapes.npz", **{"shape_00000.part_00": np.eye(3)})
+    page._show_run(read_run(run))
+    page.export_heap()
+    wait((out / "export.json").is_file)
+    wait(lambda: str(out) in page._context.toast.sentence.text())
+    assert {"particles.pvd", "heap.glb", "README.txt"} <= {path.name for path in out.iterdir()}
+
+
 def test_that_wishes_without_a_dataset_are_one_sentence(page):
     page.run_test()
     assert "no dataset yet" in page._context.toast.sentence.text()

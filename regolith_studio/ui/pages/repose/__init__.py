@@ -48,6 +48,12 @@ PAGE = Page(
             tip=N_("Measure the pile of another program"),
         ),
         ActionSpec(PAGE_MENU, "export_run", N_("&Export figure and JSON …"), "export"),
+        ActionSpec(
+            PAGE_MENU,
+            "export_heap",
+            N_("Export for Para&View and OVITO …"),
+            tip=N_("Write all moments of the shown run for ParaView and OVITO, and the last one as GLB"),
+        ),
         ActionSpec(PAGE_MENU, "choose_folder", N_("Folder of r&uns …")),
     ),
 )

@@ -35,6 +35,7 @@ from regolith_studio.jobs.repose_jobs import (
     simulate_repose,
 )
 from regolith_studio.messages import N_
+from regolith_studio.scene.repose_export import ReposeExport, repose_export_steps
 from regolith_studio.ui.dialogs.folder import FolderDialog
 from regolith_studio.ui.layout import padded, scrolled_column, side_by_side, stacked, tabs
 from regolith_studio.ui.page import PageContext, PageWidget
@@ -56,7 +57,7 @@ PREVIEW_DELAY = 250
 """Milliseconds from the last change to the preview."""
 MAX_PARTICLES = 20_000
 """More are for programs that run on many cores."""
-RUN, PREVIEW, MEASURE, BUILD = "run", "preview", "measure", "build"
+RUN, PREVIEW, MEASURE, BUILD, EXPORT = "run", "preview", "measure", "build", "export"
 
 
 class ReposePage(PageWidget):
@@ -69,6 +70,7 @@ class ReposePage(PageWidget):
         self._folder = Path(context.recall("folder", str(user_data_path("regolith-studio") / "repose")))
         self._pile: ParticleState | None = None
         self._measured: ReposeMeasurement | None = None
+        self._shown_run: Path | None = None
         self._running = False
         self._live_scene: tuple[Sequence[Sequence[FloatArray]], bool, LiftingCylinderTest] | None = None
         self._live_pile: ParticleState | None = None
@@ -110,6 +112,7 @@ class ReposePage(PageWidget):
             "play": lambda: self.player.play_or_report(self._context.toast.problem),
             "open_positions": self.open_positions,
             "export_run": self.export_run,
+            "export_heap": self.export_heap,
             "choose_folder": self.choose_folder,
         }
 
@@ -202,6 +205,7 @@ class ReposePage(PageWidget):
         """Measure the pile of another program from a file of positions."""
         pile = read_other(self, self._context.toast)
         if pile is not None:
+            self._shown_run = None
             ball = ((self.player_ball(),),)
             self.player.set_scene(ball, True, LiftingCylinderTest())
             self.player.show_moment(
@@ -215,6 +219,23 @@ class ReposePage(PageWidget):
             self._context.toast.problem(tr("There is no measured pile to export yet."))
             return
         export_measurement(self, self._context.toast, self._pile, self._measured)
+
+    def export_heap(self) -> None:
+        """Ask for a folder and write the shown run for ParaView, OVITO and viewers of glTF."""
+        if self._shown_run is None:
+            self._context.toast.problem(
+                tr("There is no run to export: run a test or choose one in the list.")
+            )
+            return
+        name = FolderDialog.ask(self, tr("Export for ParaView and OVITO"))
+        if name:
+            job = Job(repose_export_steps, (self._shown_run, Path(name)))
+            self._context.start(tr("Exporting the run"), job, self._exported, lane=EXPORT)
+
+    def _exported(self, export: ReposeExport) -> None:
+        self._context.toast.note(
+            tr("The run is in {name}; README.txt says how to open it.", name=export.folder)
+        )
 
     def choose_folder(self) -> None:
         """Ask for the folder of runs."""
@@ -360,6 +381,7 @@ class ReposePage(PageWidget):
         except (RegolithError, TypeError) as error:
             self._context.toast.problem(str(error))
             return
+        self._shown_run = run.folder
         if pile is not None:
             self._measure(pile)
         else:
@@ -400,7 +422,7 @@ class ReposePage(PageWidget):
     def _show_nothing(self, sentence: str) -> None:
         """Show that there is no measurement of what is seen, and why."""
         self._context.stop(MEASURE)
-        self._pile = self._measured = None
+        self._pile = self._measured = self._shown_run = None
         self._show_answer(sentence)
         for plot in (self.x_z, self.y_z):
             plot.show_nothing(sentence)

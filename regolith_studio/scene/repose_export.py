@@ -1,0 +1,302 @@
+"""Export of a run of the lifting cylinder for ParaView, OVITO and viewers of glTF."""
+
+import hashlib
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import cast
+from xml.sax.saxutils import quoteattr
+
+import numpy as np
+import pyvista as pv
+from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
+
+import regolith_studio
+from regolith_studio.dataset.export import README, RECORD, check_export_folder
+from regolith_studio.dem.heap_files import RunShapes, extended_xyz, heap_glb, run_shapes
+from regolith_studio.dem.run_io import (
+    DOCUMENT,
+    FINAL,
+    SHAPES,
+    RunSummary,
+    read_final_state,
+    read_run,
+    snapshot_files,
+)
+from regolith_studio.dem.snapshot import ParticleState
+from regolith_studio.errors import FileError, InputError, os_error_reason
+from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.io.atomic import exchange, hidden_folder, recover_folder, write_in_stage
+from regolith_studio.io.json_text import canonical_json
+from regolith_studio.io.stl import stl_bytes
+from regolith_studio.jobs.events import Progress, Started, Steps
+from regolith_studio.messages import N_
+from regolith_studio.scene.instancing import COLOURS
+
+FORMAT = "regolith-studio-repose-export"
+SERIES, SHAPE_TABLE, HEAP, OVITO_SCRIPT = "particles.pvd", "shapes.vtm", "heap.glb", "ovito/load_shapes.py"
+
+_README = """{name}: {n:,} particles, {moments} moments; written by Regolith Studio {version}.
+Lengths are in metres, times in seconds, z is up (y in heap.glb). A shape has an equivalent diameter of 1.
+
+ParaView: open particles.pvd and shapes.vtm, hide the shapes, and show the particles as "3D Glyphs".
+Orientation array: "orientation", mode Quaternion (w, x, y, z). Scale array: "diameter" with a factor of 1.
+Glyph type: the shapes as "Pipeline Connection", with the glyph table by the index array "shape", and each
+block of the shapes as one entry. For spheres the glyph type Sphere, which has a diameter of 1, will do.
+
+OVITO: open the series ovito/particles.*.xyz, which has radius and orientation. For the shapes, load
+ovito/<type>.stl as the shape of each particle type; or run ovito/load_shapes.py with OVITO's Python, which
+saves all that as ovito/heap.ovito for the program with the window.
+
+heap.glb is the last moment: one node for each particle, which share the meshes of the shapes. Blender and
+other viewers of glTF open it; where a heap of centimetres is cut off, reduce the near clipping distance.
+
+export.json names the run, the versions, and the SHA-256 of all files.
+"""
+
+_SCRIPT = '''"""Load particles and shapes and save them as heap.ovito; run it with OVITO's Python."""
+
+from pathlib import Path
+
+import ovito
+from ovito.io import import_file
+
+here = Path(__file__).resolve().parent
+pipeline = import_file(str(here / "particles.*.xyz"))
+types = pipeline.source.data.particles_.particle_types_
+for each in list(types.types):
+    if (here / f"{each.name}.stl").is_file():
+        types.type_by_id_(each.id).load_shape(str(here / f"{each.name}.stl"))
+pipeline.add_to_scene()
+ovito.scene.save(str(here / "heap.ovito"))
+'''
+
+
+@dataclass(frozen=True)
+class ReposeExport:
+    """A written export of a run.
+
+    Parameters
+    ----------
+    folder
+        Where it is.
+    times
+        Of its moments, in seconds.
+    n_particles
+        Number of particles of the last moment.
+    files
+        Relative paths.
+    """
+
+    folder: Path
+    times: tuple[float, ...]
+    n_particles: int
+    files: tuple[str, ...]
+
+
+def export_repose(run: Path | str, folder: Path | str, every: int = 1) -> ReposeExport:
+    """Write a run as a series for ParaView, a series for OVITO, and its last moment as GLB.
+
+    Parameters
+    ----------
+    run
+        Folder of a run that was finished or stopped.
+    folder
+        New, empty, or holding an earlier export of a run and nothing else.
+    every
+        Write every so many snapshots; the last moment is always written.
+
+    Raises
+    ------
+    RegolithError
+        If there is no such run, or the folder holds anything else or cannot be written.
+    """
+    steps = repose_export_steps(Path(run), Path(folder), every)
+    while True:
+        try:
+            next(steps)
+        except StopIteration as end:
+            return cast("ReposeExport", end.value)
+
+
+def repose_export_steps(run_folder: Path, folder: Path, every: int = 1) -> Steps:
+    """Job of :func:`export_repose`; returns :class:`ReposeExport`."""
+    if every < 1:
+        raise InputError(f"Every first snapshot or fewer can be exported, got every {every}.")
+    run, target = read_run(run_folder), Path(os.path.realpath(folder))
+    states = _states(run_folder, every)
+    if target.is_relative_to(os.path.realpath(run_folder)):
+        raise FileError(f"{folder} is in the folder of the run; choose another one.")
+    shapes = run_shapes(run)
+    yield Started(N_("Exporting the run"), len(states) + 1)
+    try:
+        recover_folder(target)
+        check_export_folder(target, FORMAT)
+        with hidden_folder(target) as stage:
+            writer = _StageWriter(stage, run, shapes)
+            for number, path in enumerate(states):
+                writer.add(read_final_state(path))
+                yield Progress(number + 1, len(states) + 1)
+            files = writer.finish(states, every)
+            exchange(stage, target)
+    except OSError as error:
+        raise FileError(f"The export {folder} cannot be written ({os_error_reason(error)}).") from error
+    return ReposeExport(target, tuple(writer.times), writer.n_particles, tuple(files))
+
+
+def _states(folder: Path, every: int) -> list[Path]:
+    """Every so many snapshots of a run, and its last moment."""
+    found = snapshot_files(folder)
+    if (folder / FINAL).is_file():
+        found.append(folder / FINAL)
+    if not found:
+        raise FileError(f"{folder} holds no snapshots of its run.")
+    return [*found[:-1:every], found[-1]]
+
+
+class _StageWriter:
+    """Writes the files of an export into a staged folder."""
+
+    def __init__(self, stage: Path, run: RunSummary, shapes: RunShapes) -> None:
+        self.times: list[float] = []
+        self.n_particles = 0
+        self._stage, self._run, self._shapes = stage, run, shapes
+        self._last: ParticleState | None = None
+        for name in ("particles", "shapes", "ovito"):
+            (stage / name).mkdir()
+
+    def add(self, pile: ParticleState) -> None:
+        """Write a moment; it replaces the last one if it is not later."""
+        if self.times and pile.time <= self.times[-1]:
+            self.times.pop()
+        number = len(self.times)
+        _write_poly_data(self._stage / _moment(number), _points(self._shapes, pile))
+        write_in_stage(self._stage / f"ovito/particles.{number:06d}.xyz", extended_xyz(self._shapes, pile))
+        self.times.append(pile.time)
+        self.n_particles, self._last = len(pile), pile
+
+    def finish(self, states: Sequence[Path], every: int) -> list[str]:
+        """Write the rest; relative paths of all files."""
+        names = self._shapes.names
+        for name, mesh in zip(names, self._shapes.meshes, strict=True):
+            _write_poly_data(self._stage / f"shapes/{name}.vtp", _surface(mesh))
+            if not self._shapes.spheres:
+                self._write(f"ovito/{name}.stl", stl_bytes(2.0 * mesh.triangles, name))
+        self._write(SERIES, _collection(self.times))
+        self._write(SHAPE_TABLE, _blocks(names))
+        self._write(OVITO_SCRIPT, _SCRIPT.encode("ascii"))
+        if self._last is not None:
+            self._write(HEAP, heap_glb(self._shapes, self._last, [_linear(each) for each in COLOURS]))
+        self._write(README, self._readme().encode("utf-8", "replace"))
+        hashes = {
+            path.relative_to(self._stage).as_posix(): _sha256(path)
+            for path in sorted(self._stage.rglob("*"))
+            if path.is_file()
+        }
+        record = self._record(states, every) | {"files": hashes}
+        self._write(RECORD, canonical_json(record).encode("ascii"))
+        return [*hashes, RECORD]
+
+    def _readme(self) -> str:
+        return _README.format(
+            name=self._run.folder.resolve().name,
+            n=self.n_particles,
+            moments=len(self.times),
+            version=regolith_studio.__version__,
+        )
+
+    def _record(self, states: Sequence[Path], every: int) -> dict[str, object]:
+        """What the export was made from."""
+        folder, document = self._run.folder, self._run.document
+        inputs = [folder / DOCUMENT, *states, *([] if self._shapes.spheres else [folder / SHAPES])]
+        kept = ("state", "dataset", "engine", "software", "case", "measurement")
+        return {
+            "format": FORMAT,
+            "schema_version": 1,
+            "software": f"regolith-studio {regolith_studio.__version__}",
+            "length_unit": "m",
+            "every": every,
+            "times_s": self.times,
+            "n_particles": self.n_particles,
+            "run": {key: document.get(key) for key in kept},
+            "inputs": {path.relative_to(folder).as_posix(): _sha256(path) for path in inputs},
+        }
+
+    def _write(self, name: str, content: bytes) -> None:
+        write_in_stage(self._stage / name, content)
+
+
+def _points(shapes: RunShapes, pile: ParticleState) -> pv.PolyData:
+    """Particles as points with the arrays that glyphs need."""
+    data: pv.PolyData = pv.PolyData(pile.points.astype(np.float32))
+    data.point_data["diameter"] = pile.diameters.astype(np.float32)
+    data.point_data["orientation"] = pile.orientations.astype(np.float32)
+    data.point_data["shape"] = shapes.index(pile).astype(np.int32)
+    data.field_data["TimeValue"] = [pile.time]
+    data.field_data["phase"] = [pile.phase]
+    if np.isfinite(pile.wall):
+        data.field_data["cylinder_rim"] = [pile.wall]
+    return data
+
+
+def _surface(mesh: Mesh) -> pv.PolyData:
+    cells = np.column_stack([np.full(len(mesh.faces), 3), mesh.faces]).ravel()
+    surface: pv.PolyData = pv.PolyData(mesh.vertices.astype(np.float32), faces=cells)
+    return surface
+
+
+def _write_poly_data(path: Path, data: pv.PolyData) -> None:
+    """Write a VTP file.
+
+    Raises
+    ------
+    FileError
+        If it cannot be written.
+    """
+    writer = vtkXMLPolyDataWriter()
+    writer.SetFileName(str(path))
+    writer.SetInputData(data)
+    writer.SetDataModeToAppended()
+    writer.EncodeAppendedDataOff()
+    if not writer.Write():
+        raise FileError(f"The file {path} cannot be written.")
+
+
+def _moment(number: int) -> str:
+    return f"particles/particles_{number:06d}.vtp"
+
+
+def _collection(times: Sequence[float]) -> bytes:
+    """ParaView's list of the files of a series, with their times."""
+    rows = [
+        f'    <DataSet timestep="{time!r}" part="0" file={quoteattr(_moment(number))}/>'
+        for number, time in enumerate(times)
+    ]
+    return _vtk_xml("Collection", "Collection", rows)
+
+
+def _blocks(names: Sequence[str]) -> bytes:
+    """The shapes as blocks of one data set."""
+    rows = [
+        f'    <DataSet index="{index}" name={quoteattr(name)} file={quoteattr(f"shapes/{name}.vtp")}/>'
+        for index, name in enumerate(names)
+    ]
+    return _vtk_xml("vtkMultiBlockDataSet", "vtkMultiBlockDataSet", rows)
+
+
+def _vtk_xml(kind: str, element: str, rows: Sequence[str]) -> bytes:
+    head = f'<?xml version="1.0"?>\n<VTKFile type="{kind}" version="1.0" byte_order="LittleEndian">'
+    return "\n".join([head, f"  <{element}>", *rows, f"  </{element}>", "</VTKFile>", ""]).encode("ascii")
+
+
+def _linear(colour: str) -> list[float]:
+    """Linear red, green and blue of a colour of the screen (sRGB), as glTF stores them."""
+    screen = np.array(pv.Color(colour).float_rgb)
+    linear = np.where(screen <= 0.04045, screen / 12.92, ((screen + 0.055) / 1.055) ** 2.4)
+    return [round(value, 5) for value in linear.tolist()]
+
+
+def _sha256(path: Path) -> str:
+    with path.open("rb") as stream:
+        return hashlib.file_digest(stream, "sha256").hexdigest()
