@@ -1873,7 +1873,7 @@
     </message>
     <message>
         <source>Export for Para&amp;View and OVITO …</source>
-        <translation>Für Para&amp;View und OVITO exportieren …</translation>
+        <translation>Für ParaView und &amp;OVITO exportieren …</translation>
     </message>
     <message>
         <source>Export for ParaView and OVITO</source>
