@@ -240,7 +240,7 @@ def test_that_balls_which_roll_away_for_ever_do_not_end_a_run_and_count_as_no_pa
     checks = simulation._checks
     monkeypatch.setattr(simulation, "_checks", lambda run: seen.append(run) or checks(run))
     prepared = prepare(boxes, replace(SMALL, shapes="spheres"))
-    _, ending = result_of(ENGINE.simulate(prepared, LammpsSettings(rest=40.0, snapshots=30)))
+    _, ending = result_of(ENGINE.simulate(prepared, LammpsSettings(rest=50.0, snapshots=30)))
     away = np.hypot(*ending.particles.points[:, :2].T)
     assert away.max() > 12.0 * prepared.case.test.diameter / 2
     assert ending.checks.particles_out == 40
