@@ -30,7 +30,7 @@ AGAINST = "aspect_ratio,sphericity"
 
 
 def main(runs: Path, result: Path, repeats: int, engine: str) -> None:
-    """Make what is missing, and write the rows of the study and the terms of its response surface."""
+    """Make what is missing, and write the rows and the terms of the response surface."""
     folders = []
     for form, roughness in FACTORS:
         folders.append(runs / f"form_{form:g}_roughness_{roughness:g}")
@@ -40,7 +40,7 @@ def main(runs: Path, result: Path, repeats: int, engine: str) -> None:
     how = ["--repeats", repeats, "--engine", engine, "--against", AGAINST]
     words = ["repose", "study", *folders, "-o", study, *how]
     subprocess.run([sys.executable, "-m", "regolith_studio", *map(str, words)], check=True)
-    content = {name: read(study, name) for name in ("repose_study.json", "response_surface_terms.json")}
+    content = {name: read(study, name) for name in ("response_surface.json", "response_surface_terms.json")}
     result.write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
 
 

@@ -245,21 +245,54 @@ def test_that_the_table_of_deep_contacts_has_the_results_of_its_runs() -> None:
             assert cell == f"{' to '.join(ends)} %, {100 * deepest:.1f} %"
 
 
+def half_width(values: list[float]) -> float:
+    """Of Student's interval of 95 % of a mean."""
+    return float(stats.t.ppf(0.975, len(values) - 1) * stats.sem(values))
+
+
+def welch(first: list[float], second: list[float]) -> tuple[str, str]:
+    """Difference of two means with its interval of 95 %, as the guide writes it."""
+    found = stats.ttest_ind(first, second, equal_var=False).confidence_interval()
+    return f"{np.mean(first) - np.mean(second):.1f}", f"{found.low:.1f} to {found.high:.1f}"
+
+
 def test_that_the_table_of_facets_has_the_results_of_its_runs() -> None:
-    rows = rows_of(REPOSE, "| facets | seeds | angles | mean | filling, packed | contacts a particle |")
-    samples: list[dict[str, list[float]]] = []
-    for facets, _, *cells in rows:
+    rows = rows_of(REPOSE, "| facets | angles | mean | filling, packed | contacts a particle |")
+    angles: dict[int, list[float]] = {}
+    for facets, *cells in rows:
         runs = [run for run in results("repose_facets.json") if run["facets"] == int(facets)]
-        keys = ("angle_deg", "solid_fraction", "coordination_number")
-        samples.append({key: [run[key] for run in runs] for key in keys})
-        angle, packed, contacts = (np.mean(samples[-1][key]) for key in keys)
-        angles = ", ".join(f"{each:.1f}" for each in samples[-1]["angle_deg"])
-        assert cells == [angles, f"{angle:.1f}", f"{packed:.3f}", f"{contacts:.1f}"]
-    few, many = samples
-    for key, text in (("solid_fraction", "{:.3f} to {:.3f}"), ("angle_deg", "{:.1f} to {:.1f}")):
-        low, high = stats.ttest_ind(few[key], many[key]).confidence_interval()
-        ends = (-high, -low) if key == "solid_fraction" else (low, high)
-        assert text.format(*ends) in one_line(REPOSE)
+        angles[int(facets)] = found = [run["angle_deg"] for run in runs]
+        packed, contacts = (
+            np.mean([run[key] for run in runs]) for key in ("solid_fraction", "coordination_number")
+        )
+        listed = ", ".join(f"{each:.1f}" for each in found)
+        mean = f"{np.mean(found):.1f} ± {half_width(found):.1f}"
+        assert cells == [listed, mean, f"{packed:.3f}", f"{contacts:.1f}"]
+    for few, many, words in (
+        (8, 20, "{} degrees from 20 to 8 ({}, Welch, 95 %)"),
+        (8, 60, "{} from 60 to 8 ({})"),
+    ):
+        assert words.format(*welch(angles[few], angles[many])) in one_line(REPOSE)
+    difference, interval = welch(angles[20], angles[60])
+    assert f"{difference} from 60 to 20, which is not decided ({interval})" in one_line(REPOSE)
+
+
+def test_that_the_table_of_drawn_populations_has_the_results_of_its_runs() -> None:
+    found = json.loads((ROOT / "benchmarks/results/population_heaps.json").read_text("utf-8"))
+    rows = rows_of(REPOSE, "| form | roughness | aspect ratio | sphericity | angle | surface |")
+    for row, (form, roughness, *cells) in zip(found["response_surface.json"]["rows"], rows, strict=True):
+        assert row["dataset"] == f"form_{form}_roughness_{roughness}"
+        low, high = row["surface_low"], row["surface_high"]
+        surface = f"{row['surface']:.1f} ({low:.1f} to {high:.1f})"
+        angle = f"{row['angle']:.1f}"
+        assert cells == [f"{row['aspect_ratio']:.2f}", f"{row['sphericity']:.3f}", angle, surface]
+    elongation, roundness = found["response_surface_terms.json"]["effects"]
+    (falls, least, most), (rises, low, high) = (
+        [abs(each) for each in (effect["change_over_range_deg"], *effect["interval_deg"][::way])]
+        for effect, way in ((roundness, -1), (elongation, 1))
+    )
+    assert f"falls by {falls:.1f} degrees ({least:.1f} to {most:.1f})" in one_line(REPOSE)
+    assert f"rises by {rises:.1f} ({low:.1f} to {high:.1f})" in one_line(REPOSE)
 
 
 def test_that_the_table_of_spheres_has_the_results_of_its_benchmark() -> None:
