@@ -1,11 +1,12 @@
 """Do calibrations with real heaps find the friction that they are not told? docs/calibration.md.
 
-    python -m benchmarks.blind_calibration DATASET RUNS RESULT.json [CASES] [ENGINE]
+    python -m benchmarks.blind_calibration DATASET RUNS RESULT.json [ENGINE]
 
 Frictions are drawn from equal parts of the range, one a case. The wanted angle of a case is the mean of
-HEAPS heaps of 1,000 particles of that friction; its standard error is the standard deviation of such
-heaps about their means, from all cases, over the square root of HEAPS. The calibration has other seeds.
-Runs that are in the folder RUNS already are kept. The result is written anew after each calibration.
+HEAPS heaps of 1,000 particles of that friction, of those that have an angle; its standard error is the
+standard deviation of heaps about their means, from all cases, over the square root of HEAPS. The calibration
+has other seeds. Runs that are in the folder RUNS already are kept. The result is written anew after each
+calibration.
 """
 
 import json
@@ -19,13 +20,13 @@ import numpy as np
 from regolith_studio.dem.run_io import DOCUMENT, read_run
 
 LOW, HIGH, SEED = 0.05, 1.2, 7
-HEAPS = 4
+CASES, HEAPS = 10, 4
 
 
-def main(dataset: Path, runs: Path, result: Path, cases: int, engine: str) -> None:
+def main(dataset: Path, runs: Path, result: Path, engine: str) -> None:
     """Print a line a case, and write them all."""
-    parts = np.arange(cases) + np.random.default_rng(SEED).random(cases)
-    frictions = (LOW + (HIGH - LOW) * parts / cases).round(3)
+    parts = np.arange(CASES) + np.random.default_rng(SEED).random(CASES)
+    frictions = (LOW + (HIGH - LOW) * parts / CASES).round(3)
     common = ["-n", 1000, "--engine", engine]
     angles = np.array(
         [
@@ -36,10 +37,10 @@ def main(dataset: Path, runs: Path, result: Path, cases: int, engine: str) -> No
             for friction in frictions
         ]
     )
-    error = float(np.sqrt(angles.var(axis=1, ddof=1).mean() / HEAPS))
+    error = float(np.sqrt(np.nanvar(angles, axis=1, ddof=1).mean() / HEAPS))
     rows: list[dict[str, Any]] = []
-    for number in np.random.default_rng(SEED).permutation(cases):
-        friction, wanted = float(frictions[number]), float(angles[number].mean())
+    for number, friction in enumerate(frictions.tolist()):
+        wanted = float(np.nanmean(angles[number]))
         folder = runs / f"calibration_{number}"
         goal = ["--angle", f"{wanted:.2f}", "--angle-error", f"{error:.2f}"]
         call("calibrate", dataset, "-o", folder, *goal, "--seed", 10 * number, *common)
@@ -56,17 +57,23 @@ def main(dataset: Path, runs: Path, result: Path, cases: int, engine: str) -> No
             }
         )
         print(rows[-1], flush=True)
-        content = {"angles_deg": angles.round(2).tolist(), "calibrations": rows}
+        content = {
+            "angles_deg": [
+                [None if np.isnan(each) else round(each, 2) for each in row] for row in angles.tolist()
+            ],
+            "calibrations": rows,
+        }
         result.write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
 
 
 def angle_of(dataset: Path, folder: Path, friction: float, seed: int, common: list[Any]) -> float:
-    """Angle of a heap, made where it is not there."""
+    """Angle of a heap, made where it is not there; NaN for a heap that has none."""
     if not (folder / DOCUMENT).is_file():
         call(
             "run", dataset, "-o", folder, "--contact", f"static_friction={friction}", "--seed", seed, *common
         )
-    return float(read_run(folder).document["measurement"]["angle_deg"])
+    angle = read_run(folder).document["measurement"]["angle_deg"]
+    return float("nan" if angle is None else angle)
 
 
 def call(*words: object) -> None:
@@ -75,5 +82,4 @@ def call(*words: object) -> None:
 
 
 if __name__ == "__main__":
-    rest = [*sys.argv[4:], *("10", "rapier")[len(sys.argv) - 4 :]]
-    main(Path(sys.argv[1]), Path(sys.argv[2]), Path(sys.argv[3]), int(rest[0]), rest[1])
+    main(Path(sys.argv[1]), Path(sys.argv[2]), Path(sys.argv[3]), *(sys.argv[4:] or ["rapier"]))

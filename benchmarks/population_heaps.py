@@ -25,7 +25,7 @@ from regolith_studio.shape_models.spectrum_sliders import relative_amplitudes, w
 MATERIAL, PARTICLES, FACETS, SEED = "lunar_soil", 40, 20, 1
 FACTORS = ((1.0, 1.0), (0.3, 1.0), (1.8, 1.0), (1.0, 0.3), (1.0, 1.6), (0.3, 0.3), (1.8, 1.6))
 """On the amplitudes of degree 2 and of those above, one population each."""
-SIZES = LogNormalSizeDistribution(median_um=60.0, log_deviation=0.3)
+SIZES = LogNormalSizeDistribution(median_um=60.0, log_deviation=0.3, weighting="number")
 AGAINST = "aspect_ratio,sphericity"
 
 
