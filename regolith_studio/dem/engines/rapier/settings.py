@@ -13,8 +13,6 @@ class RapierSettings(LiftingSettings):
 
     Parameters
     ----------
-    rest_energy
-        As of all engines; twice as large, since single particles of a heap at rest tremble.
     time_step
         Between two searches for contacts; halved once or twice while particles move fast.
     iterations
@@ -26,9 +24,6 @@ class RapierSettings(LiftingSettings):
         If a value is out of its range.
     """
 
-    rest_energy: float = field(
-        default=4e-4, metadata={"label": N_("Energy at rest"), "minimum": 1e-9, "maximum": 0.1, "decimals": 9}
-    )
     time_step: float = field(
         default=0.05, metadata={"label": N_("Time step"), "minimum": 1e-4, "maximum": 0.1, "decimals": 4}
     )
