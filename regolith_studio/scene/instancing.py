@@ -15,20 +15,35 @@ from regolith_studio.dem.snapshot import ParticleState
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.scene import palette
+from regolith_studio.scene.heap_detail import (
+    AT_REST,
+    MOVING,
+    hidden_particles,
+    octahedron_of,
+    without,
+)
 from regolith_studio.scene.palette import ThemeColors
 
-HEAP, PLATE, CYLINDER = "heap", "plate", "cylinder"
+HEAP, COARSE_HEAP, PLATE, CYLINDER = "heap", "coarse_heap", "plate", "cylinder"
 MICROMETRES = 1e6
 UNIT_BALL = (np.pi / 6) ** (1 / 3)
 COLOURS = ("#e8b04a", "#c98f2e", "#f3cf85", "#b5a18a", "#d8c3a0", "#9f8f7d", "#e3a06b", "#bfae6a")
 """One for each shape, in turn: shades of sand that can be told apart."""
 N_AROUND = 96
+MANY_TRIANGLES = 150_000
+"""Of a heap that is drawn coarsely while the view turns."""
+BALL_LEVEL, BALL_TRIANGLES = 2, 320
+"""Subdivisions of the icosahedron that stands for a ball, and its triangles."""
 
 
 def show_heap(
-    plotter: Any, shapes: Sequence[Sequence[FloatArray]], pile: ParticleState, spheres: bool = False
+    plotter: Any,
+    shapes: Sequence[Sequence[FloatArray]],
+    pile: ParticleState,
+    spheres: bool = False,
+    coarse: bool = False,
 ) -> None:
-    """The particles of one moment.
+    """The particles of one moment; of a large heap without those that others hide.
 
     Parameters
     ----------
@@ -40,21 +55,28 @@ def show_heap(
         The particles, in metres.
     spheres
         Draw balls of the same volumes instead.
+    coarse
+        Draw octahedra instead, as is enough while the view turns.
     """
+    if is_large(shapes, pile, spheres):
+        pile = without(pile, hidden_particles(pile, MOVING if coarse else AT_REST))
     instances = _instances(pile, len(shapes))
-    actor = plotter.actors.get(HEAP)
+    name, other = (COARSE_HEAP, HEAP) if coarse else (HEAP, COARSE_HEAP)
+    if other in plotter.actors:
+        plotter.actors[other].SetVisibility(False)
+    actor = plotter.actors.get(name)
     if actor is not None and _kinds(actor) == _signature(shapes, spheres):
         actor.GetMapper().SetInputData(instances)
         actor.SetVisibility(True)
         return
     if actor is not None:
-        plotter.remove_actor(HEAP, render=False)
+        plotter.remove_actor(name, render=False)
     mapper = vtkGlyph3DMapper()
     mapper.SetInputData(instances)
     mapper.SetSourceIndexing(True)
     mapper.SetSourceIndexArray("shape")
     for kind, shape in enumerate(shapes):
-        mapper.SetSourceData(kind, _ball() if spheres else _facets(shape))
+        mapper.SetSourceData(kind, _body(shape, spheres, coarse))
     mapper.SetOrientationArray("turn")
     mapper.SetOrientationModeToQuaternion()
     mapper.SetScaleArray("scale")
@@ -67,8 +89,19 @@ def show_heap(
     material = palette.POLYHEDRON_MATERIAL
     fresh.GetProperty().SetAmbient(material.ambient)
     fresh.GetProperty().SetDiffuse(material.diffuse)
+    fresh.GetProperty().BackfaceCullingOn()  # the bodies are closed; software OpenGL takes half the time
     fresh.regolith_signature = _signature(shapes, spheres)
-    plotter.add_actor(fresh, name=HEAP, reset_camera=False, render=False)
+    plotter.add_actor(fresh, name=name, reset_camera=False, render=False)
+
+
+def is_large(shapes: Sequence[Sequence[FloatArray]], pile: ParticleState, spheres: bool = False) -> bool:
+    """Whether a heap has so many triangles that software OpenGL takes more than a tenth of a second."""
+    if not shapes:
+        return False
+    if spheres:
+        return len(pile) * BALL_TRIANGLES > MANY_TRIANGLES
+    triangles = [sum(2 * len(part) - 4 for part in parts) for parts in shapes]
+    return len(pile) * float(np.mean(triangles)) > MANY_TRIANGLES
 
 
 def show_apparatus(
@@ -137,6 +170,12 @@ def _instances(pile: ParticleState, n_shapes: int) -> pv.PolyData:
     return data
 
 
+def _body(shape: Sequence[FloatArray], spheres: bool, coarse: bool) -> pv.PolyData:
+    if coarse:
+        return _facets((octahedron_of((icosphere(1).vertices,) if spheres else shape),))
+    return _ball() if spheres else _facets(shape)
+
+
 def _facets(parts: Sequence[FloatArray]) -> pv.PolyData:
     """Convex bodies with one normal a facet, corners repeated, so that edges stay sharp."""
     hulls = [_oriented_hull(vertices) for vertices in parts]
@@ -163,7 +202,7 @@ def _oriented_hull(vertices: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 def _ball() -> pv.PolyData:
     """A ball of unit volume."""
-    mesh = icosphere(2)
+    mesh = icosphere(BALL_LEVEL)
     cells = np.column_stack([np.full(len(mesh.faces), 3), mesh.faces]).ravel()
     body: pv.PolyData = pv.PolyData(mesh.vertices / UNIT_BALL / 2, faces=cells)
     body.point_data["Normals"] = np.array(mesh.vertices, dtype=np.float32)

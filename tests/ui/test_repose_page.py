@@ -25,6 +25,8 @@ from regolith_studio.jobs.events import Partial, Progress
 from regolith_studio.jobs.runners.run_job import InlineRunner
 from regolith_studio.jobs.runners.thread import ThreadRunner
 from regolith_studio.messages import to_json
+from regolith_studio.scene import instancing
+from regolith_studio.scene.cameras import orbited
 from regolith_studio.session.session import Session
 from regolith_studio.studies.calibration import CalibrationParameter
 from regolith_studio.studies.repose import runs_from
@@ -291,6 +293,23 @@ def test_that_the_player_refuses_the_final_state_of_another_run(page, tmp_path):
     (tmp_path / "final.npz").write_bytes(particle_state_bytes(pile_of(20.0)))
     page.player.show_run([tmp_path / "final.npz"], "run")
     assert "not the final state of the run" in page.player.clock.text()
+
+
+def test_that_a_large_heap_is_drawn_coarsely_while_the_view_turns(page, monkeypatch, wait):
+    def drawn():
+        actors = page.player.frame.view._plotter.actors
+        return [name for name in ("heap", "coarse_heap") if name in actors and actors[name].GetVisibility()]
+
+    ball = ((page.player_ball(),),)
+    page.player.set_scene(ball, False, LiftingCylinderTest())
+    page.player.show_moment(pile_of(30.0), "heap")
+    turned = orbited(page.player.frame.view.pose, 0.1, 0.0)
+    page.player.frame.view._move(turned)
+    assert drawn() == ["heap"], "700 particles turn as they are"
+    monkeypatch.setattr(instancing, "MANY_TRIANGLES", 10_000)
+    page.player.frame.view._move(turned)
+    assert drawn() == ["coarse_heap"]
+    wait(lambda: drawn() == ["heap"])
 
 
 def test_that_the_shown_run_is_exported_for_other_programs(page, tmp_path, monkeypatch, wait):

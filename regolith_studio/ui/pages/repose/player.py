@@ -29,6 +29,8 @@ ABOVE_FRAME = 1.02
 """Height of particles over that of the frame beyond which the cylinder is framed anew."""
 FRAME = 50
 """Milliseconds between two frames of a replay."""
+SETTLE = 300
+"""Milliseconds from the last movement of a large heap to its picture with all details."""
 
 
 class RunPlayer(QWidget):
@@ -45,6 +47,10 @@ class RunPlayer(QWidget):
         self._test = LiftingCylinderTest()
         self._files: list[Path] = []
         self.pile: ParticleState | None = None
+        self._coarse = False
+        self._settle = QTimer(self, singleShot=True, interval=SETTLE)
+        self._settle.timeout.connect(self._draw_settled)
+        self.frame.view.when_moved(lambda _: self._draw_coarsely())
         self.slider = QSlider(Qt.Orientation.Horizontal)
         self.slider.setObjectName("repose_time")
         self.slider.setAccessibleName(tr("Time of the run"))
@@ -145,6 +151,7 @@ class RunPlayer(QWidget):
     def release(self) -> None:
         """Release graphics memory."""
         self.stop()
+        self._settle.stop()
         self.frame.view.release()
 
     def _set_files(self, files: list[Path]) -> None:
@@ -169,8 +176,25 @@ class RunPlayer(QWidget):
             self.clock.setText(str(error))
 
     def _show(self, pile: ParticleState) -> None:
+        if self._files:
+            self._coarse = instancing.is_large(self._shapes, pile, self._spheres)
+            if self._coarse:
+                self._settle.start()
         self.pile = pile
         self.clock.setText(f"{number_text(pile.time, '.2f')} s  {tr(pile.phase)}")
+        self._draw()
+
+    def _draw_coarsely(self) -> None:
+        """Draw a large heap without details until nothing has moved for a while."""
+        if self.pile is None or not instancing.is_large(self._shapes, self.pile, self._spheres):
+            return
+        self._settle.start()
+        if not self._coarse:
+            self._coarse = True
+            self._draw()
+
+    def _draw_settled(self) -> None:
+        self._coarse = False
         self._draw()
 
     def _draw(self) -> None:
@@ -181,7 +205,7 @@ class RunPlayer(QWidget):
         reach = float(np.clip(1.05 * spread, 1.3 * self._test.diameter, 2.2 * self._test.diameter))
 
         def fill(plotter: object) -> None:
-            instancing.show_heap(plotter, self._shapes, pile, self._spheres)
+            instancing.show_heap(plotter, self._shapes, pile, self._spheres, self._coarse)
             instancing.show_apparatus(
                 plotter, pile, self._test.diameter, self._test.height, reach, self._theme.surroundings
             )
