@@ -123,9 +123,7 @@ def without(prepared: PreparedCase, heap: ParticleState, taken: IntArray) -> dic
     points[taken] = np.column_stack(
         [np.full(len(taken), far), 3.0 * np.arange(len(taken)), np.ones(len(taken))]
     )
-    for body, place, turn in zip(solver.particles, points.tolist(), heap.orientations.tolist(), strict=True):
-        body.translation = place
-        body.rotation = rapier.Rotation3(*turn)
+    put(solver, points, heap.orientations)
     solver.begin("rest")
     solver.advance(settings.time_step, round(SETTLE / settings.time_step))
     kept = np.setdiff1d(np.arange(len(heap)), taken)
@@ -141,6 +139,13 @@ def without(prepared: PreparedCase, heap: ParticleState, taken: IntArray) -> dic
         "coordination_number": None if packing is None else round(packing.coordination_number, 3),
         "moved_by_more_than_a_tenth": int((moved > 0.1).sum()),
     }
+
+
+def put(solver: RapierSolver, points: FloatArray, orientations: FloatArray) -> None:
+    """Put the particles of a solver there, at rest; points in mean diameters."""
+    for body, place, turn in zip(solver.particles, points.tolist(), orientations.tolist(), strict=True):
+        body.translation = place
+        body.rotation = rapier.Rotation3(*turn)
 
 
 if __name__ == "__main__":

@@ -123,7 +123,7 @@ def export_repose(run: Path | str, folder: Path | str, every: int = 1) -> Repose
 def repose_export_steps(run_folder: Path, folder: Path, every: int = 1) -> Steps:
     """Job of :func:`export_repose`; returns :class:`ReposeExport`."""
     if every < 1:
-        raise InputError(f"Every first snapshot or fewer can be exported, got every {every}.")
+        raise InputError(f"The value of every must be at least 1, got {every}.")
     run, target = read_run(run_folder), Path(os.path.realpath(folder))
     states = _states(run_folder, every)
     if target.is_relative_to(os.path.realpath(run_folder)):
