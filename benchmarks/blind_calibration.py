@@ -5,8 +5,8 @@
 Frictions are drawn from equal parts of the range, one a case. The wanted angle of a case is the mean of
 HEAPS heaps of 1,000 particles of that friction, of those that have an angle; its standard error is the
 standard deviation of heaps about their means, from all cases, over the square root of HEAPS. The calibration
-has other seeds. Runs that are in the folder RUNS already are kept. The result is written anew after each
-calibration.
+has N_RUNS heaps of other seeds. Runs that are in the folder RUNS already are kept. The result is written
+anew after each calibration.
 """
 
 import json
@@ -20,7 +20,7 @@ import numpy as np
 from regolith_studio.dem.run_io import DOCUMENT, read_run
 
 LOW, HIGH, SEED = 0.05, 1.2, 7
-CASES, HEAPS = 10, 4
+CASES, HEAPS, N_RUNS = 10, 4, 8
 
 
 def main(dataset: Path, runs: Path, result: Path, engine: str) -> None:
@@ -43,7 +43,7 @@ def main(dataset: Path, runs: Path, result: Path, engine: str) -> None:
         wanted = float(np.nanmean(angles[number]))
         folder = runs / f"calibration_{number}"
         goal = ["--angle", f"{wanted:.2f}", "--angle-error", f"{error:.2f}"]
-        call("calibrate", dataset, "-o", folder, *goal, "--seed", 10 * number, *common)
+        call("calibrate", dataset, "-o", folder, *goal, "--runs", N_RUNS, "--seed", 10 * number, *common)
         found = json.loads((folder / "calibration.json").read_text("utf-8"))
         low, high = found["parameters"][0]["interval"]
         rows.append(
