@@ -70,7 +70,7 @@ class LiftingSettings:
         default=6.0, metadata={"label": N_("Filling speed"), "minimum": 0.1, "maximum": 100.0}
     )
     fill_friction: float = field(
-        default=0.5, metadata={"label": N_("Friction while filling"), "minimum": 0.01, "maximum": 1.0}
+        default=0.5, metadata={"label": N_("Friction share while filling"), "minimum": 0.01, "maximum": 1.0}
     )
     rest_energy: float = field(
         default=2e-4, metadata={"label": N_("Energy at rest"), "minimum": 1e-9, "maximum": 0.1, "decimals": 9}

@@ -2264,8 +2264,8 @@
         <translation>Reibung</translation>
     </message>
     <message>
-        <source>Friction while filling</source>
-        <translation>Reibung beim Füllen</translation>
+        <source>Friction share while filling</source>
+        <translation>Reibungsanteil beim Füllen</translation>
     </message>
     <message>
         <source>From</source>
