@@ -277,6 +277,18 @@ def test_that_the_table_of_facets_has_the_results_of_its_runs() -> None:
     assert f"{difference} from 60 to 20, which is not decided ({interval})" in one_line(REPOSE)
 
 
+def test_that_the_sentence_on_kept_descriptors_has_the_results_of_its_runs() -> None:
+    everything = [run["angle_deg"] for run in results("repose_facets.json") if run["facets"] == 20]
+    quadric, overlap = ([run["angle_deg"] for run in found["runs"]] for found in results("repose_kept.json"))
+    first, second, all_kept = (
+        f"{np.mean(each):.1f} ± {half_width(each):.1f}" for each in (quadric, overlap, everything)
+    )
+    assert f"by quadrics alone stand at {first} degrees" in one_line(REPOSE)
+    assert f"no descriptor kept at {second}, beside {all_kept} with all of them" in one_line(REPOSE)
+    differences = ["{} ({})".format(*welch(each, everything)) for each in (quadric, overlap)]
+    assert f"differences of {differences[0]} and {differences[1]}" in one_line(REPOSE)
+
+
 def test_that_the_table_of_drawn_populations_has_the_results_of_its_runs() -> None:
     found = json.loads((ROOT / "benchmarks/results/population_heaps.json").read_text("utf-8"))
     rows = rows_of(REPOSE, "| form | roughness | aspect ratio | sphericity | angle | surface |")
@@ -287,10 +299,9 @@ def test_that_the_table_of_drawn_populations_has_the_results_of_its_runs() -> No
         angle = f"{row['angle']:.1f}"
         assert cells == [f"{row['aspect_ratio']:.2f}", f"{row['sphericity']:.3f}", angle, surface]
     elongation, roundness = found["response_surface_terms.json"]["effects"]
-    (falls, least, most), (rises, low, high) = (
-        [abs(each) for each in (effect["change_over_range_deg"], *effect["interval_deg"][::way])]
-        for effect, way in ((roundness, -1), (elongation, 1))
-    )
+    most, least = (-each for each in roundness["interval_deg"])
+    low, high = elongation["interval_deg"]
+    falls, rises = -roundness["change_over_range_deg"], elongation["change_over_range_deg"]
     assert f"falls by {falls:.1f} degrees ({least:.1f} to {most:.1f})" in one_line(REPOSE)
     assert f"rises by {rises:.1f} ({low:.1f} to {high:.1f})" in one_line(REPOSE)
 
