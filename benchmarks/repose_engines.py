@@ -45,7 +45,7 @@ def cost_of(command: list[str]) -> dict[str, float]:
 def summary(document: dict[str, Any]) -> dict[str, Any]:
     """Numbers of a run for the tables."""
     checks, measured = document["checks"], document["measurement"]
-    angle, interval = measured["angle_deg"], measured["interval_deg"]
+    angle, interval = measured.get("angle_deg"), measured.get("interval_deg")
     return {
         "fill_height_cm": round(100 * checks["fill_height"], 2),
         "solid_fraction": round(checks["solid_fraction"], 3),
