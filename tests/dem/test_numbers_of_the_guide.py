@@ -277,6 +277,25 @@ def test_that_the_table_of_facets_has_the_results_of_its_runs() -> None:
     assert f"{difference} from 60 to 20, which is not decided ({interval})" in one_line(REPOSE)
 
 
+def test_that_the_table_of_blind_calibrations_has_the_results_of_its_runs() -> None:
+    text = (ROOT / "docs" / "calibration.md").read_text("utf-8")
+    found = json.loads((ROOT / "benchmarks/results/blind_calibration.json").read_text("utf-8"))[
+        "calibrations"
+    ]
+    rows = rows_of(text, "| friction | wanted angle | interval of 90 % | holds it | width |")
+    for run, row in zip(found, rows, strict=True):
+        low, high = run["interval"]
+        assert run["covered"] == (low <= run["friction"] <= high)
+        assert row == [
+            f"{run['friction']}",
+            f"{run['wanted_deg']:.1f} ± {run['error_deg']:.1f}",
+            f"{low:.3f} to {high:.3f}",
+            "yes" if run["covered"] else "no",
+            f"{run['width']:.2f}",
+        ]
+    assert f"{sum(run['covered'] for run in found)} of {len(found)} intervals hold the truth" in text
+
+
 def test_that_the_sentence_on_kept_descriptors_has_the_results_of_its_runs() -> None:
     everything = [run["angle_deg"] for run in results("repose_facets.json") if run["facets"] == 20]
     quadric, overlap = ([run["angle_deg"] for run in found["runs"]] for found in results("repose_kept.json"))

@@ -46,8 +46,8 @@ MAX_MOVE, SMALLEST_SHARE = 0.1, 1 / 4
 time step that is set. The solver's small steps within a step stay as long as they are."""
 CONTACT_FREQUENCY, CONTACT_DAMPING = 20.0, 3.0
 """Natural frequency and damping ratio with which overlaps are pushed apart. With the solver's own (30, 60 for
-what does not move, and 10) heaps at rest tremble and creep: half of their particles move by 0.04 diameters in
-25 sqrt(d/g), and by 0.008 with these; overlaps are no deeper."""
+what does not move, and 10) heaps at rest tremble and creep: half of their particles move by 0.05 diameters in
+25 sqrt(d/g), and by 0.013 with these; overlaps are no deeper (docs/repose_rapier.md)."""
 MAX_SPEED = 400.0
 """Limit of the solver where none is set."""
 
