@@ -68,6 +68,12 @@ def loose_column(prepared: PreparedCase) -> ParticleState:
     return ParticleState(places, prepared.diameters, orientations, prepared.class_index, 0.0, 0.0, "fill")
 
 
+def no_particles() -> ParticleState:
+    """The empty cylinder before it is filled."""
+    none = np.empty((0, 3))
+    return ParticleState(none, none[:, 0], np.empty((0, 4)), np.empty(0, dtype=np.int64), 0.0, 0.0, "fill")
+
+
 def enclosing_radii(prepared: PreparedCase) -> FloatArray:
     """Radius of each particle's circumscribed sphere about its centre in metres, shape (n,)."""
     if prepared.case.shapes == "spheres":

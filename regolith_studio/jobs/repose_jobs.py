@@ -13,7 +13,7 @@ from regolith_studio.dem.engine_process import EngineError, run_engine
 from regolith_studio.dem.engines import DEFAULT_ENGINE, ENGINES, engine_named
 from regolith_studio.dem.evaluation.settings import EvaluationSettings, NotAPileError
 from regolith_studio.dem.heap_packing import HeapPacking, measure_packing
-from regolith_studio.dem.initial_packing import loose_column
+from regolith_studio.dem.initial_packing import loose_column, no_particles
 from regolith_studio.dem.run_io import (
     run_document,
     save_result,
@@ -28,6 +28,8 @@ from regolith_studio.messages import N_
 
 PROGRESS_STEPS = 1000
 """Of a run, in its progress."""
+MAX_PREVIEWED = 20_000
+"""Placing so many particles takes some seconds."""
 
 
 @dataclass(frozen=True)
@@ -210,11 +212,14 @@ def measure_result(
 
 
 def preview_repose(dataset_folder: Path, case: ReposeCase) -> Steps:
-    """The particles of a case before they fall; returns (:class:`PreparedCase`, :class:`ParticleState`)."""
+    """The particles of a case before they fall; returns (:class:`PreparedCase`, :class:`ParticleState`).
+
+    The state is empty where there are more than `MAX_PREVIEWED`.
+    """
     yield Started(N_("Drawing particles"))
     prepared = prepare(read_dataset(dataset_folder), case, dataset_hash(dataset_folder))
     yield Progress(1, 2)
-    return prepared, loose_column(prepared)
+    return prepared, loose_column(prepared) if len(prepared) <= MAX_PREVIEWED else no_particles()
 
 
 def remeasure(pile: ParticleState, evaluation: EvaluationSettings) -> Steps:

@@ -60,10 +60,12 @@ def show_heap(
     """
     if is_large(shapes, pile, spheres):
         pile = without(pile, hidden_particles(pile, MOVING if coarse else AT_REST))
-    instances = _instances(pile, len(shapes))
-    name, other = (COARSE_HEAP, HEAP) if coarse else (HEAP, COARSE_HEAP)
-    if other in plotter.actors:
-        plotter.actors[other].SetVisibility(False)
+    for each in (HEAP, COARSE_HEAP):
+        if each in plotter.actors:
+            plotter.actors[each].SetVisibility(False)
+    if not len(pile):
+        return
+    instances, name = _instances(pile, len(shapes)), COARSE_HEAP if coarse else HEAP
     actor = plotter.actors.get(name)
     if actor is not None and _kinds(actor) == _signature(shapes, spheres):
         actor.GetMapper().SetInputData(instances)

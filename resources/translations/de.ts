@@ -732,10 +732,6 @@
         <translation>Höchstens</translation>
     </message>
     <message>
-        <source>At most {count:,} particles can be simulated here; export the dataset for other programs.</source>
-        <translation>Höchstens {count:,} Partikel lassen sich hier simulieren; exportieren Sie den Datensatz für andere Programme.</translation>
-    </message>
-    <message>
         <source>At {symbol} = {degree} the series has a negative radius somewhere and describes no surface.</source>
         <translation>Bei {symbol} = {degree} hat die Reihe irgendwo einen negativen Radius und beschreibt keine Oberfläche.</translation>
     </message>
@@ -4990,6 +4986,10 @@
     <message>
         <source>Show triangles</source>
         <translation>Dreiecke zeigen</translation>
+    </message>
+    <message>
+        <source>Shown once the run begins</source>
+        <translation>Zu sehen, sobald der Lauf beginnt</translation>
     </message>
     <message>
         <source>Shows one view enlarged, then the next, then all</source>

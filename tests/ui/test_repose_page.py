@@ -142,6 +142,17 @@ def test_that_a_dataset_is_previewed_with_the_consequences(page, dataset, wait):
     assert not page.setup.run.isEnabled()
 
 
+def test_that_a_hundred_thousand_particles_may_be_simulated_and_are_not_placed_before(page, dataset, wait):
+    page.setup.set_dataset(dataset)
+    wait(lambda: page.player.pile is not None)
+    filled = page.player.frame.view.picture()
+    page.setup.particles.setValue(100_000)
+    wait(lambda: "100,000 particles" in page.setup.scaling_report.text())
+    assert page.setup.run.isEnabled()
+    assert len(page.player.pile) == 0
+    assert np.abs(page.player.frame.view.picture().astype(int) - filled).max() > 50
+
+
 def test_that_a_test_is_run_listed_and_replayed(page, dataset, wait, monkeypatch, tmp_path):
     small(page, dataset)
     import_positions(page, monkeypatch, tmp_path, pile_of(30.0))

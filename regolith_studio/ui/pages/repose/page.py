@@ -55,8 +55,6 @@ from regolith_studio.ui.widgets.headline import Headline
 
 PREVIEW_DELAY = 250
 """Milliseconds from the last change to the preview."""
-MAX_PARTICLES = 20_000
-"""More are for programs that run on many cores."""
 RUN, PREVIEW, MEASURE, BUILD, EXPORT = "run", "preview", "measure", "build", "export"
 
 
@@ -274,13 +272,6 @@ class ReposePage(PageWidget):
         except RegolithError as error:
             self.setup.show_consequences([], str(error))
             return
-        if request.case.n_particles > MAX_PARTICLES:
-            words = tr(
-                "At most {count:,} particles can be simulated here; export the dataset for other programs.",
-                count=MAX_PARTICLES,
-            )
-            self.setup.show_consequences([], words)
-            return
         self._start_preview(dataset, request)
 
     def _start_preview(self, dataset: Path, request: ReposeRequest) -> None:
@@ -314,10 +305,10 @@ class ReposePage(PageWidget):
         self.player.set_scene(*scene)
         self.player.show_moment(
             pile,
-            tr("Before the lift"),
+            tr("Before the lift") if len(pile) else tr("Shown once the run begins"),
             tr(
                 "{count:,} particles of the dataset “{name}”",
-                count=len(pile),
+                count=len(prepared),
                 name=translate(prepared.dataset_name),
             ),
         )

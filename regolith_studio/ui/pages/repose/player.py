@@ -201,7 +201,7 @@ class RunPlayer(QWidget):
         pile = self.pile
         if pile is None or not self._shapes:
             return
-        spread = float(np.abs(pile.points[:, :2]).max())
+        spread = float(np.abs(pile.points[:, :2]).max(initial=0.0))
         reach = float(np.clip(1.05 * spread, 1.3 * self._test.diameter, 2.2 * self._test.diameter))
 
         def fill(plotter: object) -> None:
