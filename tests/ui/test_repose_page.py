@@ -206,16 +206,15 @@ def test_that_a_stopped_run_and_changed_values_leave_no_earlier_angle(
     assert "Not run yet" in page.verdict.text()
 
 
-def test_that_numbers_that_cannot_be_run_are_refused_in_the_form(page, dataset, wait):
+def test_that_a_number_that_cannot_be_run_is_refused_in_the_form(page, dataset, wait):
     page.setup.set_dataset(dataset)
-    for number in (100, 99_999):
-        page.setup.particles.setValue(number)
-        wait(lambda: page.setup.problem.text() != "")
-        assert not page.setup.run.isEnabled()
-        assert page.setup.run.toolTip() == page.setup.problem.text()
-        page.setup.particles.setValue(300)
-        wait(lambda: page.setup.problem.text() == "")
-        assert page.setup.run.isEnabled()
+    page.setup.particles.setValue(100)
+    wait(lambda: page.setup.problem.text() != "")
+    assert not page.setup.run.isEnabled()
+    assert page.setup.run.toolTip() == page.setup.problem.text()
+    page.setup.particles.setValue(300)
+    wait(lambda: page.setup.problem.text() == "")
+    assert page.setup.run.isEnabled()
 
 
 def test_that_positions_are_measured_and_a_dragged_cut_changes_the_angle(page, tmp_path, monkeypatch, wait):
