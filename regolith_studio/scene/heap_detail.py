@@ -34,8 +34,9 @@ class HiddenDepth:
 
 AT_REST = HiddenDepth(2.0, 2)
 """At most three pixels in ten thousand change."""
-MOVING = HiddenDepth(1.5, 1)
-"""Of a cone of 100,000 particles a fifth is left, and one pixel in a thousand changes."""
+MOVING = HiddenDepth(2.0, 1)
+"""Of a heap of 100,000 particles a fifth is left, and at most one pixel in eighty changes. Smaller cells of a
+heap of particles of many sizes are often empty, and then hide nothing."""
 
 
 def hidden_particles(pile: ParticleState, depth: HiddenDepth) -> NDArray[np.bool_]:

@@ -14,7 +14,7 @@ from vtkmodules.vtkRenderingCore import vtkActor, vtkGlyph3DMapper
 from regolith_studio.dem.snapshot import ParticleState
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.sphere_points import icosphere
-from regolith_studio.scene import palette
+from regolith_studio.scene import palette, plotter_setup
 from regolith_studio.scene.heap_detail import (
     AT_REST,
     MOVING,
@@ -58,6 +58,7 @@ def show_heap(
     coarse
         Draw octahedra instead, as is enough while the view turns.
     """
+    plotter_setup.sample_pixels(plotter, once=coarse)
     if is_large(shapes, pile, spheres):
         pile = without(pile, hidden_particles(pile, MOVING if coarse else AT_REST))
     for each in (HEAP, COARSE_HEAP):

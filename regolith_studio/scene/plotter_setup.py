@@ -13,6 +13,8 @@ from regolith_studio.scene.palette import ThemeColors
 
 Picture = NDArray[np.uint8]
 
+SAMPLES = 4
+"""Of a pixel where edges are smoothed by multi-sampling."""
 _SOFTWARE_NAMES = ("llvmpipe", "softpipe", "swrast", "software", "swiftshader")
 
 
@@ -41,7 +43,13 @@ def smooth_edges(plotter: Any) -> None:
     if is_software(plotter.render_window.ReportCapabilities() or ""):
         plotter.enable_anti_aliasing("fxaa")
     else:
-        plotter.enable_anti_aliasing("msaa", multi_samples=4)
+        plotter.enable_anti_aliasing("msaa", multi_samples=SAMPLES)
+
+
+def sample_pixels(plotter: Any, once: bool) -> None:
+    """One sample a pixel in an off-screen picture, or several again; one takes less than half the time."""
+    if plotter.render_window.GetOffScreenRendering():
+        plotter.render_window.SetMultiSamples(0 if once else SAMPLES)
 
 
 def thumbnail(plotter: Any, scale: int = 1, transparent: bool = False) -> Picture:

@@ -98,3 +98,22 @@ def test_that_few_large_and_far_particles_are_never_hidden() -> None:
     assert not hidden[:2].any()
     empty = ParticleState(points[:0], diameters[:0], turns[:0], np.zeros(0, dtype=int))
     assert heap_detail.hidden_particles(empty, heap_detail.MOVING).shape == (0,)
+
+
+def test_that_a_heap_of_many_sizes_hides_most_of_its_particles_while_the_view_turns() -> None:
+    """Random places, two in three cubes of a mean diameter, as log-normal sizes fill them."""
+    points = np.random.default_rng(1).uniform(0.0, 40.0, (42_000, 3))
+    turns = np.tile([1.0, 0, 0, 0], (len(points), 1))
+    state = ParticleState(points, np.ones(len(points)), turns, np.zeros(len(points), dtype=int))
+    assert heap_detail.hidden_particles(state, heap_detail.MOVING).mean() > 0.5
+
+
+def test_that_edges_are_smoothed_again_when_the_view_rests(pile, shapes) -> None:
+    plotter_setup.choose_off_screen_window()
+    plotter = pv.Plotter(off_screen=True, window_size=[64, 64])
+    samples = []
+    for coarse in (False, True, False):
+        instancing.show_heap(plotter, shapes, pile, coarse=coarse)
+        samples.append(plotter.render_window.GetMultiSamples())
+    plotter.close()
+    assert samples == [4, 0, 4]

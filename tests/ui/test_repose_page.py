@@ -39,7 +39,7 @@ from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.pages.repose import PAGE
 from regolith_studio.ui.pages.repose.player import RunPlayer
 from regolith_studio.ui.pages.repose.runs import checks_text
-from regolith_studio.ui.pages.repose.section_plot import particle_text
+from regolith_studio.ui.pages.repose.section_plot import MANY_DISCS, drawn_discs, particle_text
 from regolith_studio.ui.pages.repose.setup import SetupPanel
 from regolith_studio.ui.widgets.forms import ParameterForm
 from regolith_studio.ui.widgets.toast import Toast
@@ -215,6 +215,22 @@ def test_that_a_number_that_cannot_be_run_is_refused_in_the_form(page, dataset, 
     page.setup.particles.setValue(300)
     wait(lambda: page.setup.problem.text() == "")
     assert page.setup.run.isEnabled()
+
+
+def test_that_the_discs_drawn_of_a_large_heap_have_nearly_the_outline_of_all():
+    rng = np.random.default_rng(1)
+    u = rng.uniform(-20.0, 20.0, 40_000)
+    discs = Discs(u, rng.uniform(0.0, 1.0, len(u)) * (12.0 - 0.6 * np.abs(u)), rng.uniform(0.1, 0.3, len(u)))
+    drawn, missing = drawn_discs(discs), []
+    assert MANY_DISCS < len(drawn) < 15_000
+    for at in np.linspace(-19.0, 19.0, 400):
+        rise = np.sqrt(np.maximum(discs.radius**2 - (discs.u - at) ** 2, 0.0))
+        tops = np.where(rise > 0.0, discs.z + rise, 0.0)
+        missing.append((tops.max() - tops[drawn].max()) / discs.radius.mean())
+    assert np.mean(missing) < 0.05
+    assert max(missing) < 1.5
+    few = Discs(discs.u[:100], discs.z[:100], discs.radius[:100])
+    assert drawn_discs(few).tolist() == list(range(100))
 
 
 def test_that_positions_are_measured_and_a_dragged_cut_changes_the_angle(page, tmp_path, monkeypatch, wait):

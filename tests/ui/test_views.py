@@ -1,6 +1,7 @@
 """Both backends keep the same promise; the live one only where there is a display."""
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
@@ -9,8 +10,9 @@ from PySide6.QtGui import QGuiApplication, QWheelEvent
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 
+from regolith_studio.dem.snapshot import ParticleState
 from regolith_studio.geometry.sphere_points import icosphere
-from regolith_studio.scene import surfaces
+from regolith_studio.scene import instancing, surfaces
 from regolith_studio.scene.cameras import CameraPose, framing_pose
 from regolith_studio.scene.palette import DARK
 from regolith_studio.ui.views.camera_link import CameraLink
@@ -75,6 +77,20 @@ def test_that_a_view_shows_what_is_drawn_and_forgets_what_is_cleared(make):
     assert differs(full, view.picture()) > 5
     view.draw(surfaces.clear)
     assert differs(empty, view.picture()) < 1
+
+
+def test_that_a_heap_is_drawn_coarsely_while_it_turns_and_as_before_when_it_rests(make):
+    view, shapes = make(), [[BALL.vertices / 20.0 / (4 * np.pi / 3) ** (1 / 3)]]
+    places = 30e-6 * np.stack(np.meshgrid(*[np.arange(3.0)] * 3), axis=-1).reshape(-1, 3)
+    turns, kinds = np.tile([1.0, 0, 0, 0], (27, 1)), np.zeros(27, dtype=int)
+    heap = ParticleState(places, np.full(27, 30e-6), turns, kinds)
+    view.set_pose(framing_pose(1e6 * places))
+    pictures = []
+    for coarse in (False, True, False):
+        view.draw(partial(instancing.show_heap, shapes=shapes, pile=heap, coarse=coarse))
+        pictures.append(view.picture())
+    assert differs(pictures[0], pictures[1]) > 5
+    assert differs(pictures[0], pictures[2]) == 0
 
 
 def test_that_a_hidden_view_holds_no_graphics_memory_and_shows_the_same_picture_again(make, kind):
