@@ -60,7 +60,7 @@ class RapierEngine:
         cost = SECONDS_PER_PARTICLE_AND_STEP[prepared.case.shapes] * (
             1.0 + FURTHER_PART * prepared.further_parts
         )
-        return 1.0 + cost * len(prepared) * steps * (len(prepared) / 1000) ** COST_EXPONENT
+        return 1.0 + cost * len(prepared) * steps * float((len(prepared) / 1000) ** COST_EXPONENT)
 
     def simulate(
         self, prepared: PreparedCase, settings: RapierSettings
