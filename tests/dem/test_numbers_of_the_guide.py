@@ -187,9 +187,7 @@ def test_that_the_table_of_mujoco_and_rapier_has_the_results_of_its_runs() -> No
     columns = "seed|MuJoCo: filled to, packed|angle|s|Rapier: filled to, packed|angle|deepest overlap|s"
     header = f"| {' | '.join(columns.split('|'))} |"
     said = {row[0]: row for row in rows_of(REPOSE, header)}
-    found, (larger,) = (
-        [run for run in results("repose_rapier.json") if run["particles"] == n] for n in (1000, 10_000)
-    )
+    found = [run for run in results("repose_rapier.json") if run["particles"] == 1000]
     for run in found:
         low, high = run["interval_deg"]
         cells = [
@@ -211,11 +209,6 @@ def test_that_the_table_of_mujoco_and_rapier_has_the_results_of_its_runs() -> No
     assert f"{np.mean(mujoco):.1f} degrees on MuJoCo and {np.mean(rapier):.1f} on Rapier" in words
     difference = np.mean(rapier) - np.mean(mujoco)
     assert f"{difference:.1f} steeper ({steeper.low:.1f} to {steeper.high:.1f}, Student, 95 %)" in words
-    small = np.mean([run["processor_s"] for run in found if run["engine"] == "rapier"])
-    power = np.log(larger["processor_s"] / small) / np.log(10)
-    assert f"{larger['processor_s']:.0f} s of processor time, N to the power {power:.2f}" in words
-    low, high = larger["interval_deg"]
-    assert f"stands at {larger['angle_deg']:.1f} degrees ({low:.1f} to {high:.1f})" in words
 
 
 def test_that_the_table_of_creep_has_the_results_of_its_runs() -> None:
@@ -256,25 +249,42 @@ def welch(first: list[float], second: list[float]) -> tuple[str, str]:
     return f"{np.mean(first) - np.mean(second):.1f}", f"{found.low:.1f} to {found.high:.1f}"
 
 
+def angles_by_coarsening() -> dict[str, list[float]]:
+    """Angles of the runs of benchmarks.shape_heaps that have one."""
+    found: dict[str, list[float]] = {}
+    for run in results("repose_shapes.json"):
+        if run["angle_deg"] is not None:
+            found.setdefault(run["coarsening"], []).append(run["angle_deg"])
+    return found
+
+
 def test_that_the_table_of_facets_has_the_results_of_its_runs() -> None:
-    rows = rows_of(REPOSE, "| facets | angles | mean | filling, packed | contacts a particle |")
-    angles: dict[int, list[float]] = {}
-    for facets, *cells in rows:
-        runs = [run for run in results("repose_facets.json") if run["facets"] == int(facets)]
-        angles[int(facets)] = found = [run["angle_deg"] for run in runs]
-        packed, contacts = (
-            np.mean([run[key] for run in runs]) for key in ("solid_fraction", "coordination_number")
-        )
-        listed = ", ".join(f"{each:.1f}" for each in found)
-        mean = f"{np.mean(found):.1f} ± {half_width(found):.1f}"
-        assert cells == [listed, mean, f"{packed:.3f}", f"{contacts:.1f}"]
-    for few, many, words in (
-        (8, 20, "{} degrees from 20 to 8 ({}, Welch, 95 %)"),
-        (8, 60, "{} from 60 to 8 ({})"),
+    rows = rows_of(REPOSE, "| facets | heaps | angle | deviation | filling, packed | contacts a particle |")
+    angles = angles_by_coarsening()
+    assert [row[0] for row in rows] == list(angles)
+    for name, *cells in rows:
+        runs = [run for run in results("repose_shapes.json") if run["coarsening"] == name]
+        packed = np.mean([run["solid_fraction"] for run in runs])
+        contacts = np.mean([run["coordination_number"] for run in runs if run["coordination_number"]])
+        mean = f"{np.mean(angles[name]):.1f} ± {half_width(angles[name]):.1f}"
+        spread = f"{np.std(angles[name], ddof=1):.1f}"
+        assert cells == [f"{len(angles[name])}", mean, spread, f"{packed:.3f}", f"{contacts:.1f}"]
+    for first, second, words in (
+        ("8", "60", "{} degrees from 60 to 8 ({}, Welch, 95 %)"),
+        ("8", "20", "{} from 20 to 8 ({})"),
+        ("20", "60", "{} from 60 to 20 ({})"),
+        ("20 by quadrics", "20", "{} degrees with quadrics alone ({})"),
+        ("20 with overlap", "20", "{} with the largest overlap ({})"),
     ):
-        assert words.format(*welch(angles[few], angles[many])) in one_line(REPOSE)
-    difference, interval = welch(angles[20], angles[60])
-    assert f"{difference} from 60 to 20, which is not decided ({interval})" in one_line(REPOSE)
+        assert words.format(*welch(angles[first], angles[second])) in one_line(REPOSE)
+
+
+def test_that_heaps_on_both_engines_differ_by_what_the_guide_says() -> None:
+    mujoco = [run["angle_deg"] for run in results("repose_rapier.json") if run["engine"] == "mujoco"]
+    rapier = angles_by_coarsening()["20"]
+    mean, (difference, interval) = f"{np.mean(rapier):.1f}", welch(rapier, mujoco)
+    words = f"{len(rapier)} heaps on Rapier stand at {mean} degrees in the mean, {difference} steeper"
+    assert f"{words} ({interval}, Welch)" in one_line(REPOSE)
 
 
 def test_that_the_table_of_blind_calibrations_has_the_results_of_its_runs() -> None:
@@ -294,18 +304,6 @@ def test_that_the_table_of_blind_calibrations_has_the_results_of_its_runs() -> N
             f"{run['width']:.2f}",
         ]
     assert f"{sum(run['covered'] for run in found)} of {len(found)} intervals hold the truth" in text
-
-
-def test_that_the_sentence_on_kept_descriptors_has_the_results_of_its_runs() -> None:
-    everything = [run["angle_deg"] for run in results("repose_facets.json") if run["facets"] == 20]
-    quadric, overlap = ([run["angle_deg"] for run in found["runs"]] for found in results("repose_kept.json"))
-    first, second, all_kept = (
-        f"{np.mean(each):.1f} ± {half_width(each):.1f}" for each in (quadric, overlap, everything)
-    )
-    assert f"by quadrics alone stand at {first} degrees" in one_line(REPOSE)
-    assert f"no descriptor kept at {second}, beside {all_kept} with all of them" in one_line(REPOSE)
-    differences = ["{} ({})".format(*welch(each, everything)) for each in (quadric, overlap)]
-    assert f"differences of {differences[0]} and {differences[1]}" in one_line(REPOSE)
 
 
 def test_that_the_table_of_drawn_populations_has_the_results_of_its_runs() -> None:
@@ -401,6 +399,25 @@ def test_that_the_mean_of_five_fillings_has_student_s_interval() -> None:
     *first, last = [f"{angle:.1f}" for angle in angles]
     mean = f"{np.mean(angles):.1f} ± {half_width(angles):.1f} in the mean"
     assert f"{', '.join(first)} and {last} degrees: {mean}" in one_line(REPOSE)
+
+
+def test_that_the_table_of_larger_heaps_has_the_results_of_its_runs() -> None:
+    said = rows_of(REPOSE, "| particles | processor time | clock | memory | angle | packed: cylinder, ")
+    found = [run for run in results("repose_rapier.json") if run["engine"] == "rapier" and run["seed"] == 1]
+    assert [run["particles"] for run in found] == [1000, 10_000, 100_000]
+    for run, row in zip(found, said, strict=True):
+        assert row[0] == f"{run['particles']:,}"
+        assert float(row[4].partition(" ")[0]) == pytest.approx(run["angle_deg"], abs=0.051)
+        low, high = run["interval_deg"]
+        assert row[4].endswith(f"({low:.1f} to {high:.1f})")
+        assert row[5].startswith(f"{run['solid_fraction']:.2f}, ")
+        assert row[6].endswith(f"%, {100 * run['max_overlap']:.1f} %")
+        assert f"{run['steps']:,}" in one_line(REPOSE)
+    for run, row in zip(found[1:], said[1:], strict=True):
+        assert row[1] == f"{run['processor_s']:,.0f} s"
+        assert row[2] == f"{run['clock_s'] / 60:.2g} min"
+    power = np.log10(found[2]["processor_s"] / found[1]["processor_s"])
+    assert f"from 1,000 to 10,000 and {power:.2f} from there" in one_line(REPOSE)
 
 
 @pytest.mark.slow
