@@ -420,6 +420,21 @@ def test_that_the_table_of_larger_heaps_has_the_results_of_its_runs() -> None:
     assert f"from 1,000 to 10,000 and {power:.2f} from there" in one_line(REPOSE)
 
 
+def test_that_rolling_resistance_steepens_as_the_guide_says() -> None:
+    found = [run for run in results("repose_rapier.json") if run["engine"] == "mujoco"]
+    rolling = results("repose_rolling.json")
+    assert [run["seed"] for run in rolling] == [run["seed"] for run in found]
+    angles, without = ([run["angle_deg"] for run in runs] for runs in (rolling, found))
+    steeper = stats.ttest_rel(angles, without).confidence_interval()
+    *first, last = [f"{angle:.1f}" for angle in angles]
+    difference = np.mean(angles) - np.mean(without)
+    for words in (
+        f"at {', '.join(first)} and {last} degrees",
+        f"{difference:.1f} degrees steeper ({steeper.low:.1f} to {steeper.high:.1f}, Student, five pairs)",
+    ):
+        assert words in one_line(REPOSE)
+
+
 @pytest.mark.slow
 def test_that_a_row_of_the_table_of_intervals_is_measured_again() -> None:
     first, heaps = INTERVALS["first_seed"], INTERVALS["heaps"]
