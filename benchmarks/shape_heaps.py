@@ -3,7 +3,7 @@
     python -m benchmarks.shape_heaps RUNS RESULT.json [SEEDS] [PARTICLES] [COARSENINGS]
 
 Rapier, friction 0.8, the twelve shipped particles; by default 20 seeds, 1,000 particles and all coarsenings
-(numbers with commas between). Datasets and runs that are in the folder RUNS already are kept. Two runs at a
+(names with commas between). Datasets and runs that are in the folder RUNS already are kept. Two runs at a
 time, of one thread each.
 """
 
