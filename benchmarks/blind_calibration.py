@@ -1,17 +1,19 @@
 """Do calibrations with real heaps find the friction that they are not told? docs/calibration.md.
 
-    python -m benchmarks.blind_calibration DATASET RUNS RESULT.json [ENGINE]
+    python -m benchmarks.blind_calibration DATASET RUNS RESULT.json [SET] [ENGINE]
 
 Frictions are drawn from equal parts of the range, one a case. The wanted angle of a case is the mean of
 HEAPS heaps of 1,000 particles of that friction, of those that have an angle; its standard error is the
 standard deviation of heaps about their means, from all cases, over the square root of HEAPS. The calibration
-has N_RUNS heaps of other seeds. Runs that are in the folder RUNS already are kept. The result is written
-anew after each calibration.
+has N_RUNS heaps of other seeds. Runs that are in the folder RUNS already are kept. Each SET (0 by default)
+has its own frictions and seeds, and needs its own folder. Two runs at a time, of one thread each.
 """
 
 import json
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -23,47 +25,49 @@ LOW, HIGH, SEED = 0.05, 1.2, 7
 CASES, HEAPS, N_RUNS = 10, 4, 8
 
 
-def main(dataset: Path, runs: Path, result: Path, engine: str) -> None:
+def main(dataset: Path, runs: Path, result: Path, number_of_set: int, engine: str) -> None:
     """Print a line a case, and write them all."""
-    parts = np.arange(CASES) + np.random.default_rng(SEED).random(CASES)
-    frictions = (LOW + (HIGH - LOW) * parts / CASES).round(3)
-    common = ["-n", 1000, "--engine", engine]
-    angles = np.array(
-        [
-            [
-                angle_of(dataset, runs / f"heap_{friction}_{k}", friction, 1000 + k, common)
-                for k in range(HEAPS)
-            ]
-            for friction in frictions
-        ]
-    )
-    error = float(np.sqrt(np.nanvar(angles, axis=1, ddof=1).mean() / HEAPS))
-    rows: list[dict[str, Any]] = []
-    for number, friction in enumerate(frictions.tolist()):
-        wanted = float(np.nanmean(angles[number]))
-        folder = runs / f"calibration_{number}"
-        goal = ["--angle", f"{wanted:.2f}", "--angle-error", f"{error:.2f}"]
-        call("calibrate", dataset, "-o", folder, *goal, "--runs", N_RUNS, "--seed", 10 * number, *common)
-        found = json.loads((folder / "calibration.json").read_text("utf-8"))
-        low, high = found["parameters"][0]["interval"]
-        rows.append(
-            {
-                "friction": friction,
-                "wanted_deg": round(wanted, 2),
-                "error_deg": round(error, 2),
-                "interval": [round(low, 3), round(high, 3)],
-                "covered": bool(low <= friction <= high),
-                "width": round((high - low) / (0.9 * (HIGH - LOW)), 3),
-            }
+    parts = np.arange(CASES) + np.random.default_rng(SEED + number_of_set).random(CASES)
+    frictions = (LOW + (HIGH - LOW) * parts / CASES).round(3).tolist()
+    common = ["-n", 1000, "--engine", engine, "--jobs", 1]
+
+    def angle(case: tuple[float, int]) -> float:
+        friction, k = case
+        return angle_of(
+            dataset, runs / f"heap_{friction}_{k}", friction, 1000 * (number_of_set + 1) + k, common
         )
-        print(rows[-1], flush=True)
-        content = {
-            "angles_deg": [
-                [None if np.isnan(each) else round(each, 2) for each in row] for row in angles.tolist()
-            ],
-            "calibrations": rows,
-        }
-        result.write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
+
+    with ThreadPoolExecutor(2) as pool:
+        angles = np.array(list(pool.map(angle, product(frictions, range(HEAPS))))).reshape(CASES, HEAPS)
+        error = float(np.sqrt(np.nanvar(angles, axis=1, ddof=1).mean() / HEAPS))
+
+        def calibration(number: int) -> dict[str, Any]:
+            folder = runs / f"calibration_{number}"
+            goal = ["--angle", f"{np.nanmean(angles[number]):.2f}", "--angle-error", f"{error:.2f}"]
+            seed = 100 * number_of_set + 10 * number
+            call("calibrate", dataset, "-o", folder, *goal, "--runs", N_RUNS, "--seed", seed, *common)
+            return row(folder, frictions[number], float(np.nanmean(angles[number])), error)
+
+        rows = list(pool.map(calibration, range(CASES)))
+    for each in rows:
+        print(each)
+    found = [[None if np.isnan(each) else round(each, 2) for each in some] for some in angles.tolist()]
+    content = {"angles_deg": found, "calibrations": rows}
+    result.write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
+
+
+def row(folder: Path, friction: float, wanted: float, error: float) -> dict[str, Any]:
+    """The numbers of one calibration."""
+    found = json.loads((folder / "calibration.json").read_text("utf-8"))
+    low, high = found["parameters"][0]["interval"]
+    return {
+        "friction": friction,
+        "wanted_deg": round(wanted, 2),
+        "error_deg": round(error, 2),
+        "interval": [round(low, 3), round(high, 3)],
+        "covered": bool(low <= friction <= high),
+        "width": round((high - low) / (0.9 * (HIGH - LOW)), 3),
+    }
 
 
 def angle_of(dataset: Path, folder: Path, friction: float, seed: int, common: list[Any]) -> float:
@@ -82,4 +86,5 @@ def call(*words: object) -> None:
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]), Path(sys.argv[2]), Path(sys.argv[3]), *(sys.argv[4:] or ["rapier"]))
+    given = dict(enumerate(sys.argv))
+    main(Path(given[1]), Path(given[2]), Path(given[3]), int(given.get(4, 0)), given.get(5, "rapier"))
