@@ -6,6 +6,7 @@ from typing import Annotated, Any
 import typer
 
 from regolith_studio.cli.dataclass_options import with_dataclass_options
+from regolith_studio.cli.executor_options import Address, Runner, Tls, chosen_executor
 from regolith_studio.cli.options import (
     Folder,
     Jobs,
@@ -285,6 +286,9 @@ def study(
     ] = "",
     particles: Particles = 1000,
     how: CaseOptions,
+    runner: Runner = "processes",
+    address: Address = "",
+    tls: Tls = None,
     json: Json = False,
     jobs: Jobs = 1,
     seed: Seed = 0,
@@ -295,7 +299,6 @@ def study(
     from regolith_studio.studies.repose import repose_means, repose_table
     from regolith_studio.studies.repose_surface import fit_repose_surface, surface_document, surface_table
 
-    del jobs  # one run after the other, so that what is there already is known
     key, points = varied_values(vary)
     if points and against:
         raise typer.BadParameter("--against compares datasets as they are; leave out --vary.")
@@ -309,7 +312,8 @@ def study(
             rows += [ReposeVariant(name, point, folder, with_value(request, key, point)) for point in points]
         if not points:
             rows.append(ReposeVariant(name, folder.name, folder, request))
-    done = run_with_progress(study_repose(rows, output, repeats))
+    with chosen_executor(runner, jobs, address, tls) as executor:
+        done = run_with_progress(study_repose(rows, output, repeats, executor))
     try:
         surface = fit_repose_surface(done, statistics, keys) if keys else None
     except InputError:

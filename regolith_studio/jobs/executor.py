@@ -69,11 +69,19 @@ class Executor:
             return (None if answer is None else answer[1] for answer in _run_one_by_one(jobs))
         return in_order(self._open_runner(), jobs, window=2 * self.workers)
 
-    def as_completed(self, jobs: Iterable[Job]) -> Generator[tuple[int, JobResult] | None, None, None]:
-        """Number and result of each of `jobs`, the quick ones first; ``None`` as for :meth:`results`."""
+    def as_completed(
+        self, jobs: Iterable[Job], follow: Callable[[int, Progress], None] | None = None
+    ) -> Generator[tuple[int, JobResult] | None, None, None]:
+        """Number and result of each of `jobs`, the quick ones first; ``None`` as for :meth:`results`.
+
+        Parameters
+        ----------
+        follow
+            Called with the number of a job and its progress, of jobs on this machine.
+        """
         if self.in_this_thread:
-            return _run_one_by_one(jobs)
-        return as_completed(self._open_runner(), jobs, window=2 * self.workers)
+            return _run_one_by_one(jobs, follow)
+        return as_completed(self._open_runner(), jobs, window=2 * self.workers, follow=follow)
 
     def map(self, function: Callable[[Any], Any], items: Iterable[Any]) -> Iterator[Any]:
         """As the built-in ``map``, in order and lazily, for a picklable function.
@@ -101,8 +109,15 @@ class Executor:
         """Whether there are no other processes."""
         return self.workers == 1 and self._runner is None
 
+    def threads_for(self, n_jobs: int) -> int | None:
+        """Threads that each of so many jobs may use without more threads than workers; ``None`` for jobs in
+        this thread, which may use what they like."""
+        if self.in_this_thread:
+            return None
+        return 1 if self._check_shared else max(1, self.workers // max(1, n_jobs))
+
     def check_shared(self, path: Path, folder: Path) -> None:
-        """Check that all workers find a file or folder, and `folder` for temporary files, under these paths.
+        """Check that all workers find a file or folder, and `folder`, which is made, under these paths.
 
         Raises
         ------
@@ -110,6 +125,7 @@ class Executor:
             If one of a cluster does not.
         """
         if self._check_shared is not None:
+            folder.mkdir(parents=True, exist_ok=True)
             self._check_shared(path.absolute(), folder)
 
     def _open_runner(self) -> Runner:
@@ -209,7 +225,11 @@ def in_order(runner: Runner, jobs: Iterable[Job], window: int = 2) -> Generator[
 
 
 def as_completed(
-    runner: Runner, jobs: Iterable[Job], window: int = 2, n_buffered: Callable[[], int] = lambda: 0
+    runner: Runner,
+    jobs: Iterable[Job],
+    window: int = 2,
+    n_buffered: Callable[[], int] = lambda: 0,
+    follow: Callable[[int, Progress], None] | None = None,
 ) -> Generator[tuple[int, JobResult] | None, None, None]:
     """Number and result of each of `jobs` as they end; ``None`` while the next one is being waited for.
 
@@ -219,20 +239,27 @@ def as_completed(
         Jobs that are submitted at the same time.
     n_buffered
         Number of results that the caller keeps back; they count as if they were still running.
+    follow
+        Called, in this thread, with the number of a job and its progress, where the runner sends that.
     """
-    answers: queue.SimpleQueue[tuple[int, JobResult]] = queue.SimpleQueue()
+    answers: queue.SimpleQueue[tuple[int, JobResult | Progress]] = queue.SimpleQueue()
     waiting = enumerate(jobs)
     open_handles: dict[int, Handle] = {}
     try:
         while True:
             while len(open_handles) + n_buffered() < window and (entry := next(waiting, None)):
                 number, job = entry
-                open_handles[number] = runner.submit(job, _put_result(answers, number))
+                open_handles[number] = runner.submit(job, _put_answer(answers, number))
             if not open_handles:
                 return
             try:
                 number, result = answers.get(timeout=_POLL_SECONDS)
             except queue.Empty:
+                yield None
+                continue
+            if isinstance(result, Progress):
+                if follow is not None:
+                    follow(number, result)
                 yield None
                 continue
             del open_handles[number]
@@ -269,21 +296,27 @@ def value_of(result: JobResult) -> Any:
             raise JobCancelled("The work was stopped.")
 
 
-def _put_result(answers: "queue.SimpleQueue[tuple[int, JobResult]]", number: int) -> Callable[[Event], None]:
+def _put_answer(
+    answers: "queue.SimpleQueue[tuple[int, JobResult | Progress]]", number: int
+) -> Callable[[Event], None]:
     def listen(event: Event) -> None:
-        if isinstance(event, Finished | Failed | Stopped):
+        if isinstance(event, Finished | Failed | Stopped | Progress):
             answers.put((number, event))
 
     return listen
 
 
-def _run_one_by_one(jobs: Iterable[Job]) -> Generator[tuple[int, JobResult] | None, None, None]:
+def _run_one_by_one(
+    jobs: Iterable[Job], follow: Callable[[int, Progress], None] | None = None
+) -> Generator[tuple[int, JobResult] | None, None, None]:
     for number, job in enumerate(jobs):
         steps = iterate_job(job)
         while True:
             try:
-                next(steps)
+                step = next(steps)
             except StopIteration as end:
                 yield number, end.value
                 break
+            if follow is not None and isinstance(step, Progress):
+                follow(number, step)
             yield None

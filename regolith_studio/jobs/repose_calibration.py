@@ -17,12 +17,12 @@ from regolith_studio.jobs.repose_study import (
     CASE_KEYS,
     ReposeVariant,
     finished_run,
+    simulate_study_run,
     study_place,
-    study_run,
     with_value,
     write_with_runs,
 )
-from regolith_studio.messages import N_
+from regolith_studio.messages import N_, Message
 from regolith_studio.studies.calibration import CalibrationParameter, WantedResult
 from regolith_studio.studies.repose_calibration import (
     FACETS,
@@ -242,8 +242,16 @@ def _next_run(
     names = [each.name for each in calibration.parameters]
     values = calibration.next_values
     variant = _variant(request, datasets, number, dict(zip(names, values, strict=True)))
-    place = folder / JOURNAL / KIND / name
-    document = yield from study_run(variant, variant.request, place, number, request.max_runs)
+    steps = simulate_study_run(variant.dataset, folder / JOURNAL / KIND / name, variant.request)
+    while True:
+        try:
+            step = next(steps)
+        except StopIteration as end:
+            document = end.value
+            break
+        if isinstance(step, Progress):
+            message = Message(N_("run {number}: {step}"), number=number + 1, step=step.message)
+            yield Progress(PROGRESS_STEPS * number + step.done, PROGRESS_STEPS * request.max_runs, message)
     if document["state"] == "failed" and not calibration.runs:
         raise RegolithError(document["problem"])
     return CalibrationRun(name, values, document)

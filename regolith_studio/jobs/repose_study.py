@@ -3,7 +3,7 @@
 import contextlib
 import os
 import shutil
-from collections.abc import Callable, Generator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, fields, replace
 from pathlib import Path
 from typing import Any
@@ -20,7 +20,8 @@ from regolith_studio.io.atomic import JOURNAL, remove_quietly, staged_folder
 from regolith_studio.io.output_lock import output_lock
 from regolith_studio.jobs.coarsening_jobs import CoarseningRequest
 from regolith_studio.jobs.dataset_jobs import DatasetOptions, build_dataset_folder
-from regolith_studio.jobs.events import Partial, Progress, Started, Step, Steps
+from regolith_studio.jobs.events import Job, Partial, Progress, Started, Steps
+from regolith_studio.jobs.executor import Executor, open_executor, value_of
 from regolith_studio.jobs.repose_jobs import PROGRESS_STEPS, ReposeRequest, simulate_repose
 from regolith_studio.messages import N_, Message
 from regolith_studio.studies.repose import ReposeStudy, runs_from
@@ -58,27 +59,93 @@ DATASETS = "datasets"
 """Folder of a study of shapes with the dataset of each value."""
 
 
-def study_repose(rows: Sequence[ReposeVariant], folder: Path, repeats: int = 1) -> Steps:
+def study_repose(
+    rows: Sequence[ReposeVariant], folder: Path, repeats: int = 1, executor: Executor | int = 1
+) -> Steps:
     """Run every row `repeats` times, each run in a folder of its own; returns :class:`ReposeStudy`.
 
     Runs are kept in the journal of the folder until :func:`write_study` writes the result. Runs that the
     journal or the folder holds already, finished and of the same case, are not run again: a study that was
     stopped is resumed. A run that fails is a row without an angle.
+
+    Parameters
+    ----------
+    executor
+        Where runs are simulated, or how many at the same time; they change no result. Workers that are left
+        over are threads of the engine.
     """
-    plan = [(row, row.request.case.seed + k) for row in rows for k in range(repeats)]
-    yield Started(N_("Angle of repose: study"), PROGRESS_STEPS * len(plan))
-    done: list[tuple[str, float | str, str, dict[str, Any]]] = []
-    for number, (row, seed) in enumerate(plan):
+    plan = [_PlannedRun.of(row, row.request.case.seed + k) for row in rows for k in range(repeats)]
+    total = PROGRESS_STEPS * len(plan)
+    yield Started(N_("Angle of repose: study"), total)
+    found = {number: run.finished_in(folder) for number, run in enumerate(plan)}
+    documents = {number: document for number, document in found.items() if document is not None}
+    missing = [number for number in range(len(plan)) if number not in documents]
+    reached = dict.fromkeys(documents, PROGRESS_STEPS)
+    message = ""
+
+    def follow(index: int, step: Progress) -> None:
+        nonlocal message
+        run, reached[missing[index]] = plan[missing[index]], step.done
+        message = run.message(step.message)
+
+    def study() -> ReposeStudy:
+        return runs_from([(*plan[number].entry, documents[number]) for number in sorted(documents)])
+
+    yield Partial(study())
+    with open_executor(executor) as workers:
+        journal = folder / JOURNAL / STUDY
+        for dataset in {plan[number].row.dataset for number in missing}:
+            workers.check_shared(dataset, journal)
+        threads = workers.threads_for(len(missing))
+        jobs = [plan[number].job(journal, threads) for number in missing]
+        with contextlib.closing(workers.as_completed(jobs, follow)) as answers:
+            for answer in answers:
+                if answer is not None:
+                    number = missing[answer[0]]
+                    documents[number], reached[number] = value_of(answer[1]), PROGRESS_STEPS
+                    message = plan[number].name
+                    yield Partial(study())
+                yield Progress(sum(reached.values()), total, message)
+    return study()
+
+
+@dataclass(frozen=True, eq=False)
+class _PlannedRun:
+    """A run of a study: a value with a seed."""
+
+    row: ReposeVariant
+    request: ReposeRequest
+
+    @classmethod
+    def of(cls, row: ReposeVariant, seed: int) -> "_PlannedRun":
         request = replace(row.request, case=replace(row.request.case, seed=seed), overwrite=True)
-        name = f"{row.varied}_{row.value}_seed{seed}".replace("/", "-").replace(" ", "-")
-        document = finished_run(study_place(folder, name), row.dataset, request)
-        if document is None:
-            place = folder / JOURNAL / STUDY / name
-            document = yield from study_run(row, request, place, number, len(plan))
-        done.append((row.varied, row.value, name, document))
-        yield Progress(PROGRESS_STEPS * (number + 1), PROGRESS_STEPS * len(plan), name)
-        yield Partial(runs_from(done))
-    return runs_from(done)
+        return cls(row, request)
+
+    @property
+    def name(self) -> str:
+        """Of its folder."""
+        name = f"{self.row.varied}_{self.row.value}_seed{self.request.case.seed}"
+        return name.replace("/", "-").replace(" ", "-")
+
+    @property
+    def entry(self) -> tuple[str, float | str, str]:
+        """What varies, its value, and the name."""
+        return self.row.varied, self.row.value, self.name
+
+    def message(self, step: str) -> Message:
+        """What is done for the run."""
+        return Message(
+            "{varied} {value}: {step}", varied=Message(self.row.varied), value=self.row.value, step=step
+        )
+
+    def finished_in(self, folder: Path) -> dict[str, Any] | None:
+        """Its document, if a study in the folder has run it already."""
+        return finished_run(study_place(folder, self.name), self.row.dataset, self.request)
+
+    def job(self, journal: Path, threads: int | None) -> Job:
+        """Simulate it, with as many threads of the engine as it asks for itself, or as are given."""
+        request = self.request if threads is None else replace(self.request, threads=threads)
+        return Job(simulate_study_run, (self.row.dataset, journal / self.name, request))
 
 
 def study_place(folder: Path, name: str, kind: str = STUDY) -> Path:
@@ -145,26 +212,13 @@ def _link(source: str, target: str) -> None:
         shutil.copy2(source, target)
 
 
-def study_run(
-    row: ReposeVariant, request: ReposeRequest, place: Path, number: int, total: int
-) -> Generator[Step, None, dict[str, Any]]:
-    """Simulate the run of this `number` of `total` in `place`; returns its document, even if it failed."""
-    steps = simulate_repose(row.dataset, place, request)
+def simulate_study_run(dataset: Path, place: Path, request: ReposeRequest) -> Steps:
+    """Simulate one run in `place`; returns its document, even if it failed."""
     try:
-        while True:
-            try:
-                step = next(steps)
-            except StopIteration as end:
-                return dict(end.value.document)
-            if isinstance(step, Progress):
-                message = Message(
-                    "{varied} {value}: {step}", varied=Message(row.varied), value=row.value, step=step.message
-                )
-                yield Progress(PROGRESS_STEPS * number + step.done, PROGRESS_STEPS * total, message)
+        run = yield from simulate_repose(dataset, place, request)
     except EngineError as error:
         return error.document
-    finally:
-        steps.close()
+    return dict(run.document)
 
 
 def finished_run(place: Path, dataset: Path, request: ReposeRequest) -> dict[str, Any] | None:
@@ -228,6 +282,8 @@ class ReposeStudyRequest:
         Runs of each value, with seeds one after the other.
     particles, coarsening
         What datasets are made from where the shapes are varied.
+    workers
+        Runs at the same time.
 
     Raises
     ------
@@ -242,6 +298,7 @@ class ReposeStudyRequest:
     repeats: int = 1
     particles: tuple[Particle, ...] = ()
     coarsening: CoarseningRequest | None = None
+    workers: int = 1
 
     def __post_init__(self) -> None:
         if not self.values:
@@ -298,7 +355,7 @@ def run_repose_study(study_request: ReposeStudyRequest, folder: Path) -> Steps:
             yield from _build_variant_dataset(study_request, number, place)
             rows.append(ReposeVariant(study_request.key, value, place, study_request.request))
     with output_lock(folder):
-        study = yield from study_repose(rows, folder, study_request.repeats)
+        study = yield from study_repose(rows, folder, study_request.repeats, study_request.workers)
         write_study(study, folder)
     return study
 

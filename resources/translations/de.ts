@@ -732,6 +732,10 @@
         <translation>Höchstens</translation>
     </message>
     <message>
+        <source>At the same time</source>
+        <translation>Gleichzeitig</translation>
+    </message>
+    <message>
         <source>At {symbol} = {degree} the series has a negative radius somewhere and describes no surface.</source>
         <translation>Bei {symbol} = {degree} hat die Reihe irgendwo einen negativen Radius und beschreibt keine Oberfläche.</translation>
     </message>
@@ -1674,6 +1678,10 @@
     <message>
         <source>Each run adds a point.</source>
         <translation>Jeder Lauf fügt einen Punkt hinzu.</translation>
+    </message>
+    <message>
+        <source>Each run takes one core, and the memory of a run</source>
+        <translation>Jeder Lauf braucht einen Kern und den Speicher eines Laufs</translation>
     </message>
     <message>
         <source>Each term alone</source>
@@ -4564,6 +4572,10 @@
         <translation>Läufe</translation>
     </message>
     <message>
+        <source>Runs at the same time</source>
+        <translation>Läufe zur gleichen Zeit</translation>
+    </message>
+    <message>
         <source>Runs of the study</source>
         <translation>Läufe der Studie</translation>
     </message>
@@ -7346,6 +7358,10 @@
     <message>
         <source>run</source>
         <translation>Lauf</translation>
+    </message>
+    <message>
+        <source>run {number}: {step}</source>
+        <translation>Lauf {number}: {step}</translation>
     </message>
     <message>
         <source>runs: {count}</source>

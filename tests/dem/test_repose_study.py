@@ -15,12 +15,17 @@ from benchmarks.sliding_friction import box
 from regolith_studio.cli.entry import run
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.folder_io import write_dataset
-from regolith_studio.dem.case import PreparedCase
+from regolith_studio.dataset.parameters import LiftingCylinderTest
+from regolith_studio.dem.case import PreparedCase, ReposeCase
 from regolith_studio.dem.engine import RunChecks, SimulationResult
+from regolith_studio.dem.evaluation.settings import EvaluationSettings
 from regolith_studio.dem.initial_packing import loose_column
 from regolith_studio.dem.run_io import find_runs, save_snapshot
 from regolith_studio.dem.snapshot import ParticleState, Snapshot
 from regolith_studio.jobs import repose_jobs
+from regolith_studio.jobs.events import Partial
+from regolith_studio.jobs.repose_jobs import ReposeRequest
+from regolith_studio.jobs.repose_study import ReposeVariant, study_repose
 from regolith_studio.studies.figures import repose as figures
 from tests.dem.interrupted_study import SMALL, instant_engine, write_figure
 from tests.dem.packings import cone
@@ -67,6 +72,52 @@ def test_that_runs_of_a_stopped_study_wait_in_the_journal_for_the_others(
     files = [f"repose_study.{kind}" for kind in ("csv", "json", "png", "sha256", "svg")]
     assert names(study) == [*files, *RUNS]
     assert (study / RUNS[0] / "snapshots" / "000000.npz").is_file()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("where", ["--jobs 2", "--jobs 2 --runner dask"])
+def test_that_runs_at_the_same_time_give_the_bytes_of_runs_one_after_the_other(
+    boxes_folder: Path, tmp_path: Path, where: str
+) -> None:
+    words = ["repose", "study", str(boxes_folder), "--vary", "static_friction=0.2,0.8", *SMALL.split()]
+    for name, how in (("one", ""), ("two", where)):
+        assert run([*words, "-o", str(tmp_path / name), *how.split()]) == 0
+    found = [
+        {
+            path.relative_to(tmp_path / name): path.read_bytes()
+            for path in (tmp_path / name).rglob("*")
+            if path.is_file() and path.name not in ("times.json", "repose_study.sha256")
+        }
+        for name in ("one", "two")
+    ]
+    assert found[0] == found[1]
+    assert len(found[0]) > 20
+
+
+@pytest.mark.slow
+def test_that_a_study_whose_runs_are_stopped_at_the_same_time_goes_on(
+    boxes_folder: Path, tmp_path: Path
+) -> None:
+    """One of two runs is finished when the study is closed; the finished one is not run again."""
+    study = tmp_path / "study"
+    case = ReposeCase(LiftingCylinderTest(mass=0.003), n_particles=40)
+    few = EvaluationSettings(min_particles=40)
+    rows = [
+        ReposeVariant("shapes", n, boxes_folder, ReposeRequest(replace(case, n_particles=n), evaluation=few))
+        for n in (40, 600)
+    ]
+    steps = study_repose(rows, study, executor=2)
+    for step in steps:
+        if isinstance(step, Partial) and step.value.runs:
+            break
+    steps.close()
+    assert runs(study / "journal" / "repose_study") == ["shapes_40_seed0", "shapes_600_seed0"]
+    states = [run.document["state"] for run in find_runs(study / "journal" / "repose_study")]
+    assert states == ["finished", "stopped"]
+    again = study_repose(rows, study, executor=2)
+    known = next(step for step in again if isinstance(step, Partial))
+    again.close()
+    assert [each.folder for each in known.value.runs] == ["shapes_40_seed0"]
 
 
 @pytest.mark.parametrize("command", ["study", "calibrate --angle 30"])

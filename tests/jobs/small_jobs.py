@@ -1,5 +1,6 @@
 """Small jobs that every runner is tested against; workers import them by the name of this module."""
 
+import itertools
 import os
 import time
 from pathlib import Path
@@ -74,6 +75,24 @@ def wait_for(path: str) -> Steps:
         yield Progress(0, 0)
         time.sleep(0.005)
     return path
+
+
+def count_until(path: str) -> Steps:
+    yield Started("Counting")
+    for number in itertools.count(1):
+        yield Progress(number, 0)
+        if os.path.exists(path):  # noqa: PTH110
+            return number
+        time.sleep(0.01)
+
+
+def beat(path: str) -> Steps:
+    """A job without an end that writes to a file at each step."""
+    yield Started("Beating")
+    while True:
+        Path(path).write_text(f"{time.time()}")
+        time.sleep(0.05)
+        yield Progress(0, 0)
 
 
 class SlowToImport:

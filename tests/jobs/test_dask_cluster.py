@@ -17,7 +17,7 @@ import pytest
 from regolith_studio.errors import InputError, MissingRequirement
 from regolith_studio.imaging import volume_slabs
 from regolith_studio.imaging.sample_volumes import sample_file
-from regolith_studio.jobs.events import Progress
+from regolith_studio.jobs.events import Finished, Job, Progress
 from regolith_studio.jobs.executor import Executor
 from regolith_studio.jobs.extraction_jobs import extract_measured
 from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput
@@ -25,7 +25,7 @@ from regolith_studio.jobs.runners import dask_cluster
 from regolith_studio.jobs.runners.dask_cluster import TlsFiles
 from regolith_studio.session.recipe import Recipe, recipe_of
 from regolith_studio.session.run_recipe import run_recipe
-from tests.jobs.small_jobs import name_and_numbers
+from tests.jobs.small_jobs import beat, name_and_numbers, square
 
 pytest.importorskip("distributed")
 pytestmark = pytest.mark.filterwarnings("default")  # Dask's own
@@ -242,6 +242,22 @@ def test_that_a_cluster_of_this_machine_gives_the_same_bytes(tmp_path: Path, alo
         assert executor.workers == 2
         assert executor.dashboard.startswith("http://127.0.0.1:")
         assert done(tmp_path / "out", executor) == alone
+
+
+@pytest.mark.slow
+def test_that_a_job_of_a_cluster_that_is_cancelled_stops_between_two_steps(tmp_path: Path) -> None:
+    file = tmp_path / "beat"
+    with closing(Executor.on_cluster(workers=1)) as executor:
+        answers = executor.as_completed([Job(beat, (str(file),))])
+        while not file.exists():
+            next(answers)
+        answers.close()
+        time.sleep(2.0)
+        last = file.read_text()
+        time.sleep(1.0)
+        assert file.read_text() == last
+        [found] = [each for each in executor.results([Job(square, (3,))]) if each is not None]
+        assert found == Finished(9)
 
 
 DYING = """

@@ -10,13 +10,14 @@ from pathlib import Path
 
 import pytest
 
-from regolith_studio.jobs.events import Event, Failed, Finished, Job, Stopped
+from regolith_studio.jobs.events import Event, Failed, Finished, Job, Progress, Stopped
 from regolith_studio.jobs.executor import Executor, in_order, open_executor
 from regolith_studio.jobs.runners.process_pool import ProcessPoolRunner
 from regolith_studio.jobs.runners.run_job import InlineRunner
 
 from .small_jobs import (
     SlowToImport,
+    count_until,
     die,
     hold,
     process_id,
@@ -114,7 +115,31 @@ def test_that_a_job_in_a_process_stops_between_two_yields(pool: ProcessPoolRunne
     end = time.monotonic() + 20
     while not handle.done and time.monotonic() < end:
         time.sleep(0.01)
-    assert received == [Stopped()]
+    assert [each for each in received if not isinstance(each, Progress)] == [Stopped()]
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_that_the_progress_of_jobs_reaches_who_waits_for_them(workers: int, tmp_path: Path) -> None:
+    """Each of two jobs counts on until a file is there, which is written once both have been heard of."""
+    heard: dict[int, int] = {}
+    files = [tmp_path / "0", tmp_path / "1"]
+
+    def follow(number: int, step: Progress) -> None:
+        heard[number] = step.done
+        if workers == 1 or len(heard) == 2:
+            for path in files:
+                path.touch()
+
+    with open_executor(workers) as executor:
+        jobs = [Job(count_until, (str(path),)) for path in files]
+        answers = [answer for answer in executor.as_completed(jobs, follow) if answer is not None]
+    assert sorted(number for number, _ in answers) == [0, 1]
+    assert min(heard[0], heard[1]) > 0
+
+
+def test_that_workers_without_a_job_are_threads_of_the_others() -> None:
+    assert [Executor(8).threads_for(n) for n in (0, 1, 3, 8, 20)] == [8, 8, 2, 1, 1]
+    assert Executor(1).threads_for(3) is None
 
 
 def test_that_leaving_a_batch_early_stops_its_jobs(pool: ProcessPoolRunner) -> None:

@@ -430,10 +430,12 @@ def test_that_the_open_particles_become_a_dataset(page, wait):
 
 
 @pytest.mark.slow
-def test_that_a_study_grows_is_stopped_and_goes_on(page, dataset, wait):
+@pytest.mark.parametrize("workers", [1, 2])
+def test_that_a_study_grows_is_stopped_and_goes_on(page, dataset, wait, workers):
     small(page, dataset)
     panel = page.study
-    panel.restore({"key": "static_friction", "values": "0.2, 0.8", "repeats": 1})
+    panel.workers.setMaximum(2)  # also on a machine of one core
+    panel.restore({"key": "static_friction", "values": "0.2, 0.8", "repeats": 1, "workers": workers})
     page.start_study()
     wait(lambda: panel.table.rowCount() == 2)
     wait(lambda: "tables and figure" in panel.status.text())
@@ -450,6 +452,7 @@ def test_that_a_study_grows_is_stopped_and_goes_on(page, dataset, wait):
     wait(lambda: page.player.slider.maximum() >= 4)
     assert "no angle" in page.verdict.text()
     assert page.state()["study"]["values"] == "0.2, 0.8"
+    assert page.state()["study"]["workers"] == workers
 
 
 def test_that_a_study_of_names_and_piles_is_drawn(page):

@@ -2,6 +2,7 @@
 
 import contextlib
 import logging
+import signal
 import socket
 import threading
 import time
@@ -178,7 +179,8 @@ class DaskRunner:
     """Each job runs whole in a worker of the cluster; listeners are called in a thread of the client.
 
     A worker that dies is replaced by the cluster, and its jobs are done again by others; a job that has
-    ended several workers has failed. A job that was cancelled may run on to its end; its result is dropped.
+    ended several workers has failed. A job that was cancelled, or whose client has gone, stops between two of
+    its steps.
 
     Parameters
     ----------
@@ -212,6 +214,8 @@ class DaskRunner:
             self._close_cluster()
             raise
         try:
+            if self._cluster is not None:
+                self._client.run(_leave_interrupts)
             self._check_versions()
         except BaseException:
             self.close()
@@ -250,8 +254,8 @@ class DaskRunner:
         for worker, (size, seen) in self._client.run(_size_and_text, str(path), str(probe)).items():
             if size != _size_of(path):
                 raise MissingRequirement(
-                    f"The worker {worker} does not find {path}, or another file is there; workers read their "
-                    "parts of a volume themselves, from a place that all share."
+                    f"The worker {worker} does not find {path}, or another file is there; workers read it "
+                    "themselves, from a place that all share."
                 )
             if seen != key:
                 raise MissingRequirement(
@@ -311,7 +315,10 @@ class DaskRunner:
 
     def _lost_connection(self) -> str:
         where = f"at {self.address} " if self.address else ""
-        return f"The cluster {where}does not answer any more; what it has done is kept, go on with --resume."
+        return (
+            f"The cluster {where}does not answer any more; what it has done is kept. Give the same command "
+            "again, with --resume where it has that option."
+        )
 
 
 def _size_of(path: Path) -> int | None:
@@ -328,11 +335,23 @@ def _size_and_text(path: str, probe: str) -> tuple[int | None, str]:
 
 
 def _run_whole(job: Job) -> JobResult:
-    return run_job(job, _ignore, lambda: False)
+    return run_job(job, _ignore, _is_cancelled)
+
+
+def _is_cancelled() -> bool:
+    """Whether the task of this thread of a worker has no client any more that waits for it."""
+    worker = _distributed().get_worker()
+    task = worker.state.tasks.get(worker.get_current_task())
+    return task is None or task.state == "cancelled"
 
 
 def _ignore(_event: Event) -> None:
     """Steps are not sent over the network: what counts in a batch is each job's result."""
+
+
+def _leave_interrupts() -> None:
+    """Let the client alone act on Ctrl+C, which a terminal sends to the workers on its machine too."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
 def _local_cluster(workers: int) -> Any:
@@ -343,7 +362,7 @@ def _local_cluster(workers: int) -> Any:
         host="127.0.0.1",
         dashboard_address="127.0.0.1:0",
         memory_limit=memory_limit(workers),
-        silence_logs=logging.ERROR,  # a worker that is started again is an event of the run
+        silence_logs=logging.CRITICAL,  # what goes wrong is an event of the run
     )
 
 

@@ -16,7 +16,7 @@ from multiprocessing.connection import Connection, wait
 from typing import Any
 
 from regolith_studio.io.machine_memory import machine_memory
-from regolith_studio.jobs.events import Failed, Finished, Job, JobResult, Listener, Stopped
+from regolith_studio.jobs.events import Event, Failed, Finished, Job, JobResult, Listener, Progress, Stopped
 from regolith_studio.jobs.runners.worker import SLOTS, STARTED, interrupts_blocked, run_jobs
 
 _log = logging.getLogger(__name__)
@@ -69,8 +69,11 @@ class _PoolHandle:
         if self.cancelled and isinstance(result, Finished):
             result = Stopped()
         self.ended.set()
+        self.tell(result)
+
+    def tell(self, event: Event) -> None:
         try:
-            self.listener(result)
+            self.listener(event)
         except Exception:  # noqa: BLE001  the pool must outlive its listeners
             _log.exception("A listener of the process pool raised an exception.")
 
@@ -92,7 +95,8 @@ class _Worker:
 
 
 class ProcessPoolRunner:
-    """Each job runs whole in one process; listeners are called in a thread of the pool, with results only.
+    """Each job runs whole in one process; listeners are called in a thread of the pool, with progress about
+    twice a second, and the result.
 
     The processes are spawned, not forked (no locks or OpenGL contexts come along), start when there is
     work for them, stay warm and keep to one thread each. One that holds more memory than it may is
@@ -259,7 +263,12 @@ class ProcessPoolRunner:
             worker.started = True
             return
         try:
-            result, memory = pickle.loads(answer)
+            found = pickle.loads(answer)
+            if isinstance(found, Progress):
+                if worker.handle:
+                    worker.handle.tell(found)
+                return
+            result, memory = found
         except Exception as error:  # noqa: BLE001  whatever an answer's unpickling raises
             result, memory = Failed(f"A worker process could not answer ({error}).", repr(error)), 0
         handle, worker.handle = worker.handle, None

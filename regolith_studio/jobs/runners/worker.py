@@ -6,6 +6,7 @@ import pickle
 import signal
 import sys
 import threading
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from multiprocessing import resource_tracker
@@ -14,17 +15,20 @@ from multiprocessing.process import BaseProcess
 from pathlib import Path
 from typing import Any
 
-from regolith_studio.jobs.events import Event, Failed, Job, JobResult
+from regolith_studio.jobs.events import Event, Failed, Job, JobResult, Progress
 from regolith_studio.jobs.runners.run_job import run_job
 
 SLOTS = 4096
 """Length of the shared array of cancel flags; more than the jobs that are ever open at a time."""
+PROGRESS_INTERVAL = 0.5
+"""Seconds between two steps whose progress is sent back."""
 STARTED = b""
 """Sent back when a job and all modules that it needs are loaded, before its first step."""
 
 
 def run_jobs(pipe: Connection, flags: Any) -> None:
-    """Run the jobs that come through `pipe`, and send each one's result back with the memory in use.
+    """Run the jobs that come through `pipe`; send each one's progress back, and its result with the memory
+    in use.
 
     Before the first step of each job :data:`STARTED` is sent: a process that has not sent it can be killed
     without loss. A job that is cancelled by then takes no step.
@@ -42,7 +46,7 @@ def run_jobs(pipe: Connection, flags: Any) -> None:
                 return
             number, job = pickle.loads(message)
             pipe.send_bytes(STARTED)
-            pipe.send_bytes(_pickled(_run(job, number, flags)))
+            pipe.send_bytes(_pickled(_run(job, number, flags, pipe)))
         except (EOFError, OSError):
             return  # the parent is gone
 
@@ -89,12 +93,21 @@ def resident_memory() -> int:
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * (1 if sys.platform == "darwin" else 1024)
 
 
-def _run(job: Job, number: int, flags: Any) -> JobResult:
-    return run_job(job, _ignore, lambda: bool(flags[number % SLOTS] == number))
+def _run(job: Job, number: int, flags: Any, pipe: Connection) -> JobResult:
+    return run_job(job, _SendProgress(pipe), lambda: bool(flags[number % SLOTS] == number))
 
 
-def _ignore(_event: Event) -> None:
-    """Steps are not sent across processes: what counts in a batch is each job's result."""
+class _SendProgress:
+    """Sends progress across processes from time to time; partial results stay in the worker."""
+
+    def __init__(self, pipe: Connection) -> None:
+        self._pipe, self._sent = pipe, time.monotonic()
+
+    def __call__(self, event: Event) -> None:
+        now = time.monotonic()
+        if isinstance(event, Progress) and now - self._sent >= PROGRESS_INTERVAL:
+            self._pipe.send_bytes(pickle.dumps(event))
+            self._sent = now
 
 
 def _pickled(result: JobResult) -> bytes:

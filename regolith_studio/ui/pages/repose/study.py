@@ -22,6 +22,7 @@ from PySide6.QtWidgets import (
 from regolith_studio.coarsening.weights import presets
 from regolith_studio.dem.run_io import RunSummary
 from regolith_studio.jobs.repose_study import SHAPE_KEYS, values_in
+from regolith_studio.jobs.runners.process_pool import cores
 from regolith_studio.messages import N_
 from regolith_studio.studies.repose import ReposeStudy, ReposeStudyRun
 from regolith_studio.ui.layout import task_columns
@@ -73,6 +74,11 @@ class StudyPanel(QWidget):
         self.repeats.setObjectName("repose_study_repeats")
         self.repeats.setAccessibleName(tr("Runs per value, with different seeds"))
         self.repeats.setRange(1, 100)
+        self.workers = QSpinBox()
+        self.workers.setObjectName("repose_study_workers")
+        self.workers.setAccessibleName(tr("Runs at the same time"))
+        self.workers.setToolTip(tr("Each run takes one core, and the memory of a run"))
+        self.workers.setRange(1, cores())
         self.start, self.stop = QPushButton(tr("Start or resume")), QPushButton(tr("Stop"))
         self.start.setObjectName("repose_study_start")
         self.start.setToolTip(tr("Finished runs are not repeated"))
@@ -90,8 +96,8 @@ class StudyPanel(QWidget):
         self.plot.set_theme(theme)
         self._draw()
 
-    def request(self) -> tuple[str, tuple[float | str, ...], int]:
-        """Varied parameter, values and number of repetitions.
+    def request(self) -> tuple[str, tuple[float | str, ...], int, int]:
+        """Varied parameter, values, number of repetitions, and runs at the same time.
 
         Raises
         ------
@@ -99,13 +105,13 @@ class StudyPanel(QWidget):
             If a value is invalid.
         """
         key = str(self.key.currentData())
-        return key, values_in(key, self.values.value()), self.repeats.value()
+        return key, values_in(key, self.values.value()), self.repeats.value(), self.workers.value()
 
     def set_running(self, running: bool) -> None:
         """Set whether a study is running."""
         self.start.setVisible(not running)
         self.stop.setVisible(running)
-        for each in (self.key, self.values, self.repeats):
+        for each in (self.key, self.values, self.repeats, self.workers):
             each.setEnabled(not running)
 
     def show_status(self, text: str) -> None:
@@ -131,6 +137,7 @@ class StudyPanel(QWidget):
             "key": self.key.currentData(),
             "values": self.values.value(),
             "repeats": self.repeats.value(),
+            "workers": self.workers.value(),
         }
 
     def restore(self, state: Mapping[str, Any]) -> None:
@@ -139,9 +146,9 @@ class StudyPanel(QWidget):
         if at >= 0:
             self.key.setCurrentIndex(at)
             self.values.setValue(str(state.get("values", VARIED[self.key.currentData()][1])))
-        repeats = state.get("repeats")
-        if isinstance(repeats, int):
-            self.repeats.setValue(repeats)
+        for name, field in (("repeats", self.repeats), ("workers", self.workers)):
+            if isinstance(number := state.get(name), int):
+                field.setValue(number)
 
     def _draw(self) -> None:
         study = self._study
@@ -188,6 +195,7 @@ class StudyPanel(QWidget):
         form.addRow(tr("Vary"), self.key)
         form.addRow(tr("Values"), self.values)
         form.addRow(tr("Runs per value"), self.repeats)
+        form.addRow(tr("At the same time"), self.workers)
         row = QHBoxLayout(self)
         row.setContentsMargins(0, 0, 0, 0)
         row.addWidget(

@@ -77,14 +77,13 @@ class ReposeStudyController:
         self._context.session.cancel(self._task)
 
     def _request(self) -> ReposeStudyRequest:
-        key, values, repeats = self._panel.request()
+        key, values, repeats, workers = self._panel.request()
         session, request = self._context.session, self._setup.request()
         if key not in SHAPE_KEYS:
-            return ReposeStudyRequest(key, values, request, self._setup.dataset, repeats)
+            return ReposeStudyRequest(key, values, request, self._setup.dataset, repeats, workers=workers)
         particles = tuple(entry.particle for entry in session.particles)
-        return ReposeStudyRequest(
-            key, values, request, None, repeats, particles, session.choices.coarsening_request
-        )
+        coarsening = session.choices.coarsening_request
+        return ReposeStudyRequest(key, values, request, None, repeats, particles, coarsening, workers)
 
     def _finished(self, study: ReposeStudy) -> None:
         self._panel.show_study(study)
