@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from regolith_studio.descriptors.describe import describe
     from regolith_studio.harmonics.fit import fit_harmonics
     from regolith_studio.harmonics.surface import reconstruct
+    from regolith_studio.jobs.events import result_of
     from regolith_studio.jobs.repose_calibration import calibrate_repose
     from regolith_studio.readers.particles import read_mesh, read_particles, sample_particles
     from regolith_studio.scene.repose_export import export_repose
@@ -45,6 +46,7 @@ __all__ = [
     "read_mesh",
     "read_particles",
     "reconstruct",
+    "result_of",
     "sample_particles",
     "show",
     "write_dataset",
@@ -64,6 +66,7 @@ _LAZY_EXPORTS = {
     "read_mesh": "readers.particles:read_mesh",
     "read_particles": "readers.particles:read_particles",
     "reconstruct": "harmonics.surface:reconstruct",
+    "result_of": "jobs.events:result_of",
     "sample_particles": "readers.particles:sample_particles",
     "show": "web.notebook:show",
     "write_dataset": "dataset.folder_io:write_dataset",

@@ -82,3 +82,23 @@ class Job:
     def steps(self) -> Steps:
         """A fresh run of the job."""
         return self.function(*self.arguments, **self.options)
+
+
+def result_of(steps: Steps) -> Any:
+    """Do all steps of a job in this thread, and return its result.
+
+    Parameters
+    ----------
+    steps
+        A job that has been called: ``result_of(simulate_repose(dataset, folder, request))``.
+
+    Raises
+    ------
+    RegolithError
+        Of the job.
+    """
+    while True:
+        try:
+            next(steps)
+        except StopIteration as end:
+            return end.value

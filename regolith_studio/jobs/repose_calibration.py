@@ -11,7 +11,7 @@ from regolith_studio.dem.run_io import read_run
 from regolith_studio.errors import FileError, InputError, RegolithError
 from regolith_studio.io.atomic import JOURNAL
 from regolith_studio.io.output_lock import output_lock
-from regolith_studio.jobs.events import Partial, Progress, Started, Step, Steps
+from regolith_studio.jobs.events import Partial, Progress, Started, Step, Steps, result_of
 from regolith_studio.jobs.repose_jobs import PROGRESS_STEPS, ReposeRequest
 from regolith_studio.jobs.repose_study import (
     CASE_KEYS,
@@ -139,13 +139,8 @@ def calibrate_repose(
     """
     targets = (angle_target(angle, angle_error),)
     wanted = ReposeCalibrationRequest((Path(dataset),), ranges, targets, request or ReposeRequest(), max_runs)
-    steps = calibration_steps(wanted, Path(folder))
     with output_lock(Path(folder)):
-        while True:
-            try:
-                next(steps)
-            except StopIteration as end:
-                return cast("ReposeCalibration", end.value)
+        return cast("ReposeCalibration", result_of(calibration_steps(wanted, Path(folder))))
 
 
 def write_calibration(calibration: ReposeCalibration, folder: Path) -> list[str]:

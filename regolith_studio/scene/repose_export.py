@@ -30,7 +30,7 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.io.atomic import exchange, hidden_folder, recover_folder, write_in_stage
 from regolith_studio.io.json_text import canonical_json
 from regolith_studio.io.stl import stl_bytes
-from regolith_studio.jobs.events import Progress, Started, Steps
+from regolith_studio.jobs.events import Progress, Started, Steps, result_of
 from regolith_studio.messages import N_
 from regolith_studio.scene.instancing import COLOURS
 
@@ -112,12 +112,7 @@ def export_repose(run: Path | str, folder: Path | str, every: int = 1) -> Repose
     RegolithError
         If there is no such run, or the folder holds anything else or cannot be written.
     """
-    steps = repose_export_steps(Path(run), Path(folder), every)
-    while True:
-        try:
-            next(steps)
-        except StopIteration as end:
-            return cast("ReposeExport", end.value)
+    return cast("ReposeExport", result_of(repose_export_steps(Path(run), Path(folder), every)))
 
 
 def repose_export_steps(run_folder: Path, folder: Path, every: int = 1) -> Steps:

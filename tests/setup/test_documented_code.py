@@ -11,8 +11,10 @@ import numpy as np
 import pytest
 import typer.main
 
+import regolith_studio
 from regolith_studio.cli.commands import app
 from regolith_studio.cli.entry import run
+from regolith_studio.dem.evaluation.settings import EvaluationSettings
 from regolith_studio.harmonics.fit import fit_harmonics
 from regolith_studio.io.stl import stl_bytes
 from regolith_studio.readers.particles import sample_particles
@@ -20,7 +22,7 @@ from regolith_studio.session.recipe import Recipe
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
-BLOCK = re.compile(r"^```(\w*)\n(.*?)^```", re.DOTALL | re.MULTILINE)
+BLOCK = re.compile(r"^```([\w{}-]*)\n(.*?)^```", re.DOTALL | re.MULTILINE)
 INDENTED = re.compile(r"(?:^    regolith-studio .*\n)+", re.MULTILINE)
 SPAN = re.compile(r"`regolith-studio ([a-z][^`]*)`")
 ELSEWHERE = ("SLURMCluster", "on_cluster", ">>> ")
@@ -99,6 +101,21 @@ def test_that_the_python_of_the_pages_runs(page: str, text: str) -> None:
     if "FIT.json" in text:
         assert run(["fit", "grain.stl", "-o", "FIT.json", "--l-max", "4"]) == 0
     exec(compile(text, page, "exec"), {})
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("here")
+def test_that_the_heaps_of_the_page_on_python_are_simulated() -> None:
+    """Those of the page, of 60 particles on the default engine."""
+    assert run(["dataset", "build", "grains/", "-o", "grains-20"]) == 0
+    [text] = [text for page, text in blocks("pycon") if page == "python.md"]
+    code = text.replace(">>> ", "").replace("... ", "").replace("n_particles=1000", "n_particles=60")
+    code = code.replace('engine="rapier"', "evaluation=few").replace("repeats=3, workers=4", "repeats=1")
+    names: dict[str, Any] = {"rs": regolith_studio, "few": EvaluationSettings(min_particles=60)}
+    exec(compile(code, "python.md", "exec"), names)
+    assert names["run"].document["state"] == "finished"
+    assert names["study"].values == (0.2, 0.4, 0.8)
+    assert len(names["study"].runs) == 3
 
 
 @pytest.mark.slow
