@@ -54,12 +54,13 @@ def row(runs: Path, n_particles: int, name: str, seed: int) -> dict[str, Any]:
         how = ["-n", n_particles, "--engine", "rapier", "--seed", seed, "--jobs", "1"]
         command("repose", "run", runs / name, "-o", folder, *how)
     document = read_run(folder).document
-    packing = document["packing"]["heap"] or {}
+    measured, packing = document["measurement"], document["packing"]["heap"] or {}
     return {
         "coarsening": name,
         "particles": n_particles,
         "seed": seed,
-        "angle_deg": rounded(document["measurement"]["angle_deg"], 2),
+        "angle_deg": rounded(measured["angle_deg"], 2),
+        "interval_deg": [rounded(each, 2) for each in measured.get("interval_deg") or []],
         "solid_fraction": rounded(document["checks"]["solid_fraction"], 4),
         "coordination_number": rounded(packing.get("coordination_number"), 3),
         "problems": document["checks"]["problems"],

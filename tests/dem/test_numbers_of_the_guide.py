@@ -279,6 +279,22 @@ def test_that_the_table_of_facets_has_the_results_of_its_runs() -> None:
         assert words.format(*welch(angles[first], angles[second])) in one_line(REPOSE)
 
 
+def test_that_intervals_of_single_heaps_hold_the_mean_of_all_as_often_as_the_guide_says() -> None:
+    angles = angles_by_coarsening()
+    runs = [run for run in results("repose_shapes.json") if run["angle_deg"] is not None]
+    held = [
+        run["interval_deg"][0] <= np.mean(angles[run["coarsening"]]) <= run["interval_deg"][1] for run in runs
+    ]
+    freedom = len(runs) - len(angles)
+    scatter = np.sqrt(sum(np.var(each) * len(each) for each in angles.values()) / freedom)
+    words = one_line(REPOSE)
+    assert f"of {len(runs)} heaps of 1,000 on Rapier" in words
+    assert f"{sum(held)} ({100 * np.mean(held):.0f} %) have intervals" in words
+    assert f"standard deviation of {scatter:.1f} degrees" in words
+    calibration = one_line((ROOT / "docs" / "calibration.md").read_text("utf-8"))
+    assert f"while heaps of other seeds differ by {scatter:.1f}" in calibration
+
+
 def test_that_heaps_on_both_engines_differ_by_what_the_guide_says() -> None:
     mujoco = [run["angle_deg"] for run in results("repose_rapier.json") if run["engine"] == "mujoco"]
     rapier = angles_by_coarsening()["20"]
