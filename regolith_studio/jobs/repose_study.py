@@ -73,8 +73,18 @@ def study_repose(
     executor
         Where runs are simulated, or how many at the same time; they change no result. Workers that are left
         over are threads of the engine.
+
+    Raises
+    ------
+    InputError
+        If two rows are of the same value, and their runs would have the same folder.
     """
     plan = [_PlannedRun.of(row, row.request.case.seed + k) for row in rows for k in range(repeats)]
+    names = [run.name for run in plan]
+    if twice := next((name for name in names if names.count(name) > 1), ""):
+        raise InputError(
+            f"Two runs would have the folder {twice}: give each value once, and datasets different names."
+        )
     total = PROGRESS_STEPS * len(plan)
     yield Started(N_("Angle of repose: study"), total)
     found = {number: run.finished_in(folder) for number, run in enumerate(plan)}

@@ -2,6 +2,7 @@
 
 import json
 import os
+import shutil
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -138,6 +139,15 @@ def test_that_a_study_of_other_values_keeps_the_runs_of_an_earlier_one(
     assert run([*words, "--vary", "static_friction=0.8"]) == 0
     assert runs(study) == RUNS
     assert [row.split(",")[1] for row in (study / "repose_study.csv").read_text().splitlines()[1:]] == ["0.8"]
+
+
+def test_that_datasets_of_one_name_are_refused_before_any_run(
+    words: list[str], boxes_folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    again = shutil.copytree(boxes_folder, tmp_path / "elsewhere" / boxes_folder.name)
+    assert run([*words, str(again)]) == 1
+    assert "datasets different names" in " ".join(capsys.readouterr().err.split())
+    assert not (tmp_path / "study").exists()
 
 
 def test_that_a_study_is_written_beside_files_of_others(words: list[str], tmp_path: Path) -> None:
