@@ -7,6 +7,7 @@ at those of the polyhedron. The error is Jaccard's distance, as in Buchele et al
 """
 
 from dataclasses import dataclass
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from scipy.optimize import linprog, minimize
@@ -134,8 +135,20 @@ def fit_spheres_within(shape: Polyhedron, max_error: float) -> FloatArray:
 
 
 def fit_spheres_by(shape: Polyhedron, count: int, max_error: float) -> FloatArray:
-    """`count` spheres; where `max_error` is positive, as :func:`fit_spheres_within` instead."""
-    return fit_spheres_within(shape, max_error) if max_error else fit_spheres(shape, count)
+    """`count` spheres; where `max_error` is positive, as :func:`fit_spheres_within` instead.
+
+    What is found is kept as long as the shape is in use, since several formats take the same spheres; the
+    array is read-only.
+    """
+    known = _fits.setdefault(shape, {})
+    if (count, max_error) not in known:
+        spheres = fit_spheres_within(shape, max_error) if max_error else fit_spheres(shape, count)
+        spheres.flags.writeable = False
+        known[count, max_error] = spheres
+    return known[count, max_error]
+
+
+_fits: WeakKeyDictionary[Polyhedron, dict[tuple[int, float], FloatArray]] = WeakKeyDictionary()
 
 
 def inscribed_spheres(shape: Polyhedron, count: int) -> FloatArray:

@@ -18,6 +18,7 @@ from regolith_studio.dataset.exporters import EXPORTERS
 from regolith_studio.dataset.multisphere import (
     COUNTS,
     fit_spheres,
+    fit_spheres_by,
     fit_spheres_within,
     inner_points,
     inscribed_spheres,
@@ -247,6 +248,15 @@ def test_that_the_gradient_of_the_moments_is_their_difference_quotient() -> None
             down[k, axis] -= step
             slope = (union_moments(up).values - union_moments(down).values) / (2 * step)
             assert gradient[:, k, axis] == pytest.approx(slope, abs=0.03)
+
+
+def test_that_formats_share_the_spheres_of_a_shape_and_cannot_change_them() -> None:
+    shape = cube()
+    spheres = fit_spheres_by(shape, 2, 0.0)
+    assert fit_spheres_by(shape, 2, 0.0) is spheres
+    assert len(fit_spheres_by(shape, 1, 0.0)) == 1
+    with pytest.raises(ValueError, match="read-only"):
+        spheres[0] = 0.0
 
 
 def test_that_one_sphere_for_a_cube_has_its_volume_and_centre_and_more_match_better() -> None:
