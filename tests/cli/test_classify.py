@@ -47,6 +47,7 @@ def test_that_a_painted_slice_gives_the_grains_of_the_scan_and_of_the_recipe(com
     assert first == second
 
 
+@pytest.mark.slow
 def test_that_the_map_of_probabilities_is_taken_as_one(command, tmp_path: Path) -> None:
     scan, painted, balls = scan_of_two_minerals(tmp_path)
     strokes, probability = tmp_path / "strokes.json", tmp_path / "probability.h5"
@@ -61,6 +62,7 @@ def test_that_the_map_of_probabilities_is_taken_as_one(command, tmp_path: Path) 
     assert len(result.json["particles"]) == 2
 
 
+@pytest.mark.slow
 def test_that_painted_voxels_go_out_as_the_labels_that_came_in(command, tmp_path: Path) -> None:
     scan, painted, balls = scan_of_two_minerals(tmp_path)
     strokes, labels = tmp_path / "strokes.json", tmp_path / "labels.h5"

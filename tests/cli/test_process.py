@@ -129,6 +129,7 @@ def test_that_check_answers_without_a_display_and_survives_a_broken_opengl() -> 
         assert "OpenGL renderer string" in report["opengl"]
 
 
+@pytest.mark.slow
 def test_that_a_name_that_the_terminal_cannot_show_is_no_error(grains: Path, tmp_path: Path) -> None:
     (tmp_path / "moon \N{FULL MOON SYMBOL}.stl").write_bytes((grains / "grain-a.stl").read_bytes())
     done = subprocess.run(

@@ -255,6 +255,7 @@ class Killed(BaseException):
     """In place of a signal."""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("key", ["mujoco", "rapier"])
 def test_that_a_killed_run_goes_on_and_ends_as_one_that_was_not(
     boxes_folder: Path, tmp_path: Path, key: str, monkeypatch: pytest.MonkeyPatch
@@ -283,6 +284,7 @@ def test_that_a_killed_run_goes_on_and_ends_as_one_that_was_not(
     assert read_particle_state(first).time == read_particle_state(second).time
 
 
+@pytest.mark.slow
 def test_that_what_another_run_left_is_not_gone_on_from(
     boxes_folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -120,11 +120,13 @@ def test_that_runs_of_another_case_are_no_data(
     assert "another dataset, engine, case or seed (run_01); choose another folder" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_that_an_angle_out_of_reach_is_said(calibrated: Command, capsys: pytest.CaptureFixture[str]) -> None:
     assert calibrated("--angle", "60", "--runs", "4") == 0
     assert "No values in the range give the wanted results" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_that_a_bulk_density_is_a_second_result(calibrated: Command, tmp_path: Path) -> None:
     """Of the density 3075 kg/m^3 in Table 1 and a solid fraction of .55."""
     density = ("--bulk-density", f"{3075 * 0.55}", "--bulk-density-error", "5")

@@ -90,6 +90,7 @@ def damaged(case: Case, path: Path) -> Steps:
     return mapped(case, path)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("change", [other_classifier, other_scan, damaged])
 def test_that_what_belongs_to_something_else_is_begun_anew(
     change: Callable[[Case, Path], Steps], case: Case, tmp_path: Path

@@ -163,6 +163,7 @@ def test_that_particles_are_drawn_in_the_range_shown_and_taken_over(page, wait):
     wait(lambda: page.source.source.itemText(0) == "Open particles (4)")
 
 
+@pytest.mark.slow
 def test_that_drawing_fits_the_selected_source_first_and_goes_on_after_its_draws_are_opened(page):
     page.source.choose_source("ma165")
     page.drawing.setValue({"n": 4})
@@ -277,6 +278,7 @@ def test_that_what_cannot_be_done_is_said(page):
     ]
 
 
+@pytest.mark.slow
 def test_that_a_model_and_a_card_are_saved_and_opened_again(page, tmp_path, monkeypatch):
     take(page, rough_sample())
     page.source.fit.click()
