@@ -23,7 +23,9 @@ from regolith_studio.studies.calibration import (
 )
 
 NOISE, TARGET_ERROR = 1.7, 0.5
-"""Degrees: standard deviation of a heap of 1,000 particles, standard error of a mean of about 12."""
+"""Degrees: standard deviation that heaps of 1,000 particles state, standard error of a mean of about 12."""
+SCATTER = 2.2
+"""Degrees: standard deviation of heaps of 1,000 particles that differ by their seed."""
 N_RUNS = 12
 
 
@@ -54,6 +56,9 @@ def main(cases: int, seed: int, result: str) -> None:
         _show(rows, f"{n} runs", found, n)
     spaced = tuple((np.arange(N_RUNS) + 0.5) / N_RUNS)
     _show(rows, f"{N_RUNS} equally spaced", [calibrate_surrogate(seed + k, spaced) for k in range(cases)])
+    _show(
+        rows, f"{N_RUNS} that scatter", [calibrate_surrogate(seed + k, noise=SCATTER) for k in range(cases)]
+    )
     add_result(result, "surrogates", rows, cases=cases, first_seed=seed)
 
 
@@ -75,13 +80,17 @@ def random_curve(rng: np.random.Generator) -> Callable[[NDArray[np.float64]], ND
     return curve
 
 
-def calibrate_surrogate(seed: int, spaced: Sequence[float] = (), runs: int = N_RUNS) -> SurrogateCase:
-    """Each run states its noise as a heap does: from seven degrees of freedom.
+def calibrate_surrogate(
+    seed: int, spaced: Sequence[float] = (), runs: int = N_RUNS, noise: float = NOISE
+) -> SurrogateCase:
+    """Each run states :data:`NOISE` as a heap does: from seven degrees of freedom.
 
     Parameters
     ----------
     spaced
         Values of the runs, where they are not proposed.
+    noise
+        Standard deviation of the runs.
     """
     rng = np.random.default_rng(seed)
     curve, truth = random_curve(rng), rng.uniform()
@@ -95,7 +104,7 @@ def calibrate_surrogate(seed: int, spaced: Sequence[float] = (), runs: int = N_R
         intervals.append(found.intervals[0])
         if k < runs:
             x = spaced[k] if spaced else float(found.next_values[0])
-            angle = curve(np.array(x)) + NOISE * rng.normal()
+            angle = curve(np.array(x)) + noise * rng.normal()
             made = np.vstack([made, [x, angle, NOISE * np.sqrt(rng.chisquare(7) / 7)]])
     return SurrogateCase(truth, tuple(made[:, 0].tolist()), np.array(intervals))
 

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
+from benchmarks.calibration import NOISE, SCATTER
 from benchmarks.heaps import KINDS
 from benchmarks.repose_intervals import ANGLES, flank_angle, line, measured
 from benchmarks.sliding_friction import box
@@ -301,6 +302,18 @@ def test_that_heaps_on_both_engines_differ_by_what_the_guide_says() -> None:
     mean, (difference, interval) = f"{np.mean(rapier):.1f}", welch(rapier, mujoco)
     words = f"{len(rapier)} heaps on Rapier stand at {mean} degrees in the mean, {difference} steeper"
     assert f"{words} ({interval}, Welch)" in one_line(REPOSE)
+
+
+def test_that_the_table_of_surrogates_has_the_results_of_its_benchmark() -> None:
+    text = (ROOT / "docs" / "calibration.md").read_text("utf-8")
+    found = json.loads((ROOT / "benchmarks/results/calibration.json").read_text("utf-8"))["surrogates"]
+    rows = rows_of(text, "| surrogates | covered of 100 | width, mean | width, median |")
+    assert found["cases"] == 100
+    assert rows == [
+        [name, f"{covered:.0f}", f"{mean:.2f}", f"{median:.2f}"]
+        for name, (covered, mean, median) in found["rows"].items()
+    ]
+    assert f"In the last row heaps scatter by {SCATTER} degrees, and state {NOISE}" in one_line(text)
 
 
 def test_that_the_table_of_blind_calibrations_has_the_results_of_its_runs() -> None:
