@@ -1,4 +1,4 @@
-"""Angle of repose of compounds and of one convex polyhedron for each particle (docs/repose_studies.md).
+"""Angle of repose of compounds and of one convex polyhedron for each particle (docs/repose_results.md).
 
     python -m benchmarks.compound_heaps RUNS [RESULT.json] [SEEDS] [ENGINE]
 

@@ -1,4 +1,4 @@
-"""Angle of repose of drawn populations over their shape statistics (docs/repose_studies.md).
+"""Angle of repose of drawn populations over their shape statistics (docs/repose_results.md).
 
     python -m benchmarks.population_heaps RUNS RESULT.json [REPEATS] [ENGINE]
 

@@ -1,4 +1,4 @@
-"""Angle of repose over the number of facets and over what is kept of the particles (docs/repose_studies.md).
+"""Angle of repose over the number of facets and over what is kept of the particles (docs/repose_results.md).
 
     python -m benchmarks.shape_heaps RUNS RESULT.json [SEEDS] [PARTICLES] [COARSENINGS]
 

@@ -24,6 +24,7 @@ ELSEWHERE = {
     "repose.md": "heaps of minutes; tests/dem has smaller ones",
     "repose_export.md": "needs a run; tests/scene/test_repose_export.py has one",
     "repose_rapier.md": "a heap of an hour; tests/dem has smaller ones",
+    "repose_results.md": "heaps of minutes; tests/dem has smaller ones",
     "repose_studies.md": "heaps of minutes; tests/dem has smaller ones",
 }
 """Pages whose commands run in other tests, besides those of :data:`SHORT`."""
