@@ -194,8 +194,9 @@ def test_that_the_table_of_friction_has_the_results_of_its_runs() -> None:
 def test_that_the_table_of_mujoco_and_rapier_has_the_results_of_its_runs(
     file: str, kind: str, words: str
 ) -> None:
-    columns = f"seed|MuJoCo{kind}: filled to, packed|angle|s|Rapier{kind}: filled to, packed|angle|deepest overlap|s"
-    said = {row[0]: row for row in rows_of(REPOSE, f"| {' | '.join(columns.split('|'))} |")}
+    both = "filled to, packed | angle"
+    header = f"| seed | MuJoCo{kind}: {both} | s | Rapier{kind}: {both} | deepest overlap | s |"
+    said = {row[0]: row for row in rows_of(REPOSE, header)}
     found = [run for run in results(file) if run["particles"] <= 5000]
     for run in found:
         low, high = run["interval_deg"]
@@ -258,26 +259,42 @@ def welch(first: list[float], second: list[float]) -> tuple[str, str]:
     return f"{np.mean(first) - np.mean(second):.1f}", f"{found.low:.1f} to {found.high:.1f}"
 
 
-def angles_by_coarsening() -> dict[str, list[float]]:
+def angles_by_coarsening(file: str = "repose_shapes.json") -> dict[str, list[float]]:
     """Angles of the runs of benchmarks.shape_heaps that have one."""
     found: dict[str, list[float]] = {}
-    for run in results("repose_shapes.json"):
+    for run in results(file):
         if run["angle_deg"] is not None:
             found.setdefault(run["coarsening"], []).append(run["angle_deg"])
     return found
 
 
-def test_that_the_table_of_facets_has_the_results_of_its_runs() -> None:
-    rows = rows_of(REPOSE, "| facets | heaps | angle | deviation | filling, packed | contacts a particle |")
-    angles = angles_by_coarsening()
+@pytest.mark.parametrize(
+    ("file", "kind"),
+    [("repose_shapes.json", ""), ("repose_shapes_5000.json", ", 5,000 particles")],
+)
+def test_that_the_table_of_facets_has_the_results_of_its_runs(file: str, kind: str) -> None:
+    columns = "heaps | angle | deviation | filling, packed | contacts a particle"
+    rows = rows_of(REPOSE, f"| facets{kind} | {columns} |")
+    angles = angles_by_coarsening(file)
     assert [row[0] for row in rows] == list(angles)
     for name, *cells in rows:
-        runs = [run for run in results("repose_shapes.json") if run["coarsening"] == name]
+        runs = [run for run in results(file) if run["coarsening"] == name]
         packed = np.mean([run["solid_fraction"] for run in runs])
         contacts = np.mean([run["coordination_number"] for run in runs if run["coordination_number"]])
         mean = f"{np.mean(angles[name]):.1f} ± {half_width(angles[name]):.1f}"
         spread = f"{np.std(angles[name], ddof=1):.1f}"
         assert cells == [f"{len(angles[name])}", mean, spread, f"{packed:.3f}", f"{contacts:.1f}"]
+
+
+def test_that_differences_between_facets_are_those_of_the_runs() -> None:
+    large = angles_by_coarsening("repose_shapes_5000.json")
+    for first, second, words in (
+        ("8", "60", "From 60 to 8 facets the angle rises by {} degrees ({}, Welch)"),
+        ("8", "20", "from 20 to 8 by {} ({})"),
+        ("20", "60", "from 60 to 20 by {} ({})"),
+    ):
+        assert words.format(*welch(large[first], large[second])) in one_line(REPOSE)
+    angles = angles_by_coarsening()
     for first, second, words in (
         ("8", "60", "{} degrees from 60 to 8 ({}, Welch, 95 %)"),
         ("8", "20", "{} from 20 to 8 ({})"),
