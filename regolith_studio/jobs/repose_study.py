@@ -3,6 +3,7 @@
 import contextlib
 import os
 import shutil
+from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, fields, replace
 from pathlib import Path
@@ -80,10 +81,10 @@ def study_repose(
         If two rows are of the same value, and their runs would have the same folder.
     """
     plan = [_PlannedRun.of(row, row.request.case.seed + k) for row in rows for k in range(repeats)]
-    names = [run.name for run in plan]
-    if twice := next((name for name in names if names.count(name) > 1), ""):
+    twice = [name for name, times in Counter(run.name for run in plan).items() if times > 1]
+    if twice:
         raise InputError(
-            f"Two runs would have the folder {twice}: give each value once, and datasets different names."
+            f"Two runs would have the folder {twice[0]}: give each value once, and datasets different names."
         )
     total = PROGRESS_STEPS * len(plan)
     yield Started(N_("Angle of repose: study"), total)
