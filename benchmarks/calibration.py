@@ -3,7 +3,8 @@
     python -m benchmarks.calibration [CASES] [FIRST_SEED] [RESULT.json]
 
 Surrogates of heaps with a known answer: random smooth curves of the angle of repose over one parameter, with
-the noise of a heap of 1,000 particles. Runs are proposed one after the other, or equally spaced.
+the noise of a heap of 1,000 particles. Runs are proposed one after the other, or equally spaced. Then three
+datasets whose angles and bulk densities differ: which one was it, and at which value of the parameter?
 """
 
 import sys
@@ -20,6 +21,7 @@ from regolith_studio.studies.calibration import (
     CalibrationRuns,
     WantedResult,
     calibrate,
+    density_of,
 )
 
 NOISE, TARGET_ERROR = 1.7, 0.5
@@ -27,6 +29,11 @@ NOISE, TARGET_ERROR = 1.7, 0.5
 SCATTER = 2.2
 """Degrees: standard deviation of heaps of 1,000 particles that differ by their seed."""
 N_RUNS = 12
+DATASETS = ("a", "b", "c")
+ANGLE_OFFSET, DENSITY_OFFSET = 2.0, 50.0
+"""Standard deviations, in degrees and kg/m^3, of the datasets' angles and bulk densities about their mean."""
+DENSITY, DENSITY_NOISE = 1600.0, 16.0
+"""kg/m^3: mean of the datasets, and noise of a filling as well as standard error of the wanted density."""
 
 
 @dataclass(frozen=True)
@@ -60,12 +67,23 @@ def main(cases: int, seed: int, result: str) -> None:
         rows, f"{N_RUNS} that scatter", [calibrate_surrogate(seed + k, noise=SCATTER) for k in range(cases)]
     )
     add_result(result, "surrogates", rows, cases=cases, first_seed=seed)
+    rows = {}
+    pairs = [calibrate_datasets(seed + k) for k in range(cases)]
+    chances = np.array([chance for _, chance in pairs])
+    numbers = [*_coverage([case for case, _ in pairs]), chances.mean(), (chances > 0.5).sum()]
+    show_row(rows, f"{len(DATASETS)}, {N_RUNS} runs", numbers)
+    add_result(result, "datasets", rows, cases=cases, first_seed=seed)
 
 
 def _show(rows: Rows, name: str, found: Sequence[SurrogateCase], runs: int = N_RUNS) -> None:
+    show_row(rows, name, _coverage(found, runs))
+
+
+def _coverage(found: Sequence[SurrogateCase], runs: int = N_RUNS) -> tuple[float, float, float]:
+    """Percentage of intervals that hold the truth, and their width: mean and median."""
     widths = [case.shrinkage(runs) for case in found]
     covered = 100.0 * np.mean([case.covers(runs) for case in found])
-    show_row(rows, name, [covered, float(np.mean(widths)), float(np.median(widths))])
+    return float(covered), float(np.mean(widths)), float(np.median(widths))
 
 
 def random_curve(rng: np.random.Generator) -> Callable[[NDArray[np.float64]], NDArray[np.float64]]:
@@ -107,6 +125,35 @@ def calibrate_surrogate(
             angle = curve(np.array(x)) + noise * rng.normal()
             made = np.vstack([made, [x, angle, NOISE * np.sqrt(rng.chisquare(7) / 7)]])
     return SurrogateCase(truth, tuple(made[:, 0].tolist()), np.array(intervals))
+
+
+def calibrate_datasets(seed: int) -> tuple[SurrogateCase, float]:
+    """One parameter and one of three datasets, from an angle and a bulk density; with the probability that
+    is given to the right dataset."""
+    rng = np.random.default_rng(seed)
+    curve, x, number = random_curve(rng), rng.uniform(), int(rng.integers(len(DATASETS)))
+    offsets = rng.normal(size=(len(DATASETS), 2)) * [ANGLE_OFFSET, DENSITY_OFFSET]
+
+    def results(x: float, number: int) -> NDArray[np.float64]:
+        return np.array([curve(np.array(x)), DENSITY]) + offsets[number]
+
+    wanted = results(x, number) + rng.normal(size=2) * [TARGET_ERROR, DENSITY_NOISE]
+    targets = [
+        WantedResult("angle", wanted[0], TARGET_ERROR, scale=5.0, noise=NOISE),
+        WantedResult("bulk_density", wanted[1], DENSITY_NOISE, 0.05 * wanted[1], 0.01 * wanted[1]),
+    ]
+    parameters = [CalibrationParameter("x", 0.0, 1.0), CalibrationParameter.of_choices("dataset", DATASETS)]
+    values, made, errors, intervals = [], [], [], []
+    for k in range(N_RUNS + 1):
+        found = calibrate(parameters, targets, CalibrationRuns.of(values, made, errors, 2, 2))
+        intervals.append(found.intervals[0])
+        if k < N_RUNS:
+            values.append(found.next_values)
+            one, which = float(found.next_values[0]), int(found.next_values[1])
+            made.append(results(one, which) + rng.normal(size=2) * [SCATTER, DENSITY_NOISE])
+            errors.append([NOISE * np.sqrt(rng.chisquare(7) / 7), np.nan])
+    chance = density_of(found, parameters[1], 1)[1][number] / len(DATASETS)
+    return SurrogateCase(x, tuple(float(each[0]) for each in values), np.array(intervals)), float(chance)
 
 
 if __name__ == "__main__":

@@ -19,7 +19,7 @@ def calibrate(
     datasets: Annotated[
         list[Path],
         typer.Argument(
-            metavar="DATASET...", help="Dataset folders; with several the facets are a parameter too."
+            metavar="DATASET...", help="Dataset folders; with several the dataset is a parameter too."
         ),
     ],
     output: Folder,
@@ -121,6 +121,10 @@ def calibration_in_words(document: dict[str, Any]) -> str:
     """The result of a calibration."""
     lines = []
     for each in document["parameters"]:
+        if "choices" in each:
+            chances = ", ".join(f"{name} {100 * p:.0f} %" for name, p in each["probabilities"].items())
+            lines.append(f"{each['name']:20} {each['best']} (probabilities: {chances})")
+            continue
         low, high = each["interval"]
         lines.append(
             f"{each['name']:20} {each['best']:.4g} ({low:.4g} to {high:.4g}, "
@@ -132,5 +136,8 @@ def calibration_in_words(document: dict[str, Any]) -> str:
             f"{each['predicted_standard_error']:.2g} {each['unit']} predicted, {each['value']:g} ± "
             f"{each['standard_error']:g} wanted"
         )
-    proposed = ", ".join(f"{name} {value:g}" for name, value in document["next_run"].items())
+    proposed = ", ".join(
+        f"{name} {value if isinstance(value, str) else format(value, 'g')}"
+        for name, value in document["next_run"].items()
+    )
     return "\n".join([*lines, f"{'next run':20} {proposed}"])

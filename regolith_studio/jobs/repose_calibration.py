@@ -1,12 +1,13 @@
 """Job that calibrates contact parameters by runs of a lifting cylinder, one after the other."""
 
+from collections import Counter
 from collections.abc import Generator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from types import MappingProxyType
 from typing import cast
 
-from regolith_studio.dataset.folder_io import dataset_hash, read_dataset
+from regolith_studio.dataset.folder_io import dataset_hash
 from regolith_studio.dem.run_io import read_run
 from regolith_studio.errors import FileError, InputError, RegolithError
 from regolith_studio.io.atomic import JOURNAL
@@ -25,11 +26,10 @@ from regolith_studio.jobs.repose_study import (
 from regolith_studio.messages import N_, Message
 from regolith_studio.studies.calibration import CalibrationParameter, WantedResult
 from regolith_studio.studies.repose_calibration import (
-    FACETS,
+    DATASET,
     CalibrationRun,
     ReposeCalibration,
     angle_target,
-    four_digits,
 )
 
 KIND = "calibration"
@@ -45,7 +45,7 @@ class ReposeCalibrationRequest:
     Parameters
     ----------
     datasets
-        Folders. With several the mean number of facets is one of the parameters.
+        Folders. With several the choice of one of them is a parameter; they differ in content and name.
     ranges
         Lowest and highest value of each parameter of Table 1 or 2, in SI units.
     targets
@@ -58,7 +58,7 @@ class ReposeCalibrationRequest:
     Raises
     ------
     InputError
-        If a range cannot be used.
+        If a range cannot be used, or two datasets have one name.
     """
 
     datasets: tuple[Path, ...]
@@ -73,6 +73,9 @@ class ReposeCalibrationRequest:
                 f"A calibration finds one to {MAX_PARAMETERS} parameters, got "
                 f"{len(self.ranges) + (len(self.datasets) > 1)}."
             )
+        names = Counter(folder.name for folder in self.datasets)
+        if twice := [name for name, times in names.items() if times > 1]:
+            raise InputError(f"Two datasets have the name {twice[0]}: give them different names.")
         for name, (low, high) in self.ranges.items():
             if name in CASE_KEYS:
                 raise InputError(f"{name} cannot be calibrated; a value of Table 1 or 2 can.")
@@ -94,13 +97,13 @@ def calibration_steps(request: ReposeCalibrationRequest, folder: Path) -> Steps:
     """
     total = PROGRESS_STEPS * request.max_runs
     yield Started(N_("Calibration"), total)
-    datasets = _by_facets(request.datasets)
-    calibration = ReposeCalibration.begin(_parameters(request, datasets), request.targets)
+    datasets = _by_hash(request.datasets)
+    calibration = ReposeCalibration.begin(_parameters(request), request.targets)
     yield Partial(calibration)
     for number in range(request.max_runs):
         run = earlier = _earlier_run(request, datasets, folder, number)
         if run is None:
-            run = yield from _next_run(request, datasets, folder, calibration)
+            run = yield from _next_run(request, folder, calibration)
         calibration = calibration.with_run(run)
         if earlier is None or number == request.max_runs - 1:
             write_calibration(calibration, folder)
@@ -150,53 +153,43 @@ def write_calibration(calibration: ReposeCalibration, folder: Path) -> list[str]
     return write_with_runs(folder, KIND, lambda stage: write_calibration_files(calibration, stage))
 
 
-def _by_facets(folders: Sequence[Path]) -> dict[float, Path]:
-    """Datasets by their mean number of facets, in ascending order.
+def _by_hash(folders: Sequence[Path]) -> dict[str, int]:
+    """Place of each dataset by the hash of its content.
 
     Raises
     ------
     InputError
-        If two have the same.
+        If two have the same content.
     """
-    found: dict[float, Path] = {}
-    for folder in folders:
-        facets = [each.shape.n_facets for each in read_dataset(folder).representatives]
-        mean = four_digits(sum(facets) / len(facets))
-        if mean in found:
+    found: dict[str, int] = {}
+    for number, folder in enumerate(folders):
+        earlier = found.setdefault(dataset_hash(folder), number)
+        if earlier != number:
             raise InputError(
-                f"{found[mean].name} and {folder.name} both have {mean:g} facets in the mean; "
-                "datasets of a calibration differ in their facets."
+                f"{folders[earlier].name} and {folder.name} are the same dataset; give each once."
             )
-        found[mean] = folder
-    return dict(sorted(found.items()))
+    return found
 
 
-def _parameters(
-    request: ReposeCalibrationRequest, datasets: Mapping[float, Path]
-) -> list[CalibrationParameter]:
+def _parameters(request: ReposeCalibrationRequest) -> list[CalibrationParameter]:
     parameters = [CalibrationParameter(name, *ends) for name, ends in request.ranges.items()]
-    if len(datasets) > 1:
-        parameters.append(CalibrationParameter(FACETS, min(datasets), max(datasets), tuple(datasets)))
+    if len(request.datasets) > 1:
+        names = [folder.name for folder in request.datasets]
+        parameters.append(CalibrationParameter.of_choices(DATASET, names))
     return parameters
 
 
-def _variant(
-    request: ReposeCalibrationRequest,
-    datasets: Mapping[float, Path],
-    number: int,
-    values: Mapping[str, float],
-) -> ReposeVariant:
+def _variant(request: ReposeCalibrationRequest, number: int, values: Mapping[str, float]) -> ReposeVariant:
     """What the run of this number is with these values of the parameters."""
     one = replace(request.request, overwrite=True)
     for name in request.ranges:
         one = with_value(one, name, values[name])
     one = replace(one, case=replace(one.case, seed=one.case.seed + number))
-    dataset = datasets[values[FACETS]] if FACETS in values else next(iter(datasets.values()))
-    return ReposeVariant("run", number + 1, dataset, one)
+    return ReposeVariant("run", number + 1, request.datasets[int(values.get(DATASET, 0))], one)
 
 
 def _earlier_run(
-    request: ReposeCalibrationRequest, datasets: Mapping[float, Path], folder: Path, number: int
+    request: ReposeCalibrationRequest, datasets: Mapping[str, int], folder: Path, number: int
 ) -> CalibrationRun | None:
     """A finished run of this number, whose parameters may have any values."""
     name = _run_name(number)
@@ -210,9 +203,8 @@ def _earlier_run(
     known = document["case"]["contact"] | document["case"]["test"]
     values = {key: float(known[key]) for key in request.ranges}
     if len(datasets) > 1:
-        hashes = {dataset_hash(path): facets for facets, path in datasets.items()}
-        values[FACETS] = hashes.get(document["dataset"]["sha256"], min(datasets))
-    variant = _variant(request, datasets, number, values)
+        values[DATASET] = datasets.get(document["dataset"]["sha256"], 0)
+    variant = _variant(request, number, values)
     if finished_run(place, variant.dataset, variant.request) is None:
         raise FileError(
             f"{folder} holds a run of another dataset, engine, case or seed ({name}); choose another folder."
@@ -221,10 +213,7 @@ def _earlier_run(
 
 
 def _next_run(
-    request: ReposeCalibrationRequest,
-    datasets: Mapping[float, Path],
-    folder: Path,
-    calibration: ReposeCalibration,
+    request: ReposeCalibrationRequest, folder: Path, calibration: ReposeCalibration
 ) -> Generator[Step, None, CalibrationRun]:
     """Simulate the run that is proposed; if it fails, it has no result.
 
@@ -236,7 +225,7 @@ def _next_run(
     number, name = len(calibration.runs), _run_name(len(calibration.runs))
     names = [each.name for each in calibration.parameters]
     values = calibration.next_values
-    variant = _variant(request, datasets, number, dict(zip(names, values, strict=True)))
+    variant = _variant(request, number, dict(zip(names, values, strict=True)))
     steps = simulate_study_run(variant.dataset, folder / JOURNAL / KIND / name, variant.request)
     while True:
         try:

@@ -27,6 +27,9 @@ AMPLITUDES, LENGTHS, NOISES = (0.4, 1.0, 2.5), (0.25, 0.5, 1.0), (0.6, 1.0, 1.6)
 noise of a run relative to what the runs state."""
 TREND_VARIANCE = 16.0
 """Of the constant and of the linear part of a result, in squares of its scale."""
+CHOICE_DISTANCE = 0.1
+"""Between choices in ranges of a parameter as the trend sees it: results differ by less from choice to choice
+than from end to end of a range. For the smooth deviation their distance is a whole range."""
 FAILED_DISTANCE = 0.1
 """From a run without a result, in ranges of a parameter, within which no further run is proposed."""
 CONFIDENCE = 0.9
@@ -35,7 +38,14 @@ CONFIDENCE = 0.9
 
 @dataclass(frozen=True)
 class CalibrationParameter:
-    """A parameter to be found, between `low` and `high`; one of `levels` where it cannot have all values.
+    """A parameter to be found.
+
+    Parameters
+    ----------
+    name, low, high
+        It lies between `low` and `high`.
+    choices
+        Names of the values 0, 1, ..., where it is no quantity but a choice, as of a dataset.
 
     Raises
     ------
@@ -46,7 +56,12 @@ class CalibrationParameter:
     name: str
     low: float
     high: float
-    levels: tuple[float, ...] = ()
+    choices: tuple[str, ...] = ()
+
+    @classmethod
+    def of_choices(cls, name: str, choices: Sequence[str]) -> "CalibrationParameter":
+        """One of several choices, all equally probable before the first run."""
+        return cls(name, 0.0, len(choices) - 1.0, tuple(choices))
 
     def __post_init__(self) -> None:
         if not np.isfinite([self.low, self.high]).all() or not self.low < self.high:
@@ -125,9 +140,9 @@ class CalibrationPosterior:
     points, weights
         Values of the parameters, shape (m, d), and their probabilities, shape (m,).
     best
-        The point of the highest density within the intervals, shape (d,).
+        The point of the highest density within the intervals and of the most probable choices, shape (d,).
     intervals
-        Of :data:`CONFIDENCE` for each parameter, shape (d, 2).
+        Of :data:`CONFIDENCE` for each parameter, shape (d, 2); all values of a choice.
     predicted, deviations
         Results and their standard deviations at all points without the noise of a run, shape (m, k).
     best_index
@@ -164,13 +179,12 @@ def calibrate(
         If scikit-learn is not installed.
     """
     points = _prior_points(parameters)
-    unit = _to_unit(points, parameters)
-    tried = _to_unit(runs.values, parameters)
+    (places, ranges), (tried, _) = (_coordinates(each, parameters) for each in (points, runs.values))
     log_likelihood, misfit, gains = np.zeros(len(points)), np.zeros(len(points)), []
     moments = []
     for k, target in enumerate(targets):
-        models = _fit(target, tried, runs.results[:, k], runs.errors[:, k])
-        means, deviations = _predict(models, unit, target)
+        models = _fit(target, tried, ranges, runs.results[:, k], runs.errors[:, k])
+        means, deviations = _predict(models, places, target)
         spread = np.hypot(deviations, target.error)
         density = norm.logpdf(target.value, means, spread)
         log_likelihood += logsumexp(density, axis=0, b=models.weights[:, None])
@@ -179,30 +193,43 @@ def calibrate(
         moments.append((mean, deviation))
         gains.append((models, target))
     weights = np.exp(log_likelihood - logsumexp(log_likelihood))
-    failed = tried[np.isnan(runs.results).any(axis=1)]
-    gain = sum(_variance_reduction(models, target, unit, weights) for models, target in gains)
-    intervals = np.array([_interval(column, weights) for column in points.T])
-    inside = ((points >= intervals[:, 0]) & (points <= intervals[:, 1])).all(axis=1)
+    failed = np.isnan(runs.results).any(axis=1)
+    gain = sum(_variance_reduction(models, target, places, weights) for models, target in gains)
+    intervals, inside = [], np.ones(len(points), dtype=bool)
+    for column, parameter in zip(points.T, parameters, strict=True):
+        low, high = ends = _interval(column, weights)
+        if parameter.choices:
+            ends = (parameter.low, parameter.high)
+            low = high = int(np.argmax(np.bincount(column.astype(int), weights)))
+        intervals.append(ends)
+        inside &= (column >= low) & (column <= high)
     return CalibrationPosterior(
         points=points,
         weights=weights,
-        intervals=intervals,
+        intervals=np.array(intervals),
         predicted=np.column_stack([mean for mean, _ in moments]),
         deviations=np.column_stack([deviation for _, deviation in moments]),
         best_index=int(np.argmax(np.where(inside, weights, -1.0))),
         misfit=float(np.sqrt(misfit.min())),
-        next_values=points[np.argmax(np.where(_near(unit, failed), -np.inf, gain))],
+        next_values=points[
+            np.argmax(np.where(_near(places / ranges, tried[failed] / ranges), -np.inf, gain))
+        ],
     )
 
 
 def density_of(
     posterior: CalibrationPosterior, parameter: CalibrationParameter, index: int, bins: int = 32
 ) -> tuple[FloatArray, FloatArray]:
-    """Places, shape (bins,), and marginal posterior density of a parameter; 1 is that of the prior."""
+    """Places, shape (bins,), and marginal posterior density of a parameter; 1 is that of the prior.
+
+    Of a choice there is a place for each, whose density is its probability times their number.
+    """
+    beyond = 0.5 if parameter.choices else 0.0
+    bins = len(parameter.choices) or bins
     height, edges = np.histogram(
         posterior.points[:, index],
         bins,
-        (parameter.low, parameter.high),
+        (parameter.low - beyond, parameter.high + beyond),
         weights=posterior.weights * bins,
     )
     return (edges[1:] + edges[:-1]) / 2, height
@@ -218,7 +245,9 @@ class _Models:
     """Standard deviation of a run, in scales of the result."""
 
 
-def _fit(target: WantedResult, unit: FloatArray, results: FloatArray, errors: FloatArray) -> _Models:
+def _fit(
+    target: WantedResult, places: FloatArray, ranges: FloatArray, results: FloatArray, errors: FloatArray
+) -> _Models:
     try:
         from sklearn.gaussian_process import GaussianProcessRegressor
         from sklearn.gaussian_process.kernels import RBF, ConstantKernel, DotProduct
@@ -236,20 +265,20 @@ def _fit(target: WantedResult, unit: FloatArray, results: FloatArray, errors: Fl
     trend = ConstantKernel(TREND_VARIANCE) * DotProduct(1.0)
     processes, evidence, noises = [], [], []
     for amplitude, length, factor in product(AMPLITUDES, LENGTHS, NOISES):
-        kernel = trend + ConstantKernel(amplitude**2) * RBF(length)
+        kernel = trend + ConstantKernel(amplitude**2) * RBF(length * ranges)
         noises.append(factor * noise / target.scale)
         process = GaussianProcessRegressor(kernel, alpha=noises[-1] ** 2, optimizer=None)
         if len(wanted):
-            process.fit(unit[there] - 0.5, wanted)
+            process.fit(places[there], wanted)
         processes.append(process)
         evidence.append(process.log_marginal_likelihood_value_ if len(wanted) else 0.0)
     weights = np.exp(np.array(evidence) - logsumexp(evidence))
     return _Models(tuple(processes), weights, np.array(noises))
 
 
-def _predict(models: _Models, unit: FloatArray, target: WantedResult) -> tuple[FloatArray, FloatArray]:
+def _predict(models: _Models, places: FloatArray, target: WantedResult) -> tuple[FloatArray, FloatArray]:
     """Means and standard deviations of each process in the unit of the result, shape (h, m)."""
-    found = [process.predict(unit - 0.5, return_std=True) for process in models.processes]
+    found = [process.predict(places, return_std=True) for process in models.processes]
     means = np.array([mean for mean, _ in found])
     return target.value + target.scale * means, target.scale * np.array([spread for _, spread in found])
 
@@ -260,14 +289,14 @@ def _mixture(weights: FloatArray, means: FloatArray, deviations: FloatArray) -> 
 
 
 def _variance_reduction(
-    models: _Models, target: WantedResult, unit: FloatArray, weights: FloatArray
+    models: _Models, target: WantedResult, places: FloatArray, weights: FloatArray
 ) -> FloatArray:
     """By a run at each point: of the variance of the prediction relative to the error of the comparison,
     weighted by the posterior; of the most probable process; shape (m,)."""
     chosen = int(np.argmax(models.weights))
     if not hasattr(models.processes[chosen], "X_train_"):
         chosen = len(models.processes) // 2
-    _, covariance = models.processes[chosen].predict(unit - 0.5, return_cov=True)
+    _, covariance = models.processes[chosen].predict(places, return_cov=True)
     variance = np.diag(covariance)
     relative = weights / (variance + (target.error / target.scale) ** 2 + 1e-12)
     return np.asarray(relative @ covariance**2 / (variance + models.noises[chosen] ** 2))
@@ -278,21 +307,35 @@ def _prior_points(parameters: Sequence[CalibrationParameter]) -> FloatArray:
     columns = []
     for u, parameter in zip(unit.T, parameters, strict=True):
         column = parameter.low + u * (parameter.high - parameter.low)
-        if parameter.levels:
-            levels = np.array(parameter.levels)
-            column = levels[np.minimum((u * len(levels)).astype(int), len(levels) - 1)]
+        if count := len(parameter.choices):
+            column = np.minimum(np.floor(u * count), count - 1.0)
         columns.append(column)
     return np.column_stack(columns)
 
 
-def _to_unit(values: FloatArray, parameters: Sequence[CalibrationParameter]) -> FloatArray:
-    low = np.array([each.low for each in parameters])
-    return np.asarray((values - low) / (np.array([each.high for each in parameters]) - low))
+def _coordinates(
+    values: FloatArray, parameters: Sequence[CalibrationParameter]
+) -> tuple[FloatArray, FloatArray]:
+    """Of the Gaussian process, shape (m, c), and the distance along each that counts as a range, shape (c,).
+
+    Quantities have one from -.5 to .5. Choices are the corners of a regular simplex of edge
+    :data:`CHOICE_DISTANCE`, since none is closer to one than to another.
+    """
+    columns, ranges = [], []
+    for column, parameter in zip(values.T, parameters, strict=True):
+        if count := len(parameter.choices):
+            corners = CHOICE_DISTANCE * (np.eye(count) - 1 / count) / np.sqrt(2)
+            columns.append(corners[column.astype(int)])
+            ranges += [CHOICE_DISTANCE] * count
+        else:
+            columns.append(((column - parameter.low) / (parameter.high - parameter.low) - 0.5)[:, None])
+            ranges.append(1.0)
+    return np.hstack(columns), np.array(ranges)
 
 
-def _near(unit: FloatArray, failed: FloatArray) -> FloatArray:
+def _near(places: FloatArray, failed: FloatArray) -> FloatArray:
     """Whether each point is close to a run without a result, shape (m,)."""
-    apart = np.linalg.norm(unit[:, None] - failed[None], axis=2)
+    apart = np.linalg.norm(places[:, None] - failed[None], axis=2)
     return np.asarray((apart < FAILED_DISTANCE).any(axis=1))
 
 

@@ -1,7 +1,7 @@
 """Calibration with lifting-cylinder tests: results of the runs, posterior after each, table, document."""
 
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -23,8 +23,8 @@ from regolith_studio.studies.calibration import (
 
 ANGLE, BULK_DENSITY = "angle", "bulk_density"
 UNITS = {ANGLE: "deg", BULK_DENSITY: "kg/m^3"}
-FACETS = "n_facets"
-"""Parameter that has a value for each dataset: its mean number of facets."""
+DATASET = "dataset"
+"""Parameter that is one of several datasets, by their names."""
 MAX_MISFIT = 2.0
 """Standard deviations between the predicted and the wanted results above which these are out of reach."""
 
@@ -132,6 +132,12 @@ def four_digits(value: float) -> float:
     return float(f"{value:.4g}")
 
 
+def values_of(parameters: Sequence[CalibrationParameter], values: Sequence[float]) -> dict[str, float | str]:
+    """Values of the parameters by their names; of a choice the name of the chosen."""
+    pairs = zip(parameters, values, strict=True)
+    return {each.name: each.choices[int(value)] if each.choices else value for each, value in pairs}
+
+
 def calibration_table(calibration: ReposeCalibration) -> Table:
     """One row a run: what it was, and what it gave."""
     columns = (
@@ -144,14 +150,14 @@ def calibration_table(calibration: ReposeCalibration) -> Table:
         Column("interval_high", "deg"),
         Column(BULK_DENSITY, UNITS[BULK_DENSITY]),
     )
-    return Table(N_("Calibration"), columns, tuple(_row(run) for run in calibration.runs))
+    return Table(N_("Calibration"), columns, tuple(_row(run, calibration) for run in calibration.runs))
 
 
-def _row(run: CalibrationRun) -> tuple[Cell, ...]:
+def _row(run: CalibrationRun, calibration: ReposeCalibration) -> tuple[Cell, ...]:
     return (
         run.folder,
         run.document["case"]["seed"],
-        *run.values,
+        *values_of(calibration.parameters, run.values).values(),
         run.measurement["status"],
         run.result(ANGLE),
         *run.measurement.get("interval_deg", (None, None)),
@@ -162,17 +168,16 @@ def _row(run: CalibrationRun) -> tuple[Cell, ...]:
 def calibration_document(calibration: ReposeCalibration) -> dict[str, Any]:
     """The calibration as plain JSON."""
     posterior = calibration.posterior
-    names = [each.name for each in calibration.parameters]
     return {
         "format": "regolith-studio-repose-calibration",
-        "schema_version": 1,
+        "schema_version": 2,
         "software": {"regolith-studio": regolith_studio.__version__},
         "confidence": CONFIDENCE,
         "n_runs": len(calibration.runs),
         "targets": [_target(calibration, k) for k in range(len(calibration.targets))],
-        "parameters": [_parameter(calibration, k) for k in range(len(names))],
+        "parameters": [_parameter(calibration, k) for k in range(len(calibration.parameters))],
         "misfit": posterior.misfit,
-        "next_run": dict(zip(names, calibration.next_values, strict=True)),
+        "next_run": values_of(calibration.parameters, calibration.next_values),
         "runs": [_run(run, calibration) for run in calibration.runs],
         "warnings": list(calibration.warnings),
     }
@@ -192,15 +197,33 @@ def _target(calibration: ReposeCalibration, k: int) -> dict[str, Any]:
 
 def _parameter(calibration: ReposeCalibration, k: int) -> dict[str, Any]:
     parameter, posterior = calibration.parameters[k], calibration.posterior
+    if parameter.choices:
+        probabilities = [probabilities_of(each, parameter, k) for each in calibration.posteriors]
+        return {
+            "name": parameter.name,
+            "choices": list(parameter.choices),
+            "best": parameter.choices[int(posterior.best[k])],
+            "probabilities": probabilities[-1],
+            "probabilities_after_each_run": probabilities,
+        }
     values, density = density_of(posterior, parameter, k)
     return {
-        **asdict(parameter),
-        "levels": list(parameter.levels),
+        "name": parameter.name,
+        "low": parameter.low,
+        "high": parameter.high,
         "best": float(posterior.best[k]),
         "interval": posterior.intervals[k].tolist(),
         "density": {"values": values.tolist(), "relative_to_prior": density.tolist()},
         "intervals_after_each_run": [each.intervals[k].tolist() for each in calibration.posteriors],
     }
+
+
+def probabilities_of(
+    posterior: CalibrationPosterior, parameter: CalibrationParameter, index: int
+) -> dict[str, float]:
+    """Of each choice."""
+    _, density = density_of(posterior, parameter, index)
+    return dict(zip(parameter.choices, (density / len(density)).tolist(), strict=True))
 
 
 def _run(run: CalibrationRun, calibration: ReposeCalibration) -> dict[str, Any]:
@@ -209,6 +232,6 @@ def _run(run: CalibrationRun, calibration: ReposeCalibration) -> dict[str, Any]:
         "folder": run.folder,
         "seed": run.document["case"]["seed"],
         "status": run.measurement["status"],
-        **{each.name: value for each, value in zip(calibration.parameters, run.values, strict=True)},
+        **values_of(calibration.parameters, run.values),
         **{name: None if np.isnan(value) else value for name, value in results.items()},
     }

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from benchmarks.calibration import NOISE, SCATTER
+from benchmarks.calibration import ANGLE_OFFSET, DENSITY_OFFSET, NOISE, SCATTER
 from benchmarks.heaps import KINDS
 from benchmarks.repose_intervals import ANGLES, flank_angle, line, measured
 from benchmarks.sliding_friction import box
@@ -338,7 +338,9 @@ def test_that_the_table_of_surrogates_has_the_results_of_its_benchmark() -> None
         [name, f"{covered:.0f}", f"{mean:.2f}", f"{median:.2f}"]
         for name, (covered, mean, median) in found["rows"].items()
     ]
-    assert f"In the last row heaps scatter by {SCATTER} degrees, and state {NOISE}" in one_line(text)
+    words = one_line(text)
+    assert f"In the last row heaps scatter by {SCATTER} degrees, and state {NOISE}" in words
+    assert f"differ by about {ANGLE_OFFSET:.0f} degrees and {DENSITY_OFFSET:.0f} kg/m³" in words
 
 
 def test_that_the_table_of_blind_calibrations_has_the_results_of_its_runs() -> None:

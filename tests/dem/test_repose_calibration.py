@@ -2,6 +2,7 @@
 
 import itertools
 import json
+import shutil
 from collections.abc import Callable, Generator
 from dataclasses import replace
 from pathlib import Path
@@ -136,22 +137,47 @@ def test_that_a_bulk_density_is_a_second_result(calibrated: Command, tmp_path: P
     assert found["parameters"][0]["best"] == pytest.approx(0.5, abs=0.05)
 
 
-def test_that_several_datasets_make_the_facets_a_parameter(
-    calibrated: Command, boxes: Dataset, tmp_path: Path
-) -> None:
-    """Cuboids, and cubes whose eight corners are cut off."""
+@pytest.fixture
+def truncated_folder(boxes: Dataset, tmp_path: Path) -> Path:
+    """A dataset of cubes whose eight corners are cut off."""
     normals = np.array(list(itertools.product((-1.0, 1.0), repeat=3))) / np.sqrt(3)
     sides = np.concatenate([np.eye(3), -np.eye(3), normals])
     cut = HalfSpaces(sides, np.concatenate([np.full(6, 0.5), np.full(8, 0.7)]))
     cut = cut.scaled(ConvexPolyhedron.from_half_spaces(cut).volume ** (-1 / 3))
     only = replace(boxes.representatives[0], weight=1.0, shape=ConvexPolyhedron.from_half_spaces(cut))
-    folder = write_dataset(tmp_path / "cut", replace(boxes, representatives=(only,)))
-    assert calibrated(str(folder), "--angle", "25", "--runs", "2") == 0
-    _, facets = result(tmp_path / "found")["parameters"]
-    assert facets["levels"] == [6.0, 14.0]
+    return write_dataset(tmp_path / "truncated", replace(boxes, representatives=(only,)))
+
+
+def test_that_with_several_datasets_the_dataset_is_a_parameter(
+    calibrated: Command,
+    boxes_folder: Path,
+    truncated_folder: Path,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    words = (str(truncated_folder), "--angle", "25", "--runs", "3")
+    assert calibrated(*words) == 0
     found = result(tmp_path / "found")
-    facets_of_runs = {run["n_facets"] for run in found["runs"]} | {found["next_run"]["n_facets"]}
-    assert facets_of_runs == {6.0, 14.0}
+    _, dataset = found["parameters"]
+    assert dataset["choices"] == [boxes_folder.name, "truncated"]
+    assert sum(dataset["probabilities"].values()) == pytest.approx(1.0)
+    assert len(dataset["probabilities_after_each_run"]) == 4
+    assert {run["dataset"] for run in found["runs"]} == {boxes_folder.name, "truncated"}
+    printed = capsys.readouterr().out
+    assert f"{dataset['best']} (probabilities: {boxes_folder.name} " in printed
+    before = tree(tmp_path / "found")
+    assert calibrated(*words) == 0
+    assert tree(tmp_path / "found") == before
+
+
+def test_that_datasets_of_a_calibration_differ(
+    calibrated: Command, boxes_folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert calibrated(str(boxes_folder), "--angle", "25") == 2
+    assert f"Two datasets have the name {boxes_folder.name}" in capsys.readouterr().err
+    copy = shutil.copytree(boxes_folder, tmp_path / "copy")
+    assert calibrated(str(copy), "--angle", "25") != 0
+    assert f"{boxes_folder.name} and copy are the same dataset" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(

@@ -4,6 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from scipy.stats import norm
 
 from benchmarks.calibration import calibrate_surrogate, random_curve
 from regolith_studio.errors import InputError
@@ -94,12 +95,42 @@ def test_that_two_results_tell_two_parameters_apart_where_one_does_not() -> None
     assert two.best == pytest.approx([0.6, 0.6], abs=0.05)
 
 
-def test_that_a_parameter_with_levels_takes_no_other_values() -> None:
-    facets = CalibrationParameter("n_facets", 8.0, 60.0, levels=(8.0, 20.0, 60.0))
-    runs = CalibrationRuns.of([8.0, 20.0, 60.0], [31.0, 26.0, 22.0], [0.5, 0.5, 0.5], 1, 1)
-    found = calibrate([facets], [angle(26.0, 0.5)], runs)
-    assert set(found.points[:, 0]) == {8.0, 20.0, 60.0}
-    assert found.best == 20.0
+def test_that_choices_have_the_probabilities_of_bayes_theorem() -> None:
+    """Exactly known angles of three datasets; the prior is uniform, the likelihood normal."""
+    dataset = CalibrationParameter.of_choices("dataset", ["blocky", "round", "flat"])
+    angles = np.array([26.0, 22.0, 31.0])
+    runs = CalibrationRuns.of([0.0, 1.0, 2.0], angles, np.full(3, 0.01), 1, 1)
+    found = calibrate([dataset], [angle(25.0, 2.0)], runs)
+    likelihood = norm.pdf(25.0, angles, 2.0)
+    places, density = density_of(found, dataset, 0)
+    assert places.tolist() == [0.0, 1.0, 2.0]
+    assert density / 3 == pytest.approx(likelihood / likelihood.sum(), abs=0.002)
+    assert found.best == 0.0
+
+
+def test_that_no_choice_is_closer_to_one_than_to_another() -> None:
+    """The prediction does not depend on the order in which the choices are given."""
+    dataset = CalibrationParameter.of_choices("dataset", list("abcd"))
+    angles, order = np.array([26.0, 22.0, 31.0]), np.array([2, 3, 0])
+    one = CalibrationRuns.of([0.0, 1.0, 2.0], angles, np.full(3, 1.0), 1, 1)
+    other = CalibrationRuns.of(order, angles, np.full(3, 1.0), 1, 1)
+    first, second = (
+        density_of(calibrate([dataset], [angle(25.0, 2.0)], r), dataset, 0)[1] for r in (one, other)
+    )
+    assert second[[*order, 1]] == pytest.approx(first)
+
+
+def test_that_a_friction_and_a_dataset_are_found_together() -> None:
+    """Angles 10 + 20 x and 14 + 20 x, densities 1600 and 1700; wanted are those of the second at x = .5."""
+    dataset = CalibrationParameter.of_choices("dataset", ["loose", "dense"])
+    friction, number = np.repeat(np.linspace(0.2, 1.2, 6), 2), np.tile([0.0, 1.0], 6)
+    results = np.column_stack([10 + 4 * number + 20 * (friction - 0.2), 1600 + 100 * number])
+    runs = CalibrationRuns.of(np.column_stack([friction, number]), results, np.full((12, 2), 0.1), 2, 2)
+    density = WantedResult("bulk_density", 1700.0, 20.0, scale=80.0, noise=16.0)
+    found = calibrate([FRICTION, dataset], [angle(20.0, 0.5), density], runs)
+    assert found.best == pytest.approx([0.5, 1.0], abs=0.02)
+    assert np.ptp(found.intervals[0]) < 0.15
+    assert density_of(found, dataset, 1)[1][1] / 2 > 0.99
 
 
 @pytest.mark.parametrize(

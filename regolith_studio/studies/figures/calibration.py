@@ -1,5 +1,6 @@
 """Calibration: the runs against each parameter, its posterior density, and its interval after each run."""
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -37,7 +38,8 @@ def calibration_figure(calibration: ReposeCalibration) -> Figure:
     for k, row in enumerate(figure.subplots(n, 3, squeeze=False)):
         _draw_angles(row[0], calibration, k)
         _draw_density(row[1], calibration, k)
-        _draw_intervals(row[2], calibration, k)
+        draw = _draw_probabilities if calibration.parameters[k].choices else _draw_intervals
+        draw(row[2], calibration, k)
     return figure
 
 
@@ -57,6 +59,8 @@ def _draw_angles(axis: Axes, calibration: ReposeCalibration, k: int) -> None:
             axis.set_ylim(np.nanmin([low, *seen]) - 5.0, np.nanmax([high, *seen]) + 5.0)
     for run in calibration.runs:
         axis.errorbar(run.values[k], run.result(ANGLE), run.error(ANGLE), fmt="o", color=RUNS, capsize=3)
+    if choices := calibration.parameters[k].choices:
+        _name_choices(axis, choices)
     axis.set_xlabel(_label(calibration, k))
     axis.set_ylabel("angle of repose (°)")
     axis.legend(frameon=False)
@@ -65,12 +69,29 @@ def _draw_angles(axis: Axes, calibration: ReposeCalibration, k: int) -> None:
 def _draw_density(axis: Axes, calibration: ReposeCalibration, k: int) -> None:
     posterior, parameter = calibration.posterior, calibration.parameters[k]
     where, density = density_of(posterior, parameter, k)
-    axis.fill_between(where, density, step="mid", color=POSTERIOR, alpha=0.4)
+    if parameter.choices:
+        axis.bar(where, density, color=POSTERIOR, alpha=0.4)
+        _name_choices(axis, parameter.choices)
+    else:
+        axis.fill_between(where, density, step="mid", color=POSTERIOR, alpha=0.4)
+        axis.axvline(float(posterior.best[k]), color=POSTERIOR, label="best")
+        axis.axvline(calibration.next_values[k], color="0.3", linestyle=":", label="next run")
     axis.axhline(1.0, color="0.5", linewidth=0.8, linestyle="--", label="before the first run")
-    axis.axvline(float(posterior.best[k]), color=POSTERIOR, label="best")
-    axis.axvline(calibration.next_values[k], color="0.3", linestyle=":", label="next run")
     axis.set_xlabel(_label(calibration, k))
     axis.set_ylabel("posterior density over prior")
+    axis.legend(frameon=False)
+
+
+def _draw_probabilities(axis: Axes, calibration: ReposeCalibration, k: int) -> None:
+    """Of each choice, before the first and after each run."""
+    parameter = calibration.parameters[k]
+    found = np.array([density_of(each, parameter, k)[1] for each in calibration.posteriors])
+    for name, column in zip(parameter.choices, found.T / len(parameter.choices), strict=True):
+        axis.plot(np.arange(len(column)), column, "o-", label=name)
+    axis.set_ylim(0.0, 1.0)
+    axis.set_xlabel("runs")
+    axis.xaxis.set_major_locator(MaxNLocator(integer=True))
+    axis.set_ylabel(f"probability of the {_label(calibration, k)}")
     axis.legend(frameon=False)
 
 
@@ -84,6 +105,11 @@ def _draw_intervals(axis: Axes, calibration: ReposeCalibration, k: int) -> None:
     axis.set_xlabel("runs")
     axis.xaxis.set_major_locator(MaxNLocator(integer=True))
     axis.set_ylabel(_label(calibration, k))
+
+
+def _name_choices(axis: Axes, choices: Sequence[str]) -> None:
+    axis.set_xlim(-0.5, len(choices) - 0.5)
+    axis.set_xticks(range(len(choices)), choices, rotation=20, ha="right", rotation_mode="anchor")
 
 
 def _label(calibration: ReposeCalibration, k: int) -> str:
