@@ -4,9 +4,10 @@
 
 Frictions are drawn from equal parts of the range, one a case. The wanted angle of a case is the mean of
 HEAPS heaps of 1,000 particles of that friction, of those that have an angle; its standard error is the
-standard deviation of heaps about their means, from all cases, over the square root of HEAPS. The calibration
-has N_RUNS heaps of other seeds. Runs that are in the folder RUNS already are kept. Each SET (0 by default)
-has its own frictions and seeds, and needs its own folder. Two runs at a time, of one thread each.
+standard deviation of heaps about their means, from all cases, over the square root of their number. The
+calibration has N_RUNS heaps of other seeds. Runs that are in the folder RUNS already are kept. Each SET (0
+by default) has its own frictions and seeds, and needs its own folder. Two runs at a time, of one thread
+each.
 """
 
 import json
@@ -39,14 +40,16 @@ def main(dataset: Path, runs: Path, result: Path, number_of_set: int, engine: st
 
     with ThreadPoolExecutor(2) as pool:
         angles = np.array(list(pool.map(angle, product(frictions, range(HEAPS))))).reshape(CASES, HEAPS)
-        error = float(np.sqrt(np.nanvar(angles, axis=1, ddof=1).mean() / HEAPS))
+        spread = np.sqrt(np.nanvar(angles, axis=1, ddof=1).mean())
+        errors = spread / np.sqrt(np.isfinite(angles).sum(axis=1))
 
         def calibration(number: int) -> dict[str, Any]:
             folder = runs / f"calibration_{number}"
-            goal = ["--angle", f"{np.nanmean(angles[number]):.2f}", "--angle-error", f"{error:.2f}"]
+            wanted, error = float(np.nanmean(angles[number])), float(errors[number])
+            goal = ["--angle", f"{wanted:.2f}", "--angle-error", f"{error:.2f}"]
             seed = 100 * number_of_set + 10 * number
             call("calibrate", dataset, "-o", folder, *goal, "--runs", N_RUNS, "--seed", seed, *common)
-            return row(folder, frictions[number], float(np.nanmean(angles[number])), error)
+            return row(folder, frictions[number], wanted, error)
 
         rows = list(pool.map(calibration, range(CASES)))
     for each in rows:
