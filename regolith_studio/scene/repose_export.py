@@ -35,12 +35,14 @@ from regolith_studio.messages import N_
 from regolith_studio.scene.instancing import COLOURS
 
 FORMAT = "regolith-studio-repose-export"
-SERIES, SHAPE_TABLE, HEAP, OVITO_SCRIPT = "particles.pvd", "shapes.vtm", "heap.glb", "ovito/load_shapes.py"
+SERIES, SHAPE_TABLE, HEAP = "particles.pvd", "shapes.vtm", "heap.glb"
+PARAVIEW_SCRIPT, OVITO_SCRIPT = "show_in_paraview.py", "ovito/load_shapes.py"
 
 _README = """{name}: {n:,} particles, {moments} moments; written by Regolith Studio {version}.
 Lengths are in metres, times in seconds, z is up (y in heap.glb). A shape has an equivalent diameter of 1.
 
-ParaView: open particles.pvd and shapes.vtm, hide the shapes, and show the particles as "3D Glyphs".
+ParaView: in this folder, paraview --script=show_in_paraview.py
+Or open particles.pvd and shapes.vtm, hide the shapes, and show the particles as "3D Glyphs".
 Orientation array: "orientation", mode Quaternion (w, x, y, z). Scale array: "diameter" with a factor of 1.
 Glyph type: the shapes as "Pipeline Connection", with the glyph table by the index array "shape", and each
 block of the shapes as one entry. For spheres the glyph type Sphere, which has a diameter of 1, will do.
@@ -55,7 +57,37 @@ other viewers of glTF open it; where a heap of centimetres is cut off, reduce th
 export.json names the run, the versions, and the SHA-256 of all files.
 """
 
-_SCRIPT = '''"""Load particles and shapes and save them as heap.ovito; run it with OVITO's Python."""
+_PARAVIEW = '''"""Show the particles with their shapes; run it with ParaView, in this folder."""
+
+from pathlib import Path
+
+from paraview import simple
+
+here = Path(globals().get("__file__", "script")).resolve().parent  # the window of ParaView sets no __file__
+particles = simple.PVDReader(registrationName="particles", FileName=str(here / "particles.pvd"))
+shapes = simple.XMLMultiBlockDataReader(registrationName="shapes", FileName=[str(here / "shapes.vtm")])
+view = simple.GetActiveViewOrCreate("RenderView")
+glyphs = simple.Show(particles, view)
+glyphs.SetRepresentationType("3D Glyphs")
+glyphs.Orient, glyphs.OrientationMode, glyphs.SelectOrientationVectors = 1, "Quaternion", "orientation"
+glyphs.Scaling, glyphs.ScaleMode, glyphs.SelectScaleArray = 1, "Magnitude", "diameter"
+glyphs.ScaleFactor = 1.0
+glyphs.GlyphType = "Pipeline Connection"
+glyphs.GlyphType.Input = shapes
+glyphs.UseGlyphTable, glyphs.UseCompositeGlyphTable, glyphs.GlyphTableIndexArray = 1, 1, "shape"
+simple.ColorBy(glyphs, ("POINTS", "shape"))
+scene = simple.GetAnimationScene()
+scene.UpdateAnimationUsingDataTimeSteps()
+scene.GoToLast()
+camera = view.GetActiveCamera()
+camera.SetPosition(0.0, -1.0, 0.4)
+camera.SetFocalPoint(0.0, 0.0, 0.0)
+camera.SetViewUp(0.0, 0.0, 1.0)
+simple.ResetCamera(view)
+simple.Render(view)
+'''
+
+_OVITO = '''"""Load particles and shapes and save them as heap.ovito; run it with OVITO's Python."""
 
 from pathlib import Path
 
@@ -180,7 +212,8 @@ class _StageWriter:
                 self._write(f"ovito/{name}.stl", stl_bytes(2.0 * mesh.triangles, name))
         self._write(SERIES, _collection(self.times))
         self._write(SHAPE_TABLE, _blocks(names))
-        self._write(OVITO_SCRIPT, _SCRIPT.encode("ascii"))
+        self._write(PARAVIEW_SCRIPT, _PARAVIEW.encode("ascii"))
+        self._write(OVITO_SCRIPT, _OVITO.encode("ascii"))
         if self._last is not None:
             self._write(HEAP, heap_glb(self._shapes, self._last, [_linear(each) for each in COLOURS]))
         self._write(README, self._readme().encode("utf-8", "replace"))

@@ -3,6 +3,7 @@
 import hashlib
 import json
 import shutil
+import subprocess
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,6 +11,7 @@ import numpy as np
 import pytest
 import pyvista as pv
 import trimesh
+from PIL import Image
 from scipy.spatial.transform import Rotation
 from vtkmodules.vtkRenderingCore import vtkActor, vtkGlyph3DMapper
 
@@ -27,6 +29,19 @@ from regolith_studio.scene.repose_export import export_repose
 from tests.dataset.example import elbow_entry, entry
 
 N = 30
+TOP_VIEW = """
+import runpy, sys
+view = runpy.run_path(sys.argv[1])["view"]
+view.ViewSize, view.OrientationAxesVisibility, view.CameraParallelProjection = [600, 600], 0, 1
+camera = view.GetActiveCamera()
+camera.SetPosition(0.0, 0.0, 1.0)
+camera.SetFocalPoint(0.0, 0.0, 0.0)
+camera.SetViewUp(0.0, 1.0, 0.0)
+camera.SetParallelScale(0.03)
+from paraview import simple
+simple.SaveScreenshot(sys.argv[2], view)
+"""
+"""Has ParaView draw what the script of an export shows, from above: 600 pixels of 0.1 mm."""
 
 
 @pytest.fixture(scope="module")
@@ -133,6 +148,24 @@ def test_that_paraview_s_glyphs_are_drawn_where_scipy_places_the_polyhedra(
             [low[0], high[0], low[1], high[1]], abs=2.5 * pixel
         )
     plotter.close()
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not shutil.which("pvpython"), reason="ParaView is not installed")
+def test_that_paraview_draws_the_heap_by_the_script_of_the_export(
+    exported: Path, grains: Dataset, tmp_path: Path
+) -> None:
+    (tmp_path / "top.py").write_text(TOP_VIEW)
+    words = ["pvpython", tmp_path / "top.py", exported / "show_in_paraview.py", tmp_path / "top.png"]
+    subprocess.run(words, check=True, timeout=300, capture_output=True)
+    picture = np.asarray(Image.open(tmp_path / "top.png").convert("RGB"))
+    drawn = (picture != picture[0, 0]).any(axis=2)
+    pile = particles(3, 0.5)
+    corners = np.concatenate([placed(unit_vertices(grains, k % 3), pile, k) for k in range(N)])
+    rows, columns = np.flatnonzero(drawn.any(axis=1)), np.flatnonzero(drawn.any(axis=0))
+    found = [columns[0] - 300, columns[-1] - 299, 299 - rows[-1], 300 - rows[0]]
+    (left, bottom, _), (right, top, _) = corners.min(axis=0) / 1e-4, corners.max(axis=0) / 1e-4
+    assert found == pytest.approx([left, right, bottom, top], abs=2.5)
 
 
 def test_that_ovito_s_series_has_type_position_radius_and_orientation(exported: Path) -> None:
