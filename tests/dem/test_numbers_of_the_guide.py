@@ -345,21 +345,29 @@ def test_that_the_table_of_surrogates_has_the_results_of_its_benchmark() -> None
 
 def test_that_the_table_of_blind_calibrations_has_the_results_of_its_runs() -> None:
     text = (ROOT / "docs" / "calibration.md").read_text("utf-8")
-    found = json.loads((ROOT / "benchmarks/results/blind_calibration.json").read_text("utf-8"))[
-        "calibrations"
+    found = [
+        run
+        for path in sorted((ROOT / "benchmarks/results").glob("blind_calibration*.json"))
+        for run in json.loads(path.read_text("utf-8"))["calibrations"]
     ]
-    rows = rows_of(text, "| friction | wanted angle | interval of 90 % | holds it | width |")
-    for run, row in zip(found, rows, strict=True):
-        low, high = run["interval"]
-        assert run["covered"] == (low <= run["friction"] <= high)
-        assert row == [
-            f"{run['friction']}",
-            f"{run['wanted_deg']:.1f} ± {run['error_deg']:.1f}",
-            f"{low:.3f} to {high:.3f}",
-            "yes" if run["covered"] else "no",
-            f"{run['width']:.2f}",
+    for run in found:
+        assert run["covered"] == (run["interval"][0] <= run["friction"] <= run["interval"][1])
+    rows = rows_of(text, "| friction | calibrations | intervals that hold it | width, mean | width, range |")
+    assert [row[0] for row in rows] == ["0.05 to 0.4", "0.4 to 0.8", "0.8 to 1.2"]
+    for name, *said in rows:
+        low, high = (float(end) for end in name.split(" to "))
+        part = [run for run in found if low <= run["friction"] < high]
+        widths = [run["width"] for run in part]
+        assert said == [
+            f"{len(part)}",
+            f"{sum(run['covered'] for run in part)}",
+            f"{np.mean(widths):.2f}",
+            f"{min(widths):.2f} to {max(widths):.2f}",
         ]
-    assert f"{sum(run['covered'] for run in found)} of {len(found)} intervals hold the truth" in text
+    covered = sum(run["covered"] for run in found)
+    chance = stats.binom.cdf(covered, len(found), 0.9)
+    assert f"{covered} of {len(found)} intervals of 90 % hold the truth" in text
+    assert f"come out with a probability of {chance:.2f}" in one_line(text)
 
 
 def test_that_the_table_of_drawn_populations_has_the_results_of_its_runs() -> None:
