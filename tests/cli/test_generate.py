@@ -39,6 +39,7 @@ def fit(command, ellipsoids: Path, tmp_path: Path) -> Path:
     return tmp_path / "fit"
 
 
+@pytest.mark.slow
 def test_that_each_virtual_particle_is_a_closed_mesh_inside_the_range(
     command, fit: Path, tmp_path: Path
 ) -> None:

@@ -51,9 +51,8 @@ def contents(folder: Path) -> dict[str, bytes]:
     return {path.name: path.read_bytes() for path in folder.iterdir() if path.suffix in {".csv", ".json"}}
 
 
-@pytest.mark.parametrize(
-    "study", [pytest.param(each, marks=[] if each == "lmax" else pytest.mark.slow) for each in STUDIES]
-)
+@pytest.mark.slow
+@pytest.mark.parametrize("study", STUDIES)
 def test_that_a_study_that_was_stopped_goes_on_to_the_same_bytes(
     command, grains: Path, tmp_path: Path, broken_off, monkeypatch: pytest.MonkeyPatch, study: str
 ) -> None:

@@ -101,6 +101,7 @@ def test_that_waiting_half_spaces_leave_a_cube_a_cube() -> None:
     assert ConvexHull(corners).volume == pytest.approx(8.0, rel=1e-12)
 
 
+@pytest.mark.slow
 def test_that_an_octahedron_has_all_facets_or_says_why_not() -> None:
     octahedron = Mesh(np.vstack([np.eye(3), -np.eye(3)]), np.empty((0, 3), dtype=np.int64)).hull
     for n_facets in (12, 20, 50):

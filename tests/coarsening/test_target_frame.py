@@ -33,6 +33,7 @@ def test_that_moved_turned_and_scaled_particles_have_one_frame() -> None:
         assert np.array_equal(other.mesh.vertices, there.mesh.vertices)
 
 
+@pytest.mark.slow
 def test_that_a_moved_turned_and_scaled_particle_has_the_same_polyhedron(particle: Mesh) -> None:
     turn = Rotation.random(random_state=3).as_matrix()
     here = coarsen(particle, 12)

@@ -81,6 +81,7 @@ def test_that_the_friction_of_known_heaps_is_found(calibrated: Command, tmp_path
     assert found["warnings"] == []
 
 
+@pytest.mark.slow
 def test_that_a_stopped_calibration_has_its_result_so_far_and_ends_with_the_same_bytes(
     calibrated: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -239,6 +239,7 @@ def test_that_the_table_of_labels_is_that_of_scipy() -> None:
     assert table.counts.tolist() == np.bincount(volume.array.ravel())[1:].tolist()
 
 
+@pytest.mark.slow
 def test_that_the_shipped_scan_gives_47_closed_particles() -> None:
     volume = sample_volume("labels")
     extraction = extract_particles(volume)

@@ -49,6 +49,7 @@ def test_that_the_heights_of_a_part_give_the_grains_of_its_preview() -> None:
     assert isinstance(received[0], Started)
 
 
+@pytest.mark.slow
 def test_that_a_grey_file_tells_its_stages_and_gives_particles() -> None:
     received, done = played(extract_file(VolumeInput(GREY), QUICK))
     titles = [step.title for step in received if isinstance(step, Started)]

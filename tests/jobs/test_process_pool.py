@@ -268,6 +268,7 @@ def test_that_closing_waits_for_no_process_that_is_still_importing(
     assert not runner._workers
 
 
+@pytest.mark.slow
 def test_that_closing_waits_for_no_step_that_takes_long(tmp_path: Path) -> None:
     runner, received = ProcessPoolRunner(2), list[Event]()
     for name in ("one", "two"):

@@ -46,7 +46,7 @@ def test_that_an_apollo_rock_with_double_faces_keeps_its_volume(real_data):
     assert mended.mesh.volume == pytest.approx(raw.mesh.volume, rel=1e-9)
 
 
-@pytest.mark.parametrize("folder", ["bad/trimesh", "bad/assimp"])
+@pytest.mark.parametrize("folder", [pytest.param("bad/trimesh", marks=pytest.mark.slow), "bad/assimp"])
 def test_that_bad_corpora_give_values_or_one_sentence_without_a_hang(folder, real_data):
     read, sentences = 0, []
     paths = meshes_below(real_data(folder))

@@ -83,6 +83,7 @@ def test_that_a_surface_through_its_centre_is_refused(tmp_path) -> None:
         read_mesh(tmp_path / "eight.anm")
 
 
+@pytest.mark.slow
 def test_that_volume_and_area_agree_with_the_numbers_of_the_table_s_own_program(real_data, tmp_path) -> None:
     """Cement grains; the volumes and areas come from another program, at the degree that it says."""
     folder = real_data("cement140")

@@ -49,6 +49,7 @@ def test_that_the_script_of_the_sample_and_of_the_bare_particle_compile() -> Non
         compile(as_python(choices, SAMPLE), "copied", "exec")
 
 
+@pytest.mark.slow
 def test_that_the_copied_command_is_understood_and_coarsens(
     session: Session, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

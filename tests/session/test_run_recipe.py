@@ -91,7 +91,7 @@ def test_that_failed_particles_are_listed_and_the_rest_goes_on(alone: tuple[Reci
     assert "broken.stl" in (found.folder / "summary.html").read_text()
 
 
-@pytest.mark.parametrize(("workers", "chunk"), [(1, 4), (2, 3)])
+@pytest.mark.parametrize(("workers", "chunk"), [(1, 4), pytest.param(2, 3, marks=pytest.mark.slow)])
 def test_that_workers_and_chunks_change_no_byte(
     grains: Path, tmp_path: Path, alone: tuple[RecipeRun, dict], workers: int, chunk: int
 ) -> None:

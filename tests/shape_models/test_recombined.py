@@ -80,6 +80,7 @@ def test_that_a_form_is_elongated_by_what_is_asked(ellipsoids: Sample) -> None:
     np.testing.assert_allclose(changed[1], logs / 2, atol=2e-3)
 
 
+@pytest.mark.slow
 def test_that_features_are_the_descriptors_of_meshes(
     rough_sample: Callable[..., Sample], ellipsoids: Sample
 ) -> None:
@@ -112,6 +113,7 @@ def test_that_areas_and_turned_extents_are_those_of_meshes_compiled_or_not() -> 
     np.testing.assert_allclose(plain, areas(points), rtol=1e-5)
 
 
+@pytest.mark.slow
 def test_that_draws_have_the_means_and_deviations_of_the_sample(rough_sample: Callable[..., Sample]) -> None:
     """Where means alone were calibrated, sphericities of such particles varied 6 % less than measured."""
     sample = rough_sample(150, 6)

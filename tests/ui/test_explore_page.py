@@ -109,6 +109,7 @@ def test_that_the_animation_runs_through_all_degrees(window, tmp_path, monkeypat
     QApplication.processEvents()
 
 
+@pytest.mark.slow
 def test_that_annealing_is_shown_step_by_step(window, wait):
     """At least 20 pictures of a run, in order, and in the end the polyhedron that has its errors."""
     page, seen_steps = window.page, []

@@ -249,6 +249,7 @@ def test_that_every_stop_of_the_tour_shows_something_that_is_there(window):
     assert "the shipped ones are synthetic" in steps()[0].text
 
 
+@pytest.mark.slow
 def test_that_the_shipped_particles_are_called_synthetic_where_they_are_shown(window, settled):
     name = window.session.selected.id
     assert window.findChild(ParticleListPanel).title.text() == "Synthetic particles (12)"

@@ -104,6 +104,7 @@ def test_that_four_parts_of_an_agglutinate_touch_and_keep_six_descriptors() -> N
     assert max(shared) < 1e-6 * found.target["volume"]
 
 
+@pytest.mark.slow
 def test_that_the_same_seed_gives_the_same_compound(mesh: Mesh) -> None:
     one, two = (coarsen(mesh, 16, "compound", settings={"parts": 2}, seed=3) for _ in range(2))
     assert one.mesh.content_hash == two.mesh.content_hash

@@ -80,6 +80,7 @@ def test_that_a_box_drawn_in_a_slice_is_the_region_and_another_one_in_it_a_small
     wait(lambda: page.preview.found is not None, SECONDS)
 
 
+@pytest.mark.slow
 def test_that_a_level_of_an_ome_zarr_is_chosen_before_it_is_read(page, tmp_path, wait):
     write = (
         "import sys, pathlib, tests.readers.test_ome_zarr as t; t.ome_zarr(pathlib.Path(sys.argv[1]), '0.5')"

@@ -70,6 +70,7 @@ def test_that_a_dragged_threshold_is_a_manual_one_and_changes_the_preview(page, 
     wait(lambda: page.preview.found.level < 110.0, SECONDS)
 
 
+@pytest.mark.slow
 def test_that_the_preview_says_how_many_grains_other_values_of_h_give(page, part, wait):
     page.controls.h_maxima.field.setValue(8.0)
     page.opening.read(VolumeInput(part, 2.3, kind="grey"))
@@ -92,6 +93,7 @@ def test_that_the_preview_says_how_many_grains_other_values_of_h_give(page, part
     wait(lambda: not page.controls.heights.isVisibleTo(page), SECONDS)
 
 
+@pytest.mark.slow
 def test_that_h_and_the_frame_change_the_preview_and_settings_undo_what_was_found(
     page, part, wait, monkeypatch
 ):
