@@ -120,6 +120,18 @@ def test_that_no_choice_is_closer_to_one_than_to_another() -> None:
     assert second[[*order, 1]] == pytest.approx(first)
 
 
+def test_that_a_dataset_without_runs_is_not_ruled_out_by_one_that_fits() -> None:
+    """The first gives angle and bulk density at x = .7; nothing speaks against the second."""
+    dataset = CalibrationParameter.of_choices("dataset", ["tried", "not tried"])
+    values = np.column_stack([np.linspace(0.2, 1.2, 5), np.zeros(5)])
+    results = np.column_stack([np.linspace(15.0, 35.0, 5), np.full(5, 1600.0)])
+    runs = CalibrationRuns.of(values, results, np.tile([1.7, np.nan], (5, 1)), 2, 2)
+    density = WantedResult("bulk_density", 1600.0, 20.0, scale=80.0, noise=16.0)
+    found = calibrate([FRICTION, dataset], [angle(25.0, 1.0), density], runs)
+    assert density_of(found, dataset, 1)[1][1] / 2 > 0.1
+    assert found.next_values[1] == 1.0
+
+
 def test_that_a_friction_and_a_dataset_are_found_together() -> None:
     """Angles 10 + 20 x and 14 + 20 x, densities 1600 and 1700; wanted are those of the second at x = .5."""
     dataset = CalibrationParameter.of_choices("dataset", ["loose", "dense"])

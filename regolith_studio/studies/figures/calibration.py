@@ -17,6 +17,7 @@ from regolith_studio.studies.repose_calibration import (
     ReposeCalibration,
     calibration_document,
     calibration_table,
+    probabilities_of,
 )
 
 RUNS, POSTERIOR, WANTED = "#0072b2", "#009e73", "#e69f00"
@@ -85,9 +86,9 @@ def _draw_density(axis: Axes, calibration: ReposeCalibration, k: int) -> None:
 def _draw_probabilities(axis: Axes, calibration: ReposeCalibration, k: int) -> None:
     """Of each choice, before the first and after each run."""
     parameter = calibration.parameters[k]
-    found = np.array([density_of(each, parameter, k)[1] for each in calibration.posteriors])
-    for name, column in zip(parameter.choices, found.T / len(parameter.choices), strict=True):
-        axis.plot(np.arange(len(column)), column, "o-", label=name)
+    found = [probabilities_of(each, parameter, k) for each in calibration.posteriors]
+    for name in parameter.choices:
+        axis.plot(range(len(found)), [each[name] for each in found], "o-", label=name)
     axis.set_ylim(0.0, 1.0)
     axis.set_xlabel("runs")
     axis.xaxis.set_major_locator(MaxNLocator(integer=True))
