@@ -150,7 +150,7 @@ def test_that_yade_begins_where_it_is_told(boxes: Dataset) -> None:
     assert drop.min() >= 0.0
     turned = np.abs((first.particles.orientations * column.orientations).sum(axis=1))
     assert np.quantile(turned, 0.2) == pytest.approx(1.0, abs=1e-6)
-    assert second.pile.points[:, 2].mean() < first.particles.points[:, 2].mean()
+    assert second.particles.points[:, 2].mean() < first.particles.points[:, 2].mean()
 
 
 @needs_yade
