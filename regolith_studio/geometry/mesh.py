@@ -10,7 +10,13 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.spatial import ConvexHull, QhullError
 
 from regolith_studio.errors import GeometryError
-from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats, locked_integers
+from regolith_studio.geometry.arrays import (
+    FloatArray,
+    IntArray,
+    locked_floats,
+    locked_integers,
+    used_vertices,
+)
 from regolith_studio.geometry.cached_arrays import CachedArray
 from regolith_studio.geometry.kernels import kernel
 from regolith_studio.geometry.mass_properties import volume_moments
@@ -28,7 +34,9 @@ class Mesh:
     Parameters
     ----------
     vertices
-        Shape (n, 3); in micrometres for particles, dimensionless for unit-volume shapes.
+        Shape (n, 3); in micrometres for particles, dimensionless for unit-volume shapes. Those that no face
+        uses are left out, so that box, hull and diameters are those of the triangles; a mesh without faces
+        keeps its points.
     faces
         Vertex indices, shape (m, 3).
 
@@ -46,6 +54,9 @@ class Mesh:
         faces = locked_integers(self.faces, (None, 3), "faces")
         if len(faces) and (faces.min() < 0 or faces.max() >= len(vertices)):
             raise ValueError(f"faces must index {len(vertices)} vertices, got {faces.min()} to {faces.max()}")
+        if len(faces):
+            vertices, faces = used_vertices(vertices, faces)
+            vertices.flags.writeable = faces.flags.writeable = False
         object.__setattr__(self, "vertices", vertices)
         object.__setattr__(self, "faces", faces)
 

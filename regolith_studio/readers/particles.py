@@ -259,7 +259,9 @@ def _read_mesh(file: MeshFile, unit: str, repair: bool, sandbox: Sandbox | None)
         else:
             notes += inspect(mesh).problems
     except GeometryError as error:
-        raise GeometryError(message_about(path, f"holds no particle: {_lower(str(error))}")) from None
+        left_out = "".join(f" {note}" for note in answer.header["notes"] if note.startswith("Left out"))
+        reason = f"holds no particle: {_lower(str(error))}{left_out}"
+        raise GeometryError(message_about(path, reason)) from None
     source = Source(str(path), answer.header["sha256"], unit, repair)
     return Particle(path.stem, mesh, file.group, source, notes, file.weight, repaired)
 

@@ -160,3 +160,19 @@ def test_that_bytes_after_the_last_triangle_are_noted(accepted):
     assert any(
         "12 bytes after" in note for note in accepted("cube.stl", binary(SOUP) + b"colour table").notes
     )
+
+
+def test_that_a_header_that_counts_otherwise_than_the_file_is_named(refusal, accepted):
+    none = refusal("none.stl", binary(SOUP, 0))
+    assert none.endswith("without a single triangle: its header counts 0, its length is that of 12.")
+    doubled = accepted("doubled.stl", binary(np.concatenate([SOUP, SOUP + 5.0]), 12))
+    assert doubled.notes[0].startswith("The header counts 12 triangles, and the file's length is that of 24")
+
+
+def test_that_a_refusal_names_the_corners_that_are_no_numbers(refusal):
+    broken = SOUP.copy()
+    broken[2:9, 1] = np.nan
+    sentence = refusal("broken.stl", binary(broken))
+    assert sentence.endswith(
+        "Left out 7 faces with a corner that is not a finite number, face 3 the first of 12."
+    )

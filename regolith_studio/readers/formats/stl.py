@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from regolith_studio.errors import FileError
 from regolith_studio.io.stl import RECORD
+from regolith_studio.readers.error_messages import plural
 from regolith_studio.readers.formats import MeshFormat, ParsedMesh
 
 HEADER = 84
@@ -60,11 +61,21 @@ def _parse_binary(data: bytes) -> ParsedMesh:
             "copy or export it again."
         )
     if declared == 0:
-        raise FileError("is an STL without a single triangle.")
+        counts = f": its header counts 0, its length is that of {held:,}" if held else ""
+        raise FileError(f"is an STL without a single triangle{counts}.")
     records = np.frombuffer(data, dtype=RECORD, count=declared, offset=HEADER)
     surplus = len(data) - HEADER - declared * RECORD.itemsize
-    notes = (f"The file goes on for {surplus:,} bytes after its last triangle.",) if surplus else ()
+    notes = (_surplus_note(declared, held, surplus),) if surplus else ()
     return _soup(records["corners"].reshape(-1, 3).astype(np.float64), notes)
+
+
+def _surplus_note(declared: int, held: int, surplus: int) -> str:
+    if held > declared:
+        return (
+            f"The header counts {plural(declared, 'triangle')}, and the file's length is that of {held:,}; "
+            "what is not counted was left out."
+        )
+    return f"The file goes on for {surplus:,} bytes after its last triangle."
 
 
 def _parse_ascii(data: bytes) -> ParsedMesh:

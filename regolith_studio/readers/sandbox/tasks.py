@@ -8,9 +8,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from regolith_studio.errors import FileError
-from regolith_studio.readers.error_messages import message_about, printable
+from regolith_studio.geometry.arrays import used_vertices
+from regolith_studio.readers.error_messages import message_about, plural, printable
 from regolith_studio.readers.formats import MESH_FORMATS, MeshFormat, ParsedMesh, mesh_suffixes
 from regolith_studio.readers.number_rows import number_rows
 from regolith_studio.readers.position_formats import (
@@ -102,17 +104,28 @@ def _checked_mesh(parsed: ParsedMesh) -> ParsedMesh:
         )
     if faces.min() < 0 or faces.max() >= len(vertices):
         raise FileError(f"has faces that point to vertices beyond its {len(vertices):,}.")
+    notes = parsed.notes + _unused_note(vertices, faces)
     good = np.asarray((np.abs(vertices) < MAX_COORDINATE).all(axis=1))
-    if good.all():
-        return parsed
     kept = np.asarray(good[faces].all(axis=1))
     if not kept.any():
         raise FileError("has no face whose corners are all finite numbers; export it again.")
-    lost = len(faces) - np.count_nonzero(kept)
-    notes = parsed.notes
-    if lost:
-        notes += (f"Left out {lost:,} faces with a corner that is not a finite number.",)
-    return ParsedMesh(np.where(good[:, None], vertices, 0.0), faces[kept], notes)
+    if not kept.all():
+        lost, first = np.count_nonzero(~kept), int(np.argmin(kept))
+        counted = "1 face" if lost == 1 else f"{lost:,} faces"
+        notes += (
+            f"Left out {counted} with a corner that is not a finite number, face {first + 1:,} "
+            f"{'of' if lost == 1 else 'the first of'} {len(faces):,}.",
+        )
+    return ParsedMesh(*used_vertices(vertices, faces[kept]), notes)
+
+
+def _unused_note(vertices: NDArray[np.float64], faces: NDArray[np.int64]) -> tuple[str, ...]:
+    used = np.zeros(len(vertices), dtype=np.bool_)
+    used[faces] = True
+    unused = len(vertices) - int(np.count_nonzero(used))
+    if not unused:
+        return ()
+    return (f"Left out {plural(unused, 'point')} that no triangle uses.",)
 
 
 MAX_POSITION = 1e30
