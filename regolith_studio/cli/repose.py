@@ -67,6 +67,14 @@ EvaluationSetting = Annotated[
 PositionUnit = Annotated[
     str, typer.Option("--unit", help="Length unit of files without one: m, mm, um, cm or nm.", metavar="U")
 ]
+Columns = Annotated[
+    str,
+    typer.Option(
+        "--columns",
+        help="Names of all columns of a table or XYZ file, in their order: x y z radius ...",
+        metavar="NAMES",
+    ),
+]
 Diameter = Annotated[
     float,
     typer.Option(
@@ -138,6 +146,7 @@ def measure(
     set_: EvaluationSetting = None,
     diameter: Diameter = 0.0,
     unit: PositionUnit = "m",
+    columns: Columns = "",
     base: Base = None,
     json: Json = False,
     jobs: Jobs = 1,
@@ -148,7 +157,7 @@ def measure(
 
     del jobs, seed  # taken by every command
     settings = evaluation_settings(set_)
-    points, diameters = positions_in(file, unit, diameter)
+    points, diameters = positions_in(file, unit, diameter, columns)
     metres = 1.0 if file.suffix.lower() == ".npz" else metres_in(unit)
     measurement = measure_repose(points, diameters, settings, None if base is None else base * metres)
     document = {"file": str(file), "length_unit": "m"} | measurement_document(measurement)
@@ -167,7 +176,7 @@ def measure(
         typer.echo(in_words(document))
 
 
-def positions_in(file: Path, unit: str, diameter: float) -> tuple[Any, Any]:
+def positions_in(file: Path, unit: str, diameter: float, columns: str = "") -> tuple[Any, Any]:
     """Points (n, 3) and diameters (n,) in metres.
 
     Raises
@@ -183,7 +192,7 @@ def positions_in(file: Path, unit: str, diameter: float) -> tuple[Any, Any]:
         pile = read_final_state(file)
         return pile.points, pile.diameters
     metres = metres_in(unit)
-    found = read_positions(file, unit)
+    found = read_positions(file, unit, columns=columns)
     print_errors(found.notes)
     if diameter > 0.0:
         return found.points, diameter * metres

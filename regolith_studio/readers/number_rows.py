@@ -1,5 +1,6 @@
 """Rows of numbers in text, however they are separated; runs in the guarded child process only."""
 
+import csv
 import math
 import re
 from dataclasses import dataclass
@@ -14,7 +15,13 @@ from regolith_studio.readers.units import unit_named
 COMMENTS = (b"#", b"%", b"!", b"//")
 MAX_COLUMNS = 1000
 MAX_UNIT = 12
-_NUMBER = re.compile(rb"[+-]?(\d|\.\d|nan|inf)", re.IGNORECASE)
+_NUMBER = re.compile(rb"[\"']?[+-]?(\d|\.\d|[.,]\d|(nan|inf)\b)", re.IGNORECASE)
+_ANNOUNCED = re.compile(rb'"?sep=([;,|]?)"?', re.IGNORECASE)
+"""The first line by which Excel is told the separator; that of a tab has lost it."""
+_DECIMAL_COMMA = re.compile(rb"[+-]?\d*(,\d+)?([eE][+-]?\d+)?")
+_GROUPED = re.compile(rb"[+-]?\d{1,3}(?:([.,' ]|\xc2\xa0|\xe2\x80\xaf|\xe2\x80\x99)\d{3})+([.,]\d+)?")
+"""Digits in groups of three."""
+_AMBIGUOUS = re.compile(rb"[+-]?[1-9]\d{0,2},\d{3}")
 
 
 @dataclass(frozen=True)
@@ -24,16 +31,74 @@ class NumberRows:
     Parameters
     ----------
     names
-        The column names of its header line; empty where there is none.
+        The column names of its header line; empty where there is none, or it has another number of words.
     numbers
         Shape (n, columns), float64; whatever is not finite is kept.
     units
         Units of the columns from a second header line; empty where there is none.
+    header
+        The line of words before the numbers, or the last comment, which may name the columns.
+    has_header
+        Whether the former is no comment.
+    separator
+        Between the columns; empty for spaces.
     """
 
     names: tuple[str, ...]
     numbers: NDArray[np.float64]
     units: tuple[str, ...] = ()
+    header: str = ""
+    has_header: bool = False
+    separator: str = ""
+
+
+@dataclass(frozen=True)
+class _Style:
+    """How the rows of a text are written: what separates columns (None for spaces), and decimal commas."""
+
+    separator: bytes | None
+    decimal_comma: bool
+    quoted: bool
+
+    def words(self, line: bytes) -> list[bytes]:
+        """The words of a line without their quotes; empty columns at its end do not count."""
+        if self.separator is None:
+            words = [word.strip(b"\"'") for word in line.split()]
+        elif self.quoted:
+            text = line.decode("utf-8", "replace")
+            row = next(csv.reader([text], delimiter=self.separator.decode(), skipinitialspace=True), [])
+            words = [word.strip().encode() for word in row]
+        else:
+            words = [word.strip() for word in line.split(self.separator)]
+        while len(words) > 1 and not words[-1]:
+            words.pop()
+        return words
+
+
+def utf8_text(data: bytes) -> bytes:
+    """A text as UTF-8: from UTF-8, from UTF-16 without a byte order mark, or from Windows-1252.
+
+    Raises
+    ------
+    FileError
+        With the second half of a sentence if it is none of them.
+    """
+    start = data[:4096]
+    if b"\0" in start:
+        zeros = start[1::2].count(0), start[::2].count(0)
+        if max(zeros) < 0.9 * (len(start) // 2) or min(zeros) > 0:
+            raise FileError("is not a text of numbers: it holds zero bytes.")
+        return data.decode("utf-16-le" if zeros[0] else "utf-16-be", "replace").encode()
+    try:
+        data.decode("utf-8")
+    except UnicodeDecodeError:
+        try:
+            return data.decode("cp1252").encode()
+        except UnicodeDecodeError:
+            raise FileError(
+                "is not a text of numbers in an encoding that is known (UTF-8, UTF-16, Windows-1252)."
+            ) from None
+    return data
 
 
 def number_rows(
@@ -44,7 +109,8 @@ def number_rows(
     With `with_units`, a line of units may follow the header.
     Up to `numeric_headers` first rows of numbers may have another number of columns; they are ignored.
 
-    Spaces, tabs, commas and semicolons separate; where semicolons do, a comma is a decimal comma.
+    Spaces, tabs, commas and semicolons separate, or what a first line ``sep=;`` names.
+    Whether commas are decimal commas is decided by all rows. Numbers may be in quotes.
     Lines that begin with ``#``, ``%``, ``!`` or ``//`` are comments, the last of which may name the columns.
 
     Raises
@@ -54,26 +120,38 @@ def number_rows(
     """
     if not data:
         raise FileError("is empty: it has no bytes at all.")
-    if b"\0" in data[:4096]:
-        raise FileError("is not a text of numbers: it holds zero bytes.")
+    data = utf8_text(data)
     lines = [(number, line) for number, raw in enumerate(data.splitlines(), 1) if (line := raw.strip())]
-    header, units, first = _header(lines, skip_headers, with_units)
-    words = _rows(lines[first:], numeric_headers)
+    announced = _ANNOUNCED.fullmatch(lines[0][1]) if lines else None
+    lines = lines[1:] if announced else lines
+    header, is_comment, units, first = _header(lines, skip_headers, with_units)
+    rows = [(number, line) for number, line in lines[first:] if not line.startswith(COMMENTS)]
+    style = _style([line for _, line in rows], (announced[1] or b"\t") if announced else None)
+    words = _rows(rows, numeric_headers, style)
     width = len(words[0])
     if width > MAX_COLUMNS:
         raise FileError(f"has {width:,} columns; at most {MAX_COLUMNS:,} are read.")
-    return NumberRows(_names(header, width), _numbers(words, data), _names(units, width))
+    return NumberRows(
+        _names(header, width, style),
+        _numbers(words, style.decimal_comma),
+        _names(units, width, style),
+        printable(header.decode("utf-8", "replace")).strip(),
+        bool(header) and not is_comment,
+        (style.separator or b"").decode(),
+    )
 
 
-def _header(lines: list[tuple[int, bytes]], skip_headers: int, with_units: bool) -> tuple[bytes, bytes, int]:
-    """The line with the names of the columns, that with their units, and the index of the first row."""
+def _header(
+    lines: list[tuple[int, bytes]], skip_headers: int, with_units: bool
+) -> tuple[bytes, bool, bytes, int]:
+    """The line that names the columns, whether it is a comment, that with their units, and the first row."""
     header = units = comment = b""
     headers = 0
     for place, (number, line) in enumerate(lines):
         if line.startswith(COMMENTS):
             comment = line
         elif _NUMBER.match(line):
-            return header or comment.lstrip(b"#%!/"), units, place
+            return header or comment.lstrip(b"#%!/"), not header, units, place
         elif with_units and header and _are_units(line):
             units = line
         else:
@@ -83,14 +161,37 @@ def _header(lines: list[tuple[int, bytes]], skip_headers: int, with_units: bool)
     raise FileError("holds no row of numbers.")
 
 
-def _rows(lines: list[tuple[int, bytes]], numeric_headers: int) -> list[list[bytes]]:
+def _style(rows: list[bytes], announced: bytes | None) -> _Style:
+    """How the rows are written, decided by all of them."""
+    quoted = any(b'"' in row for row in rows)
+    commas = any(b"," in row for row in rows)
+    if announced is not None:
+        return _Style(announced, commas and (announced != b"," or quoted), quoted)
+    if 2 * sum(b";" in row for row in rows) > len(rows):
+        return _Style(b";", commas, quoted)
+    if not commas:
+        return _Style(None, False, quoted)
+    if not quoted and all(len(row.split()) > 1 and all(map(_is_decimal, row.split())) for row in rows):
+        return _Style(None, True, False)
+    style = _Style(b",", False, quoted)
+    inside = {word for row in rows for word in style.words(row) if b"," in word} if quoted else set()
+    if inside and all(_AMBIGUOUS.fullmatch(word) for word in inside):
+        raise FileError(
+            f"has “{_shown(min(inside))}”, whose comma may be a decimal comma or separate thousands; write "
+            "decimal points, or semicolons between the columns."
+        )
+    return _Style(b",", bool(inside), quoted)
+
+
+def _is_decimal(word: bytes) -> bool:
+    return _DECIMAL_COMMA.fullmatch(word) is not None
+
+
+def _rows(lines: list[tuple[int, bytes]], numeric_headers: int, style: _Style) -> list[list[bytes]]:
     """The words of the rows, each as many as in the first one."""
     words: list[list[bytes]] = []
-    decimal_comma = b";" in lines[0][1] and b"," in lines[0][1]
     for number, line in lines:
-        if line.startswith(COMMENTS):
-            continue
-        row = _row(line, decimal_comma)
+        row = style.words(line)
         if words and len(row) != len(words[0]):
             if len(words) > numeric_headers:
                 raise FileError(
@@ -107,16 +208,10 @@ def _are_units(line: bytes) -> bool:
     return any(map(unit_named, words)) and all(len(word) <= MAX_UNIT for word in words)
 
 
-def _row(line: bytes, decimal_comma: bool) -> list[bytes]:
+def _numbers(words: list[list[bytes]], decimal_comma: bool) -> NDArray[np.float64]:
     if decimal_comma:
-        return [word.strip() for word in line.replace(b",", b".").rstrip(b";").split(b";")]
-    if b"," in line or b";" in line:
-        separator = b";" if b";" in line else b","
-        return [word.strip() for word in line.removesuffix(separator).split(separator)]
-    return line.split()
-
-
-def _numbers(words: list[list[bytes]], data: bytes) -> NDArray[np.float64]:
+        _check_decimal_commas(words)
+        words = [[word.replace(b",", b".") for word in row] for row in words]
     try:
         return np.array([list(map(float, row)) for row in words])
     except ValueError:
@@ -126,20 +221,39 @@ def _numbers(words: list[list[bytes]], data: bytes) -> NDArray[np.float64]:
             try:
                 float(word)
             except ValueError:
-                raise FileError(
-                    f"has “{_shown(word)}” where a number belongs, in row {row + 1:,}, column {column}"
-                    f"{' (write decimal points, not commas)' if b',' in data else ''}."
-                ) from None
+                raise FileError(_fault(word, row, column, decimal_comma)) from None
     raise FileError("is not a table of numbers.")
 
 
-def _names(line: bytes, width: int) -> tuple[str, ...]:
+def _check_decimal_commas(words: list[list[bytes]]) -> None:
+    """Refuse points among decimal commas, which separate thousands or are decimal points of some rows."""
+    for row, each in enumerate(words):
+        for column, word in enumerate(each, start=1):
+            if b"." in word or word.count(b",") > 1:
+                raise FileError(_fault(word, row, column, decimal_comma=True))
+
+
+def _fault(word: bytes, row: int, column: int, decimal_comma: bool) -> str:
+    place = f"in row {row + 1:,}, column {column}"
+    if _GROUPED.fullmatch(word) and not word.startswith((b"0", b"-0")):
+        return f"has “{_shown(word)}” {place}: write numbers without separators of thousands."
+    if b"." in word and b"," in word:
+        return f"has “{_shown(word)}” {place}, with a point and a comma; write one decimal sign."
+    if decimal_comma and b"." in word and re.fullmatch(rb"[-+.\deE]+", word):
+        return f"has “{_shown(word)}” {place}, and decimal commas elsewhere; write one decimal sign."
+    return (
+        f"has “{_shown(word)}” where a number belongs, {place}"
+        f"{' (write decimal points, not commas)' if b',' in word else ''}."
+    )
+
+
+def _names(line: bytes, width: int, style: _Style) -> tuple[str, ...]:
     """The header's words as names, if there are as many as columns."""
-    text = printable(line.decode("utf-8", "replace")).strip()
-    for separator in (",", ";", "\t", None):
-        if separator is None or separator in text:
-            names = tuple(word.strip().strip("\"'") for word in text.split(separator))
-            return names if len(names) == width else ()
+    text = line.strip()
+    for separator in dict.fromkeys((style.separator, b",", b";", b"\t", None)) if text else ():
+        words = _Style(separator, False, b'"' in text).words(text)
+        if len(words) == width:
+            return tuple(printable(word.decode("utf-8", "replace")).strip().strip("\"'") for word in words)
     return ()
 
 

@@ -1,5 +1,6 @@
 """Particle positions from tables, XYZ, LAMMPS dumps and VTK files, for the angle of repose."""
 
+import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -7,12 +8,13 @@ from typing import Any
 
 from numpy.typing import ArrayLike
 
-from regolith_studio.errors import InputError
+from regolith_studio.errors import FileError, InputError
 from regolith_studio.geometry.arrays import FloatArray, locked_floats
+from regolith_studio.readers.position_formats import NAME_THEM
 from regolith_studio.readers.sandbox.parent import Sandbox, shared_sandbox
 from regolith_studio.readers.units import UNITS, unit_factor
 
-__all__ = ["ParticlePositions", "read_positions"]
+__all__ = ["ParticlePositions", "asks_for_columns", "read_positions"]
 
 _METRES = 1e-6
 """Metres in a micrometre."""
@@ -60,7 +62,7 @@ class ParticlePositions:
 
 
 def read_positions(
-    path: str | Path, unit: str = "m", *, fourth_column: str = "diameter", sandbox: Sandbox | None = None
+    path: str | Path, unit: str = "m", *, columns: str = "", sandbox: Sandbox | None = None
 ) -> ParticlePositions:
     """The particles of a position file; of several time steps the last.
 
@@ -69,9 +71,10 @@ def read_positions(
     path
         A table (.csv, .txt, .dat), XYZ, a LAMMPS dump, or VTK points (.vtk, .vtp, .vtu).
     unit
-        Unit of the file's numbers, where the file names none itself (``x [mm]``).
-    fourth_column
-        What a fourth column without a name is: ``diameter`` or ``radius`` (as YADE writes it).
+        Unit of the file's numbers, where the file names none itself (``x [mm]``, the units of a LAMMPS dump).
+    columns
+        Names of all columns of a table or XYZ file, in their order: x, y, z, perhaps diameter or radius, and
+        any other name for the rest (``type x y z vx vy vz``). By default those of the file.
     sandbox
         The child process that parses the file; by default the one of this process.
 
@@ -86,19 +89,19 @@ def read_positions(
         raise InputError(
             f"Positions are in one of {', '.join(key for key in UNITS if key != 'voxel')}, not {unit}."
         )
-    if fourth_column not in ("diameter", "radius"):
-        raise InputError(f"A fourth column is a diameter or a radius, not {fourth_column}.")
     path = Path(path)
-    answer = (sandbox or shared_sandbox()).request("positions", path)
+    names = re.split(r"[\s,;]+", columns.strip()) if columns.strip() else []
+    answer = (sandbox or shared_sandbox()).request("positions", path, columns=names)
     header = answer.header
     points = answer.arrays[0] * (unit_factor(header["unit"] or unit) * _METRES)
     diameters = None
-    notes = tuple(header["notes"])
     if len(answer.arrays) > 1:
         diameters = answer.arrays[1] * (
             unit_factor(header["diameter_unit"] or header["unit"] or unit) * _METRES
         )
-        if fourth_column == "radius" and any("interpreted as the diameter" in note for note in notes):
-            diameters = 2.0 * diameters
-            notes = tuple(note.replace("as the diameter", "as the radius") for note in notes)
-    return ParticlePositions(points, diameters, path.stem, notes)
+    return ParticlePositions(points, diameters, path.stem, tuple(header["notes"]))
+
+
+def asks_for_columns(error: FileError) -> bool:
+    """Whether a file was refused because the names of its columns must be given."""
+    return NAME_THEM in str(error)

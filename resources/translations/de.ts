@@ -1132,6 +1132,10 @@
         <translation>Färbt die Fehler im Bild, wie sie vor der Reparatur des Netzes waren</translation>
     </message>
     <message>
+        <source>Columns</source>
+        <translation>Spalten</translation>
+    </message>
+    <message>
         <source>Combines the surface of one measured particle with the form of another.</source>
         <translation>Verbindet die Oberfläche eines gemessenen Partikels mit der Form eines anderen.</translation>
     </message>
@@ -3250,6 +3254,10 @@
     <message>
         <source>Name:</source>
         <translation>Name:</translation>
+    </message>
+    <message>
+        <source>Names of all columns in their order, such as x y z radius:</source>
+        <translation>Namen aller Spalten in ihrer Reihenfolge, etwa x y z radius:</translation>
     </message>
     <message>
         <source>Names of presets: {names}</source>

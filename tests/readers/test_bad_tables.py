@@ -54,7 +54,11 @@ def tables() -> Iterator[Bad]:
             "columns in line 4 and 4 in the first row|has “",
         )
     for number, row in enumerate(("1", "1,2", "1,2,3,4,5", "1,2,3,4,5,6,7")):
-        yield f"width-{number}.csv", f"{row}\n{row}\n", "positions need three|columns without names"
+        yield (
+            f"width-{number}.csv",
+            f"{row}\n{row}\n",
+            "positions need three|columns without names|cut short: it declares 1",
+        )
     for number, names in enumerate(("a,b,c", "x,y,w", "lat,lon,height", "xx,yy,zz")):
         yield f"names-{number}.csv", f"{names}\n1,2,3\n", "has no columns x, y and z; they are called"
     for number, point in enumerate(("nan,0,0", "0,inf,0", "0,0,-inf", "1e300,0,0", "0,1e31,0")):
@@ -97,7 +101,7 @@ def xyzs() -> Iterator[Bad]:
     for number, row in enumerate(("nan 0 0", "0 inf 0", "1e40 0 0")):
         yield f"infinite-{number}.xyz", f"1\nc\nA {row}\n", "no particle whose position and size"
     for number, row in enumerate(("1 2", "1 2 3 4 5", "1 2 3 4 5 6")):
-        yield f"table-{number}.xyz", f"{row}\n{row}\n", "columns; x, y, z and perhaps a diameter"
+        yield f"table-{number}.xyz", f"{row}\n{row}\n", "columns; positions need three|columns without names"
 
 
 DUMP = (

@@ -7,7 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from regolith_studio.readers.units import unit_named
+from regolith_studio.errors import FileError
+from regolith_studio.readers.error_messages import plural, printable
+from regolith_studio.readers.units import UNITS, unit_named
 from regolith_studio.registry import Registry
 
 Numbers = NDArray[np.float64]
@@ -24,7 +26,7 @@ class ParsedPositions:
     diameters
         Shape (n,) in `diameter_unit`, or None.
     unit, diameter_unit
-        Keys of ``readers.units.UNITS`` where the file names them.
+        Keys of ``readers.units.FILE_UNITS`` where the file names them.
     notes
         Sentences.
     """
@@ -47,14 +49,18 @@ class PositionFormat:
     recognises
         Whether the first 1,024 bytes can only be this format.
     parse
-        Bytes to particles. Raises ``FileError`` with the second half of a sentence.
+        Bytes, and the names of all columns if a user gave them, to particles. Raises ``FileError`` with the
+        second half of a sentence.
+    takes_names
+        Whether a user may name the columns; they count more than those of the file.
     """
 
     key: str
     label: str
     suffixes: tuple[str, ...]
     recognises: Callable[[bytes], bool]
-    parse: Callable[[bytes], ParsedPositions]
+    parse: Callable[[bytes, tuple[str, ...]], ParsedPositions]
+    takes_names: bool = False
 
 
 @dataclass(frozen=True)
@@ -80,10 +86,19 @@ _SIZES: Mapping[str, bool] = {
 }  # fmt: skip
 
 
+NAME_THEM = "name its columns, for example “x y z radius” (--columns)"
+"""The advice of each refusal that asks for the names of columns."""
+
+
 def named_columns(names: tuple[str, ...]) -> NamedColumns:
     """Columns of x, y, z and of the size, by the names that programs give them.
 
     A unit in brackets behind a name (``x [mm]``) counts for the positions or the size.
+
+    Raises
+    ------
+    FileError
+        With the second half of a sentence if such a unit is unknown, or x, y and z have different ones.
     """
     cleaned: dict[str, int] = {}
     units: dict[str, str | None] = {}
@@ -91,18 +106,62 @@ def named_columns(names: tuple[str, ...]) -> NamedColumns:
         unit = _UNIT.search(name)
         key = _UNIT.sub("", name).strip().lower().replace("-", "_")
         if key not in cleaned:
-            cleaned[key], units[key] = place, unit_named(unit[1]) if unit else None
+            cleaned[key], units[key] = place, unit[1].strip() if unit else None
     axes, unit_of_axes = None, None
     for pattern in _X:
         triple = [pattern, *(_turned(pattern, step) for step in (1, 2))]
         if all(key in cleaned for key in triple):
             axes = (cleaned[triple[0]], cleaned[triple[1]], cleaned[triple[2]])
-            unit_of_axes = units[triple[0]]
+            unit_of_axes = _unit_of([units[key] for key in triple])
             break
     for key, is_radius in _SIZES.items():
         if key in cleaned:
-            return NamedColumns(axes, cleaned[key], is_radius, unit_of_axes, units[key] or unit_of_axes)
+            size_unit = _unit_of([units[key]]) or unit_of_axes
+            return NamedColumns(axes, cleaned[key], is_radius, unit_of_axes, size_unit)
     return NamedColumns(axes, None, False, unit_of_axes)
+
+
+def _unit_of(stated: list[str | None]) -> str | None:
+    """The one unit that the heads of some columns state, or None if none does."""
+    keys = {text: unit_named(text) for text in stated if text is not None}
+    for text, key in keys.items():
+        if key is None:
+            shown = ", ".join(each for each in UNITS if each != "voxel")
+            raise FileError(
+                f"states the unit “{printable(text)}” for a column, which is not known ({shown})."
+            )
+    if len(set(keys.values())) > 1:
+        raise FileError("states different units for x, y and z; write them in one.")
+    return next(iter(keys.values()), None)
+
+
+def asked_columns(names: tuple[str, ...], width: int) -> NamedColumns:
+    """The columns that a user has named.
+
+    Raises
+    ------
+    FileError
+        With the second half of a sentence if they are not as many as those of the file, or x, y and z are not
+        among them.
+    """
+    shown = printable(" ".join(names))[:60]
+    if len(names) != width:
+        raise FileError(f"has {plural(width, 'column')}, and “{shown}” names {len(names)}.")
+    columns = named_columns(names)
+    if columns.axes is None:
+        raise FileError(f"needs columns called x, y and z; “{shown}” does not name all of them.")
+    return columns
+
+
+def named_rows(numbers: Numbers, columns: NamedColumns, notes: tuple[str, ...] = ()) -> ParsedPositions:
+    """The particles in rows whose columns are known."""
+    points = numbers[:, list(columns.axes or (0, 1, 2))]
+    return ParsedPositions(points, sized(numbers, columns), columns.unit, columns.size_unit, notes)
+
+
+def counts_first(numbers: Numbers) -> bool:
+    """Whether the first column holds whole numbers (a type, an identifier) and the three after it do not."""
+    return bool((numbers[:, 0] % 1 == 0).all() and (numbers[:, 1:4] % 1 != 0).any())
 
 
 def sized(numbers: Numbers, columns: NamedColumns) -> Numbers | None:

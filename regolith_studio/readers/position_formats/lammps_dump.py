@@ -13,8 +13,16 @@ _ITEM = b"ITEM:"
 _SCALED = ({"xs": "x", "ys": "y", "zs": "z"}, {"xsu": "x", "ysu": "y", "zsu": "z"})
 
 
-def parse(data: bytes) -> ParsedPositions:
-    """Positions of the last time step; scaled ones are put into their box.
+_STYLE = re.compile(rb"^ITEM: UNITS[ \t]*\r?\n[ \t]*(\w+)", re.MULTILINE)
+_LENGTHS = {
+    "real": "angstrom", "metal": "angstrom", "si": "m", "cgs": "cm", "electron": "bohr", "micro": "um",
+    "nano": "nm",
+}  # fmt: skip
+"""Unit of length of each style of units that LAMMPS has; ``lj`` has none."""
+
+
+def parse(data: bytes, _asked: tuple[str, ...]) -> ParsedPositions:
+    """Positions of the last time step in the unit of its style; scaled ones are put into their box.
 
     Raises
     ------
@@ -35,7 +43,21 @@ def parse(data: bytes) -> ParsedPositions:
     if columns.axes is None:
         raise FileError(f"has no columns x, y and z; its atoms have {printable(', '.join(names))[:60]}.")
     notes = (f"The file holds {steps} time steps; the last was read.",) if steps > 1 else ()
-    return ParsedPositions(numbers[:, list(columns.axes)], sized(numbers, columns), notes=notes)
+    unit = _stated_unit(data)
+    return ParsedPositions(numbers[:, list(columns.axes)], sized(numbers, columns), unit, unit, notes)
+
+
+def _stated_unit(data: bytes) -> str | None:
+    """The unit of length by the style of units, which only the first step of a dump may state."""
+    style = _STYLE.search(data)
+    if style is None or style[1] == b"lj":
+        return None
+    name = style[1].decode("ascii", "replace")
+    if name not in _LENGTHS:
+        raise FileError(
+            f"is a LAMMPS dump in units of the style “{printable(name)[:20]}”, which is not known."
+        )
+    return _LENGTHS[name]
 
 
 def _sections(lines: list[bytes]) -> dict[str, tuple[str, list[bytes]]]:

@@ -23,7 +23,7 @@ _ARRAY = re.compile(rb"^(\S+)[ \t]+1[ \t]+(\d{1,12})[ \t]+(\w+)[ \t]*\r?\n", re.
 _POINT_DATA = re.compile(rb"^POINT_DATA[ \t]+(\d{1,12})", re.MULTILINE | re.IGNORECASE)
 
 
-def parse(data: bytes) -> ParsedPositions:
+def parse(data: bytes, _asked: tuple[str, ...]) -> ParsedPositions:
     """Points, and the scalars of theirs that are named diameter or radius.
 
     Raises

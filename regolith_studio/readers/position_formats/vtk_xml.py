@@ -22,7 +22,7 @@ MAX_BLOCKS = 1 << 20
 MAX_ARRAY_BYTES = 1 << 31
 
 
-def parse(data: bytes) -> ParsedPositions:
+def parse(data: bytes, _asked: tuple[str, ...]) -> ParsedPositions:
     """Points of all pieces, and their point data that is named diameter or radius.
 
     Raises

@@ -134,7 +134,7 @@ MAX_POSITION = 1e30
 def read_positions_file(request: dict[str, Any]) -> SandboxMessage:
     """Points and perhaps diameters of the file at ``request["path"]``."""
     path = Path(request["path"])
-    parsed, row = parse_positions(path.read_bytes(), path)
+    parsed, row = parse_positions(path.read_bytes(), path, tuple(map(str, request.get("columns") or ())))
     header = {
         "format": row.key,
         "label": row.label,
@@ -155,14 +155,21 @@ def read_number_rows(request: dict[str, Any]) -> SandboxMessage:
         table = number_rows(without_byte_order_mark(data), headers, numeric_headers=headers)
     except FileError as error:
         raise FileError(message_about(path, str(error))) from None
-    first = next((line for line in data.splitlines() if line.strip()[:1].isdigit()), b"")
     return SandboxMessage(
-        {"names": table.names, "commas": b"," in first}, (np.ascontiguousarray(table.numbers, "<f8"),)
+        {"names": table.names, "commas": table.separator == ","},
+        (np.ascontiguousarray(table.numbers, "<f8"),),
     )
 
 
-def parse_positions(data: bytes, path: Path) -> tuple[ParsedPositions, PositionFormat]:
+def parse_positions(
+    data: bytes, path: Path, columns: tuple[str, ...] = ()
+) -> tuple[ParsedPositions, PositionFormat]:
     """Particles with finite positions and positive diameters, and the format that they came in.
+
+    Parameters
+    ----------
+    columns
+        The names of all columns, where the file does not name them or names them wrongly.
 
     Raises
     ------
@@ -175,7 +182,9 @@ def parse_positions(data: bytes, path: Path) -> tuple[ParsedPositions, PositionF
         data = without_byte_order_mark(data)
         row = _position_format_of(data, path)
         with np.errstate(all="ignore"):
-            return _checked_positions(row.parse(data)), row
+            if columns and not row.takes_names:
+                raise FileError(f"is {row.label}, which names its columns itself; leave the names out.")
+            return _checked_positions(row.parse(data, columns)), row
     except FileError as error:
         raise FileError(message_about(path, str(error))) from None
 

@@ -8,11 +8,11 @@ from PySide6.QtWidgets import QFileDialog, QInputDialog, QWidget
 from regolith_studio.dem.angle_of_repose import ReposeMeasurement, measurement_document
 from regolith_studio.dem.run_io import read_final_state
 from regolith_studio.dem.snapshot import ParticleState
-from regolith_studio.errors import RegolithError
+from regolith_studio.errors import FileError, RegolithError
 from regolith_studio.io.atomic import staged_folder
 from regolith_studio.io.json_text import json_bytes
 from regolith_studio.messages import N_
-from regolith_studio.readers.positions import read_positions
+from regolith_studio.readers.positions import ParticlePositions, asks_for_columns, read_positions
 from regolith_studio.studies.figures.repose import write_section_figure
 from regolith_studio.ui.dialogs.folder import FolderDialog
 from regolith_studio.ui.translation import tr
@@ -53,7 +53,9 @@ def read_other(parent: QWidget, toast: Toast) -> ParticleState | None:
         unit, sure = QInputDialog.getItem(parent, tr("Unit"), tr("Length unit of the file:"), UNITS, 0, False)
         if not sure:
             return None
-        found = read_positions(name, unit)
+        found = _read_with_columns(parent, name, unit)
+        if found is None:
+            return None
         diameters = found.diameters
         if diameters is None:
             number, sure = QInputDialog.getDouble(
@@ -78,3 +80,15 @@ def read_other(parent: QWidget, toast: Toast) -> ParticleState | None:
     return ParticleState(
         found.points, diameters, still, np.zeros(n, dtype=np.int64), 0.0, float("inf"), N_("imported")
     )
+
+
+def _read_with_columns(parent: QWidget, name: str, unit: str) -> ParticlePositions | None:
+    """The positions of a file; the names of its columns are asked for where it has none."""
+    try:
+        return read_positions(name, unit)
+    except FileError as error:
+        if not asks_for_columns(error):
+            raise
+        question = tr("Names of all columns in their order, such as x y z radius:")
+        columns, sure = QInputDialog.getText(parent, tr("Columns"), question, text="x y z radius")
+        return read_positions(name, unit, columns=columns) if sure else None
