@@ -9,16 +9,16 @@ else by the public descriptors.
 """
 
 import argparse
-import json
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.independent import measured
+from benchmarks.result_files import add_result
 from regolith_studio.coarsening.coarsen import coarsen
 from regolith_studio.coarsening.exact.constraint_selection import EXACT
 from regolith_studio.coarsening.result import CoarseningResult
@@ -73,7 +73,7 @@ def main() -> None:
     parser.add_argument("--particles", type=int, default=1000, help="at most so many of each set")
     parser.add_argument("--unit", default="um")
     parser.add_argument("--independent", action="store_true")
-    parser.add_argument("--json", type=Path, metavar="FILE")
+    parser.add_argument("--json", default="", metavar="FILE")
     options = parser.parse_args()
     for task in TASKS:
         run_task(task)
@@ -86,10 +86,16 @@ def main() -> None:
                 errors = independent_errors if options.independent else public_errors
                 found.append(quality(name, targets, milliseconds, level, n_facets, errors))
                 print(line(found[-1]), flush=True)
-    if options.json:
-        options.json.write_text(
-            json.dumps([asdict(each) for each in found], indent=1) + "\n", encoding="utf-8"
-        )
+    add_result(options.json, "quality", result_rows(found))
+
+
+def result_rows(found: Sequence[Quality]) -> dict[str, list[float]]:
+    """Met particles, of how many, and the median Jaccard distance of each level, by set and facets."""
+    rows: dict[str, list[float]] = {}
+    for each in found:
+        row = rows.setdefault(f"{each.name}, {each.n_facets}", [each.met, each.particles])
+        row.append(round(each.jaccard, 3))
+    return rows
 
 
 def sets(folders: Sequence[Path], unit: str) -> list[tuple[str, list[Particle]]]:

@@ -1,4 +1,4 @@
-"""Compounds judged by manifold3d and a brute-force box (docs/compounds.md).
+"""Compounds judged by manifold3d and a brute-force box (docs/coarsening.md).
 
     python -m benchmarks.compounds RESULT.json [APOLLO] [N] [SEED]
 

@@ -10,6 +10,7 @@ from sphinx.util.docutils import SphinxDirective
 
 from regolith_studio import __version__
 from regolith_studio.cli.commands import app
+from regolith_studio.guide import with_results
 
 project = "Regolith Studio"
 project_copyright = "the Regolith Studio developers"
@@ -45,5 +46,10 @@ def _helps(command: click.Command, path: str) -> Iterator[tuple[str, str]]:
         yield from _helps(below, f"{path} {name}")
 
 
+def _fill_in_results(_sphinx: Sphinx, _page: str, source: list[str]) -> None:
+    source[0] = with_results(source[0])
+
+
 def setup(sphinx: Sphinx) -> None:
+    sphinx.connect("source-read", _fill_in_results)
     sphinx.add_directive("commands", Commands)

@@ -31,6 +31,12 @@ def guide_folder() -> Path:
     return shipped if shipped.is_dir() else _PACKAGE.parent / "docs"
 
 
+def results_folder() -> Path:
+    """The folder of the benchmarks' results, which the tables of the guide are made from."""
+    shipped = resource_folder() / "results"
+    return shipped if shipped.is_dir() else _PACKAGE.parent / "benchmarks" / "results"
+
+
 def resource(*parts: str) -> Path:
     """Path of one shipped file, for example ``resource("presets", "all.json")``.
 

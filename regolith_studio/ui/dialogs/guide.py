@@ -14,6 +14,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from regolith_studio.guide import chapter
 from regolith_studio.resources import guide_folder
 from regolith_studio.ui.translation import tr
 
@@ -53,7 +54,7 @@ class GuideBrowser(QTextBrowser):
         address = QUrl(name)
         if address.path().endswith(".md"):
             path = guide_folder() / address.fileName()
-            return as_markdown(path.read_text(encoding="utf-8")) if path.exists() else ""
+            return as_markdown(chapter(path.stem)) if path.exists() else ""
         if address.path().endswith(".png"):
             picture = QImage(str(guide_folder() / "images" / address.fileName()))
             room = self.viewport().width() - MARGINS

@@ -11,6 +11,7 @@ module_collection_mode = {"regolith_studio": "py"}
 datas = [
     (str(ROOT / "resources"), "regolith_studio/_resources"),
     (str(ROOT / "docs"), "regolith_studio/_resources/guide"),
+    (str(ROOT / "benchmarks" / "results"), "regolith_studio/_resources/results"),
     *collect_data_files("pyshtools"),
     *copy_metadata("regolith-studio", recursive=True),
 ]

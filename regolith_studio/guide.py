@@ -1,0 +1,78 @@
+"""Chapters of the user guide, whose tables of results are filled in from the result files of the benchmarks.
+
+A block of a chapter names a file of ``benchmarks/results`` and holds Markdown with fields in braces::
+
+    ```{results} dataset
+    | shapes | AR | S |
+    | ---: | ---: | ---: |
+    | 10 | {N/rows/10/0:.2f} | {N/rows/10/1:.2f} |
+    ```
+
+A field is a path of keys; a step such as ``engine=mujoco,seed=1`` selects the records of a list, and a key of
+a list of records is the list of their values. A list becomes one cell each, with ``mean`` its mean and half
+the width of Student's interval of 95 %, with ``range`` its smallest and largest number.
+"""
+
+import json
+import re
+from functools import cache
+from typing import Any
+
+import numpy as np
+from scipy.special import stdtrit
+
+from regolith_studio.resources import guide_folder, results_folder
+
+_BLOCK = re.compile(r"^```\{results\} (\w+)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
+_FIELD = re.compile(r"\{([^{}]+)\}")
+
+
+def chapter(name: str) -> str:
+    """Markdown of a chapter by the name of its file, with its tables."""
+    return with_results((guide_folder() / f"{name}.md").read_text(encoding="utf-8"))
+
+
+def with_results(text: str) -> str:
+    """Markdown whose blocks of results are filled in.
+
+    Raises
+    ------
+    KeyError
+        If a field is not in the file of results.
+    """
+    return _BLOCK.sub(lambda block: _FIELD.sub(lambda field: _cell(block[1], field[1]), block[2]), text)
+
+
+@cache
+def _results(name: str) -> Any:
+    return json.loads((results_folder() / f"{name}.json").read_text(encoding="utf-8"))
+
+
+def _cell(name: str, field: str) -> str:
+    path, _, form = field.partition(":")
+    value = _results(name)
+    for step in path.split("/"):
+        value = _below(value, step)
+    summary, _, digits = form.rpartition(" ")
+    if summary == "mean":
+        half_width = stdtrit(len(value) - 1, 0.975) * np.std(value, ddof=1) / np.sqrt(len(value))
+        return f"{np.mean(value):{digits}} ± {half_width:{digits}}"
+    if summary == "range":
+        return f"{min(value):{digits}} to {max(value):{digits}}"
+    return " | ".join(f"{each:{digits}}" for each in (value if isinstance(value, list) else [value]))
+
+
+def _below(value: Any, step: str) -> Any:
+    """What lies one step below a value of a result file."""
+    if not isinstance(value, list):
+        return value[step]
+    if step.isdigit():
+        return value[int(step)]
+    if "=" in step:
+        target = dict(each.split("=") for each in step.split(","))
+        found = [row for row in value if all(str(row[key]) == text for key, text in target.items())]
+    else:
+        found = [row[step] for row in value if row[step] is not None]
+    if not found:
+        raise KeyError(step)
+    return found
