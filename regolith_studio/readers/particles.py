@@ -89,7 +89,8 @@ def read_mesh(
         STL, PLY, OBJ, OFF, GLB, glTF or 3MF, or a table of coefficients (``l m Re Im``), of which the
         surface is made.
     unit
-        Unit of the file's numbers, a key of `UNITS`, or ``voxel:SIZE`` in micrometres.
+        Unit of the file's numbers, a key of `UNITS`, where the file states none itself (3MF and glTF do), or
+        ``voxel:SIZE``: its micrometres, which count more than the file's own unit.
     repair
         Whether to make one sound body of it; if not, what is wrong stands in the notes only.
     l_max
@@ -246,11 +247,17 @@ def _read_mesh(file: MeshFile, unit: str, repair: bool, sandbox: Sandbox | None)
     factor = unit_factor(unit)
     path = file.path
     answer = (sandbox or shared_sandbox()).request("mesh", path)
+    own_unit: str | None = answer.header["unit"]
+    overruled = own_unit is not None and unit.startswith("voxel")
+    if own_unit is not None and not overruled:
+        unit, factor = own_unit, unit_factor(own_unit)
     vertices, faces = answer.arrays
     if not answer.header["shares_vertices"]:
         vertices, faces = merged_vertices(vertices, faces)
     mesh = Mesh(vertices * factor, faces)
     notes = tuple(answer.header["notes"])
+    if overruled:
+        notes += (f"Its numbers were multiplied by {factor:g} µm instead, as was asked.",)
     repaired = None
     try:
         if repair:

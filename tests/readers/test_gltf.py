@@ -58,13 +58,13 @@ def gltf(document=DOCUMENT, uri=EMBEDDED):
 
 
 def test_that_a_cube_in_a_glb_or_gltf_has_volume_one(accepted):
-    assert accepted("cube.glb", glb()).mesh.volume == pytest.approx(1.0)
-    assert accepted("cube.gltf", gltf()).mesh.volume == pytest.approx(1.0)
+    assert accepted("cube.glb", glb(), unit="voxel:1").mesh.volume == pytest.approx(1.0)
+    assert accepted("cube.gltf", gltf(), unit="voxel:1").mesh.volume == pytest.approx(1.0)
 
 
 def test_that_a_buffer_beside_the_file_is_read(accepted, tmp_path):
     (tmp_path / "cube.bin").write_bytes(BINARY)
-    assert accepted("cube.gltf", gltf(uri="cube.bin")).mesh.volume == pytest.approx(1.0)
+    assert accepted("cube.gltf", gltf(uri="cube.bin"), unit="voxel:1").mesh.volume == pytest.approx(1.0)
 
 
 def test_that_nodes_are_transformed(accepted):
@@ -73,20 +73,21 @@ def test_that_nodes_are_transformed(accepted):
         {"children": [1], "scale": [3, 3, 3]},
         {"mesh": 0, "rotation": [0, 0, 0.5**0.5, 0.5**0.5], "scale": [2, 1, 1], "translation": [5, 0, 0]},
     ]
-    mesh = accepted("cube.glb", glb(changed(nodes=nodes))).mesh
+    mesh = accepted("cube.glb", glb(changed(nodes=nodes)), unit="voxel:1").mesh
     assert mesh.volume == pytest.approx(54.0)
     assert np.allclose(mesh.bounds, [[12, 0, 0], [15, 6, 3]], atol=1e-6)
 
 
 def test_that_a_mirrored_node_still_faces_outwards(accepted):
-    particle = accepted("cube.glb", glb(changed(nodes=[{"mesh": 0, "scale": [-1, 1, 1]}])))
+    particle = accepted("cube.glb", glb(changed(nodes=[{"mesh": 0, "scale": [-1, 1, 1]}])), unit="voxel:1")
     assert particle.mesh.volume == pytest.approx(1.0)
-    assert particle.notes == ()
+    assert particle.notes[0] == "The unit of glTF is the metre."
+    assert particle.notes[1:] == ("Its numbers were multiplied by 1 µm instead, as was asked.",)
 
 
 def test_that_a_file_of_trimesh_is_read(accepted):
     solid = trimesh.creation.icosphere(subdivisions=2)
-    mesh = accepted("ball.glb", solid.export(file_type="glb")).mesh
+    mesh = accepted("ball.glb", solid.export(file_type="glb"), unit="voxel:1").mesh
     assert mesh.volume == pytest.approx(solid.volume, rel=1e-5)
     assert mesh.surface_area == pytest.approx(solid.area, rel=1e-5)
 

@@ -22,11 +22,14 @@ class ParsedMesh:
         Shape (m, 3), int64; may point outside the vertices.
     notes
         Sentences about parts of the file that were ignored.
+    unit
+        A key of ``readers.units.FILE_UNITS``, where the file or its standard states the unit of lengths.
     """
 
     vertices: NDArray[np.float64]
     faces: NDArray[np.int64]
     notes: tuple[str, ...] = ()
+    unit: str | None = None
 
 
 @dataclass(frozen=True)

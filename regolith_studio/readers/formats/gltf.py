@@ -59,6 +59,8 @@ def parse(data: bytes, path: Path) -> ParsedMesh:
     return ParsedMesh(
         np.concatenate([points for points, _ in parts]),
         np.concatenate([faces + offset for (_, faces), offset in zip(parts, offsets, strict=False)]),
+        ("The unit of glTF is the metre.",),
+        "m",
     )
 
 

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from regolith_studio.errors import FileError
 from regolith_studio.readers.error_messages import printable
 from regolith_studio.readers.formats import MeshFormat, ParsedMesh
+from regolith_studio.readers.units import unit_named
 
 MAX_PART_BYTES = 1 << 29
 """Bytes of one unpacked part; a part that unpacks to more is refused."""
@@ -29,7 +30,7 @@ _Triangles = tuple[NDArray[np.float64], NDArray[np.int64]]
 
 
 def parse(data: bytes, _path: Path) -> ParsedMesh:
-    """All triangles of the built objects, in the file's unit, which is noted where it is stated.
+    """All triangles of the built objects, in the file's unit.
 
     Raises
     ------
@@ -145,12 +146,23 @@ def _built(package: _Package) -> ParsedMesh:
     if not parts:
         raise FileError("is a 3MF that builds no triangles.")
     offsets = np.cumsum([0, *(len(points) for points, _ in parts)])
-    unit = model.get("unit", "millimeter")[:20]
+    unit, note = _unit(model.get("unit"))
     return ParsedMesh(
         np.concatenate([points for points, _ in parts]),
         np.concatenate([faces + offset for (_, faces), offset in zip(parts, offsets, strict=False)]),
-        (f"The file states its unit: {unit}.",),
+        (note,),
+        unit,
     )
+
+
+def _unit(stated: str | None) -> tuple[str, str]:
+    """The key of the unit that a model states, which is the millimetre where it states none, and a note."""
+    if stated is None:
+        return "mm", "The file states no unit; that of 3MF is the millimetre."
+    key = unit_named(stated)
+    if key is None:
+        raise FileError(f"states the unit “{printable(stated)[:20]}”, which 3MF does not have.")
+    return key, f"The file states its unit: {stated.strip().lower()}."
 
 
 def _place(

@@ -35,6 +35,7 @@ def read_mesh_file(request: dict[str, Any]) -> SandboxMessage:
     parsed, row = parse_mesh(data, path)
     header = {
         "notes": parsed.notes,
+        "unit": parsed.unit,
         "format": row.key,
         "shares_vertices": row.shares_vertices,
         "sha256": hashlib.sha256(data).hexdigest(),
@@ -116,7 +117,8 @@ def _checked_mesh(parsed: ParsedMesh) -> ParsedMesh:
             f"Left out {counted} with a corner that is not a finite number, face {first + 1:,} "
             f"{'of' if lost == 1 else 'the first of'} {len(faces):,}.",
         )
-    return ParsedMesh(*used_vertices(vertices, faces[kept]), notes)
+    vertices, faces = used_vertices(vertices, faces[kept])
+    return replace(parsed, vertices=vertices, faces=faces, notes=notes)
 
 
 def _unused_note(vertices: NDArray[np.float64], faces: NDArray[np.int64]) -> tuple[str, ...]:

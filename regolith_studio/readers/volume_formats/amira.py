@@ -12,13 +12,12 @@ import numpy as np
 from regolith_studio.errors import FileError
 from regolith_studio.readers.error_messages import printable
 from regolith_studio.readers.number_rows import float_or_nan
-from regolith_studio.readers.units import unit_named
 from regolith_studio.readers.volume_formats import VolumeFormat
 from regolith_studio.readers.voxels.header import (
     OpenVolume,
     Sizes,
     VoxelHeader,
-    sizes_or_none,
+    stated_edges,
     three_dimensions,
     voxel_type,
 )
@@ -178,10 +177,9 @@ def _voxel_size(text: str, shape: tuple[int, int, int]) -> tuple[Sizes | None, s
     edges = [
         (float_or_nan(b) - float_or_nan(a)) / (n - 1) for a, b, n in zip(low, high, shape[::-1], strict=True)
     ]
-    size = sizes_or_none(edges)
     named = re.search(r'Coordinates\s+"([^"\n]*)"', text)
-    unit = unit_named(named[1].encode("latin-1").decode("utf-8", "replace")) if named else None
-    return size, unit if size else None
+    name = named[1].encode("latin-1").decode("utf-8", "replace") if named else None
+    return stated_edges(edges, [name] * 3)
 
 
 def _recognises(head: bytes) -> bool:

@@ -10,14 +10,13 @@ import numpy as np
 from regolith_studio.errors import FileError
 from regolith_studio.readers.error_messages import printable
 from regolith_studio.readers.number_rows import float_or_nan
-from regolith_studio.readers.units import unit_named
 from regolith_studio.readers.volume_formats import VolumeFormat
 from regolith_studio.readers.voxels.header import (
     MIRRORED,
     OpenVolume,
     Sizes,
     VoxelHeader,
-    sizes_or_none,
+    stated_edges,
     three_dimensions,
     voxel_type,
 )
@@ -128,9 +127,8 @@ def _voxel_size(fields: dict[str, str], sizes: list[int]) -> tuple[Sizes | None,
     kept = [axis for axis, edge in enumerate(sizes) if edge > 1 or len(sizes) == 3]
     if len(edges) != len(sizes) or len(kept) != 3:
         return None, None
-    size = sizes_or_none([edges[axis] for axis in kept])
-    unit = unit_named(fields.get("distanceunits", fields.get("elementspacingunit", "")))
-    return size, unit if size else None
+    name = fields.get("distanceunits", fields.get("elementspacingunit"))
+    return stated_edges([edges[axis] for axis in kept], [name] * 3)
 
 
 def _is_mirrored(fields: dict[str, str]) -> bool:

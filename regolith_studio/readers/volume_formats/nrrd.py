@@ -2,7 +2,7 @@
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -11,14 +11,15 @@ import numpy as np
 from regolith_studio.errors import FileError
 from regolith_studio.readers.error_messages import printable
 from regolith_studio.readers.number_rows import float_or_nan
-from regolith_studio.readers.units import unit_named
+from regolith_studio.readers.units import in_one_unit
 from regolith_studio.readers.volume_formats import VolumeFormat
 from regolith_studio.readers.voxels.header import (
     MIRRORED,
+    SKEWED,
     OpenVolume,
     Sizes,
     VoxelHeader,
-    sizes_or_none,
+    stated_edges,
     three_dimensions,
     voxel_type,
 )
@@ -47,7 +48,8 @@ _TYPES = {
 }
 _TYPE = {name: kind for kind, names in _TYPES.items() for name in names}
 _VECTOR = re.compile(r"\(([^()]*)\)|none", re.IGNORECASE)
-_SKEWED = "The axes of the volume are not at right angles to each other; they were taken as if they were."
+_LEFT_HANDED = ("left-anterior-superior", "las", "3d-left-handed")
+"""Spaces whose own axes are left-handed, without their forms with a time."""
 
 
 def open_nrrd(path: Path, _options: Mapping[str, Any]) -> OpenVolume:
@@ -61,6 +63,7 @@ def open_nrrd(path: Path, _options: Mapping[str, Any]) -> OpenVolume:
     with path.open("rb") as file:
         head = file.read(MAX_HEADER_BYTES)
     fields, body = _fields(head)
+    _check_encoding(fields)
     stored = _stored_type(fields)
     sizes = _whole_numbers(fields, "sizes")
     if len(sizes) != _whole_numbers(fields, "dimension", 1)[0]:
@@ -84,13 +87,17 @@ def _opened(
         if skip == -1:
             start, skip = start_before_end(source, header, stored), 0
         return PlainVoxels(source, start + skip, header, stored)
-    if encoding in ("gz", "gzip"):
-        if skip == -1:
-            raise FileError("counts its bytes from the end of a compressed stream, which cannot be.")
-        return DeflatedVoxels(source, start, skip, header, stored)
+    if skip == -1:
+        raise FileError("counts its bytes from the end of a compressed stream, which cannot be.")
+    return DeflatedVoxels(source, start, skip, header, stored)
+
+
+def _check_encoding(fields: dict[str, str]) -> None:
+    encoding = fields.get("encoding", "").lower()
     if not encoding:
         raise FileError("is a broken NRRD: it states no encoding (raw or gzip).")
-    raise FileError(f"is an NRRD in the encoding “{printable(encoding)[:20]}”; raw and gzip are read.")
+    if encoding not in ("raw", "gz", "gzip"):
+        raise FileError(f"is an NRRD in the encoding “{printable(encoding)[:20]}”; raw and gzip are read.")
 
 
 def _fields(head: bytes) -> tuple[dict[str, str], int | None]:
@@ -145,20 +152,39 @@ def _data_file(path: Path, fields: dict[str, str], body: int | None) -> tuple[Pa
 def _voxel_size(fields: dict[str, str], sizes: list[int]) -> tuple[Sizes | None, str | None, tuple[str, ...]]:
     """Edges of those axes that have more than one voxel, unless all of three have a direction."""
     kept = [axis for axis, edge in enumerate(sizes) if edge > 1 or len(sizes) == 3]
+    names: Sequence[str | None] = _quoted(fields, "units")
     notes: tuple[str, ...] = ()
     if "space directions" in fields:
         vectors = [_vector(match) for match in _VECTOR.finditer(fields["space directions"])]
+        vectors, unit = _in_space_unit(vectors, _quoted(fields, "space units"))
+        names = [unit] * len(sizes) if unit else names
         edges = [math.hypot(*vector) if vector else math.nan for vector in vectors]
-        notes = _about(np.array([v for v in vectors if len(v) == 3]))
+        notes = _about(np.array([v for v in vectors if len(v) == 3]), fields.get("space", ""))
     else:
         edges = [float_or_nan(word) for word in fields.get("spacings", "").split()]
+        names = names or list(dict.fromkeys(_quoted(fields, "space units")))[:1] * len(sizes)
     if len(edges) != len(sizes) or len(kept) != 3:
         return None, None, ()
-    size = sizes_or_none([edges[axis] for axis in kept])
-    return size, _unit(fields, kept) if size else None, notes if size else ()
+    names = names if len(names) == len(sizes) else [None] * len(sizes)
+    size, key = stated_edges([edges[axis] for axis in kept], [names[axis] for axis in kept])
+    return size, key, notes if size else ()
 
 
-def _about(vectors: np.ndarray) -> tuple[str, ...]:
+def _in_space_unit(vectors: list[list[float]], names: list[str]) -> tuple[list[list[float]], str | None]:
+    """Directions in one unit, from those in the units of the axes of space, and its key."""
+    found = in_one_unit([1.0] * len(names), names)
+    if found is None:
+        return vectors, None
+    factors, key = found
+    return [[x * factor for x, factor in zip(vector, factors, strict=False)] for vector in vectors], key
+
+
+def _quoted(fields: dict[str, str], name: str) -> list[str]:
+    return re.findall(r'"([^"]*)"', fields.get(name, ""))
+
+
+def _about(vectors: np.ndarray, space: str) -> tuple[str, ...]:
+    """Notes about axes that are skewed, or left-handed in their space."""
     if vectors.shape != (3, 3) or not np.isfinite(vectors).all():
         return ()
     lengths = np.linalg.norm(vectors, axis=1)
@@ -166,17 +192,8 @@ def _about(vectors: np.ndarray) -> tuple[str, ...]:
         return ()
     unit = vectors / lengths[:, None]
     skewed = np.abs(unit @ unit.T - np.eye(3)).max() > 1e-3
-    return (*((_SKEWED,) if skewed else ()), *((MIRRORED,) if np.linalg.det(unit) < 0 else ()))
-
-
-def _unit(fields: dict[str, str], kept: list[int]) -> str | None:
-    named = re.findall(r'"([^"]*)"', fields.get("space units", "")) or re.findall(
-        r'"([^"]*)"', fields.get("units", "")
-    )
-    if len(named) > max(kept):
-        named = [named[axis] for axis in kept]
-    units = {unit_named(name) for name in named}
-    return units.pop() if len(units) == 1 else None
+    hand = -1.0 if space.strip().lower().removesuffix("-time").removesuffix("t") in _LEFT_HANDED else 1.0
+    return (*((SKEWED,) if skewed else ()), *((MIRRORED,) if hand * np.linalg.det(unit) < 0 else ()))
 
 
 def _vector(match: re.Match[str]) -> list[float]:

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from regolith_studio.errors import FileError
 from regolith_studio.readers.error_messages import printable
-from regolith_studio.readers.units import unit_named
+from regolith_studio.readers.units import in_one_unit
 from regolith_studio.readers.volume_formats import VolumeFormat
 from regolith_studio.readers.voxels.folders import is_zarr
 from regolith_studio.readers.voxels.header import (
@@ -124,11 +124,13 @@ def open_ome_zarr(path: Path, options: Mapping[str, Any]) -> ZarrVoxels:
     """
     attributes = _attributes(path)
     image = _image(attributes)
-    axes, unit = _axes(image)
+    axes, units = _axes(image)
+    factors, unit = in_one_unit((1.0, 1.0, 1.0), [units[axis] for axis in "xyz"]) or ((1.0, 1.0, 1.0), None)
+    factor = dict(zip("xyz", factors, strict=True))
     levels = [
         level
         for entry in _list(image.get("datasets"))[:MAX_LEVELS]
-        for level in _levels(path, entry, axes, image)
+        for level in _levels(path, entry, axes, image, factor)
     ]
     if not levels:
         raise FileError(_NO_IMAGE)
@@ -136,8 +138,8 @@ def open_ome_zarr(path: Path, options: Mapping[str, Any]) -> ZarrVoxels:
     header = VoxelHeader(
         three_dimensions(level.spatial),
         voxel_type(level.dtype),
-        level.size if unit != "" else None,
-        unit or None,
+        level.size,
+        unit if level.size else None,
         "labels" if "image-label" in attributes else None,
         (),
         tuple(DatasetEntry(each.name, each.spatial[::-1], each.dtype.name, each.size) for each in levels),
@@ -195,8 +197,8 @@ def _image(attributes: Mapping[str, Any]) -> dict[str, Any]:
     return images[0]
 
 
-def _axes(image: Mapping[str, Any]) -> tuple[str, str | None]:
-    """A letter for each axis, and the unit of x, y and z; empty where they have different ones."""
+def _axes(image: Mapping[str, Any]) -> tuple[str, dict[str, str]]:
+    """A letter for each axis, and the unit that each states."""
     entries = [each if isinstance(each, dict) else {"name": each} for each in _list(image.get("axes"))]
     letters = "".join(str(each.get("name", "?"))[:9] for each in entries).lower()
     if (
@@ -207,14 +209,14 @@ def _axes(image: Mapping[str, Any]) -> tuple[str, str | None]:
         raise FileError(
             f"has the axes “{printable(letters)[:20]}”; x, y and z, each once, and perhaps t and c are read."
         )
-    units = {
-        unit_named(str(each.get("unit", ""))[:20]) for each in entries if each.get("name") in ("x", "y", "z")
-    }
-    return letters, units.pop() if len(units) == 1 else ""
+    units = [str(each.get("unit", ""))[:20] for each in entries]
+    return letters, dict(zip(letters, units, strict=True))
 
 
-def _levels(path: Path, entry: Any, axes: str, image: Mapping[str, Any]) -> list[_Level]:
-    """The channels of one array."""
+def _levels(
+    path: Path, entry: Any, axes: str, image: Mapping[str, Any], factor: Mapping[str, float]
+) -> list[_Level]:
+    """The channels of one array; the scale along each axis is multiplied by its factor."""
     name = str(entry.get("path", "")) if isinstance(entry, dict) else ""
     if not name or Path(name).is_absolute() or ".." in Path(name).parts:
         raise FileError("is a broken OME-Zarr: the place of one of its levels is invalid.")
@@ -224,7 +226,8 @@ def _levels(path: Path, entry: Any, axes: str, image: Mapping[str, Any]) -> list
     if math.prod(chunks) * dtype.itemsize > MAX_CHUNK_BYTES:
         raise FileError("is packed in chunks of more than 0.5 GiB; save it with smaller ones.")
     edges = dict(zip(axes, shape, strict=True))
-    scale = tuple((_scale(entry, len(axes)) * _scale(image, len(axes))).tolist())
+    factors = np.array([factor.get(axis, 1.0) for axis in axes])
+    scale = tuple((_scale(entry, len(axes)) * _scale(image, len(axes)) * factors).tolist())
     channels = edges.get("c", 1)
     if edges.get("t", 1) != 1 or channels > MAX_CHANNELS:
         raise FileError("holds several times or very many channels; export one volume of it.")

@@ -10,7 +10,7 @@ import numpy as np
 
 from regolith_studio.errors import FileError
 from regolith_studio.readers.error_messages import printable
-from regolith_studio.readers.units import UNITS, unit_named
+from regolith_studio.readers.units import FILE_UNITS, in_one_unit
 from regolith_studio.readers.voxels.header import MAX_EDGE, VOXEL_TYPES, Sizes, sizes_or_none
 
 MAX_OBJECTS = 10_000
@@ -109,10 +109,8 @@ def _tagged_size(dataset: Any) -> Sizes | None:
         return None
     try:
         edges = {axis["key"]: float(axis["resolution"]) for axis in tags["axes"]}
-        keys = [unit_named(str(units[axis])) for axis in "xyz"]
-        return sizes_or_none(
-            [edges[axis] * UNITS[key] for axis, key in zip("xyz", keys, strict=True) if key is not None]
-        )
+        found = in_one_unit([edges[axis] for axis in "xyz"], [str(units[axis]) for axis in "xyz"])
+        return sizes_or_none([edge * FILE_UNITS[found[1]] for edge in found[0]]) if found else None
     except (KeyError, TypeError, ValueError):
         return None
 

@@ -4,6 +4,7 @@ Inside the readers a volume is indexed [z, y, x], slices first, as nearly all fi
 public door (``readers.volumes``) turns it to the [x, y, z] of ``imaging.Volume``.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Literal, Protocol
 
@@ -12,6 +13,7 @@ from numpy.typing import NDArray
 
 from regolith_studio.errors import FileError
 from regolith_studio.readers.error_messages import printable
+from regolith_studio.readers.units import in_one_unit
 
 Shape = tuple[int, int, int]
 Sizes = tuple[float, float, float]
@@ -22,6 +24,7 @@ MAX_EDGE = 1 << 20
 MAX_SLICE_BYTES = 1 << 30
 """Bytes of the largest slice that is read; twice that of a detector 16,384 pixels wide."""
 MIRRORED = "The axes of the volume are left-handed: particles come in as their mirror images."
+SKEWED = "The axes of the volume are not at right angles to each other; they were taken as if they were."
 MAX_CACHED_BYTES = 1 << 29
 """Bytes of a layer of HDF5 chunks that are cached unpacked."""
 
@@ -179,6 +182,20 @@ def sizes_or_none(values: tuple[float, ...] | list[float]) -> Sizes | None:
     if len(edges) == 3 and all(1e-12 < edge < 1e12 for edge in edges):
         return edges[0], edges[1], edges[2]
     return None
+
+
+def stated_edges(edges: Sequence[float], names: Sequence[str | None]) -> tuple[Sizes | None, str | None]:
+    """Edges along x, y and z in one unit, and its key, from the edge and unit that a file states for each.
+
+    Without units that are known, the edges stay and the unit is None, so that it is asked for.
+    """
+    size = sizes_or_none(list(edges))
+    if size is None:
+        return None, None
+    found = in_one_unit(size, names)
+    if found is None:
+        return size, None
+    return sizes_or_none(list(found[0])), found[1]
 
 
 def format_shape(shape: tuple[int, ...]) -> str:

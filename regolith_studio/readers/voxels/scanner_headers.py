@@ -12,8 +12,7 @@ import numpy as np
 from regolith_studio.errors import FileError
 from regolith_studio.readers.error_messages import display_name, printable
 from regolith_studio.readers.number_rows import float_or_nan
-from regolith_studio.readers.units import unit_named
-from regolith_studio.readers.voxels.header import VoxelHeader, sizes_or_none, three_dimensions, voxel_type
+from regolith_studio.readers.voxels.header import VoxelHeader, stated_edges, three_dimensions, voxel_type
 from regolith_studio.readers.voxels.stored import PlainVoxels, beside, exact_voxels
 
 VGI, INFO, XTEKCT = ".vgi", ".vol.info", ".xtekct"
@@ -44,9 +43,9 @@ def open_described(path: Path) -> PlainVoxels:
     """
     kind = next(suffix for suffix in READERS if path.name.lower().endswith(suffix))
     found = READERS[kind](path, text_fields(path))
-    size = sizes_or_none(found.edges)
+    size, unit = stated_edges(found.edges, [found.unit] * 3)
     shape = three_dimensions(found.shape[::-1])
-    header = VoxelHeader(shape, voxel_type(found.stored), size, found.unit if size else None)
+    header = VoxelHeader(shape, voxel_type(found.stored), size, unit)
     try:
         return exact_voxels(found.source, 0, header, found.stored)
     except FileError as error:
@@ -98,7 +97,7 @@ def _vgi(path: Path, fields: Mapping[str, str]) -> _Description:
         )
     source = beside(path, _needed(fields, "file1/name").removeprefix("./").removeprefix(".\\"))
     edges = [float_or_nan(word) for word in fields.get("geometry/resolution", "").split()]
-    unit = unit_named(fields.get("geometry/unit", "mm"))
+    unit = fields.get("geometry/unit", "mm")
     shape = tuple(_whole(word, "size") for word in stated("size").split())
     return _Description(source, shape, edges, unit, np.dtype(f"<{letter}{int(bits) // 8}"))
 

@@ -9,8 +9,7 @@ from typing import Any, Self
 
 from regolith_studio.errors import FileError
 from regolith_studio.messages import N_
-from regolith_studio.readers.units import unit_named
-from regolith_studio.readers.voxels.header import Sizes, sizes_or_none
+from regolith_studio.readers.voxels.header import Sizes, sizes_or_none, stated_edges
 
 Stated = tuple[Sizes | None, str | None, tuple[str, ...]]
 
@@ -120,13 +119,15 @@ def stated_size(file: Any) -> Stated:
 
 
 def _imagej(metadata: dict[str, Any], page: Any) -> Stated:
-    unit = unit_named(str(metadata.get("unit", "")))
     pixel = _pixel(page)
-    if unit is None or pixel is None:
+    if pixel is None:
         return None, None, ()
-    spacing = metadata.get("spacing")
-    size = sizes_or_none((*pixel, _number(spacing, pixel[0])))
-    return size, unit if size else None, () if spacing is not None else (_CUBIC,)
+    spacing, unit = metadata.get("spacing"), str(metadata.get("unit", ""))
+    edges = (*pixel, _number(spacing, pixel[0]))
+    size, key = stated_edges(edges, (unit, *(str(metadata.get(name, unit)) for name in ("yunit", "zunit"))))
+    if key is None:
+        return None, None, ()
+    return size, key, () if spacing is not None else (_CUBIC,)
 
 
 def _ome(description: str) -> Stated:
@@ -135,12 +136,10 @@ def _ome(description: str) -> Stated:
         found.setdefault(axis + unit, text)
     if "X" not in found:
         return None, None, ()
-    unit = unit_named(found.get("XUnit", "µm"))
-    if any(unit_named(found.get(f"{axis}Unit", "µm")) != unit for axis in "YZ" if axis in found):
-        return None, None, (N_("The file states voxel edges in different units; they were ignored."),)
-    width = _number(found["X"], 0.0)
-    size = sizes_or_none((width, _number(found.get("Y"), width), _number(found.get("Z"), width)))
-    return size, unit if size else None, () if "Z" in found else (_CUBIC,)
+    names = {axis: found.get(f"{axis}Unit", "µm") for axis in "XYZ"}
+    edges = [_number(found.get(axis, found["X"]), 0.0) for axis in "XYZ"]
+    size, unit = stated_edges(edges, [names[axis if axis in found else "X"] for axis in "XYZ"])
+    return size, unit, () if "Z" in found else (_CUBIC,)
 
 
 def _resolution(page: Any) -> Stated:
