@@ -1,4 +1,4 @@
-"""Do calibrations with real heaps find the friction that they are not told? docs/calibration.md.
+"""Whether calibrations with simulated heaps find a friction that is hidden from them: docs/calibration.md.
 
     python -m benchmarks.blind_calibration DATASET RUNS RESULT.json [SET] [ENGINE]
 
@@ -6,15 +6,16 @@ Frictions are drawn from equal parts of the range, one a case. The wanted angle 
 HEAPS heaps of 1,000 particles of that friction, of those that have an angle; its standard error is the
 standard deviation of heaps about their means, from all cases, over the square root of their number. The
 calibration has N_RUNS heaps of other seeds. Runs that are in the folder RUNS already are kept. Each SET (0
-by default) has its own frictions and seeds, and needs its own folder. Two runs at a time, of one thread
-each.
+by default) has its own frictions and seeds, needs its own folder, and joins the others in RESULT. Two runs
+at a time, of one thread each.
 """
 
 import json
 import subprocess
 import sys
+from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
-from itertools import product
+from itertools import pairwise, product
 from pathlib import Path
 from typing import Any
 
@@ -24,6 +25,7 @@ from regolith_studio.dem.run_io import DOCUMENT, read_run
 
 LOW, HIGH, SEED = 0.05, 1.2, 7
 CASES, HEAPS, N_RUNS = 10, 4, 8
+PARTS = (LOW, 0.4, 0.8, HIGH)
 
 
 def main(dataset: Path, runs: Path, result: Path, number_of_set: int, engine: str) -> None:
@@ -55,8 +57,21 @@ def main(dataset: Path, runs: Path, result: Path, number_of_set: int, engine: st
     for each in rows:
         print(each)
     found = [[None if np.isnan(each) else round(each, 2) for each in some] for some in angles.tolist()]
-    content = {"angles_deg": found, "calibrations": rows}
+    sets = json.loads(result.read_text("utf-8"))["sets"] if result.exists() else {}
+    sets[str(number_of_set)] = {"angles_deg": found, "calibrations": rows}
+    content = {"sets": sets, "by_friction": {"rows": by_friction(sets)}}
     result.write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
+
+
+def by_friction(sets: Mapping[str, Any]) -> dict[str, list[float]]:
+    """Calibrations in three parts of the range: how many, how many intervals hold the truth, mean width."""
+    done = [case for each in sets.values() for case in each["calibrations"]]
+    rows = {}
+    for low, high in pairwise(PARTS):
+        part = [case for case in done if low <= case["friction"] < high]
+        width = float(np.mean([case["width"] for case in part]))
+        rows[f"{low} to {high}"] = [len(part), sum(case["covered"] for case in part), round(width, 2)]
+    return rows
 
 
 def row(folder: Path, friction: float, wanted: float, error: float) -> dict[str, Any]:

@@ -15,7 +15,7 @@ from scipy import stats
 
 DOCS = Path(__file__).parent
 RESULTS = DOCS.parent / "benchmarks" / "results"
-BLUE, ORANGE, GREEN = "#0072b2", "#e69f00", "#009e73"
+BLUE, ORANGE = "#0072b2", "#e69f00"
 CONFIDENCE = 0.95
 
 
@@ -27,9 +27,8 @@ def results(name: str) -> Any:
 def draw_friction(axis: Axes) -> None:
     """Means of up to four heaps a friction, from the blind calibrations; one deviation for all heaps."""
     angles: dict[float, list[float]] = {}
-    for path in RESULTS.glob("blind_calibration*.json"):
-        found = results(path.name)
-        for case, heaps in zip(found["calibrations"], found["angles_deg"], strict=True):
+    for each in results("blind_calibration.json")["sets"].values():
+        for case, heaps in zip(each["calibrations"], each["angles_deg"], strict=True):
             angles[case["friction"]] = [angle for angle in heaps if angle is not None]
     freedom = sum(len(heaps) - 1 for heaps in angles.values())
     deviation = np.sqrt(sum(np.var(heaps) * len(heaps) for heaps in angles.values()) / freedom)
@@ -65,19 +64,14 @@ def draw_facets(axis: Axes) -> None:
     axis.legend(frameon=False)
 
 
-def draw_sphericity(axis: Axes) -> None:
-    """Seven drawn populations: means of three heaps, and the response surface with its intervals."""
-    rows = sorted(results("population_heaps.json")["response_surface.json"]["rows"], key=_sphericity)
-    x = [_sphericity(row) for row in rows]
-    surface = np.array([row["surface"] for row in rows])
-    ends = np.array([[row["surface_low"], row["surface_high"]] for row in rows]).T
-    axis.errorbar(
-        x, surface, np.abs(ends - surface), fmt="s", color=GREEN, capsize=3, label="response surface"
-    )
-    axis.plot(x, [row["angle"] for row in rows], "o", color=BLUE, label="mean of three heaps")
+def draw_populations(axis: Axes) -> None:
+    """Means of up to three heaps of seven drawn populations, coloured by aspect ratio."""
+    rows = results("population_heaps.json")["response_surface.json"]["rows"]
+    x, angles, ratios = ([row[key] for row in rows] for key in ("sphericity", "angle", "aspect_ratio"))
+    points = axis.scatter(x, angles, c=ratios, cmap="cividis", s=40, edgecolors="black", linewidths=0.5)
+    axis.figure.colorbar(points, ax=axis, label="mean aspect ratio")
     axis.set_xlabel("mean sphericity of a population")
-    axis.set_title("friction 0.8, 1,000 particles, aspect ratios differ")
-    axis.legend(frameon=False)
+    axis.set_title("friction 0.8, 1,000 particles")
 
 
 def student(values: Sequence[float]) -> float:
@@ -85,14 +79,10 @@ def student(values: Sequence[float]) -> float:
     return float(stats.t.ppf((1 + CONFIDENCE) / 2, len(values) - 1) * stats.sem(values))
 
 
-def _sphericity(row: dict[str, float]) -> float:
-    return row["sphericity"]
-
-
 if __name__ == "__main__":
     figure = Figure(figsize=(12.6, 4.0), layout="constrained")
     axes = figure.subplots(1, 3)
-    for axis, draw in zip(axes, (draw_friction, draw_facets, draw_sphericity), strict=True):
+    for axis, draw in zip(axes, (draw_friction, draw_facets, draw_populations), strict=True):
         draw(axis)
         axis.set_ylabel("angle of repose (°)")
         axis.title.set_fontsize("medium")

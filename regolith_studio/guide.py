@@ -5,10 +5,10 @@ A block of a chapter names a file of ``benchmarks/results`` and holds Markdown w
     ```{results} dataset
     | shapes | AR | S |
     | ---: | ---: | ---: |
-    | 10 | {N/rows/10/0:.2f} | {N/rows/10/1:.2f} |
+    | 10 | {N>rows>10>0:.2f} | {N>rows>10>1:.2f} |
     ```
 
-A field is a path of keys; a step such as ``engine=mujoco,seed=1`` selects the records of a list, and a key of
+A field is a path of keys; a step such as ``engine=mujoco;seed=1`` selects the records of a list, and a key of
 a list of records is the list of their values. A list becomes one cell each, with ``mean`` its mean and half
 the width of Student's interval of 95 %, with ``range`` its smallest and largest number.
 """
@@ -49,11 +49,13 @@ def _results(name: str) -> Any:
 
 
 def _cell(name: str, field: str) -> str:
-    path, _, form = field.partition(":")
+    path, colon, form = field.rpartition(":")
+    path, form = (path, form) if colon else (form, "")
     value = _results(name)
-    for step in path.split("/"):
+    for step in path.split(">"):
         value = _below(value, step)
     summary, _, digits = form.rpartition(" ")
+    value = [each for each in value if each is not None] if isinstance(value, list) else value
     if summary == "mean":
         half_width = stdtrit(len(value) - 1, 0.975) * np.std(value, ddof=1) / np.sqrt(len(value))
         return f"{np.mean(value):{digits}} ± {half_width:{digits}}"
@@ -69,10 +71,10 @@ def _below(value: Any, step: str) -> Any:
     if step.isdigit():
         return value[int(step)]
     if "=" in step:
-        target = dict(each.split("=") for each in step.split(","))
+        target = dict(each.split("=") for each in step.split(";"))
         found = [row for row in value if all(str(row[key]) == text for key, text in target.items())]
     else:
-        found = [row[step] for row in value if row[step] is not None]
+        found = [row[step] for row in value]
     if not found:
         raise KeyError(step)
     return found

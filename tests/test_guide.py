@@ -33,12 +33,12 @@ def block(text: str) -> str:
 @pytest.mark.parametrize(
     ("text", "cells"),
     [
-        ("| 10 | {rows/10:.2f} |", "| 10 | 0.10 | 0.25 |"),
-        ("{rows/10/1:.2f}", "0.25"),
-        ("{rows/10:range .1f}", "0.1 to 0.2"),
-        ("{heaps/engine=a,seed=2/angle:.0f}", "34"),
-        ("{heaps/engine=a/angle:mean .0f}", "32 ± 25"),
-        ("{heaps/engine=b/angle:.0f}", "20"),
+        ("| 10 | {rows>10:.2f} |", "| 10 | 0.10 | 0.25 |"),
+        ("{rows>10>1:.2f}", "0.25"),
+        ("{rows>10:range .1f}", "0.1 to 0.2"),
+        ("{heaps>engine=a;seed=2>angle:.0f}", "34"),
+        ("{heaps>engine=a>angle:mean .0f}", "32 ± 25"),
+        ("{heaps>engine=b>angle:.0f}", "20"),
     ],
 )
 def test_that_a_field_of_a_table_is_the_number_of_the_results(text: str, cells: str) -> None:
@@ -46,7 +46,7 @@ def test_that_a_field_of_a_table_is_the_number_of_the_results(text: str, cells: 
 
 
 @pytest.mark.usefixtures("results")
-@pytest.mark.parametrize("field", ["{rows/11}", "{heaps/engine=c/angle:.0f}"])
+@pytest.mark.parametrize("field", ["{rows>11}", "{heaps>engine=c>angle:.0f}"])
 def test_that_a_number_that_was_not_measured_is_an_error(field: str) -> None:
     with pytest.raises(KeyError):
         block(field)

@@ -50,7 +50,9 @@ def shape_statistics(datasets: Sequence[Dataset], keys: Sequence[str]) -> FloatA
 def fit_repose_surface(
     study: ReposeStudy, statistics: Mapping[str, FloatArray], keys: Sequence[str]
 ) -> ReposeSurface:
-    """The surface through all runs that became piles.
+    """The surface through the mean angle of each dataset, over its runs that became piles.
+
+    Heaps of one dataset share its shapes, so that datasets, not heaps, are the independent results.
 
     Parameters
     ----------
@@ -62,11 +64,12 @@ def fit_repose_surface(
     InputError
         If the runs do not suffice.
     """
-    piles = [run for run in study.runs if run.angle is not None]
-    values = np.array([statistics[str(run.value)] for run in piles]).reshape(len(piles), len(keys))
-    angles = np.array([run.angle for run in piles], dtype=np.float64)
+    angles = {value: study.angles(value) for value in study.values}
+    piles = [value for value in study.values if angles[value]]
+    values = np.array([statistics[str(value)] for value in piles]).reshape(len(piles), len(keys))
+    means = np.array([np.mean(angles[value]) for value in piles])
     rows = np.array([statistics[str(value)] for value in study.values])
-    return ReposeSurface(study, rows, fit_response_surface(keys, values, angles))
+    return ReposeSurface(study, rows, fit_response_surface(keys, values, means))
 
 
 def surface_table(found: ReposeSurface) -> Table:

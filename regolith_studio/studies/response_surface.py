@@ -1,7 +1,7 @@
 """Response surface: a polynomial of one or more factors through scattered results, with intervals.
 
 Least squares (Box and Wilson, *J. R. Stat. Soc. B* 13 (1951) 1): linear, or with all squares and products
-where there are enough different points.
+where there are twice as many different points as terms.
 """
 
 from collections.abc import Sequence
@@ -91,7 +91,7 @@ def fit_response_surface(factors: Sequence[str], values: FloatArray, results: Fl
     scaled = (values - centre) / np.where(width > 0.0, width, 1.0)
     linear: list[tuple[int, ...]] = [(), *((k,) for k in range(len(factors)))]
     quadratic = [*linear, *combinations_with_replacement(range(len(factors)), 2)]
-    powers = quadratic if n_points > len(quadratic) and _independent(scaled, quadratic) else linear
+    powers = quadratic if n_points >= 2 * len(quadratic) and _independent(scaled, quadratic) else linear
     if not _independent(scaled, powers):
         raise InputError(f"{', '.join(factors)} do not vary independently of each other; leave one out.")
     terms = _terms(scaled, powers)

@@ -4,7 +4,11 @@ import numpy as np
 import pytest
 
 from regolith_studio.errors import InputError
-from regolith_studio.studies.response_surface import fit_response_surface
+from regolith_studio.studies.repose import runs_from
+from regolith_studio.studies.repose_surface import fit_repose_surface
+from regolith_studio.studies.response_surface import ResponseSurface, fit_response_surface
+
+from .test_repose_means import document
 
 GRID = np.stack(np.meshgrid(np.linspace(1.0, 2.0, 4), np.linspace(0.6, 0.9, 3)), axis=-1).reshape(-1, 2)
 """Aspect ratios and sphericities."""
@@ -52,3 +56,22 @@ def test_that_intervals_of_95_percent_cover_the_true_angle_in_95_of_100_cases() 
 def test_that_results_which_determine_no_surface_are_refused(values: np.ndarray, sentence: str) -> None:
     with pytest.raises(InputError, match=sentence):
         fit_response_surface(NAMES, values, np.zeros(len(values)))
+
+
+def test_that_heaps_of_one_dataset_count_as_one_result() -> None:
+    """Seven datasets, with one heap each or three of the same angle."""
+    rng = np.random.default_rng(3)
+    statistics = {f"set-{k}": values for k, values in enumerate(GRID[:7])}
+    angles = {name: 20.0 + 3.0 * rng.normal() for name in statistics}
+
+    def surface(repeats: int) -> ResponseSurface:
+        rows = [
+            ("dataset", name, f"{name}-{seed}", document(seed, angle))
+            for name, angle in angles.items()
+            for seed in range(repeats)
+        ]
+        return fit_repose_surface(runs_from(rows), statistics, NAMES).surface
+
+    change, half = surface(1).effects()
+    assert surface(3).effects()[0] == pytest.approx(change)
+    assert surface(3).effects()[1] == pytest.approx(half)

@@ -47,7 +47,7 @@ time step that is set. The solver's small steps within a step stay as long as th
 CONTACT_FREQUENCY, CONTACT_DAMPING = 20.0, 3.0
 """Natural frequency and damping ratio with which overlaps are pushed apart. With the solver's own (30, 60 for
 what does not move, and 10) heaps at rest tremble and creep: half of their particles move by 0.05 diameters in
-25 sqrt(d/g), and by 0.013 with these; overlaps are no deeper (docs/repose_rapier.md)."""
+25 sqrt(d/g), and by 0.013 with these; overlaps are no deeper (docs/repose_engines.md)."""
 MAX_SPEED = 400.0
 """Limit of the solver where none is set."""
 
