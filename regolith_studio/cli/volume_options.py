@@ -40,7 +40,7 @@ class VolumeOptions:
         str,
         typer.Option(
             "--dataset",
-            help="Dataset of an HDF5 file, level of an OME-Zarr, or series of a DICOM folder.",
+            help="Dataset of an HDF5 file, level of an OME-Zarr, or series of a folder of slices or DICOM.",
             metavar="NAME",
         ),
     ] = ""
@@ -52,6 +52,10 @@ class VolumeOptions:
             metavar="AXES",
         ),
     ] = ""
+    allow_gaps: Annotated[
+        bool,
+        typer.Option("--allow-gaps", help="Read slices that are absent from a folder as empty ones."),
+    ] = False
     shape: Annotated[
         str,
         typer.Option("--shape", help="Number of voxels of a raw file along x, y and z.", metavar="NX,NY,NZ"),
@@ -89,6 +93,7 @@ class VolumeOptions:
             self.dataset or None,
             _raw_layout(self.shape, self.dtype, self.byte_order, self.offset),
             self.axes or None,
+            allow_gaps=self.allow_gaps,
         )
 
 

@@ -195,6 +195,8 @@ class VolumeInput:
         Of an NPY or HDF5 array, the slowest first: ``zyx`` by default.
     group
         Name of the group of its particles; by default that of the file.
+    allow_gaps
+        Whether slices that are absent from a folder become empty ones.
     """
 
     path: Path
@@ -205,6 +207,7 @@ class VolumeInput:
     raw: RawLayout | None = None
     axes: str | None = None
     group: str = ""
+    allow_gaps: bool = False
 
     def opened(self) -> VolumeFile:
         """The volume, read slab by slab.
@@ -224,4 +227,5 @@ class VolumeInput:
             unit=self.unit,
             kind=self.kind,
             raw=self.raw,
+            allow_gaps=self.allow_gaps,
         )

@@ -114,7 +114,9 @@ def scan_of(
 def read_header(given: VolumeInput) -> Steps:
     """Read what a file says about itself; returns a ``VolumeHeader``."""
     yield Started(Message(N_("Inspecting {name}"), name=given.path.name))
-    return describe_volume(given.path, dataset=given.dataset, axes=given.axes, raw=given.raw)
+    return describe_volume(
+        given.path, dataset=given.dataset, axes=given.axes, raw=given.raw, allow_gaps=given.allow_gaps
+    )
 
 
 @dataclass(frozen=True, eq=False)

@@ -80,7 +80,7 @@ def kind_of_all(paths: Sequence[Path]) -> FileKind:
 def _kind_of_folder(folder: Path) -> FileKind:
     if (folder / "dataset.json").is_file():
         return FileKind.DATASET
-    from regolith_studio.readers.volume_formats.slices import SLICE_SUFFIXES
+    from regolith_studio.readers.voxels.slice_series import SLICE_SUFFIXES
 
     try:
         if is_zarr(folder) or dicom_names(folder):

@@ -116,7 +116,7 @@ class VolumeEntry(Strict):
     file
         File, or folder of slices, relative to the recipe; ``sample:grey``, ``sample:labels`` or
         ``sample:gradient`` for a scan that ships with the program.
-    voxel_size, unit, kind, dataset, axes, raw
+    voxel_size, unit, kind, dataset, axes, allow_gaps, raw
         As ``regolith-studio extract`` takes them; by default what the file says.
     recipe
         An ``extraction.json`` with all settings, as ``extract`` and the window write it.
@@ -132,6 +132,7 @@ class VolumeEntry(Strict):
     kind: Literal["labels", "grey"] | None = None
     dataset: str | None = None
     axes: str | None = None
+    allow_gaps: bool = False
     raw: RawVolume | None = None
     recipe: str | None = None
     region: dict[str, Any] = Field(default_factory=dict)

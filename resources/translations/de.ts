@@ -2804,6 +2804,10 @@
         <translation>Weggelassen</translation>
     </message>
     <message>
+        <source>Left out {count} images whose names do not fit: {names}.</source>
+        <translation>Nicht gelesen: {count} Bilder, deren Namen nicht passen: {names}.</translation>
+    </message>
+    <message>
         <source>Left out: {names}.</source>
         <translation>Ausgelassen: {names}.</translation>
     </message>
@@ -5060,6 +5064,10 @@
         <translation>Scheibe, in mittleren d</translation>
     </message>
     <message>
+        <source>Slices that are absent were left empty: {numbers}.</source>
+        <translation>Fehlende Schichten blieben leer: {numbers}.</translation>
+    </message>
+    <message>
         <source>Smallest</source>
         <translation>Kleinste</translation>
     </message>
@@ -5608,10 +5616,6 @@
         <translation>Die Datei nennt nur die Breite eines Pixels; als Abstand der Schichten wurde dieselbe Länge genommen.</translation>
     </message>
     <message>
-        <source>The file states voxel edges in different units; they were ignored.</source>
-        <translation>Die Datei nennt Voxelkanten in verschiedenen Einheiten; sie wurden übergangen.</translation>
-    </message>
-    <message>
         <source>The files of the {count} open particles, as chosen now</source>
         <translation>Die Dateien der {count} geöffneten Partikel, wie jetzt eingestellt</translation>
     </message>
@@ -5626,6 +5630,10 @@
     <message>
         <source>The folder holds a dataset: choose another one, or tick that it is replaced.</source>
         <translation>Der Ordner enthält einen Datensatz: wählen Sie einen anderen oder haken Sie an, dass er ersetzt wird.</translation>
+    </message>
+    <message>
+        <source>The folder holds {count} series of slices; {name} was read.</source>
+        <translation>Der Ordner enthält {count} Serien von Schichten; {name} wurde gelesen.</translation>
     </message>
     <message>
         <source>The folder holds {count} series; the longest was read.</source>
@@ -5706,6 +5714,10 @@
     <message>
         <source>The number of voxels in its name agrees with its size.</source>
         <translation>Die Anzahl der Voxel in ihrem Namen stimmt mit ihrer Größe überein.</translation>
+    </message>
+    <message>
+        <source>The numbers of the slices go up by {step}; they were taken as neighbours.</source>
+        <translation>Die Nummern der Schichten steigen um {step}; sie wurden als benachbart gelesen.</translation>
     </message>
     <message>
         <source>The one with the nearest sphericity is kept.</source>

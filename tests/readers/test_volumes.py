@@ -259,6 +259,19 @@ def test_that_labels_written_as_floats_become_whole_numbers(tmp_path) -> None:
     assert (volume.kind, volume.array.dtype) == ("labels", np.int64)
 
 
+@pytest.mark.parametrize("dtype", [np.int16, np.int32, np.int64, np.float32])
+def test_that_negative_labels_are_refused(dtype, tmp_path) -> None:
+    labels = np.zeros((12, 20, 20), dtype=dtype)
+    labels[:, 2:8, 2:8], labels[:, 10:16, 10:16] = 7, -5
+    np.save(tmp_path / "a.npy", labels)
+    assert describe_volume(tmp_path / "a.npy").kind == "labels"
+    with pytest.raises(FileError, match=r"holds the label -5; labels are not negative"):
+        read_volume(tmp_path / "a.npy", voxel_size=1.0)
+    with pytest.raises(FileError, match=r"holds the label -5; labels are not negative"):
+        open_slabs(tmp_path / "a.npy", voxel_size=1.0).read(0, 2)
+    assert read_volume(tmp_path / "a.npy", voxel_size=1.0, kind="grey").array.min() == -5
+
+
 def test_that_a_label_volume_with_fractions_is_refused(tmp_path) -> None:
     np.save(tmp_path / "a.npy", SLICES + 0.5)
     with pytest.raises(FileError, match="labels are whole numbers"):

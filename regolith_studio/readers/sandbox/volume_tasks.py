@@ -85,6 +85,8 @@ def open_volume_file(path: Path, request: dict[str, Any]) -> tuple[OpenVolume, V
     row, _ = volume_format_of(path)
     if request.get("axes") and row.key not in WITH_AXES:
         raise FileError(f"is {row.label}, which states its axes itself; leave the axes out.")
+    if request.get("allow_gaps") and row.key != "slices":
+        raise FileError(f"is {row.label}, not a folder of slices, of which alone some may be absent.")
     row.prepare()
     with np.errstate(all="ignore"):
         volume = row.open(path, request)
@@ -131,7 +133,9 @@ def volume_format_of(path: Path) -> tuple[VolumeFormat, tuple[str, ...]]:
 
 
 def _open_one(request: dict[str, Any]) -> tuple[OpenVolume, VolumeFormat]:
-    key = repr([request.get(name) for name in ("path", "stamp", "dataset", "raw", "names", "axes")])
+    key = repr(
+        [request.get(name) for name in ("path", "stamp", "dataset", "raw", "names", "axes", "allow_gaps")]
+    )
     if key not in _opened:
         for volume, _ in _opened.values():
             volume.close()

@@ -3,6 +3,7 @@
 import re
 import struct
 from collections.abc import Mapping
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -10,11 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from regolith_studio.errors import FileError
-from regolith_studio.readers.error_messages import display_name
+from regolith_studio.messages import N_, Message
+from regolith_studio.readers.error_messages import display_name, printable
 from regolith_studio.readers.number_rows import float_or_nan
 from regolith_studio.readers.volume_formats import VolumeFormat
 from regolith_studio.readers.voxels.header import (
     MAX_SLICE_BYTES,
+    DatasetEntry,
     Sizes,
     VoxelHeader,
     format_shape,
@@ -22,9 +25,14 @@ from regolith_studio.readers.voxels.header import (
     voxel_type,
 )
 from regolith_studio.readers.voxels.scanner_headers import text_fields
+from regolith_studio.readers.voxels.slice_series import (
+    SLICE_SUFFIXES,
+    SliceSeries,
+    number_ranges,
+    slice_series,
+)
 from regolith_studio.readers.voxels.tiff import check_page, open_tiff_file, stated_size
 
-SLICE_SUFFIXES = (".tif", ".tiff", ".png", ".bmp")
 _COUNTER = re.compile(r"\d+$")
 _BMP = struct.Struct("<10xIIiiHHIIxxxxxxxxI")
 """Place of the pixels, length of the header, width, height, planes, bits, packing, size, colours."""
@@ -33,15 +41,18 @@ _BMP = struct.Struct("<10xIIiiHHIIxxxxxxxxI")
 class SliceFiles:
     """Slices that are files of their own, opened one after the other."""
 
-    def __init__(self, paths: list[Path], header: VoxelHeader) -> None:
+    def __init__(self, paths: list[Path | None], header: VoxelHeader) -> None:
         self.header = header
         self._paths = paths
 
     def read(self, z0: int, z1: int) -> NDArray[Any]:
-        """Slices z0 to z1, shape (z1 - z0, ny, nx)."""
+        """Slices z0 to z1, shape (z1 - z0, ny, nx); absent ones are zero."""
         _, ny, nx = self.header.shape
         out = np.empty((z1 - z0, ny, nx), self.header.dtype)
         for place, path in enumerate(self._paths[z0:z1]):
+            if path is None:
+                out[place] = 0
+                continue
             image = _image(path)
             if image.shape != (ny, nx) or image.dtype != self.header.dtype:
                 raise FileError(
@@ -56,25 +67,78 @@ class SliceFiles:
 
 
 def open_slices(path: Path, options: Mapping[str, Any]) -> SliceFiles:
-    """The files ``options["names"]`` of a folder as the slices of one volume, in that order.
+    """The series ``options["dataset"]`` among the files ``options["names"]``, by default the longest.
 
     Raises
     ------
     FileError
-        If there are none, or the first one cannot be read.
+        If there is none, slices are missing and not allowed to, or the first cannot be read.
     """
-    paths = [path / str(name) for name in options.get("names") or ()]
-    if not paths:
+    series, _ = slice_series(map(str, options.get("names") or ()))
+    if not series:
         raise FileError(
             "holds no slices: three images or more whose names differ in a number only, such as "
             f"slice_001.tif ({', '.join(SLICE_SUFFIXES)})."
         )
-    first = _image(paths[0])
-    size, unit, notes = _logged(paths[0]) or _stated(paths[0])
-    shape = (len(paths), *first.shape)
+    chosen = _chosen(series, options.get("dataset"))
+    names = chosen.in_place(bool(options.get("allow_gaps")))
+    paths = [None if name is None else path / name for name in names]
+    first = _image(path / chosen.files[0])
+    size, unit, notes = _logged(path / chosen.files[0]) or _stated(path / chosen.files[0])
+    several = len(series) > 1
     return SliceFiles(
-        paths, VoxelHeader((shape[0], shape[1], shape[2]), first.dtype, size, unit, None, notes)
+        paths,
+        VoxelHeader(
+            (len(paths), first.shape[0], first.shape[1]),
+            first.dtype,
+            size,
+            unit,
+            None,
+            (*_notes(path, series, chosen, options.get("dataset")), *notes),
+            tuple(map(partial(_entry, path), series)) if several else (),
+            chosen.name if several else None,
+        ),
     )
+
+
+def _chosen(series: list[SliceSeries], wanted: Any) -> SliceSeries:
+    if wanted is None:
+        return max(series, key=lambda each: len(each.files))  # of several the first by its name
+    for each in series:
+        if each.name == str(wanted):
+            return each
+    names = ", ".join(printable(each.name)[:40] for each in series[:4])
+    raise FileError(f"has no series “{printable(str(wanted))[:40]}”; it holds {names}.")
+
+
+def _notes(folder: Path, series: list[SliceSeries], chosen: SliceSeries, wanted: Any) -> tuple[str, ...]:
+    """Which series of several was read, which slices are absent, and which images are no slices."""
+    notes: list[str] = []
+    if wanted is None and len(series) > 1:
+        template = N_("The folder holds {count} series of slices; {name} was read.")
+        notes.append(Message(template, count=len(series), name=printable(chosen.name)[:60]))
+    if chosen.missing:
+        template = N_("Slices that are absent were left empty: {numbers}.")
+        notes.append(Message(template, numbers=number_ranges(chosen.missing, chosen.step)))
+    if chosen.step > 1:
+        template = N_("The numbers of the slices go up by {step}; they were taken as neighbours.")
+        notes.append(Message(template, step=chosen.step))
+    slices = {name for each in series for name in each.files}
+    others = sorted(
+        entry.name
+        for entry in folder.iterdir()
+        if entry.suffix.lower() in SLICE_SUFFIXES and entry.name not in slices and entry.name[0] != "."
+    )
+    if others:
+        template = N_("Left out {count} images whose names do not fit: {names}.")
+        shown = ", ".join(printable(name)[:30] for name in others[:3]) + (", …" if len(others) > 3 else "")
+        notes.append(Message(template, count=len(others), names=shown))
+    return tuple(notes)
+
+
+def _entry(folder: Path, series: SliceSeries) -> DatasetEntry:
+    first = _image(folder / series.files[0])
+    return DatasetEntry(series.name, (first.shape[1], first.shape[0], len(series.files)), first.dtype.name)
 
 
 def _image(path: Path) -> NDArray[Any]:

@@ -1,7 +1,6 @@
 """Find volumes: a file, a folder of slices, or each volume in a folder."""
 
 import os
-import re
 from pathlib import Path
 
 from regolith_studio.errors import FileError
@@ -10,11 +9,7 @@ from regolith_studio.readers.error_messages import display_name, message_about
 from regolith_studio.readers.sandbox.parent import checked_size
 from regolith_studio.readers.volume_formats import VOLUME_FORMATS, volume_suffixes
 from regolith_studio.readers.voxels.folders import dicom_names, is_dicom, is_zarr, zarr_names
-
-SLICE_SUFFIXES = (".tif", ".tiff", ".png", ".bmp")
-MIN_SLICES = 3
-MAX_SLICES = 100_000
-_NUMBER = re.compile(r"\d+")
+from regolith_studio.readers.voxels.slice_series import slice_series
 
 
 def volume_files(path: str | Path) -> tuple[Path, ...]:
@@ -67,20 +62,9 @@ def member_folder(path: Path) -> Path:
 
 
 def slice_names(folder: Path) -> tuple[str, ...]:
-    """Names of the slices in a folder, in the order of their numbers; empty if they are none.
-
-    Of several series, that with the most slices counts.
-    """
-    series: dict[tuple[str, ...], list[str]] = {}
-    for name in _visible_names(folder):
-        if name.lower().endswith(SLICE_SUFFIXES):
-            series.setdefault(_without_counter(name), []).append(name)
-    if not series:
-        return ()
-    names = max(series.values(), key=len)
-    if not MIN_SLICES <= len(names) <= MAX_SLICES:
-        return ()
-    return tuple(sorted(names, key=natural_key))
+    """Names of the slices in a folder, series by series in the order of their numbers; or none."""
+    series, _ = slice_series(_visible_names(folder))
+    return tuple(name for each in series for name in each.files)
 
 
 def members_stamp(folder: Path, names: tuple[str, ...]) -> tuple[int, list[int]]:
@@ -104,12 +88,3 @@ def _visible_names(folder: Path) -> list[str]:
 
 def _visible_folders(folder: Path) -> list[str]:
     return [entry.name for entry in os.scandir(folder) if not entry.name.startswith(".") and entry.is_dir()]
-
-
-def _without_counter(name: str) -> tuple[str, ...]:
-    """The name without its last number, which counts the slices."""
-    numbers = list(_NUMBER.finditer(Path(name).stem))
-    if not numbers:
-        return (name,)
-    start, end = numbers[-1].span()
-    return name[:start], name[end:]

@@ -218,9 +218,10 @@ MAX_CLASSES = 8
 def guess_kind(slices: NDArray[Any]) -> Kind:
     """``labels`` if each particle seems to have its own number, else ``grey``.
 
-    Labels are whole numbers, not negative, constant over wide areas, and each of them is in few
+    Labels are whole numbers, constant over wide areas, and each of them is in few
     pieces: a mask or a map of phases has many pieces of one value and is grey (to be split). So is
-    a map of few values with no 0, which has a number for what is between the grains, too.
+    a map of few values with no 0, which has a number for what is between the grains, too. Negative
+    values are greys unless most values are 0; if they are labels, reading them is refused.
 
     Parameters
     ----------
@@ -229,7 +230,7 @@ def guess_kind(slices: NDArray[Any]) -> Kind:
     """
     if slices.dtype.kind == "b" or (slices.dtype.kind == "f" and not _whole(slices)):
         return "grey"
-    if (slices.dtype.kind in "if" and slices.min() < 0) or not slices.any():
+    if not slices.any() or (slices.dtype.kind in "if" and slices.min() < 0 and not _mostly_zero(slices)):
         return "grey"
     if slices.all() and len(np.unique(slices)) <= MAX_CLASSES:
         return "grey"
@@ -238,6 +239,10 @@ def guess_kind(slices: NDArray[Any]) -> Kind:
     if not inside.any() or (left == right)[inside].mean() < MIN_EQUAL_NEIGHBOURS:
         return "grey"
     return "labels" if _pieces_a_label(slices) <= MAX_PIECES else "grey"
+
+
+def _mostly_zero(slices: NDArray[Any]) -> bool:
+    return bool(2 * np.count_nonzero(slices) < slices.size)
 
 
 def _whole(slices: NDArray[Any]) -> bool:

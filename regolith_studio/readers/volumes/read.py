@@ -73,8 +73,8 @@ class VolumeFile:
         if not 0 <= z0 < z1 <= self.shape[2]:
             raise ValueError(f"slices {z0} to {z1} are not within 0 to {self.shape[2]}")
         voxels = self._file.read(z0, z1)
-        if self.kind == "labels" and voxels.dtype.kind == "f":
-            voxels = _whole_numbers(self._file.path, voxels)
+        if self.kind == "labels":
+            voxels = _checked_labels(self._file.path, voxels)
         return voxels.T
 
     def parts(self) -> list[tuple[int, int]]:
@@ -120,6 +120,8 @@ class VolumeFile:
         plain = self._file.plain
         if plain is None or plain.slices_last or plain.stored != self.dtype:
             return None
+        if self.kind == "labels" and self.dtype.kind != "u":
+            return None  # they are checked as they are read
         return np.memmap(plain.path, plain.stored, "r", plain.offset, self.shape[::-1]).T
 
     def slabs(self, depth: int, overlap: int = 0) -> Iterator[tuple[int, NDArray[Any]]]:
@@ -145,6 +147,7 @@ def describe_volume(
     *,
     dataset: str | None = None,
     axes: str | None = None,
+    allow_gaps: bool = False,
     raw: RawLayout | None = None,
     sandbox: Sandbox | None = None,
 ) -> VolumeHeader:
@@ -159,6 +162,8 @@ def describe_volume(
     axes
         Letters of the array's axes, the slowest first, where an NPY or HDF5 file does not state
         them (default ``zyx``, slices first) or states them wrongly.
+    allow_gaps
+        Whether slices that are absent from a folder become empty ones, instead of a refusal.
     raw
         Layout of a raw file.
     sandbox
@@ -169,7 +174,7 @@ def describe_volume(
     FileError
         With one sentence if the file cannot be read.
     """
-    file = open_slab_reader(Path(path), dataset, raw, sandbox, axes)
+    file = open_slab_reader(Path(path), dataset, raw, sandbox, axes, allow_gaps)
     header = file.header
     nz, ny, nx = header.shape
     return VolumeHeader(
@@ -192,6 +197,7 @@ def read_volume(
     *,
     dataset: str | None = None,
     axes: str | None = None,
+    allow_gaps: bool = False,
     voxel_size: VoxelSize | None = None,
     unit: str | None = None,
     kind: VolumeKind | None = None,
@@ -204,7 +210,7 @@ def read_volume(
 
     Parameters
     ----------
-    path, dataset, axes, raw, sandbox
+    path, dataset, axes, allow_gaps, raw, sandbox
         As for `describe_volume`.
     voxel_size
         One edge, or three along x, y and z, in `unit` (micrometres without one); by default that
@@ -225,14 +231,14 @@ def read_volume(
     InputError
         If the voxel size is unknown, or the box lies outside the volume.
     """
-    file = open_slab_reader(Path(path), dataset, raw, sandbox, axes)
+    file = open_slab_reader(Path(path), dataset, raw, sandbox, axes, allow_gaps)
     edges = voxel_size_in_micrometres(file.path, (file.header.voxel_size, file.header.unit), voxel_size, unit)
     box = _checked_bounds(file, bounds)
     _check_memory(file, box)
     kind = kind or file.header.kind or _guess_kind(file)
     array = _read_box(file, box, on_progress)
-    if kind == "labels" and array.dtype.kind == "f":
-        array = _whole_numbers(file.path, array)
+    if kind == "labels":
+        array = _checked_labels(file.path, array)
     (z0, _), (y0, _), (x0, _) = box
     return Volume(array.T, np.array(edges), kind, _name_of(file), (float(x0), float(y0), float(z0)))
 
@@ -242,6 +248,7 @@ def open_slabs(
     *,
     dataset: str | None = None,
     axes: str | None = None,
+    allow_gaps: bool = False,
     voxel_size: VoxelSize | None = None,
     unit: str | None = None,
     kind: VolumeKind | None = None,
@@ -252,7 +259,7 @@ def open_slabs(
 
     Parameters and errors are those of `read_volume`.
     """
-    file = open_slab_reader(Path(path), dataset, raw, sandbox, axes)
+    file = open_slab_reader(Path(path), dataset, raw, sandbox, axes, allow_gaps)
     edges = voxel_size_in_micrometres(file.path, (file.header.voxel_size, file.header.unit), voxel_size, unit)
     nz, ny, nx = file.header.shape
     kind = kind or file.header.kind or _guess_kind(file)
@@ -309,8 +316,16 @@ def _read_box(file: SlabReader, box: Bounds, on_progress: SliceListener | None) 
     return out
 
 
-def _whole_numbers(path: Path, array: NDArray[Any]) -> NDArray[Any]:
-    """Labels that a file holds as floats."""
+def _checked_labels(path: Path, array: NDArray[Any]) -> NDArray[Any]:
+    """Labels as whole numbers, none of which is negative."""
+    if array.dtype.kind in "if" and array.size and (low := array.min()) < 0:
+        raise FileError(
+            message_about(
+                path, f"holds the label {low:g}; labels are not negative. Read greys as such (--kind grey)."
+            )
+        )
+    if array.dtype.kind != "f":
+        return array
     if not np.isfinite(array).all() or (array != np.floor(array)).any():
         raise FileError(message_about(path, "holds numbers with fractions; labels are whole numbers."))
     return array.astype(np.int64)

@@ -147,6 +147,7 @@ def open_slab_reader(
     raw: RawLayout | None = None,
     sandbox: Sandbox | None = None,
     axes: str | None = None,
+    allow_gaps: bool = False,
 ) -> SlabReader:
     """A volume's header, read and checked by the child.
 
@@ -170,6 +171,7 @@ def open_slab_reader(
         "raw": None if raw is None else raw.as_request(),
         "names": [] if path.is_dir() and is_zarr(path) else list(names),
         "axes": axes,
+        "allow_gaps": allow_gaps,
     }
     reader.request_within("volume-prepare", path, START_SECONDS)
     work = WORK_SECONDS + size / BYTES_OPENED_A_SECOND

@@ -129,6 +129,7 @@ def entry_of(volume: VolumeInput, settings: GrainSettings) -> VolumeEntry:
         kind=volume.kind,
         dataset=volume.dataset,
         axes=volume.axes,
+        allow_gaps=volume.allow_gaps,
         raw=None if raw is None else RawVolume(**{**asdict(raw), "shape": list(raw.shape)}),
         **settings.as_document(),
     )
@@ -261,6 +262,7 @@ def _volume_input(entry: VolumeEntry, base: Path) -> VolumeInput:
         entry.dataset,
         raw,
         **({} if entry.axes is None else {"axes": entry.axes}),
+        allow_gaps=entry.allow_gaps,
     )
 
 
