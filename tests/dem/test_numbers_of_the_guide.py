@@ -1,4 +1,4 @@
-"""Numbers in docs/repose*.md and docs/changed_shapes.md against code and results of the benchmarks."""
+"""Numbers in docs/repose*.md and docs/exporters.md against code and results of the benchmarks."""
 
 import json
 import re
@@ -28,7 +28,7 @@ from regolith_studio.dem.scaling_report import rayleigh_time, scaling_report
 ROOT = Path(__file__).parents[2]
 REPOSE = "\n".join(path.read_text("utf-8") for path in sorted((ROOT / "docs").glob("repose*.md")))
 ENGINES = ("mujoco", "lammps")
-EXPORTERS = (ROOT / "docs" / "changed_shapes.md").read_text("utf-8")
+EXPORTERS = (ROOT / "docs" / "exporters.md").read_text("utf-8")
 
 
 def rows_of(text: str, header: str) -> list[list[str]]:

@@ -28,7 +28,7 @@ SCANCEL = '#!/bin/sh\nkill -TERM -- "-$1"\n'
 
 def script() -> str:
     """The Python of the guide's paragraph on SLURM."""
-    blocks = re.findall(r"```python\n(.*?)```", (ROOT / "docs" / "cluster.md").read_text(), flags=re.DOTALL)
+    blocks = re.findall(r"```python\n(.*?)```", (ROOT / "docs" / "batch.md").read_text(), flags=re.DOTALL)
     (found,) = [block for block in blocks if "SLURMCluster" in block]
     return found
 
@@ -79,7 +79,7 @@ def test_that_the_script_of_the_guide_brings_workers_that_give_the_same_bytes(
         return ""
 
     names = {"input": work, "print": said.append}
-    exec(compile(here(script()), "docs/cluster.md", "exec"), names)
+    exec(compile(here(script()), "docs/batch.md", "exec"), names)
     names["cluster"].close()
     for _ in run_recipe(wish, tmp_path, tmp_path / "b" / "out"):
         pass

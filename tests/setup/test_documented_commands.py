@@ -18,12 +18,18 @@ ELSEWHERE = {
     "serve": "does not end; tests/web starts it",
     "repose": "heaps of minutes; tests/dem and tests/scene have smaller ones",
     "classify": "needs a painted scan; tests/cli/test_classify.py has one",
-    "cluster": "needs a scheduler; tests/jobs/test_dask_cluster.py has one",
 }
 """First words of commands that run in other tests."""
-ELSEWHERE_PAGES = ("plugins.md", "classifiers.md", "objects.md", "pixel_classifier.md", "cluster.md", *SHORT)
+ELSEWHERE_PAGES = ("plugins.md", "classifiers.md", "objects.md", "pixel_classifier.md", *SHORT)
 """Pages whose commands need plug-ins or painted scans, or run in test_documented_code.py."""
-PAGES = sorted({page for page, words in commands() if words[0] not in ELSEWHERE} - set(ELSEWHERE_PAGES))
+
+
+def is_run(words: list[str]) -> bool:
+    """Whether a command is run here; tests/jobs/test_dask_cluster.py has those of a cluster."""
+    return words[0] not in ELSEWHERE and "--address" not in words
+
+
+PAGES = sorted({page for page, words in commands() if is_run(words)} - set(ELSEWHERE_PAGES))
 NAMES = {
     "MESHES": "grains",
     "MESH": "grain.stl",
@@ -110,7 +116,7 @@ def test_that_the_commands_of_a_page_run_one_after_the_other(
     page: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert run(FIRST.get(page, "check").split()) == 0
-    for words in (adapted(words) for name, words in commands() if name == page and words[0] not in ELSEWHERE):
+    for words in (adapted(words) for name, words in commands() if name == page and is_run(words)):
         if words[0] == "extract":  # the grains of the other commands stay
             words[words.index("-o") + 1] += "-of-scan"
         assert run(words) == 0, (words, capsys.readouterr().err)
