@@ -8,9 +8,9 @@ A block of a chapter names a file of ``benchmarks/results`` and holds Markdown w
     | 10 | {N>rows>10>0:.2f} | {N>rows>10>1:.2f} |
     ```
 
-A field is a path of keys; a step such as ``engine=mujoco;seed=1`` selects the records of a list, and a key of
-a list of records is the list of their values. A list becomes one cell each, with ``mean`` its mean and half
-the width of Student's interval of 95 %, with ``range`` its smallest and largest number.
+A field is a path of keys. A step such as ``engine=mujoco;seed=1`` selects the records of a list, a key of a
+list of records is the list of their values, ``:5`` its first five. A list becomes one cell each,
+with ``mean`` its mean and half the width of Student's interval of 95 %, with ``range`` its ends.
 """
 
 import json
@@ -70,6 +70,8 @@ def _below(value: Any, step: str) -> Any:
         return value[step]
     if step.isdigit():
         return value[int(step)]
+    if step.startswith(":"):
+        return value[: int(step[1:])]
     if "=" in step:
         target = dict(each.split("=") for each in step.split(";"))
         found = [row for row in value if all(str(row[key]) == text for key, text in target.items())]

@@ -35,6 +35,7 @@ def block(text: str) -> str:
     [
         ("| 10 | {rows>10:.2f} |", "| 10 | 0.10 | 0.25 |"),
         ("{rows>10>1:.2f}", "0.25"),
+        ("{rows>10>:1:.2f}", "0.10"),
         ("{rows>10:range .1f}", "0.1 to 0.2"),
         ("{heaps>engine=a;seed=2>angle:.0f}", "34"),
         ("{heaps>engine=a>angle:mean .0f}", "32 ± 25"),
