@@ -55,5 +55,7 @@ def coarsen(
         if len(done) > len(failed):
             print_table(error_table(done))
         print_errors(remarks(done))
-        typer.echo(f"{len(done) - len(failed)} of {len(done)} particles coarsened in {output}")
-    raise typer.Exit(exit_code(meshes, loaded, len(failed)))
+        typer.echo(
+            f"{len(done) - len(failed)} of {len(done) + len(loaded.problems)} particles coarsened in {output}"
+        )
+    raise typer.Exit(exit_code(loaded, len(failed)))

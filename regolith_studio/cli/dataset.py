@@ -131,8 +131,9 @@ def build(
         print_json({"folder": str(output)} | coarsening_document(choices.coarsening_request, built.outcomes))
     else:
         print_errors(remarks(built.outcomes))
-        typer.echo(f"{len(built.dataset)} of {len(loaded.particles)} particles in the dataset {output}")
-    raise typer.Exit(exit_code(meshes, loaded, len(failed)))
+        count = len(loaded.particles) + len(loaded.problems)
+        typer.echo(f"{len(built.dataset)} of {count} particles in the dataset {output}")
+    raise typer.Exit(exit_code(loaded, len(failed)))
 
 
 @app.command("validate")

@@ -102,7 +102,7 @@ def describe(
             print_table(table)
         for particle, each in pairs:
             print_errors(f"{particle.name}: {note}" for note in (*particle.notes, each.problem) if note)
-    raise typer.Exit(exit_code(meshes, loaded, sum(bool(each.problem) for each in facts)))
+    raise typer.Exit(exit_code(loaded, sum(bool(each.problem) for each in facts)))
 
 
 def _statistics(entries: "list[ParticleEntry]", weighting: str, border_weights: bool) -> "Table":

@@ -79,4 +79,4 @@ def fit(
             print_json(fits_document(sample))
         else:
             typer.echo(f"{len(sample.fits)} fits up to l = {l_max} in {output}")
-    raise typer.Exit(exit_code(meshes, loaded, len(sample.failed) + len(holes)))
+    raise typer.Exit(exit_code(loaded, len(sample.failed) + len(holes)))

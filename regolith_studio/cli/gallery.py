@@ -72,7 +72,7 @@ def gallery(
         print_json({"folder": str(output), "files": drawn})
     else:
         typer.echo(f"{len(drawn)} files in {output}")
-    raise typer.Exit(exit_code(meshes, loaded, failed))
+    raise typer.Exit(exit_code(loaded, failed))
 
 
 def _draw_picture(particle: "Mesh", fit: "HarmonicFit", degrees: tuple[int, ...], path: Path) -> None:

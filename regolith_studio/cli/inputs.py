@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from regolith_studio.cli.options import Repair, Unit, usage_errors
+from regolith_studio.cli.options import Convention, Repair, Unit, usage_errors
 from regolith_studio.cli.terminal import print_errors, run_with_progress
 
 if TYPE_CHECKING:
@@ -18,6 +18,7 @@ class ReadingOptions:
 
     unit: Unit = "um"
     repair: Repair = True
+    convention: Convention = "auto"
 
     def read(self, paths: Sequence[Path], l_max: int | None = None) -> "LoadedParticles":
         """The particles in files and folders; unreadable files are reported on stderr.
@@ -33,17 +34,20 @@ class ReadingOptions:
             If nothing can be read.
         """
         from regolith_studio.jobs.particle_jobs import load_particles
+        from regolith_studio.readers.coefficient_tables import TableReading, table_convention
+        from regolith_studio.readers.particles import left_out
         from regolith_studio.readers.units import unit_factor
 
         with usage_errors():
             unit_factor(self.unit)
-        reading = load_particles(tuple(paths), self.unit, self.repair, l_max)
+            tables = TableReading(l_max, table_convention(self.convention))
+        reading = load_particles(tuple(paths), self.unit, self.repair, tables)
         loaded: LoadedParticles = run_with_progress(reading)
+        print_errors(left_out(paths))
         print_errors(problem.with_path for problem in loaded.problems)
         return loaded
 
 
-def exit_code(paths: Sequence[Path], loaded: "LoadedParticles", failures: int = 0) -> int:
-    """1 if a file that was named itself, or any particle, failed; a folder may hold other things."""
-    named = {str(path) for path in paths if not path.is_dir()}
-    return 1 if failures or any(problem.path in named for problem in loaded.problems) else 0
+def exit_code(loaded: "LoadedParticles", failures: int = 0) -> int:
+    """1 if a file, named itself or in a folder, or any particle failed."""
+    return 1 if failures or loaded.problems else 0

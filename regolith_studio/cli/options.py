@@ -39,6 +39,15 @@ Unit = Annotated[
     ),
 ]
 
+Convention = Annotated[
+    str,
+    typer.Option(
+        "--convention",
+        help="Convention of tables of coefficients: auto, complex, shtools-4pi or shtools-ortho.",
+        metavar="C",
+    ),
+]
+
 Repair = Annotated[
     bool,
     typer.Option("--repair/--no-repair", help="Repair defects of the meshes and report the repairs."),

@@ -49,7 +49,7 @@ def report(
         print_json({"folder": str(output), "files": list(done.files), "problems": list(done.problems)})
     else:
         typer.echo(f"{len(done.files)} files in {output}; begin with {output / PAGE}")
-    raise typer.Exit(exit_code(sample, loaded, len(done.problems)))
+    raise typer.Exit(exit_code(loaded, len(done.problems)))
 
 
 def _load(sample: list[Path], reading: ReadingOptions, jobs: int) -> "LoadedParticles":

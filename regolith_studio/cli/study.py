@@ -181,7 +181,7 @@ class RunOptions:
         """Run a study of the particles in files; returns its result and the exit code."""
         loaded = self.reading.read(meshes)
         result = self.finish(kind, partial(study, loaded.particles, **options), folder)
-        return result, exit_code(meshes, loaded)
+        return result, exit_code(loaded)
 
 
 @app.command("lmax")

@@ -21,6 +21,7 @@ from regolith_studio.jobs.compile_kernels import compile_first
 from regolith_studio.jobs.events import Failed, Job, Partial, Progress, Started, Steps
 from regolith_studio.jobs.executor import Executor, open_executor, value_of
 from regolith_studio.messages import N_
+from regolith_studio.readers.coefficient_tables import DEFAULT_TABLE_READING, TableReading
 from regolith_studio.readers.particles import (
     FileProblem,
     LoadedParticles,
@@ -35,11 +36,14 @@ FIT_DEGREE = 30
 
 
 def load_particles(
-    paths: Sequence[Path], unit: str = "um", repair: bool = True, l_max: int | None = None
+    paths: Sequence[Path],
+    unit: str = "um",
+    repair: bool = True,
+    tables: TableReading = DEFAULT_TABLE_READING,
 ) -> Steps:
     """Read the meshes in `paths` (files and folders); returns :class:`LoadedParticles`.
 
-    Coefficients of tables above `l_max` are left out.
+    Tables of coefficients are read as `tables` says.
 
     Raises
     ------
@@ -48,7 +52,7 @@ def load_particles(
     """
     problems: list[FileProblem] = []
     results: list[Particle | FileProblem] = []
-    files = find_files(paths, problems, l_max)
+    files = find_files(paths, problems, tables)
     yield from compile_first("read")
     yield Started(N_("Reading particles"), len(files))
     for done, (file, result) in enumerate(read_each(files, unit, repair), start=1):

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Literal
+from typing import Literal, get_args
 
 import numpy as np
 
@@ -18,12 +18,35 @@ from regolith_studio.readers.units import unit_factor
 __all__ = ["CoefficientFile", "TableConvention", "read_coefficients"]
 
 TableConvention = Literal["auto", "complex", "shtools-4pi", "shtools-ortho"]
+CONVENTIONS: tuple[TableConvention, ...] = get_args(TableConvention)
 
 _HEADER_LINES = 2
 """SHTOOLS' files may begin with two."""
 _GUESSED = (
     "Interpreted as a table of SHTOOLS in its usual normalisation (4 pi), since commas separate its columns."
 )
+
+
+@dataclass(frozen=True)
+class TableReading:
+    """How tables are read: the degree above which coefficients are left out, and their convention."""
+
+    l_max: int | None = None
+    convention: TableConvention = "auto"
+
+
+def table_convention(text: str) -> TableConvention:
+    """The convention that a user names.
+
+    Raises
+    ------
+    InputError
+        If there is none of that name.
+    """
+    for convention in CONVENTIONS:
+        if text == convention:
+            return convention
+    raise InputError(f"There is no convention “{text}”; there are {', '.join(CONVENTIONS)}.")
 
 
 @dataclass(frozen=True)
@@ -93,7 +116,7 @@ def _convention(rows: np.ndarray, commas: bool) -> TableConvention:
         return "shtools-4pi"
     raise InputError(
         "does not show its convention: rows of m < 0 would say complex, commas between the columns SHTOOLS; "
-        "add either, or name the convention to read_coefficients."
+        "add either, or name the convention (--convention)."
     )
 
 
@@ -127,21 +150,22 @@ TABLE_SUFFIXES = (".anm", ".sh", ".shc")
 TEXT_SUFFIXES = (".txt", ".dat", ".tab", ".csv")
 """Suffixes of text files that may be such tables if named explicitly; ignored in folders."""
 
+DEFAULT_TABLE_READING = TableReading()
+
 _FINE_DEGREE = 16
 """Above it 2,562 vertices do not resolve the coefficients."""
 
 
 def read_table_particle(
-    path: Path, unit: str, group: str = "", sandbox: Sandbox | None = None, l_max: int | None = None
+    path: Path,
+    unit: str,
+    group: str = "",
+    sandbox: Sandbox | None = None,
+    tables: TableReading = DEFAULT_TABLE_READING,
 ) -> Particle:
     """The particle that a table of coefficients describes, about its star point.
 
     Its mesh has 5,120 faces, or 20,480 where the degree is above 16, and the volume of the smooth surface.
-
-    Parameters
-    ----------
-    l_max
-        Degree above which coefficients are left out; by default none are.
 
     Raises
     ------
@@ -152,7 +176,8 @@ def read_table_particle(
     """
     from regolith_studio.harmonics.surface import reconstruct
 
-    table = read_coefficients(path, unit, sandbox=sandbox)
+    l_max = tables.l_max
+    table = read_coefficients(path, unit, convention=tables.convention, sandbox=sandbox)
     coefficients, notes = table.coefficients, table.notes
     if l_max is not None and l_max < coefficients.l_max:
         notes += (

@@ -17,7 +17,14 @@ from regolith_studio.geometry.mesh_health import inspect
 from regolith_studio.geometry.particle import Particle, Source
 from regolith_studio.io.atomic import check_listed, listed_hashes
 from regolith_studio.io.natural_order import natural_key
-from regolith_studio.readers.coefficient_tables import TABLE_SUFFIXES, TEXT_SUFFIXES, read_table_particle
+from regolith_studio.readers.coefficient_tables import (
+    DEFAULT_TABLE_READING,
+    TABLE_SUFFIXES,
+    TEXT_SUFFIXES,
+    TableConvention,
+    TableReading,
+    read_table_particle,
+)
 from regolith_studio.readers.error_messages import display_name, message_about, plural, printable
 from regolith_studio.readers.file_bytes import sha256_of
 from regolith_studio.readers.formats import mesh_suffixes
@@ -30,6 +37,12 @@ ProblemListener = Callable[[Path, str], None]
 
 _log = logging.getLogger(__name__)
 
+_COMPANIONS = (
+    ".json", ".csv", ".md", ".rst", ".html", ".pdf", ".png", ".jpg", ".svg", ".gif", ".log", ".sha256",
+    ".mtl", ".bin",
+)  # fmt: skip
+"""Suffixes of what lies beside meshes: documents, pictures, and parts of OBJ and glTF."""
+
 MAX_NAME_BYTES = 150
 """Of a particle's name, in UTF-8: file systems allow 255 bytes, and endings follow."""
 
@@ -38,15 +51,15 @@ MAX_NAME_BYTES = 150
 class MeshFile:
     """A file to be read, the group that its place in a folder puts it in, and its particle's weight.
 
-    `listed` holds the SHA-256 of files by their names, as the list of its folder has them. Coefficients of
-    tables above `l_max` are left out.
+    `listed` holds the SHA-256 of files by their names, as the list of its folder has them. Tables of
+    coefficients are read as `tables` says.
     """
 
     path: Path
     group: str = ""
     weight: float = 1.0
     listed: Mapping[str, str] = field(default_factory=dict)
-    l_max: int | None = None
+    tables: TableReading = DEFAULT_TABLE_READING
 
 
 @dataclass(frozen=True)
@@ -79,6 +92,7 @@ def read_mesh(
     *,
     repair: bool = True,
     l_max: int | None = None,
+    convention: TableConvention = "auto",
     sandbox: Sandbox | None = None,
 ) -> Particle:
     """The particle in one file.
@@ -95,6 +109,8 @@ def read_mesh(
         Whether to make one sound body of it; if not, what is wrong stands in the notes only.
     l_max
         Degree above which coefficients of a table are left out; by default none are.
+    convention
+        Of a table of coefficients, as `read_coefficients` takes it.
     sandbox
         The child process that parses the file; by default the one of this process.
 
@@ -105,7 +121,7 @@ def read_mesh(
     GeometryError
         With one sentence if it holds nothing that encloses a volume.
     """
-    return read_file(MeshFile(Path(path), l_max=l_max), unit, repair, sandbox)
+    return read_file(MeshFile(Path(path), tables=TableReading(l_max, convention)), unit, repair, sandbox)
 
 
 def read_particles(
@@ -114,6 +130,7 @@ def read_particles(
     repair: bool = True,
     on_problem: ProblemListener | None = None,
     l_max: int | None = None,
+    convention: TableConvention = "auto",
 ) -> list[Particle]:
     """The particles in mesh files and in folders of them, in the order of their names.
 
@@ -122,7 +139,7 @@ def read_particles(
 
     Parameters
     ----------
-    paths, unit, repair, l_max
+    paths, unit, repair, l_max, convention
         As for `read_mesh`; folders are searched to any depth.
     on_problem
         Called for each file that could not be read; by default it is written to the program's log.
@@ -133,7 +150,8 @@ def read_particles(
         If no file could be read at all: the first file's message.
     """
     problems: list[FileProblem] = []
-    results = [result for _, result in read_each(find_files(paths, problems, l_max), unit, repair)]
+    files = find_files(paths, problems, TableReading(l_max, convention))
+    results = [result for _, result in read_each(files, unit, repair)]
     loaded = collect_particles(results, problems)
     for problem in loaded.problems:
         (on_problem or _log_problem)(Path(problem.path), problem.sentence)
@@ -226,7 +244,7 @@ def _read_file(file: MeshFile, unit: str, repair: bool, sandbox: Sandbox | None)
 
 
 def _read_table(file: MeshFile, unit: str, sandbox: Sandbox | None) -> Particle:
-    particle = read_table_particle(file.path, unit, file.group, sandbox, file.l_max)
+    particle = read_table_particle(file.path, unit, file.group, sandbox, file.tables)
     return replace(particle, weight=file.weight)
 
 
@@ -274,27 +292,24 @@ def _read_mesh(file: MeshFile, unit: str, repair: bool, sandbox: Sandbox | None)
 
 
 def find_files(
-    paths: Sequence[str | Path], problems: list[FileProblem], l_max: int | None = None
+    paths: Sequence[str | Path],
+    problems: list[FileProblem],
+    tables: TableReading = DEFAULT_TABLE_READING,
 ) -> list[MeshFile]:
     """As `mesh_files`, but a folder without meshes is added to `problems`."""
     try:
-        return mesh_files(paths, l_max)
+        return mesh_files(paths, tables)
     except FileError as error:
         if len(paths) == 1:
             problems.append(FileProblem(str(paths[0]), str(error)))
             return []
-    return [file for path in paths for file in find_files([path], problems, l_max)]
+    return [file for path in paths for file in find_files([path], problems, tables)]
 
 
-def mesh_files(paths: Sequence[str | Path], l_max: int | None = None) -> list[MeshFile]:
+def mesh_files(paths: Sequence[str | Path], tables: TableReading = DEFAULT_TABLE_READING) -> list[MeshFile]:
     """The files that `read_particles` would read, in its order: those given, and those in folders.
 
     Weights come from the ``particles.csv`` that ``extract`` writes beside its meshes.
-
-    Parameters
-    ----------
-    l_max
-        Degree above which coefficients of tables are left out.
 
     Raises
     ------
@@ -321,10 +336,45 @@ def mesh_files(paths: Sequence[str | Path], l_max: int | None = None) -> list[Me
             file,
             weight=weights[file.path.parent].get(file.path.stem, 1.0),
             listed=lists[file.path.parent],
-            l_max=l_max,
+            tables=tables,
         )
         for file in files
     ]
+
+
+def left_out(paths: Sequence[str | Path]) -> list[str]:
+    """For each folder a sentence about the files in it that are no meshes by their names; none without such.
+
+    Documents, pictures and tables that lie beside meshes are not mentioned.
+    """
+    sentences = []
+    for folder in (Path(path) for path in paths if Path(path).is_dir()):
+        read = {file.path for file in _in_folder(folder, False)}
+        names = [
+            display_name(Path(where) / file)
+            for where, folders, files in os.walk(folder)
+            if not _hide(folders)
+            for file in sorted(files, key=natural_key)
+            if Path(where) / file not in read and not _is_companion(file)
+        ]
+        if names and read:
+            shown = ", ".join(names[:3]) + (", …" if len(names) > 3 else "")
+            count = plural(len(names), "file")
+            sentences.append(
+                f"{display_name(folder)}: left out {count} that no reader of meshes takes: {shown}."
+            )
+    return sentences
+
+
+def _hide(folders: list[str]) -> bool:
+    """Keep hidden folders out of a walk."""
+    folders[:] = [inner for inner in folders if not inner.startswith(".")]
+    return False
+
+
+def _is_companion(name: str) -> bool:
+    path = Path(name.lower())
+    return name.startswith(".") or path.suffix in _COMPANIONS or path.stem in ("readme", "license", "licence")
 
 
 def _in_folder(folder: Path, several: bool) -> Iterator[MeshFile]:

@@ -1,6 +1,7 @@
 """``describe`` against closed forms, and on input that is wrong."""
 
 import math
+import shutil
 from pathlib import Path
 
 import pytest
@@ -190,3 +191,41 @@ def test_that_the_table_has_the_hidden_shares_and_the_repairs(command, grains: P
     cells = dict(zip(header.split(","), row.split(","), strict=True))
     assert float(cells["hidden_surface_share"]) == 0.0
     assert cells["repairs"] == ""
+
+
+def test_that_a_broken_mesh_in_a_folder_counts_as_one_that_is_named(
+    command, grains: Path, tmp_path: Path
+) -> None:
+    folder = tmp_path / "grains"
+    shutil.copytree(grains, folder)
+    (folder / "letter.stl").write_text("Dear Sir")
+    assert command("describe", folder).code == 1
+    result = command("coarsen", folder, "-o", tmp_path / "coarse", "--method", "quadric")
+    assert result.code == 1
+    assert "3 of 4 particles coarsened" in result.out
+
+
+def test_that_files_which_reading_a_folder_left_out_are_named(command, grains: Path, tmp_path: Path) -> None:
+    folder = tmp_path / "grains"
+    shutil.copytree(grains, folder)
+    for name in ("heap.vtk", "table.txt", "README.txt", "particles.csv", "picture.png"):
+        (folder / name).write_text("something")
+    result = command("describe", folder)
+    assert result.code == 0
+    assert "grains: left out 2 files that no reader of meshes takes: heap.vtk, table.txt." in result.err
+
+
+@pytest.mark.parametrize(
+    ("convention", "radius"),
+    [("complex", 10.0), ("shtools-ortho", 10.0), ("shtools-4pi", 10.0 * math.sqrt(4 * math.pi))],
+)
+def test_that_the_convention_of_a_table_can_be_named(convention, radius, command, tmp_path: Path) -> None:
+    path = tmp_path / "ball.anm"
+    path.write_text(f"0 0 {10.0 * math.sqrt(4 * math.pi):.12f} 0\n1 0 0 0\n1 1 0 0\n")
+    refused = command("describe", path)
+    assert refused.code == 1
+    assert "does not show its convention" in refused.err
+    assert "--convention" in refused.err
+    (entry,) = command("describe", path, "--json", "--convention", convention).json
+    assert entry["equivalent_radius"] == pytest.approx(radius, rel=1e-3)
+    assert command("describe", path, "--convention", "old").code == 2

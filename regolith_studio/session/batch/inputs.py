@@ -11,6 +11,7 @@ from regolith_studio.errors import InputError
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.harmonics.surface import level_for
 from regolith_studio.jobs.model_jobs import PAPER_DEGREE, drawn_names, groups_of
+from regolith_studio.readers.coefficient_tables import TableReading
 from regolith_studio.readers.particles import (
     FileProblem,
     MeshFile,
@@ -85,7 +86,7 @@ class FileInput(_NamedInput):
             state = self.file.path.stat()
         except OSError:
             return f"{self.file.path} missing"
-        return f"{self.file.path} {state.st_size} {state.st_mtime_ns} {self.file.l_max}"
+        return f"{self.file.path} {state.st_size} {state.st_mtime_ns} {self.file.tables}"
 
     def particle(self) -> Particle:
         """The particle in the file."""
@@ -185,7 +186,7 @@ class BatchInputs:
             for particle in sample_particles():
                 members.append(SampleInput(unique_name(particle.name, particle.group, taken), particle.name))
         for each in recipe.openings:
-            for file in find_files([base / name for name in each.files], problems, each.l_max):
+            for file in find_files([base / name for name in each.files], problems, TableReading(each.l_max)):
                 name = unique_name(file.path.stem, file.group, taken)
                 members.append(FileInput(name, file, each.unit, each.repair))
         for folder in prepared.volumes:
