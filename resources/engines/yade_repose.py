@@ -36,18 +36,28 @@ def material(label, friction):
 
 
 def add_particles():
-    """Numbers of the particles' bodies, and the turn that each began with in YADE's own axes."""
+    """Numbers of the particles' bodies, and the turn that each began with in YADE's own axes.
+
+    The corners lie in the shape's principal axes, and position and orientation are set afterwards: YADE turns
+    a body into its principal axes only where a product of inertia exceeds an absolute 1e-13 m^5.
+    """
     grain, numbers, first = material("grain", INPUT["friction"]), [], []
     for one in INPUT["particles"]:
         turn, place = Quaternion(*one["turn"]), Vector3(*one["place"])
         corners = INPUT["shapes"][one["shape"]]
-        body = polyhedra_utils.polyhedra(
-            grain, v=[place + turn * (Vector3(*corner) * one["scale"]) for corner in corners]
-        )
-        body.state.vel, body.state.angVel = Vector3(*one["velocity"]), Vector3(*one["spin"])
+        body = polyhedra_utils.polyhedra(grain, v=[Vector3(*corner) * one["scale"] for corner in corners])
+        body.state.pos, body.state.ori = place + turn * body.state.pos, turn * body.state.ori
+        set_motion(body.state, Vector3(*one["velocity"]), Vector3(*one["spin"]))
         numbers.append(O.bodies.append(body))
         first.append(body.state.ori.inverse() * turn)
     return numbers, first
+
+
+def set_motion(state, velocity, spin):
+    """Velocity and spin; YADE takes the spin of bodies that are no spheres from their angular momentum."""
+    local = state.ori.inverse() * spin
+    state.vel, state.angVel = velocity, spin
+    state.angMom = state.ori * Vector3(*(state.inertia[axis] * local[axis] for axis in range(3)))
 
 
 def add_walls():

@@ -79,9 +79,11 @@ def read_particles():
 def add_particle(case, record, material):
     """The scaled and turned hull of a shape's vertices, or a clump of those of its convex parts.
 
-    YADE finds centroid, mass and principal axes itself. Those of a clump are sums over its members: the parts
-    weigh a hundredth, and points without extent, which touch nothing, the rest, so that the sums are those of
-    the union.
+    YADE finds mass and moments of inertia itself, but turns a body into its principal axes only where a
+    product of inertia exceeds an absolute 1e-13 m^5: a shape is built in its principal axes, which are those
+    of its vertices, and then placed. Mass and inertia of a clump are sums over its members: the parts weigh a
+    hundredth, and points, which touch nothing, the rest, so that the sums are those of the union. No member
+    has an inertia of its own, since YADE turns those of members the wrong way.
     """
     turn = Quaternion(record["qw"], record["qx"], record["qy"], record["qz"])
     middle, scale = Vector3(record["x"], record["y"], record["z"]), record["scale"]
@@ -90,12 +92,14 @@ def add_particle(case, record, material):
         return middle + turn * (Vector3(*point) * scale)
 
     shape, mass = case["shapes"][int(record["class"])], material.density * scale**3
+    if len(shape["parts"]) == 1:
+        corners = [Vector3(*corner) * scale for corner in shape["parts"][0]]
+        body = polyhedra_utils.polyhedra(material, v=corners)
+        body.state.pos, body.state.ori = middle + turn * body.state.pos, turn * body.state.ori
+        return O.bodies.append(body)
     solids = [polyhedra_utils.polyhedra(material, v=list(map(placed, part))) for part in shape["parts"]]
-    if len(solids) == 1:
-        return O.bodies.append(solids[0])
     for solid, share in zip(solids, shape["mass_shares"], strict=True):
-        solid.state.inertia *= share * mass / solid.state.mass
-        solid.state.mass = share * mass
+        solid.state.mass, solid.state.inertia = share * mass, Vector3(0, 0, 0)
     points = []
     for *point, share in shape["points"]:
         corners = [[x + 0.05 * side for x, side in zip(point, corner, strict=True)] for corner in TETRAHEDRON]

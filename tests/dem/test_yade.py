@@ -1,9 +1,11 @@
 """YADE as an engine: what it is told, what becomes of its states and its crashes; and the program itself."""
 
+import itertools
 import json
 import os
 import shutil
 import stat
+import subprocess
 import sys
 from collections.abc import Callable
 from dataclasses import replace
@@ -11,6 +13,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.parameters import ContactParameters, LiftingCylinderTest
@@ -18,10 +21,11 @@ from regolith_studio.dem.case import ReposeCase, prepare
 from regolith_studio.dem.engine import SimulationResult
 from regolith_studio.dem.engines import engine_named
 from regolith_studio.dem.engines.yade.input_files import LENGTH, TIME, WEIGHT, input_document
-from regolith_studio.dem.engines.yade.program import YadeSettings, find_yade
+from regolith_studio.dem.engines.yade.program import YadeSettings, command, find_yade
 from regolith_studio.dem.initial_packing import loose_column
 from regolith_studio.dem.snapshot import Snapshot
 from regolith_studio.errors import InputError, RegolithError
+from tests.tolerance import relative
 
 ENGINE = engine_named("yade")
 SMALL = ReposeCase(LiftingCylinderTest(mass=0.003, lift_speed=0.3), n_particles=20, seed=2)
@@ -151,6 +155,36 @@ def test_that_yade_begins_where_it_is_told(boxes: Dataset) -> None:
     turned = np.abs((first.particles.orientations * column.orientations).sum(axis=1))
     assert np.quantile(turned, 0.2) == pytest.approx(1.0, abs=1e-6)
     assert second.particles.points[:, 2].mean() < first.particles.points[:, 2].mean()
+
+
+@needs_yade
+def test_that_a_turned_box_spins_in_yade_with_its_own_moments(tmp_path: Path, boxes: Dataset) -> None:
+    """A box of 4 x 1 x .5 mm without weight keeps the energy of its spin, w I w / 2 in closed form."""
+    edges, spin = np.array([4e-3, 1e-3, 0.5e-3]), np.array([3.0, -7.0, 11.0])
+    corners = np.array(list(itertools.product((-0.5, 0.5), repeat=3))) * edges
+    turn = Rotation.from_rotvec(0.7 * np.array([1.0, 2.0, 3.0]) / np.sqrt(14.0))
+    document = input_document(prepare(boxes, SMALL), YadeSettings(), 60.0, None)
+    document |= {"shapes": [(corners / 1e-3).tolist()], "gravity": 0.0, "damping": 0.0, "time_step": 1e-5}
+    document["particles"] = [
+        {
+            "shape": 0,
+            "scale": 1e-3,
+            "place": [0.0, 0.0, 5 * LENGTH],
+            "turn": turn.as_quat(scalar_first=True).tolist(),
+            "velocity": [0.0, 0.0, 0.0],
+            "spin": spin.tolist(),
+        }
+    ]
+    document["plan"] |= {"look": 1e-3, "rest_energy": 1.0, "rest_time": 0.0}
+    (tmp_path / "input.json").write_text(json.dumps(document))
+    words, environment = command(tmp_path)
+    subprocess.run(words, env=environment, cwd=tmp_path, check=True, capture_output=True, timeout=250)
+    mass = document["density"] * edges.prod()
+    moments = mass / 12 * ((edges**2).sum() - edges**2)
+    energy = 0.5 * (moments * turn.inv().apply(spin) ** 2).sum()
+    first = json.loads((tmp_path / "state.000000.json").read_text())
+    assert first["kinetic"] == relative(energy, 1e-4)
+    assert first["particles"][0][:3] == pytest.approx([0.0, 0.0, 5 * LENGTH], abs=1e-12)
 
 
 @needs_yade

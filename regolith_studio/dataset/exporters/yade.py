@@ -32,12 +32,14 @@ _NOTE = """yade_case.py builds the case from case.json and particles.csv: {n} dr
 other in the tube, a plate, gravity, and the lift of the tube. The tube is {wide:.3g} mm wide: smaller than
 asked for where so few particles would only cover its ground, so that they fill it as high for its width as in
 the paper; it is longer while it holds them above each other.
-YADE takes the convex hull of each shape's vertices, and finds centroid, volume and inertia by itself.
+YADE takes the convex hull of each shape's vertices, and finds volume and moments of inertia by itself. The
+script builds each shape in its principal axes and then sets position and orientation, since YADE turns a body
+into its principal axes only above some 6 mm.
 A compound is a clump of its convex parts with mass, centre and inertia of the union: its parts weigh a
 hundredth, and six points that touch nothing the rest, since YADE adds up the members of a clump as if none
-overlapped.
-Measured with YADE 2023.02a of Debian: volumes and masses agree with the dataset to 1e-12, principal
-moments to 0.2 %. Its law for polyhedra is volumetric (force by overlapping volume, no JKR): an angle of
+overlapped, and turns their moments the wrong way.
+Measured with YADE 2023.02a of Debian: volumes, masses and principal moments agree with the dataset to 1e-9.
+Its law for polyhedra is volumetric (force by overlapping volume, no JKR): an angle of
 repose from it is qualitative. The stiffness is chosen so that the largest particle overlaps another
 by a hundredth of its volume under the weight of all; the time step follows from it: a fifth of the time in
 which the smallest particle, pressed by its whole face, would swing. Run it on one thread (yade -j1): YADE's
@@ -89,9 +91,10 @@ def _case(dataset: Dataset, options: ExportOptions, bodies: PackedParticles) -> 
 def _members(shape: Polyhedron) -> dict[str, object]:
     """Vertices of the convex parts; of a compound also what makes the sums over a clump those of the union.
 
-    YADE adds up mass, centre and inertia of the members of a clump as if none overlapped. So the parts get
-    :data:`PART_MASS` of the mass, and six points the rest: pairs at the same distance on both sides of their
-    centre, along the principal axes of the second moments that are missing.
+    YADE adds up mass, centre and inertia of the members of a clump as if none overlapped, and turns moments
+    of members the wrong way. So the parts get :data:`PART_MASS` of the mass and no moments about their own
+    centres, and six points the rest: pairs at the same distance on both sides of their centre, along the
+    principal axes of the second moments that are missing.
     """
     parts = shape.part_meshes
     members: dict[str, object] = {"parts": [part.vertices.tolist() for part in parts]}
@@ -99,8 +102,8 @@ def _members(shape: Polyhedron) -> dict[str, object]:
         return members
     volumes = np.array([part.volume for part in parts])
     shares = PART_MASS * volumes / volumes.sum()
-    centre = shares @ np.array([part.centroid for part in parts])
-    second = sum(share * _second_moments(part) for share, part in zip(shares, parts, strict=True))
+    centres = np.array([part.centroid for part in parts])
+    centre, second = shares @ centres, (centres.T * shares) @ centres
     rest = 1.0 - PART_MASS
     middle = (shape.centroid - centre) / rest
     missing = _second_moments(shape.mesh) - second - rest * np.outer(middle, middle)
