@@ -20,7 +20,7 @@ ELSEWHERE = {
     "classify": "needs a painted scan; tests/cli/test_classify.py has one",
 }
 """First words of commands that run in other tests."""
-ELSEWHERE_PAGES = ("plugins.md", "classifiers.md", "objects.md", "pixel_classifier.md", *SHORT)
+ELSEWHERE_PAGES = ("plugins.md", "classifiers.md", *SHORT)
 """Pages whose commands need plug-ins or painted scans, or run in test_documented_code.py."""
 
 
