@@ -14,7 +14,12 @@ ROOT = Path(__file__).resolve().parents[2]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
 DIRECT = {Requirement(line).name for line in PROJECT["dependencies"]}
 PERMISSIVE = re.compile(r"BSD|MIT|ISC|Apache|PSF|Python Software Foundation|LicenseRef-MPICH")
-PAGE = (ROOT / "docs" / "licences.md").read_text(encoding="utf-8")
+PAGE = (
+    (ROOT / "docs" / "installing.md")
+    .read_text(encoding="utf-8")
+    .partition("## Licences")[2]
+    .partition("\n## ")[0]
+)
 
 
 def closure(names: set[str]) -> set[str]:

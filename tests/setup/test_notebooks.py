@@ -26,7 +26,7 @@ def executed(tmp_path_factory: pytest.TempPathFactory) -> dict[str, nbformat.Not
 
 
 def test_that_the_page_links_every_notebook() -> None:
-    page = (FOLDER.parent / "notebooks.md").read_text(encoding="utf-8")
+    page = (FOLDER.parent / "window.md").read_text(encoding="utf-8")
     assert len(NOTEBOOKS) == 4
     assert all(f"<notebooks/{path.name}>" in page for path in NOTEBOOKS)
 
