@@ -226,6 +226,6 @@ In Python:             import regolith_studio; regolith_studio.read_dataset(".")
 
 
 def readme_text(dataset: Dataset) -> str:
-    """The README_TEMPLATE of a dataset."""
+    """The text of the README.txt of a dataset."""
     counted = "particles" if dataset.weighting == "number" else "volume, not particles"
     return README_TEMPLATE.format(name=dataset.name, count=len(dataset), counted=counted)

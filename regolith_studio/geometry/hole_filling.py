@@ -1,4 +1,4 @@
-"""Holes of a surface: their hole_boundaries, and triangles that close them with the least area."""
+"""Holes of a surface: their boundaries, and triangles that close them with the least area."""
 
 from dataclasses import dataclass
 

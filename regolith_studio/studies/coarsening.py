@@ -6,7 +6,6 @@ from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from regolith_studio.coarsening.coarsen import DEFAULT_METHOD, coarsen
 from regolith_studio.coarsening.decimated_hull import decimated_hull
@@ -24,12 +23,12 @@ from regolith_studio.geometry.particle import Particle
 from regolith_studio.harmonics.fit_options import DEFAULT_FIT_OPTIONS, FitOptions
 from regolith_studio.harmonics.surface import reconstruct
 from regolith_studio.io.tables import Column, Table
+from regolith_studio.studies.error_bands import N_RESAMPLES, band_of, pooled_rmsre, resampled_counts
 from regolith_studio.studies.loss_variants import LossVariant, paper_variants
 from regolith_studio.studies.progress import StudyProgress
 
 COLUMNS = (*LOSS_KEYS, JACCARD)
 """Columns of the errors: the descriptors of Eq. 8 and the distance of Eq. 7."""
-N_RESAMPLES = 1000
 MIN_PLOTTED = 1e-3
 """Errors below this percentage are drawn as this."""
 
@@ -99,24 +98,19 @@ class CoarseningStudy:
     @cached_property
     def resampled(self) -> FloatArray:
         """:attr:`rmsre` of resampled particles, the same ones in all rows: (resamples, rows, columns)."""
-        rng = np.random.default_rng(np.random.SeedSequence(self.seed))
-        n = len(self.names)
-        return _pooled(self.errors, rng.multinomial(n, np.full(n, 1.0 / n), N_RESAMPLES))
+        return _pooled(self.errors, resampled_counts(len(self.names), self.seed))
 
     def band_of(self, resampled: FloatArray) -> FloatArray:
         """Ends of the band of anything made from :attr:`resampled`, along its first axis."""
-        tail = 50.0 * (1.0 - self.confidence)
-        return np.asarray(np.percentile(resampled, [tail, 100.0 - tail], axis=0))
+        return band_of(resampled, self.confidence)
 
 
-def _pooled(errors: FloatArray, counts: ArrayLike) -> FloatArray:
+def _pooled(errors: FloatArray, counts: FloatArray) -> FloatArray:
     """RMSRE (last column: mean) with each particle counted `counts` times, shape (b, rows, columns)."""
-    weights = np.asarray(counts, dtype=np.float64)
-    weights = weights / weights.sum(axis=1, keepdims=True)
-    pooled = np.asarray(np.sqrt(np.tensordot(weights, errors**2, axes=1)), dtype=np.float64)
-    pooled[..., -1] = np.tensordot(weights, errors[..., -1], axes=1)
-    result: FloatArray = np.asarray(pooled, dtype=np.float64)
-    return result
+    pooled = pooled_rmsre(errors, counts)
+    # The Jaccard distance is an error already, not relative to a value of the particle: its mean says more.
+    pooled[..., -1] = pooled_rmsre(np.sqrt(np.maximum(errors[..., -1:], 0.0)), counts)[..., 0] ** 2
+    return pooled
 
 
 def coarsening_errors(

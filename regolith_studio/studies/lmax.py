@@ -8,7 +8,6 @@ from operator import itemgetter
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from regolith_studio.descriptors.catalogue import CATALOGUE, LOSS_KEYS
 from regolith_studio.descriptors.describe import describe
@@ -20,10 +19,10 @@ from regolith_studio.harmonics.fit import HarmonicFit
 from regolith_studio.harmonics.fit_options import DEFAULT_FIT_OPTIONS, FitOptions
 from regolith_studio.harmonics.surface import LEVEL_BY_DEGREE, gallery
 from regolith_studio.io.tables import Column, Table
+from regolith_studio.studies.error_bands import N_RESAMPLES, band_of, pooled_rmsre, resampled_counts
 from regolith_studio.studies.progress import StudyProgress
 
 DEFAULT_DEGREES = tuple(range(1, 21))
-N_RESAMPLES = 1000
 BOX_NOTE = (
     "The diameters are edges of the box of minimum volume. Where boxes in several directions are nearly as "
     "small, that of a fit may lie in another one than the particle's: its diameters then step, although the "
@@ -95,18 +94,15 @@ class LmaxStudy:
     def rmsre(self, group: str | None = None) -> FloatArray:
         """RMSRE of Eq. 10, shape (degrees, keys); NaN where no particle has a value."""
         members = self.of_group(group)
-        return np.asarray(resampled_rmsre(members, np.ones((1, len(members))))[0])
+        return np.asarray(pooled_rmsre(members, np.ones((1, len(members))))[0])
 
     def bands(self, group: str | None = None) -> FloatArray:
         """Ends of the bootstrap band over particles, shape (2, degrees, keys)."""
         name = "" if group is None else f"group {group}"
         if name not in self._bands:
             members = self.of_group(group)
-            rng = np.random.default_rng(np.random.SeedSequence(self.seed))
-            weights = rng.multinomial(len(members), np.full(len(members), 1 / len(members)), N_RESAMPLES)
-            tail = 50 * (1 - self.confidence)
-            spread = resampled_rmsre(members, weights)
-            self._bands[name] = np.asarray(np.nanpercentile(spread, [tail, 100 - tail], axis=0))
+            spread = pooled_rmsre(members, resampled_counts(len(members), self.seed))
+            self._bands[name] = band_of(spread, self.confidence)
         return self._bands[name]
 
     def n_used(self, group: str | None = None) -> tuple[int, ...]:
@@ -119,25 +115,6 @@ class LmaxStudy:
             if (row < tolerance).all():
                 return degree
         return None
-
-
-def resampled_rmsre(errors: FloatArray, weights: ArrayLike) -> FloatArray:
-    """RMSRE with each particle counted as often as each row of `weights` says.
-
-    Parameters
-    ----------
-    errors
-        Shape (n, degrees, keys); NaN is left out.
-    weights
-        Shape (b, n). The result has shape (b, degrees, keys).
-    """
-    counts = np.asarray(weights, dtype=np.float64)
-    present = np.isfinite(errors)
-    squares = np.where(present, errors, 0.0) ** 2
-    sums = np.tensordot(counts, squares, axes=1)
-    members = np.tensordot(counts, present.astype(np.float64), axes=1)
-    means = np.divide(sums, members, out=np.full_like(sums, np.nan), where=members > 0)
-    return np.asarray(np.sqrt(means))
 
 
 def lmax_errors(

@@ -409,7 +409,7 @@ class _TrainTestSplit:
     work: StudyExecutor
 
     def floor(self, seed: int) -> Generator[StudyProgress, None, PopulationDistances]:
-        """PopulationDistances between random halves of the sample."""
+        """Distances between random halves of the sample."""
         found = []
         for split in range(N_FLOOR_SPLITS):
             train, test = self.sample.halves(seed + split)

@@ -1,4 +1,4 @@
-"""PopulationDistances between tables of descriptors, by number and by volume, and how sure they are."""
+"""Distances between tables of descriptors, by number and by volume, and how sure they are."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -24,7 +24,7 @@ MAX_PAIRED = 5
 
 @dataclass(frozen=True, eq=False)
 class PopulationDistances:
-    """PopulationDistances over rounds (draws from a model fitted to a half, or random halves).
+    """Distances over rounds (draws from a model fitted to a half, or random halves).
 
     Parameters
     ----------

@@ -21,6 +21,7 @@ from regolith_studio.harmonics.fit import fit_harmonics
 from regolith_studio.harmonics.fit_options import FitOptions
 from regolith_studio.harmonics.surface import reconstruct
 from regolith_studio.readers.particles import sample_particles
+from regolith_studio.studies.error_bands import pooled_rmsre
 from regolith_studio.studies.figures.lmax import lmax_figure, write_lmax_study
 from regolith_studio.studies.lmax import (
     BOX_NOTE,
@@ -29,7 +30,6 @@ from regolith_studio.studies.lmax import (
     lmax_errors,
     lmax_study,
     particle_table,
-    resampled_rmsre,
     rmsre_table,
 )
 
@@ -121,7 +121,7 @@ def test_that_the_smallest_l_max_is_the_first_with_all_errors_below(made_up, stu
 
 def test_that_a_resample_counts_particles_as_often_as_its_weights_say():
     errors = np.array([[[1.0]], [[3.0]]])
-    np.testing.assert_allclose(resampled_rmsre(errors, [[2, 0], [1, 1]]).ravel(), [1.0, np.sqrt(5.0)])
+    np.testing.assert_allclose(pooled_rmsre(errors, [[2, 0], [1, 1]]).ravel(), [1.0, np.sqrt(5.0)])
 
 
 def test_that_each_particle_is_told_of_with_the_study_so_far(particles):
@@ -229,3 +229,10 @@ def test_that_fig_3_of_real_grains_has_the_published_shape(real_data):
     assert at["volume"] < 0.005
     assert 0.02 < at["sphericity"] < 0.07
     assert 0.02 < at["convex_hull_volume"] < 0.09
+
+
+def test_that_a_study_without_particles_has_errors_and_bands_that_are_not_numbers():
+    empty = LmaxStudy((2, 5), ("volume",), (), (), np.empty((0, 2, 1)))
+    assert np.isnan(empty.rmsre()).all()
+    assert np.isnan(empty.bands()).all()
+    assert empty.bands().shape == (2, 2, 1)

@@ -184,3 +184,10 @@ def test_that_files_hold_the_numbers_with_units(key: str, tmp_path: Path) -> Non
     found = [float(cell) for line in lines for cell in line if cell.replace(".", "").isdigit()]
     assert any(cell == pytest.approx(2.0) for cell in found)  # 0.02 in per cent
     assert len(COLUMNS) == 7
+
+
+def test_that_a_study_without_particles_has_errors_and_bands_that_are_not_numbers() -> None:
+    empty = made_up(np.empty((0, 3, 7)))
+    assert np.isnan(empty.rmsre).all()
+    assert np.isnan(empty.bands).all()
+    assert empty.bands.shape == (2, 3, 7)
