@@ -20,7 +20,6 @@ from regolith_studio.dataset.size_distributions import LogNormalSizeDistribution
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.shape_models.materials import materials
 from regolith_studio.shape_models.realizations import virtual_mesh
-from regolith_studio.shape_models.spectrum_sliders import relative_amplitudes, with_amplitudes
 
 MATERIAL, PARTICLES, FACETS, SEED = "lunar_soil", 40, 20, 1
 FACTORS = ((1.0, 1.0), (0.3, 1.0), (1.8, 1.0), (1.0, 0.3), (1.0, 1.6), (0.3, 0.3), (1.8, 1.6))
@@ -47,9 +46,9 @@ def main(runs: Path, result: Path, repeats: int, engine: str) -> None:
 def population(form: float, roughness: float) -> Any:
     """A dataset of drawn particles."""
     model = materials()[MATERIAL].field()
-    amplitudes = relative_amplitudes(model)
+    amplitudes = model.relative_amplitudes()
     degrees = np.arange(1, len(amplitudes) + 1)
-    changed = with_amplitudes(model, amplitudes * np.where(degrees <= 2, form, roughness))
+    changed = model.with_amplitudes(amplitudes * np.where(degrees <= 2, form, roughness))
     drawn = changed.draw(PARTICLES, seed=SEED)
     meshes = [virtual_mesh(drawn, k) for k in range(PARTICLES)]
     particles = [Particle(f"drawn-{k}", mesh) for k, mesh in enumerate(meshes)]

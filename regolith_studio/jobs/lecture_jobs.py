@@ -33,7 +33,6 @@ from regolith_studio.jobs.events import Partial, Progress, Started, Steps
 from regolith_studio.messages import N_
 from regolith_studio.shape_models.materials import materials
 from regolith_studio.shape_models.realizations import virtual_mesh
-from regolith_studio.shape_models.spectrum_sliders import with_amplitudes
 
 MAX_ITERATIONS = 2_000
 """Iterations of a lesson at most: every one of them keeps its polyhedra."""
@@ -275,7 +274,7 @@ def draw_field(material: str, amplitudes: FloatArray, seed: int, level: int = 4)
     card = materials().get(material)
     if card is None:
         raise InputError(f"There is no material {material!r}; there are {', '.join(materials())}.")
-    model = with_amplitudes(card.field(len(amplitudes)), np.asarray(amplitudes, dtype=np.float64))
+    model = card.field(len(amplitudes)).with_amplitudes(amplitudes)
     draws = model.draw(1, seed)
     mesh = virtual_mesh(draws, 0, level)
     relative = draws.coefficients[0].copy()

@@ -22,6 +22,7 @@ from regolith_studio.messages import N_
 from regolith_studio.shape_models.chunked_sampling import SizedSampler
 from regolith_studio.shape_models.inertia_ellipsoid import PrincipalAxes, principal_axes
 from regolith_studio.shape_models.linear_maps import Tables, mapped_radii, radius_tables
+from regolith_studio.shape_models.protocol import amplitudes_of
 from regolith_studio.shape_models.realizations import Scale, positive_rows
 from regolith_studio.shape_models.sample import Sample
 from regolith_studio.shape_models.size_law import LogNormalSizes
@@ -204,6 +205,10 @@ class SurfaceSampler(SizedSampler):
     def sizes(self) -> LogNormalSizes:
         """Law of equivalent radii: the measured ones, each blurred a little; component i is particle i."""
         return LogNormalSizes.kernel(self.surfaces.equivalent_radii, self.settings.size_jitter)
+
+    def relative_amplitudes(self) -> FloatArray:
+        """Of the measured particles at the degree of the draws, shape (l_max,)."""
+        return amplitudes_of(self.surfaces.cut)
 
     def mapped(self, picks: IntArray, inverses: FloatArray) -> FloatArray:
         """Coefficients of the particles `picks` under maps with these inverses (k, 3, 3), times the gain."""

@@ -1,33 +1,88 @@
-"""One row of every kind, as another package would offer them by its entry points."""
+"""One row of every kind, as another package would offer them by its entry points.
+
+None inherits from a class of the program, so that a method that the program calls but does not ask for shows.
+"""
 
 import json
-from dataclasses import replace
+from dataclasses import dataclass
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 
 from regolith_studio.coarsening.methods.quadric import QuadricMethod
 from regolith_studio.dataset.export import Exporter
-from regolith_studio.dem.engine import Availability
-from regolith_studio.dem.engines.yade import YadeEngine
-from regolith_studio.errors import FileError
+from regolith_studio.dem.engine import Availability, EngineCapabilities
+from regolith_studio.errors import FileError, InputError
 from regolith_studio.readers.formats import MeshFormat, ParsedMesh
-from regolith_studio.shape_models.models.gaussian_field import GaussianRadiusModel
+from regolith_studio.shape_models.realizations import Realizations
 
 
-class LunarMethod(QuadricMethod):
-    key = "lunar_method"
-    label = "Lunar method"
+@dataclass(frozen=True)
+class NoSettings:
+    """A method or engine without choices."""
 
 
-class LunarModel(GaussianRadiusModel):
-    key = "lunar_model"
-    label = "Lunar model"
+class LunarMethod:
+    key, label, Settings = "lunar_method", "Lunar method", NoSettings
+
+    def run(self, target, n_facets, weights, seed, settings):  # noqa: ARG002
+        quadric = QuadricMethod()
+        return quadric.run(target, n_facets, weights, seed, quadric.Settings())
 
 
-class LunarEngine(YadeEngine):
-    def find(self) -> Availability:
+@dataclass(frozen=True)
+class LunarSettings:
+    l_max: int = 2
+
+
+@dataclass(frozen=True)
+class LunarField:
+    """Bodies of one size whose degrees from the first on have amplitude .01: no spectrum is stated."""
+
+    radius: float
+    l_max: int
+    unit: str = "um"
+    key: str = "lunar_model"
+
+    def draw(self, n, seed, size_range=None):
+        if size_range and not size_range[0] <= self.radius <= size_range[1]:
+            raise InputError("All lunar particles have the same size.")
+        rows = np.random.default_rng(seed).standard_normal((n, (self.l_max + 1) ** 2))
+        rows *= 0.01 * self.radius * np.sqrt(4 * np.pi)
+        rows[:, 0] = self.radius * np.sqrt(4 * np.pi)
+        return Realizations(rows, "radius", self.key, seed, self.unit)
+
+    def draw_chunks(self, n, seed, size_range=None):
+        yield self.draw(n, seed, size_range)
+
+    def stored(self):
+        return {"radius": self.radius, "l_max": self.l_max, "unit": self.unit}, {}
+
+
+class LunarModel:
+    key, label, summary, Settings = "lunar_model", "Lunar model", "All the same size.", LunarSettings
+
+    def fit(self, sample, settings=None):
+        degree = (settings or LunarSettings()).l_max
+        return LunarField(float(sample.equivalent_radii.mean()), degree, sample.unit)
+
+    def restored(self, values, arrays):  # noqa: ARG002
+        return LunarField(**values)
+
+
+class LunarEngine:
+    key, label, order, licence, Settings = "lunar_engine", "Lunar engine", 9, "none", NoSettings
+    capabilities = EngineCapabilities("", "", "", "", "", "", "")
+
+    def find(self):
         return Availability("1.0")
+
+    def seconds(self, prepared, settings):  # noqa: ARG002
+        return 0.0
+
+    def simulate(self, prepared, settings):  # noqa: ARG002
+        raise InputError("Nothing falls here.")
 
 
 def parse(data: bytes, _path: Path) -> ParsedMesh:
@@ -40,7 +95,7 @@ def parse(data: bytes, _path: Path) -> ParsedMesh:
 
 METHOD = LunarMethod()
 MODEL = LunarModel()
-ENGINE = replace(LunarEngine(), key="lunar_engine", label="Lunar engine")
+ENGINE = LunarEngine()
 FORMAT = MeshFormat("lunar", "Lunar mesh", (".lunar",), lambda head: head.startswith(b'{"lunar"'), parse)
 EXPORTER = Exporter(
     key="lunar_export",
@@ -53,7 +108,7 @@ EXPORTER = Exporter(
 )
 
 
-CLASHING = QuadricMethod()
+CLASHING = SimpleNamespace(key="quadric")
 """Has the key of a method of the program."""
 
 

@@ -30,7 +30,6 @@ from regolith_studio.session.recipe import Outputs, read_recipe
 from regolith_studio.session.run_recipe import run_recipe
 from regolith_studio.session.session import Session
 from regolith_studio.shape_models.materials import materials
-from regolith_studio.shape_models.spectrum_sliders import relative_amplitudes, with_amplitudes
 
 CHOICES = Choices(
     method="annealing", target="fit", settings=(("iterations", 12),), level=2, l_max=4, n_facets=12, seed=3
@@ -209,7 +208,7 @@ def drawn(
 
 
 def rougher(model: Any) -> Any:
-    return with_amplitudes(model, relative_amplitudes(model) * 1.3)
+    return model.with_amplitudes(model.relative_amplitudes() * 1.3)
 
 
 def of_card() -> ShapeSource:

@@ -6,8 +6,9 @@ import pytest
 from regolith_studio.errors import InputError
 from regolith_studio.shape_models.materials import materials
 from regolith_studio.shape_models.models import MODELS
+from regolith_studio.shape_models.protocol import EditableModel, relative_amplitudes
 from regolith_studio.shape_models.sample import Sample
-from regolith_studio.shape_models.spectrum_sliders import can_be_edited, relative_amplitudes, with_amplitudes
+from tests.plugin import lunar_kinds
 
 
 @pytest.mark.parametrize(
@@ -27,20 +28,25 @@ def test_that_every_model_shows_about_the_amplitudes_of_its_sample(
 
 def test_that_the_amplitudes_of_a_card_are_those_that_it_prints() -> None:
     card = materials()["ma165"]
-    np.testing.assert_allclose(relative_amplitudes(card.model(8)), card.relative_amplitudes[:8])
+    np.testing.assert_allclose(relative_amplitudes(card.field(8)), card.relative_amplitudes[:8])
 
 
 @pytest.mark.parametrize("key", ["gaussian_field", "log_field"])
 def test_that_amplitudes_that_were_set_are_shown(key: str, rough_sample: Callable[..., Sample]) -> None:
     fitted = MODELS[key].fit(rough_sample(20, 4), MODELS[key].Settings(l_max=4))
     wanted = np.array([0.01, 0.2, 0.0, 0.03])
-    np.testing.assert_allclose(relative_amplitudes(with_amplitudes(fitted, wanted)), wanted)
+    np.testing.assert_allclose(relative_amplitudes(fitted.with_amplitudes(wanted)), wanted)
     with pytest.raises(InputError, match="4 amplitudes are needed"):
-        with_amplitudes(fitted, -wanted)
+        fitted.with_amplitudes(-wanted)
 
 
 def test_that_a_sample_itself_has_no_spectrum_to_edit(rough_sample: Callable[..., Sample]) -> None:
     fitted = MODELS["sample_matched"].fit(rough_sample(20, 4), MODELS["sample_matched"].Settings(l_max=4))
-    assert not can_be_edited(fitted)
-    with pytest.raises(InputError, match="no spectrum that can be edited"):
-        with_amplitudes(fitted, np.ones(4))
+    assert not isinstance(fitted, EditableModel)
+
+
+def test_that_a_model_of_another_package_shows_the_amplitudes_of_its_draws() -> None:
+    """Its coefficients have a deviation of 1 % of c_00."""
+    field = lunar_kinds.LunarField(5.0, 6)
+    assert not isinstance(field, EditableModel)
+    np.testing.assert_allclose(relative_amplitudes(field), np.full(6, 0.01), rtol=0.1)

@@ -52,7 +52,7 @@ def test_that_every_kept_radius_is_positive_between_the_nodes_too() -> None:
 
 def test_that_a_spectrum_edited_by_hand_is_drawn_from(rough_sample: Callable[..., Sample]) -> None:
     field = MODEL.fit(rough_sample(40, 3), GaussianFieldSettings(l_max=3))
-    spheres = field.with_spectrum([field.spectrum[0], 0.0, 0.0, 0.0]).draw(10, 0)
+    spheres = field.with_amplitudes(np.zeros(3)).draw(10, 0)
     assert np.abs(spheres.coefficients[:, 1:]).max() == 0.0
 
 

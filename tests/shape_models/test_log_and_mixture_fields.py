@@ -69,7 +69,7 @@ def test_that_a_spectrum_that_follows_size_is_found_and_drawn() -> None:
 def test_that_an_edited_spectrum_replaces_the_measured_ones(rough_sample: Callable[..., Sample]) -> None:
     field = LOG_FIELD.fit(rough_sample(30, 4), LogFieldSettings(l_max=4))
     assert field.resampled
-    spheres = field.with_spectrum(np.zeros(5)).draw(20, 0)
+    spheres = field.with_amplitudes(np.zeros(4)).draw(20, 0)
     assert np.abs(spheres.coefficients[:, 1:]).max() == 0.0
 
 

@@ -31,6 +31,7 @@ from regolith_studio.ui.pages.model.evaluation_panel import EvaluationPanel
 from regolith_studio.ui.translation import translate
 from regolith_studio.ui.widgets.plots.spectrum_editor import SpectrumEditor
 from regolith_studio.ui.widgets.toast import Toast
+from tests.plugin import lunar_kinds
 from tests.ui.reading import english_left
 
 AMPLITUDES = np.array([0.02, 0.09, 0.03, 0.02])
@@ -234,6 +235,18 @@ def test_that_models_are_judged_on_the_sample_that_was_fitted(page):
 
 
 @pytest.mark.slow
+def test_that_a_model_of_another_package_is_fitted_shown_and_drawn(opened, monkeypatch):
+    monkeypatch.setitem(MODELS._rows, "lunar_model", lunar_kinds.MODEL)
+    page = opened()
+    take(page, rough_sample())
+    choose_model(page, "lunar_model")
+    page.fit_model()
+    np.testing.assert_allclose(page.live.spectrum.value(), np.full(4, 0.01), rtol=0.2)
+    assert len(page.gallery._shown[0]) > 0
+    page.draw()
+    assert page._drawn.draws.model == "lunar_model"
+
+
 def test_that_the_parts_of_a_mixture_are_named(page):
     take(page, rough_sample())
     page.source.model.setCurrentIndex(page.source.model.findData("mixture_field"))

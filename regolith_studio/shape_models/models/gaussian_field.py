@@ -16,6 +16,7 @@ from regolith_studio.geometry.arrays import FloatArray, locked_floats
 from regolith_studio.harmonics.coefficients import degrees
 from regolith_studio.messages import N_
 from regolith_studio.shape_models.chunked_sampling import RejectionSampler
+from regolith_studio.shape_models.protocol import checked_amplitudes
 from regolith_studio.shape_models.sample import Sample
 
 KEY = "gaussian_field"
@@ -74,9 +75,14 @@ class GaussianField(RejectionSampler):
         """Degree of the particles it draws."""
         return len(self.spectrum) - 1
 
-    def with_spectrum(self, spectrum: ArrayLike) -> "GaussianField":
-        """The field with another spectrum, edited by hand."""
-        return replace(self, spectrum=np.asarray(spectrum, dtype=np.float64))
+    def relative_amplitudes(self) -> FloatArray:
+        """sqrt(A_l) / mu, shape (l_max,)."""
+        return np.asarray(np.sqrt(self.spectrum[1:]) / self.mean)
+
+    def with_amplitudes(self, amplitudes: ArrayLike) -> "GaussianField":
+        """The field with another spectrum; A_0 stays."""
+        values = checked_amplitudes(amplitudes, self.l_max)
+        return replace(self, spectrum=np.concatenate([self.spectrum[:1], (self.mean * values) ** 2]))
 
     def propose(self, rng: np.random.Generator, n: int) -> FloatArray:
         """Coefficients of `n` draws, and a last column of zeros: the field has one component."""

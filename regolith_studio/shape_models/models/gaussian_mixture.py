@@ -77,6 +77,11 @@ class GaussianMixture(NamedComponents, RejectionSampler):
         fields = (self.weights, self.means, self.spectra, self.unit, self.bic, self.names, self.labels)
         return GaussianMixture, fields
 
+    def relative_amplitudes(self) -> FloatArray:
+        """Root of the mean over the components of A_lk / mu_k^2, shape (l_max,)."""
+        shares = self.weights / self.weights.sum()
+        return np.asarray(np.sqrt(shares @ (self.spectra[:, 1:] / self.means[:, None] ** 2)))
+
     def propose(self, rng: np.random.Generator, n: int) -> FloatArray:
         """Coefficients of `n` draws, and the component of each in a last column."""
         component = rng.choice(len(self.weights), n, p=self.weights / self.weights.sum())

@@ -137,6 +137,10 @@ class HullField(SizedSampler):
         """Degree of ln r."""
         return len(self.spectrum) - 1
 
+    def relative_amplitudes(self) -> FloatArray:
+        """sqrt(A_l / 4 pi) of the measured particles, shape (l_max,)."""
+        return np.asarray(np.sqrt(self.spectrum[1:] / (4 * np.pi)))
+
     @property
     def _base(self) -> int:
         """Degree of what is moved to its hull."""

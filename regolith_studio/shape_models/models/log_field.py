@@ -18,6 +18,7 @@ from regolith_studio.harmonics.coefficients import degrees
 from regolith_studio.messages import N_
 from regolith_studio.shape_models.chunked_sampling import SizedSampler
 from regolith_studio.shape_models.log_radius import directed, log_shapes
+from regolith_studio.shape_models.protocol import checked_amplitudes
 from regolith_studio.shape_models.sample import Sample
 from regolith_studio.shape_models.size_law import SIZE_LAWS, SizeLaw, size_law_from
 
@@ -111,9 +112,15 @@ class LogField(SizedSampler):
         """Whether each particle has the spectrum of a measured one."""
         return self.powers is not None and self.radii is not None
 
-    def with_spectrum(self, spectrum: ArrayLike) -> "LogField":
-        """The field with one spectrum for all particles, edited by hand."""
-        return replace(self, spectrum=np.asarray(spectrum, dtype=np.float64), powers=None, radii=None)
+    def relative_amplitudes(self) -> FloatArray:
+        """sqrt(A_l / 4 pi), shape (l_max,)."""
+        return np.asarray(np.sqrt(self.spectrum[1:] / (4 * np.pi)))
+
+    def with_amplitudes(self, amplitudes: ArrayLike) -> "LogField":
+        """The field with one spectrum for all particles: those of measured ones are not resampled."""
+        squares = 4 * np.pi * checked_amplitudes(amplitudes, self.l_max) ** 2
+        spectrum = np.concatenate([self.spectrum[:1], squares])
+        return replace(self, spectrum=spectrum, powers=None, radii=None)
 
     def shapes(
         self, radii: FloatArray, _components: IntArray, rng: np.random.Generator

@@ -64,6 +64,11 @@ class MixtureField(NamedComponents, SizedSampler):
         fields = (self.sizes, self.spectra, self.unit, self.bic, self.names, self.labels)
         return MixtureField, fields
 
+    def relative_amplitudes(self) -> FloatArray:
+        """Root of the mean over the components of A_lk / 4 pi, shape (l_max,)."""
+        shares = self.sizes.weights / self.sizes.weights.sum()
+        return np.asarray(np.sqrt(shares @ self.spectra[:, 1:] / (4 * np.pi)))
+
     def shapes(
         self, radii: FloatArray, components: IntArray, rng: np.random.Generator
     ) -> tuple[FloatArray, dict[str, IntArray]]:

@@ -25,9 +25,8 @@ from regolith_studio.jobs.model_jobs import (
 from regolith_studio.messages import N_
 from regolith_studio.readers.shape_files import ShapeSource, read_shape_source
 from regolith_studio.session.provenance import VirtualSource
-from regolith_studio.shape_models.protocol import FittedModel
+from regolith_studio.shape_models.protocol import EditableModel, FittedModel, relative_amplitudes
 from regolith_studio.shape_models.sample import Sample
-from regolith_studio.shape_models.spectrum_sliders import can_be_edited, relative_amplitudes, with_amplitudes
 from regolith_studio.ui.latest_job import LatestJob
 from regolith_studio.ui.layout import padded, scrolled_column, side_by_side, stacked, tabs
 from regolith_studio.ui.page import PageContext, PageWidget
@@ -251,7 +250,7 @@ class ModelPage(PageWidget):
     def _show_fitted(self, fitted: ModelFitResult) -> None:
         self._fitted, self._model, self._drawn = fitted, fitted.model, None
         model = fitted.model
-        self.live.spectrum.setValue(relative_amplitudes(model), editable=can_be_edited(model))
+        self.live.spectrum.setValue(relative_amplitudes(model), editable=isinstance(model, EditableModel))
         self._live_seed = 0
         if fitted.first is None:
             self._request_live()  # which shows why there is none
@@ -301,9 +300,8 @@ class ModelPage(PageWidget):
             self.live.show_mesh(mesh, tr("equivalent radius {radius:.3g} µm", radius=radius), again)
 
     def _edit(self, amplitudes: np.ndarray[Any, np.dtype[np.float64]]) -> None:
-        if self._fitted is not None and can_be_edited(self._fitted.model):
-            changed = self.live.spectrum.is_changed()
-            self._model = with_amplitudes(self._fitted.model, amplitudes) if changed else self._fitted.model
+        if self._fitted is not None and isinstance(model := self._fitted.model, EditableModel):
+            self._model = model.with_amplitudes(amplitudes) if self.live.spectrum.is_changed() else model
             self._request_live()
 
     def _rename(self, names: tuple[str, ...]) -> None:
