@@ -17,7 +17,8 @@ from scipy.spatial import ConvexHull, HalfspaceIntersection
 from benchmarks.result_files import Rows, add_result, show_row
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.sphere_points import icosphere
-from regolith_studio.imaging.grain_surface import contour, grey_mesh, mask_mesh
+from regolith_studio.imaging.contours import contour
+from regolith_studio.imaging.grain_surface import grey_mesh, mask_mesh
 from regolith_studio.imaging.label_table import GrainCrop
 from regolith_studio.imaging.voxelize import coverage
 from tools.make_samples.grains import even_sphere, random_rotation

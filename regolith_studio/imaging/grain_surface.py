@@ -8,24 +8,23 @@ that of the voxels, which is unbiased whatever the shape.
 Grey values tell more. A voxel that the surface cuts is as bright as the share of it that is grain. With b and
 g the grey values of the surroundings and of the grain, the sum of (v - b) / (g - b) over the grain and its
 rim is the volume of the grain, whatever the blur of the scanner, which moves brightness but does not lose
-any. :func:`grey_mesh` takes the contour halfway between b and g, moves it until it looks through the same
+any. What lies deeper in the grain than its rim does not count (:mod:`~regolith_studio.imaging.rim_levels`).
+:func:`grey_mesh` takes the contour halfway between b and g, moves it until it looks through the same
 blur as the grain does, and scales it to that volume.
 """
 
-from collections.abc import Sequence
 from typing import Any
 
 import cc3d
 import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
-from skimage import measure
 
 from regolith_studio.geometry.arrays import BoolArray, FloatArray
-from regolith_studio.geometry.kernels import kernel
 from regolith_studio.geometry.mesh import Mesh
-from regolith_studio.imaging.connected_components import largest_component, pores_filled
+from regolith_studio.imaging.contours import body_contour, contour, depth
 from regolith_studio.imaging.label_table import GrainCrop
+from regolith_studio.imaging.rim_levels import CONTACT, PRESMOOTHING, RIM, grain_shares
 from regolith_studio.imaging.smoothing import windowed_sinc, with_volume
 from regolith_studio.imaging.surface_refinement import (
     LIGHT_SMOOTHING,
@@ -37,22 +36,10 @@ from regolith_studio.imaging.surface_refinement import (
 
 MARGIN = 7
 """Voxels around the box of a grain that are used."""
-_RIM = 3.0
-"""Voxels on either side of a mask's edge that may be blurred; beyond are grain and surroundings."""
-_CONTACT = 1.5
-"""Maximum distance in voxels of touching grains."""
 _CRUMB_DISTANCE, _CRUMB_VOXELS = 2.5, 8
 """Bright voxels so far from the grain, and so many together, belong to something else."""
-_GREY_REACH = 4.0
-"""Standard deviation in voxels over which the grey values of grain and surroundings are averaged."""
-_MIN_VOXELS = 30
-"""Minimum number of voxels to estimate a grey value from."""
-_MAX_NOISE = 0.35
-"""Noise, as a share of the contrast, from which on the mask is used instead of the grey values."""
 _MAX_VOLUME_RATIO = 2.0
 """Maximum ratio of the volumes by brightness and by voxel count."""
-_PRESMOOTHING = 0.42
-"""Standard deviation in voxels of the Gaussian before the first contour."""
 _STEPS = 8
 """Steps of the refinement to grey values."""
 _BLURS, _BLUR_STEPS = (0.1, 2.0), 20
@@ -74,9 +61,6 @@ _MASK_STEPS = 8
 _MASK_WIDENING, _MASK_TWICING = 2.0, 1.4
 """Pass band of the smoothing after each step as a multiple of the usual one, and factor of the twicing:
 chosen on balls, ellipsoids, polyhedra and rough grains of 24 to 48 voxels."""
-_marching_cubes: Any = measure.marching_cubes
-MAX_DEPTH = 4
-"""Distance in voxels at which depths are cut off."""
 
 
 def grey_mesh(
@@ -104,44 +88,24 @@ def grey_mesh(
     """
     others, values = crop.others | (crop.own & ~body), crop.values.astype(np.float32)
     inside, outside = depth(body), depth(~body)
-    levels = _levels(values, others, inside, outside)
-    if isinstance(levels, str):
-        return levels
-    share, noise = levels
-    rim, told = _rim(share, others, inside, outside)
+    found = grain_shares(values, others, inside, outside, cubic_voxels)
+    if isinstance(found, str):
+        return found
+    rim, told = _rim(found.share, others, inside, outside)
+    rim[found.full] = 1.0
     volume = float(rim.sum(dtype=np.float64))
     if not 1.0 / _MAX_VOLUME_RATIO < volume / np.count_nonzero(body) < _MAX_VOLUME_RATIO:
         return "its brightness and its number of voxels tell different volumes"
-    rough = _contoured(ndimage.gaussian_filter(rim, _PRESMOOTHING))
+    rough = body_contour(ndimage.gaussian_filter(rim, PRESMOOTHING))
     mesh = windowed_sinc(rough, iterations, pass_band)
     if iterations:
-        wider = min(_WIDENING * pass_band / max(noise, 1e-6) ** _POWER, _MAX_PASS_BAND)
+        wider = min(_WIDENING * pass_band / max(found.noise, 1e-6) ** _POWER, _MAX_PASS_BAND)
         twicing = _TWICING if cubic_voxels else _TWICING_OF_UNEQUAL
         how = RefinementSettings(_STEPS, iterations, wider, twicing)
-        blur = _blur(rim, noise, mesh, cubic_voxels)
+        blur = _blur(rim, found.noise, mesh, cubic_voxels)
         fit = refined_to_scan(mesh, rim, told, blur, how)
         mesh = without_crossings(fit, windowed_sinc(rough, iterations, min(LIGHT_SMOOTHING * pass_band, 2.0)))
     return with_volume(mesh, volume)
-
-
-def _levels(values: Floats, others: BoolArray, inside: Floats, outside: Floats) -> tuple[Floats, float] | str:
-    """Share of grain in each voxel, and the noise of it; or why there is none."""
-    within = inside > min(_RIM, float(inside.max()) - 0.5)
-    far = np.minimum(outside, depth(~others)) if others.any() else outside
-    beyond = far > (_RIM if np.count_nonzero(far > _RIM) >= _MIN_VOXELS else _CONTACT)
-    if np.count_nonzero(beyond) < _MIN_VOXELS:
-        return "too little background lies about it"
-    grain, background = values[within], values[beyond]
-    contrast = abs(float(np.median(grain)) - float(np.median(background)))
-    noise = 1.4826 * float(np.median(np.abs(background - np.median(background))))
-    if not noise < _MAX_NOISE * contrast:
-        return "it is hardly brighter or darker than its surroundings"
-    dark = _local_mean(values, beyond & _usual(values, background))
-    bright = _local_mean(values, within)
-    span = bright - dark
-    if (span * np.sign(np.median(grain) - np.median(background)) < 0.3 * contrast).any():
-        return "it is in part hardly brighter or darker than its surroundings"
-    return np.asarray((values - dark) / span), noise / contrast
 
 
 def _rim(share: Floats, others: BoolArray, inside: Floats, outside: Floats) -> tuple[Floats, BoolArray]:
@@ -149,19 +113,19 @@ def _rim(share: Floats, others: BoolArray, inside: Floats, outside: Floats) -> t
 
     And where it tells the surface: not deep inside, not far outside, not where other grains touch.
     """
-    rim, told = share.copy(), (inside <= _RIM) & (outside <= _RIM)
-    rim[inside > _RIM] = 1.0
+    rim, told = share.copy(), (inside <= RIM) & (outside <= RIM)
+    rim[inside > RIM] = 1.0
     body = inside > 0.0
     strange = (share >= 0.5) & (outside > _CRUMB_DISTANCE)
     others = others | np.asarray(_without_specks(strange.view(np.uint8), _CRUMB_VOXELS) > 0)
     if others.any():
         away = depth(~others)
-        touched = body & (away <= _CONTACT)
+        touched = body & (away <= CONTACT)
         rim[~body & (away == outside)] *= 0.5
         rim[~body & (away < outside)] = 0.0
         if touched.any():
-            told &= depth(~touched) > _RIM
-    rim[outside > _RIM] = 0.0
+            told &= depth(~touched) > RIM
+    rim[outside > RIM] = 0.0
     return rim, told
 
 
@@ -191,30 +155,6 @@ def _blur(rim: Floats, noise: float, mesh: Mesh, cubic_voxels: bool) -> FloatArr
     return blur
 
 
-def _contoured(share: Floats) -> Mesh:
-    """Contour at one half of the largest body, without what it encloses."""
-    body, _ = largest_component(np.ascontiguousarray(share >= 0.5))
-    body = pores_filled(body)
-    one = np.where(body, np.maximum(share, 0.501), np.minimum(share, 0.499))
-    mesh = contour(np.pad(one, 1).astype(np.float32), 0.5, (1.0, 1.0, 1.0))
-    return mesh.moved(shift=np.full(3, -1.0))
-
-
-def _local_mean(values: Floats, known: BoolArray) -> Floats:
-    """Mean of the known values about each voxel, weighted by a Gaussian; far from all of them, of all."""
-    weight = ndimage.gaussian_filter(known.astype(np.float32), _GREY_REACH, mode="constant", truncate=2.0)
-    total = ndimage.gaussian_filter(np.where(known, values, 0.0), _GREY_REACH, mode="constant", truncate=2.0)
-    everywhere = np.full(values.shape, values[known].mean(dtype=np.float64), dtype=np.float32)
-    return np.divide(total, weight, out=everywhere, where=weight > 0.01)
-
-
-def _usual(values: Floats, sample: Floats) -> BoolArray:
-    """Values within the range of nearly all of the sample: no crumbs of other grains."""
-    middle = np.median(sample)
-    spread = 1.4826 * np.median(np.abs(sample - middle))
-    return np.asarray(np.abs(values - middle) <= max(4.0 * float(spread), 1e-6 * abs(float(middle)), 1e-12))
-
-
 def mask_mesh(body: BoolArray, iterations: int = 20, pass_band: float = 0.13) -> Mesh:
     """The surface of a mask, with the volume of its voxels, in voxels of the mask.
 
@@ -233,69 +173,3 @@ def mask_mesh(body: BoolArray, iterations: int = 20, pass_band: float = 0.13) ->
         fit = refined_to_mask(mesh, padded, RefinementSettings(_MASK_STEPS, iterations, wider, _MASK_TWICING))
         mesh = without_crossings(fit, windowed_sinc(rough, iterations, min(LIGHT_SMOOTHING * pass_band, 2.0)))
     return with_volume(mesh, float(np.count_nonzero(body))).moved(shift=np.full(3, -float(_MASK_MARGIN)))
-
-
-def contour(values: NDArray[Any], level: float, spacing: Sequence[float]) -> Mesh:
-    """Surface where `values`, higher inside, cross `level` (marching cubes, Lewiner's table).
-
-    Parameters
-    ----------
-    values
-        Samples on a grid, shape (nx, ny, nz), below `level` all over the border of the grid.
-    spacing
-        Distance of samples along each axis; the first sample lies at the origin.
-
-    Raises
-    ------
-    ValueError
-        If no value lies above `level` or none below, or the surface encloses no volume.
-    """
-    vertices, faces, _, _ = _marching_cubes(
-        values, level, spacing=tuple(float(step) for step in spacing), gradient_direction="ascent"
-    )
-    mesh = Mesh(vertices, np.asarray(faces, dtype=np.int64))
-    if not mesh.volume > 0.0:
-        raise ValueError("the values must be higher inside, and lower all over the border of the grid")
-    return mesh
-
-
-def depth(mask: BoolArray) -> NDArray[np.float32]:
-    """Distance of each voxel of a mask to the nearest one outside, at most :data:`MAX_DEPTH`; 0 outside.
-
-    In voxels, between their centres, and exact below :data:`MAX_DEPTH`; beyond the array there is nothing.
-    """
-    squared = np.full(mask.shape, MAX_DEPTH * MAX_DEPTH, dtype=np.int32)
-    _fill_squared(np.ascontiguousarray(mask), MAX_DEPTH, squared)
-    return np.asarray(np.sqrt(squared), dtype=np.float32)
-
-
-@kernel
-def _fill_squared(mask: BoolArray, deepest: int, found: NDArray[np.int32]) -> None:
-    """Squared distances: along z, then the least over y, then over x; `found` begins at the largest."""
-    nx, ny, nz = mask.shape
-    most = np.int32(deepest * deepest)
-    along = np.empty((nx, ny, nz), dtype=np.int32)
-    for i in range(nx):
-        for j in range(ny):
-            run = deepest
-            for k in range(nz):
-                run = min(run + 1, deepest) if mask[i, j, k] else 0
-                along[i, j, k] = run
-            run = deepest
-            for k in range(nz - 1, -1, -1):
-                run = min(run + 1, deepest) if mask[i, j, k] else 0
-                nearest = min(run, along[i, j, k])
-                along[i, j, k] = nearest * nearest
-    across = np.full((nx, ny, nz), most, dtype=np.int32)
-    for i in range(nx):
-        for j in range(ny):
-            for other in range(max(j - deepest + 1, 0), min(j + deepest, ny)):
-                added = np.int32((other - j) ** 2)
-                for k in range(nz):
-                    across[i, j, k] = min(across[i, j, k], along[i, other, k] + added)
-    for i in range(nx):
-        for other in range(max(i - deepest + 1, 0), min(i + deepest, nx)):
-            added = np.int32((other - i) ** 2)
-            for j in range(ny):
-                for k in range(nz):
-                    found[i, j, k] = min(found[i, j, k], across[other, j, k] + added)

@@ -9,8 +9,8 @@ from scipy.spatial import ConvexHull, HalfspaceIntersection
 
 from regolith_studio.errors import InputError
 from regolith_studio.imaging import volume_slabs
+from regolith_studio.imaging.contours import MAX_DEPTH, _fill_squared, depth
 from regolith_studio.imaging.extraction import ExtractedParticle, ExtractionSettings, extract_particles
-from regolith_studio.imaging.grain_surface import MAX_DEPTH, _fill_squared, depth
 from regolith_studio.imaging.sample_volumes import sample_volume
 from regolith_studio.imaging.segmentation.segment import segment
 from regolith_studio.imaging.volume import Volume
@@ -192,7 +192,7 @@ def test_that_crumbs_that_are_no_grain_do_not_count() -> None:
     [
         (lambda mask: 100 + 0 * mask, "hardly brighter or darker"),
         (lambda mask: 60 + 80 * (mask & (np.arange(41) < 25)), "in part hardly brighter"),
-        (lambda mask: 60 + 80 * ndimage.binary_erosion(mask, iterations=3), "different volumes"),
+        (lambda mask: 60 + 80 * ndimage.binary_erosion(mask, iterations=3), "hardly brighter or darker"),
     ],
 )
 def test_that_the_mask_is_taken_and_said_where_grey_values_do_not_tell(values, reason: str) -> None:

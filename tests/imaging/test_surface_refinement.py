@@ -7,7 +7,8 @@ from scipy import ndimage
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.self_intersection import count_self_intersections
 from regolith_studio.geometry.sphere_points import icosphere
-from regolith_studio.imaging.grain_surface import contour, grey_mesh, mask_mesh
+from regolith_studio.imaging.contours import contour
+from regolith_studio.imaging.grain_surface import grey_mesh, mask_mesh
 from regolith_studio.imaging.label_table import GrainCrop
 from regolith_studio.imaging.smoothing import windowed_sinc
 from regolith_studio.imaging.surface_refinement import (

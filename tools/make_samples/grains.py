@@ -14,7 +14,7 @@ from scipy import ndimage
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.decimation import decimated
 from regolith_studio.geometry.mesh import Mesh
-from regolith_studio.imaging.grain_surface import contour
+from regolith_studio.imaging.contours import contour
 from tools.make_samples.random_fields import SphereField, power_law
 
 Radius = Callable[[FloatArray], FloatArray]
