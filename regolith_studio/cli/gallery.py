@@ -45,6 +45,7 @@ def gallery(
     """Draw each particle and its fits at several values of l_max (Fig. 2)."""
     from regolith_studio.harmonics.fit import HarmonicFit
     from regolith_studio.io.atomic import staged_folder
+    from regolith_studio.io.file_names import file_stem
     from regolith_studio.jobs.particle_jobs import FIT_DEGREE, FitRequest, fit_sample
 
     wanted = whole_numbers(degrees, 0, FIT_DEGREE)
@@ -60,10 +61,11 @@ def gallery(
                 print_errors([f"{particle.name}: {fit}"])
                 failed += 1
                 continue
-            names = [f"{particle.name}_degrees.png"]
+            stem = file_stem(particle.name)
+            names = [f"{stem}_degrees.png"]
             draw_in_process(_draw_picture, (particle.mesh, fit, wanted), stage / names[0])
             if animation:
-                names.append(f"{particle.name}_degrees.gif")
+                names.append(f"{stem}_degrees.gif")
                 draw_in_process(
                     _draw_animation, (particle.mesh, fit, range(request.l_max + 1)), stage / names[1]
                 )

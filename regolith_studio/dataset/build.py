@@ -1,6 +1,6 @@
 """Build a dataset from particles and the polyhedra that approximate them."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from importlib.metadata import PackageNotFoundError, version
 from typing import Protocol
@@ -19,6 +19,7 @@ from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.convex_compound import Polyhedron
 from regolith_studio.geometry.particle import Particle
+from regolith_studio.io.file_names import unique_name
 
 PACKAGES = ("numpy", "scipy", "numba", "pyshtools", "scikit-image", "fast-simplification", "vtk")
 
@@ -115,7 +116,8 @@ def build_dataset(
     if len(own) != len(entries):
         raise InputError(f"{len(entries)} particles need {len(entries)} classes, got {len(own)}.")
     weights = normalised_shares([one.weight for one in own])
-    names = unique_names(particle.name for particle, _ in entries)
+    taken: dict[str, int] = {}
+    names = [unique_name(particle.name, "", taken) for particle, _ in entries]
     representatives = tuple(
         representative_of(title, particle, shape, replace(one, weight=weight, sizes=sizes or one.sizes))
         for title, (particle, shape), one, weight in zip(names, entries, own, weights, strict=True)
@@ -138,20 +140,6 @@ def software_versions() -> dict[str, str]:
         except PackageNotFoundError:
             continue
     return found
-
-
-def unique_names(names: Iterable[str]) -> tuple[str, ...]:
-    """The names; a repeated name gets the suffix -2, -3 ..."""
-    taken: set[str] = set()
-    result = []
-    for name in names:
-        candidate, number = name, 1
-        while candidate in taken:
-            number += 1
-            candidate = f"{name}-{number}"
-        taken.add(candidate)
-        result.append(candidate)
-    return tuple(result)
 
 
 def singleton_class(particle: Particle) -> ShapeClass:

@@ -23,6 +23,7 @@ from pathlib import Path
 from typing import IO
 
 from regolith_studio.errors import FileError, RegolithError, check_not_stopped, os_error_reason
+from regolith_studio.io.file_names import path_inside
 from regolith_studio.io.output_lock import LOCK, NEW, hidden_beside, output_lock, release_all, remove_hidden
 
 CONCURRENT_SYNCS = 16
@@ -79,14 +80,20 @@ def write_bytes(path: Path, content: bytes) -> None:
         stream.write(content)
 
 
-def write_in_stage(path: Path, content: bytes) -> None:
+def write_in_stage(stage: Path, name: str, content: bytes) -> None:
     """Write a file in a folder that is staged itself: what an interruption leaves of it goes with it.
+
+    Parameters
+    ----------
+    name
+        Relative to the folder, with slashes.
 
     Raises
     ------
     FileError
-        If it cannot be written.
+        If it cannot be written, or would not be in the folder.
     """
+    path = path_inside(stage, name)
     try:
         path.write_bytes(content)
     except OSError as error:
@@ -292,7 +299,7 @@ def _hidden_path(target: Path) -> Iterator[Path]:
 
 def _written_list(folder: Path, kind: str) -> str:
     """Write the list of a folder; its name."""
-    (folder / f"{kind}.sha256").write_bytes(_sha256_list(folder))
+    write_in_stage(folder, f"{kind}.sha256", _sha256_list(folder))
     return f"{kind}.sha256"
 
 
@@ -328,8 +335,9 @@ def _replace_listed(stage: Path, folder: Path, listed: str) -> None:
     for name in earlier - fresh - {listed}:
         (folder / name).unlink()
     for name in sorted(fresh):
-        (folder / name).parent.mkdir(parents=True, exist_ok=True)
-        (stage / name).replace(folder / name)
+        path = path_inside(folder, name)
+        path.parent.mkdir(parents=True, exist_ok=True)
+        (stage / name).replace(path)
 
 
 def _read_if_there(path: Path) -> bytes:
@@ -341,7 +349,7 @@ def _fill(folder: Path, files: Mapping[str, Content] | Iterable[tuple[str, Conte
     folders = {folder}
     with _FileSyncer() as syncer:
         for name, content in files.items() if isinstance(files, Mapping) else files:
-            path = folder.joinpath(*name.split("/"))
+            path = path_inside(folder, name)
             if path.parent not in folders:
                 os.mkdir(path.parent)  # noqa: PTH102
                 folders.add(path.parent)

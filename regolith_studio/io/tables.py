@@ -1,10 +1,10 @@
 """Tables of results, written as CSV for spreadsheets and as JSON for programs."""
 
 import csv
-import io
 import json
 import math
-from collections.abc import Iterable, Sequence
+import re
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -14,6 +14,9 @@ Cell = str | int | float | None
 """What a table may hold; ``None`` and NaN stand for a missing value."""
 PLAIN_NUMBERS = 1e7
 """Numbers below this are shown without an exponent of ten."""
+_FORMULA = re.compile(r"'*[=+\-@\t\r\n]")
+"""Begins a cell that a spreadsheet would compute, and one that stands for such a text."""
+_NUMBER = re.compile(r"[+-]?((\d+\.?\d*|\.\d+)([eE][+-]?\d+)?|inf)")
 
 
 @dataclass(frozen=True)
@@ -95,8 +98,18 @@ def csv_text(table: Table) -> str:
 
 
 def csv_bytes(rows: Iterable[Sequence[object]]) -> bytes:
-    """Rows as CSV in UTF-8: floats by ``repr``, ``None`` as an empty cell, text quoted where necessary."""
+    """Rows as CSV in UTF-8: floats by ``repr``, ``None`` as an empty cell, text quoted where necessary.
+
+    A text that a spreadsheet would take for a formula, because it begins with ``=``, ``+``, ``-``, ``@`` or a
+    tab or line end and is no number, gets an apostrophe in front; :func:`read_csv` takes it away.
+    """
     return _csv(rows).encode("utf-8", UNPRINTABLE)
+
+
+def read_csv(lines: Iterable[str]) -> Iterator[dict[str, str]]:
+    """Rows of CSV that this program has written, by the cells of the first; the texts are as they were."""
+    for row in csv.DictReader(lines):
+        yield {name: _original(cell) if isinstance(cell, str) else cell for name, cell in row.items()}
 
 
 def json_text(table: Table) -> str:
@@ -127,9 +140,29 @@ def rows_as_text(table: Table, digits: int = 3) -> tuple[Sequence[str], ...]:
 
 
 def _csv(rows: Iterable[Sequence[object]]) -> str:
-    lines = io.StringIO()
-    csv.writer(lines, lineterminator="\n").writerows(rows)
-    return lines.getvalue()
+    lines = _Lines()
+    writer = csv.writer(lines, lineterminator="\r\n")
+    writer.writerows([_as_text(cell) if isinstance(cell, str) else cell for cell in row] for row in rows)
+    return "".join(lines)
+
+
+class _Lines(list[str]):
+    """Takes rows that end in ``\\r\\n``, and ends them in ``\\n``.
+
+    The writer quotes the signs of its own end of a line only, and readers take a bare ``\\r`` for an end too.
+    """
+
+    def write(self, row: str) -> None:
+        """Add a row."""
+        self.append(f"{row[:-2]}\n")
+
+
+def _as_text(cell: str) -> str:
+    return f"'{cell}" if _FORMULA.match(cell) and not _NUMBER.fullmatch(cell) else cell
+
+
+def _original(cell: str) -> str:
+    return cell[1:] if cell.startswith("'") and _FORMULA.match(cell) else cell
 
 
 def _plain(cell: object) -> Cell:

@@ -13,6 +13,8 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.harmonics.fit import HarmonicFit
 from regolith_studio.harmonics.surface import level_for, reconstruct
+from regolith_studio.io.atomic import write_in_stage
+from regolith_studio.io.file_names import MAX_NAME_BYTES, cut_name, file_stem
 from regolith_studio.io.stl import stl_bytes
 from regolith_studio.jobs.compile_kernels import compile_first
 from regolith_studio.jobs.events import Job, Progress, Started, Steps
@@ -201,6 +203,7 @@ def particle_names(n: int, first: int = 0) -> tuple[str, ...]:
 def drawn_names(title: str, n: int) -> tuple[str, ...]:
     """title-0000, title-0001 and so on: what is drawn in one go, with digits for all of it."""
     digits = max(4, len(str(n - 1)))
+    title = cut_name(title, MAX_NAME_BYTES - 1 - digits)
     return tuple(f"{title}-{index:0{digits}d}" for index in range(n))
 
 
@@ -285,7 +288,9 @@ def _write_batch(draws: Realizations, groups: tuple[str, ...], level: int, folde
     yield Started(N_("Writing particles"), len(draws))
     facts = []
     for particle in particles_of(draws, groups, level, first):
-        (folder / f"{particle.name}.stl").write_bytes(stl_bytes(particle.mesh.triangles, STL_HEADER))
+        write_in_stage(
+            folder, f"{file_stem(particle.name)}.stl", stl_bytes(particle.mesh.triangles, STL_HEADER)
+        )
         facts.append(measure_particle(particle))
     return tuple(facts)
 

@@ -16,7 +16,9 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.mesh_health import inspect
 from regolith_studio.geometry.particle import Particle, Source
 from regolith_studio.io.atomic import check_listed, listed_hashes
+from regolith_studio.io.file_names import file_stem, name_key, unique_name
 from regolith_studio.io.natural_order import natural_key
+from regolith_studio.io.tables import read_csv
 from regolith_studio.readers.coefficient_tables import (
     DEFAULT_TABLE_READING,
     TABLE_SUFFIXES,
@@ -42,9 +44,6 @@ _COMPANIONS = (
     ".mtl", ".bin",
 )  # fmt: skip
 """Suffixes of what lies beside meshes: documents, pictures, and parts of OBJ and glTF."""
-
-MAX_NAME_BYTES = 150
-"""Of a particle's name, in UTF-8: file systems allow 255 bytes, and endings follow."""
 
 
 @dataclass(frozen=True)
@@ -197,31 +196,10 @@ def collect_particles(
 
 def unique_names(particles: Sequence[Particle], taken: Sequence[str] = ()) -> tuple[Particle, ...]:
     """The particles; a name that is `taken`, or came before, gets the group, then a number."""
-    used = set(taken)
+    used = dict.fromkeys(map(name_key, taken), 1)
     return tuple(
         replace(particle, name=unique_name(particle.name, particle.group, used)) for particle in particles
     )
-
-
-def unique_name(name: str, group: str, used: set[str]) -> str:
-    """The name; if it is `used`, the name with its group, then with a number. It is added to `used`.
-
-    Files are called by it: what cannot be printed becomes a line, and what is too long is cut.
-    """
-    name = _file_stem(name)
-    if name in used and group:
-        name = _file_stem(f"{group.replace('/', '_')}_{name}")
-    base, number = name, 1
-    while name in used:
-        number += 1
-        name = f"{base}_{number}"
-    used.add(name)
-    return name
-
-
-def _file_stem(name: str) -> str:
-    shown = "".join(sign if sign.isprintable() else "_" for sign in name)
-    return shown.encode()[:MAX_NAME_BYTES].decode(errors="ignore")
 
 
 def read_file(
@@ -334,7 +312,7 @@ def mesh_files(paths: Sequence[str | Path], tables: TableReading = DEFAULT_TABLE
     return [
         replace(
             file,
-            weight=weights[file.path.parent].get(file.path.stem, 1.0),
+            weight=weights[file.path.parent].get(file_stem(file.path.stem), 1.0),
             listed=lists[file.path.parent],
             tables=tables,
         )
@@ -402,7 +380,7 @@ MAX_TABLE_BYTES = 256 * 1024**2
 
 
 def read_weights(folder: Path, listed: Mapping[str, str] | None = None) -> dict[str, float]:
-    """Weight of each particle by its name; empty where the folder has no such table.
+    """Weight of each particle by the name of its file; empty where the folder has no such table.
 
     A table that somebody else wrote, with no columns ``name`` and ``weight``, or without a positive
     number in the second, gives no weights: they are an addition to the meshes, not a part of them.
@@ -419,14 +397,11 @@ def read_weights(folder: Path, listed: Mapping[str, str] | None = None) -> dict[
             return found
         check_listed(path.name, sha256_of(path), listed or {})
         with path.open(encoding="utf-8-sig", newline="") as file:
-            rows = csv.DictReader(file)
-            if not {"name", "weight"} <= set(rows.fieldnames or ()):
-                return found
-            for row in rows:
+            for row in read_csv(file):
                 weight = float(row["weight"] or 1.0)
                 if row["name"] and 0.0 < weight < math.inf:
-                    found[row["name"]] = weight
-    except (OSError, ValueError, csv.Error):
+                    found[file_stem(row["name"])] = weight
+    except (OSError, ValueError, TypeError, KeyError, csv.Error):
         return {}
     return found
 

@@ -199,7 +199,7 @@ class _StageWriter:
             self.times.pop()
         number = len(self.times)
         _write_poly_data(self._stage / _moment(number), _points(self._shapes, pile))
-        write_in_stage(self._stage / f"ovito/particles.{number:06d}.xyz", extended_xyz(self._shapes, pile))
+        write_in_stage(self._stage, f"ovito/particles.{number:06d}.xyz", extended_xyz(self._shapes, pile))
         self.times.append(pile.time)
         self.n_particles, self._last = len(pile), pile
 
@@ -252,7 +252,7 @@ class _StageWriter:
         }
 
     def _write(self, name: str, content: bytes) -> None:
-        write_in_stage(self._stage / name, content)
+        write_in_stage(self._stage, name, content)
 
 
 def _points(shapes: RunShapes, pile: ParticleState) -> pv.PolyData:

@@ -11,8 +11,8 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from regolith_studio.errors import FileError, format_validation_error
 from regolith_studio.io.atomic import write_files
+from regolith_studio.io.file_names import unique_name
 from regolith_studio.readers.file_bytes import read_bytes
-from regolith_studio.readers.particles import unique_name
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.provenance import (
     FileSource,
@@ -139,7 +139,7 @@ def _selection(
 
 def _names(origins: Sequence[ParticleSource]) -> Iterator[tuple[ParticleRef | None, str]]:
     """The name that each particle of the origins gets in a run."""
-    taken: set[str] = set()
+    taken: dict[str, int] = {}
     for origin in origins:
         for key, name, group in origin.members():
             yield ParticleRef(origin, key), unique_name(name, group, taken)

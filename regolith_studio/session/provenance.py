@@ -1,6 +1,5 @@
 """The origin of open particles in the terms of a recipe, and how a recipe restores them."""
 
-import re
 import tempfile
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -123,7 +122,7 @@ class VirtualSource:
             size_range=None if request.size_range is None else list(request.size_range),
             seed=request.seed,
             level=level,
-            name=name if shipped else _file_safe_name(name),
+            name=name,
         )
         return cls(population, None if shipped else generated.model)
 
@@ -133,11 +132,6 @@ class VirtualSource:
 
         names = drawn_names(self.population.name, self.population.n)
         return tuple((name, name, "") for name in names)
-
-
-def _file_safe_name(name: str) -> str:
-    """A name for drawn particles that can stand in the names of files."""
-    return re.sub(r"[^\w.+-]+", "_", name).strip("_.")[:40] or "virtual"
 
 
 ParticleSource = SampleSource | FileSource | VolumeSource | VirtualSource

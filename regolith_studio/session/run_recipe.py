@@ -20,8 +20,9 @@ from regolith_studio.dataset.build import software_versions
 from regolith_studio.dataset.streaming import check_count, write_stored
 from regolith_studio.errors import FileError, RegolithError
 from regolith_studio.geometry.particle import Particle
-from regolith_studio.io.atomic import JOURNAL, staged_folder, write_bytes
+from regolith_studio.io.atomic import JOURNAL, staged_folder, write_bytes, write_in_stage
 from regolith_studio.io.checkpoint import CheckpointRecord, read_note
+from regolith_studio.io.file_names import file_stem, unique_name
 from regolith_studio.jobs.batch import LOST, Batch, run_batch
 from regolith_studio.jobs.compile_kernels import compile_first_for
 from regolith_studio.jobs.dataset_jobs import dataset_provenance
@@ -30,7 +31,6 @@ from regolith_studio.jobs.executor import Executor, open_executor
 from regolith_studio.jobs.study_checkpoint import StudyCheckpoint
 from regolith_studio.jobs.study_jobs import study_coarsening, study_lmax
 from regolith_studio.messages import N_
-from regolith_studio.readers.particles import unique_name
 from regolith_studio.session.batch.dataset_step import (
     build_dataset_step,
     check_dataset_request,
@@ -277,12 +277,12 @@ def _records(run: RecipeRun, batch: Batch) -> Iterator[CheckpointRecord]:
 
 def _write_volume_documents(run: RecipeRun, prepared: PreparedInputs) -> None:
     """Write how the grains of each volume were extracted, and which were left out."""
-    taken: set[str] = set()
+    taken: dict[str, int] = {}
     if run.recipe.volumes:
         (run.stage / "volumes").mkdir()
     for entry, source in zip(run.recipe.volumes, prepared.volumes, strict=True):
-        name = unique_name(Path(entry.file).stem.replace(":", "-"), "", taken)
-        write_bytes(run.stage / "volumes" / f"{name}.json", (source / EXTRACTION).read_bytes())
+        name = file_stem(unique_name(Path(entry.file).stem.replace(":", "-"), "", taken))
+        write_in_stage(run.stage / "volumes", f"{name}.json", (source / EXTRACTION).read_bytes())
 
 
 def _write_dataset(run: RecipeRun, batch: Batch) -> None:

@@ -210,4 +210,4 @@ def test_that_a_file_in_a_stage_that_is_gone_is_one_sentence(tmp_path: Path) -> 
     with pytest.raises(
         FileError, match=r"The file .*gone/a\.stl cannot be written \(there is no such file\)"
     ):
-        atomic.write_in_stage(tmp_path / "gone" / "a.stl", b"")
+        atomic.write_in_stage(tmp_path / "gone", "a.stl", b"")

@@ -10,6 +10,7 @@ from typing import Any, Protocol, Self
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.harmonics.surface import level_for
+from regolith_studio.io.file_names import name_key, unique_name
 from regolith_studio.jobs.model_jobs import PAPER_DEGREE, drawn_names, groups_of
 from regolith_studio.readers.coefficient_tables import TableReading
 from regolith_studio.readers.particles import (
@@ -18,7 +19,6 @@ from regolith_studio.readers.particles import (
     find_files,
     read_file,
     sample_particles,
-    unique_name,
 )
 from regolith_studio.readers.shape_files import read_shape_source
 from regolith_studio.session.batch.preprocessing import MODEL, PreparedInputs, read_grain, read_index
@@ -181,7 +181,7 @@ class BatchInputs:
         """
         problems: list[FileProblem] = list(prepared.problems)
         members: list[BatchInput] = []
-        taken: set[str] = set()
+        taken: dict[str, int] = {}
         if SAMPLE in recipe.inputs:
             for particle in sample_particles():
                 members.append(SampleInput(unique_name(particle.name, particle.group, taken), particle.name))
@@ -212,7 +212,7 @@ def title_of(population: Population) -> str:
 
 
 def _virtual_inputs(
-    recipe: Recipe, population: Population, model: Path | None, taken: set[str]
+    recipe: Recipe, population: Population, model: Path | None, taken: dict[str, int]
 ) -> list[BatchInput]:
     fitted = model_of(population, model)
     seed = recipe.seed if population.seed is None else population.seed
@@ -230,10 +230,12 @@ def _select(members: Sequence[BatchInput], selection: Sequence[str | NamedPartic
     pairs = [(each, each) if isinstance(each, str) else (each.name, each.called) for each in selection]
     if missing := next((name for name, _ in pairs if name not in by_name), None):
         raise InputError(f"The recipe asks for a particle {missing!r}, which its inputs do not hold.")
-    ((name, count),) = Counter(name for _, name in pairs).most_common(1)
+    ((key, count),) = Counter(name_key(new) for _, new in pairs).most_common(1)
     if count > 1:
+        name = next(new for _, new in pairs if name_key(new) == key)
         raise InputError(f"The recipe asks for {count} particles of the name {name!r}.")
-    return [by_name[name].called(new) for name, new in pairs]
+    taken: dict[str, int] = {}
+    return [by_name[name].called(unique_name(new, "", taken)) for name, new in pairs]
 
 
 def model_of(population: Population, folder: Path | None) -> FittedModel:

@@ -4,8 +4,8 @@ Each folder appears in one step. A scan whose folder holds the result of the sam
 versions is not extracted again, so that an interrupted run goes on where it ended.
 """
 
-import csv
 import json
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -20,7 +20,8 @@ from regolith_studio.descriptors.distributions import (
 )
 from regolith_studio.errors import FileError, InputError, RegolithError
 from regolith_studio.io.atomic import listed_hashes, staged_folder, write_bytes
-from regolith_studio.io.tables import Column, Table, csv_bytes, csv_text
+from regolith_studio.io.file_names import file_stem, name_key, path_inside
+from regolith_studio.io.tables import Column, Table, csv_bytes, csv_text, read_csv
 from regolith_studio.jobs.events import Started, Steps
 from regolith_studio.jobs.executor import Executor
 from regolith_studio.jobs.extraction_jobs import volume_sha256
@@ -75,12 +76,13 @@ def group_names(scans: Sequence[Path]) -> tuple[str, ...]:
     InputError
         If folders and files of two are called alike.
     """
-    stems = [scan.stem for scan in scans]
+    stems = [file_stem(scan.stem) for scan in scans]
+    keys = list(map(name_key, stems))
     names = tuple(
-        stem if stems.count(stem) == 1 else f"{scan.absolute().parent.name}_{stem}"
-        for scan, stem in zip(scans, stems, strict=True)
+        stem if keys.count(key) == 1 else file_stem(f"{scan.absolute().parent.name}_{stem}")
+        for scan, stem, key in zip(scans, stems, keys, strict=True)
     )
-    twice = sorted({name for name in names if names.count(name) > 1})
+    twice = sorted(name for name, count in Counter(map(name_key, names)).items() if count > 1)
     if twice:
         raise InputError(f"Several scans are called {twice[0]}, and so are their folders; rename one.")
     return names
@@ -110,10 +112,10 @@ def extract_groups(
         if not output.is_dir():
             raise FileError(f"The folder {output} was removed while it was written to.")
         try:
-            if _is_extracted(output / given.group, given, settings):
+            group = path_inside(output, given.group)
+            if _is_extracted(group, given, settings):
                 kept.append(given.group)
                 continue
-            group = output / given.group
             with staged_folder(group, "extract") as stage:
                 folder = ExtractionFolder(stage)
                 place = unfinished_file(group)
@@ -175,7 +177,7 @@ def _write_tables(output: Path, groups: Sequence[str]) -> Table:
 
 def _read_rows(path: Path) -> _Rows:
     with path.open(encoding="utf-8", newline="") as file:
-        return list(csv.DictReader(file))
+        return list(read_csv(file))
 
 
 def compare_groups(tables: Mapping[str, _Rows]) -> Table:

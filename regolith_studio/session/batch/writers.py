@@ -14,7 +14,7 @@ from regolith_studio.geometry.particle import Source
 from regolith_studio.harmonics.coefficients import ShCoefficients
 from regolith_studio.harmonics.fit import HarmonicFit
 from regolith_studio.harmonics.io import fits_from
-from regolith_studio.io.atomic import staged_file, staged_folder, write_bytes
+from regolith_studio.io.atomic import staged_file, staged_folder, write_bytes, write_in_stage
 from regolith_studio.io.checkpoint import CheckpointRecord
 from regolith_studio.io.json_text import JsonListWriter
 from regolith_studio.io.tables import csv_bytes
@@ -100,9 +100,9 @@ class _MeshWriter:
         values = record.values
         if entry := values.get("coarse"):
             self.entries.add(entry)
-            (self.folder / entry["file"]).write_bytes(record.blobs[MESH])
+            write_in_stage(self.folder, entry["file"], record.blobs[MESH])
             for part in entry.get("parts", ()):
-                (self.folder / part["file"]).write_bytes(record.blobs[part["file"]])
+                write_in_stage(self.folder, part["file"], record.blobs[part["file"]])
         elif reason := reason_of(record):
             self.failed.append({"name": values["name"], "reason": reason})
 

@@ -12,7 +12,8 @@ from regolith_studio.coarsening.weights import JACCARD
 from regolith_studio.descriptors.catalogue import CATALOGUE, LOSS_KEYS
 from regolith_studio.geometry.convex_compound import ConvexCompound
 from regolith_studio.geometry.mesh import Mesh
-from regolith_studio.io.atomic import write_bytes
+from regolith_studio.io.atomic import write_bytes, write_in_stage
+from regolith_studio.io.file_names import file_stem
 from regolith_studio.io.json_text import json_bytes
 from regolith_studio.io.stl import stl_bytes
 from regolith_studio.io.tables import Cell, Column, Table
@@ -31,7 +32,7 @@ def write_coarsening(folder: Path, request: CoarseningRequest, done: Sequence[Co
     for each in done:
         if each.coarsened:
             for file, mesh in meshes_of(each.name, each.coarsened).items():
-                write_bytes(folder / file, stl_bytes(mesh.triangles, STL_HEADER))
+                write_in_stage(folder, file, stl_bytes(mesh.triangles, STL_HEADER))
     times = {each.name: round(each.seconds, 3) for each in done}
     write_bytes(folder / "times.json", json_bytes({"seconds": times}))
     write_bytes(folder / "coarsening.json", json_bytes(coarsening_document(request, done)))
@@ -110,7 +111,7 @@ def coarsening_entry(each: CoarsenedParticle, coarse: CoarseningResult) -> dict[
     """One particle in ``coarsening.json``, without the time that it took."""
     return {
         "name": each.name,
-        "file": f"{each.name}.stl",
+        "file": f"{file_stem(each.name)}.stl",
         "method": coarse.method,
         "n_facets_asked": coarse.n_facets_asked,
         "n_facets": coarse.n_facets,
@@ -136,7 +137,7 @@ def coarsening_entry(each: CoarsenedParticle, coarse: CoarseningResult) -> dict[
 def meshes_of(name: str, coarse: CoarseningResult) -> dict[str, Mesh]:
     """Triangles in the particle's own frame by file name: the whole first, then each part of several."""
     solid = coarse.polyhedron
-    meshes = {f"{name}.stl": coarse.mesh}
+    meshes = {f"{file_stem(name)}.stl": coarse.mesh}
     if isinstance(solid, ConvexCompound):
         for number, part in enumerate(solid.part_meshes, start=1):
             meshes[_part_file(name, number)] = part.moved(shift=coarse.centre)
@@ -144,7 +145,7 @@ def meshes_of(name: str, coarse: CoarseningResult) -> dict[str, Mesh]:
 
 
 def _part_file(name: str, number: int) -> str:
-    return f"{name}.part{number}.stl"
+    return f"{file_stem(name)}.part{number}.stl"
 
 
 def _planes(name: str, coarse: CoarseningResult) -> dict[str, Any]:

@@ -12,7 +12,8 @@ from regolith_studio.harmonics.fit import HarmonicFit
 from regolith_studio.harmonics.roundness import wadell_roundness
 from regolith_studio.harmonics.spectrum import PowerSpectrum, power_spectrum, roughness_split, sample_spectrum
 from regolith_studio.harmonics.surface import reconstruct
-from regolith_studio.io.atomic import staged_together, write_bytes
+from regolith_studio.io.atomic import staged_together, write_bytes, write_in_stage
+from regolith_studio.io.file_names import file_stem
 from regolith_studio.io.json_arrays import arrays_document
 from regolith_studio.io.json_text import json_bytes
 from regolith_studio.io.stl import stl_bytes
@@ -100,7 +101,7 @@ def _write_surfaces(folder: Path, sample: FittedSample, level: int) -> dict[str,
         except GeometryError as error:
             reasons[particle.name] = str(error)
         else:
-            write_bytes(folder / f"{particle.name}.stl", stl_bytes(surface.triangles, header))
+            write_in_stage(folder, f"{file_stem(particle.name)}.stl", stl_bytes(surface.triangles, header))
     return reasons
 
 

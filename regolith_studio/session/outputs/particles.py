@@ -16,6 +16,7 @@ from regolith_studio.harmonics.coefficients import CONVENTION
 from regolith_studio.imaging.extraction import ExtractedParticle
 from regolith_studio.imaging.volume_slabs import SliceSource
 from regolith_studio.io.atomic import write_bytes, write_in_stage
+from regolith_studio.io.file_names import file_stem
 from regolith_studio.io.json_text import json_bytes
 from regolith_studio.io.stl import stl_bytes
 from regolith_studio.io.tables import Cell, Column, Table, csv_text
@@ -51,7 +52,7 @@ class ParticleRecord:
 def write_particle(folder: Path, extracted: ExtractedParticle, facts: MeasuredParticle) -> ParticleRecord:
     """Write one particle's STL; returns its record."""
     particle = extracted.particle
-    write_in_stage(folder / f"{particle.name}.stl", stl_bytes(particle.mesh.triangles, STL_HEADER))
+    write_in_stage(folder, f"{file_stem(particle.name)}.stl", stl_bytes(particle.mesh.triangles, STL_HEADER))
     table = descriptor_table([particle], [facts])
     extra = {
         "label": extracted.label,

@@ -1,6 +1,5 @@
 """The controls at the right of the page: representatives, sizes, folder, and what a recipe holds of them."""
 
-import re
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from typing import Any
@@ -10,6 +9,7 @@ from PySide6.QtWidgets import QComboBox, QHBoxLayout, QLineEdit, QPushButton, QV
 
 from regolith_studio.dataset.size_parsing import SizeRule, parse_sizes
 from regolith_studio.errors import InputError
+from regolith_studio.io.file_names import file_stem
 from regolith_studio.jobs.representatives_jobs import RepresentativesRequest
 from regolith_studio.messages import N_
 from regolith_studio.session.recipe import DatasetRequest, Representatives
@@ -231,8 +231,8 @@ class FolderPanel(QWidget):
         self.show_dataset("")
 
     def folder_name(self) -> str:
-        """Folder name: the dataset's name with only letters, digits, dots and dashes."""
-        return re.sub(r"[^\w.-]+", "_", self.name.text()).strip("._") or "dataset"
+        """Folder name, after that of the dataset."""
+        return file_stem(self.name.text().strip() or "dataset")
 
     def show_dataset(self, words: str) -> None:
         """Describe the current dataset."""

@@ -17,6 +17,7 @@ from PySide6.QtWidgets import (
 
 from regolith_studio.errors import FileError
 from regolith_studio.io.atomic import write_bytes
+from regolith_studio.io.file_names import file_stem
 from regolith_studio.jobs.events import Job
 from regolith_studio.messages import N_
 from regolith_studio.scene.figure import view_titles
@@ -69,7 +70,7 @@ class PictureExport(QObject):
         kind, scale, transparent = dialog.value()
         dialog.deleteLater()
         kinds = tr("Pictures (*.png)")
-        name = self._ask(tr("Save picture"), f"{entry.id}.png", kinds) if accepted else ""
+        name = self._ask(tr("Save picture"), f"{file_stem(entry.id)}.png", kinds) if accepted else ""
         if not name:
             return
         path = Path(name).with_suffix(".png")
@@ -88,7 +89,7 @@ class PictureExport(QObject):
         if entry is None or not self._three_views.shapes:
             self._context.toast.problem(tr("Wait until the views are drawn."))
             return
-        name, suffix = self._ask_animation(tr("Save turntable"), f"{entry.id}-turning")
+        name, suffix = self._ask_animation(tr("Save turntable"), f"{file_stem(entry.id)}-turning")
         if name:
             path = Path(name).with_suffix(suffix)
             job = Job(turn, (self._three_views.shapes, self._three_views.views["particle"].pose, path))
@@ -101,7 +102,7 @@ class PictureExport(QObject):
         if entry is None or fit is None:
             self._context.toast.problem(tr("Wait until the particle is fitted."))
             return
-        name, suffix = self._ask_animation(tr("Save animation"), entry.id)
+        name, suffix = self._ask_animation(tr("Save animation"), file_stem(entry.id))
         if name:
             path = Path(name).with_suffix(suffix)
             job = Job(animate, (entry.particle.mesh, fit, tuple(range(fit.l_max + 1)), path))

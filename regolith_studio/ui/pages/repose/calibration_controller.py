@@ -4,6 +4,7 @@ import hashlib
 from pathlib import Path
 
 from regolith_studio.errors import RegolithError
+from regolith_studio.io.file_names import MAX_NAME_BYTES, cut_name, file_stem
 from regolith_studio.io.output_lock import output_lock
 from regolith_studio.jobs.events import Failed, Job, Steps
 from regolith_studio.jobs.repose_calibration import ReposeCalibrationRequest, calibration_steps
@@ -83,7 +84,8 @@ class CalibrationController:
 def folder_name(request: ReposeCalibrationRequest) -> str:
     """One name for all calibrations whose runs can serve each other."""
     same = repr((request.datasets, sorted(request.ranges), request.request))
-    return f"calibration-{request.datasets[0].name}-{hashlib.sha256(same.encode()).hexdigest()[:8]}"
+    name = cut_name(request.datasets[0].name, MAX_NAME_BYTES - 21)
+    return f"calibration-{file_stem(name)}-{hashlib.sha256(same.encode()).hexdigest()[:8]}"
 
 
 def locked_calibration(request: ReposeCalibrationRequest, folder: Path) -> Steps:
