@@ -11,8 +11,7 @@ import tempfile
 import warnings
 from pathlib import Path
 
-from benchmarks.contests import Growth, Outcome, held
-from benchmarks.report import growth_table, table, write
+from benchmarks.contests import Growth, Outcome, growth_table, held, table, write
 from benchmarks.steps import contests, growths
 
 

@@ -2,7 +2,7 @@
 
     python -m benchmarks.coarsening FOLDER_OF_STL [--particles 10] [--facets 20] [--only methods|evaluation]
 
-The plain programs stand in benchmarks/plain_loss.py. Errors of all methods are measured by
+The plain programs stand in benchmarks/plain.py. Errors of all methods are measured by
 benchmarks/independent.py, which shares no code with any of them. Times are processor times of one thread; of
 the evaluations, all sides work in turns and a ratio is taken in each round.
 """
@@ -20,7 +20,7 @@ import trimesh
 from numpy.typing import NDArray
 
 from benchmarks.independent import measured
-from benchmarks.plain_loss import HAS_BOOLEANS, KEYS, PlainLoss, plain_annealing
+from benchmarks.plain import HAS_BOOLEANS, KEYS, PlainLoss, plain_annealing
 from regolith_studio.coarsening.coarsen import coarsen
 from regolith_studio.coarsening.decimated_hull import quadric_half_spaces
 from regolith_studio.coarsening.loss import LossFunction
@@ -118,7 +118,7 @@ ALL_PLAIN: dict[str, dict[str, str | bool]] = {
     "meshes, exact box, boolean": {"exact": True, "overlap": "boolean"},
 }
 PLAIN = {name: how for name, how in ALL_PLAIN.items() if HAS_BOOLEANS or how.get("overlap") != "boolean"}
-"""The plain programs by name; see benchmarks/plain_loss.py."""
+"""The plain programs by name; see benchmarks/plain.py."""
 CASES: tuple[tuple[str, str, tuple[str, ...]], ...] = (
     ("minimum box", "descriptors", ("meshes", "lean", "lean, exact box")),
     ("minimum box, IoU", "all", ("meshes, boolean", "lean, points", "meshes, exact box, boolean")),

@@ -13,10 +13,7 @@ from scipy.spatial import ConvexHull
 from benchmarks import plain
 from benchmarks.coarsening import annealed, plain_loss
 from benchmarks.contests import Contest, Growth, Work, grown
-from benchmarks.descriptors import KEYS, by_trimesh, fresh, polyhedron, stone
-from benchmarks.harmonics import can_cast, plain_fit, plain_surface, rough_particle
 from benchmarks.independent import least_box
-from benchmarks.plain_loss import HAS_BOOLEANS
 from regolith_studio.coarsening.coarsen import coarsen
 from regolith_studio.coarsening.loss import LossFunction
 from regolith_studio.coarsening.target import Target
@@ -24,14 +21,15 @@ from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.dataset.build import build_dataset
 from regolith_studio.dataset.folder_io import write_dataset
 from regolith_studio.dem.angle_of_repose import measure_repose
+from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.descriptors.describe import describe
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.half_spaces import HalfSpaces
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.oriented_box import minimum_volume_box
 from regolith_studio.geometry.particle import Particle
-from regolith_studio.geometry.sphere_points import icosphere
-from regolith_studio.harmonics.coefficients import to_pyshtools
+from regolith_studio.geometry.sphere_points import fibonacci_directions, icosphere
+from regolith_studio.harmonics.coefficients import ShCoefficients, degrees, to_pyshtools
 from regolith_studio.harmonics.fit import fit_harmonics
 from regolith_studio.harmonics.surface import reconstruct
 from regolith_studio.harmonics.synthesis import radii_on_icosphere
@@ -44,6 +42,38 @@ from regolith_studio.shape_models.sample import Sample
 from tools.make_samples.synthetic_ct import ScanRecipe, synthetic_scan
 
 L_MAX, DEGREE = 10, 60
+KEYS = tuple(CATALOGUE)[:8]
+
+
+def stone(level: int, seed: int = 0) -> Mesh:
+    """An angular star-shaped particle: a ball with bumps, cut by random planes; level 4 has 5,120 faces."""
+    rng = np.random.default_rng(seed)
+    sphere = icosphere(level)
+    u = sphere.vertices
+    bumps = sum(0.04 * np.sin(u @ rng.normal(size=3) * k + rng.uniform(0, 6)) for k in range(2, 9))
+    cuts = HalfSpaces(rng.normal(size=(18, 3)), rng.uniform(0.7, 1.1, 18))
+    radius = np.minimum(1.0 + bumps, cuts.radii(u))
+    return Mesh(u * radius[:, None] * [1.2, 1.0, 0.8], sphere.faces)
+
+
+def polyhedron(n_facets: int, seed: int = 0) -> ConvexPolyhedron:
+    """A random polyhedron of the kind that coarsening returns."""
+    directions = fibonacci_directions(n_facets) + 0.1 * np.random.default_rng(seed).normal(size=(n_facets, 3))
+    return ConvexPolyhedron.from_half_spaces(HalfSpaces(directions, np.linspace(0.8, 1.2, n_facets)))
+
+
+def fresh(mesh: Mesh) -> Mesh:
+    """A copy without cached results."""
+    return Mesh(mesh.vertices, mesh.faces)
+
+
+def rough_particle(seed: int, l_max: int = 30) -> ShCoefficients:
+    """A star-shaped particle with the amplitudes of real cement grains, mean radius 10."""
+    rng = np.random.default_rng(seed)
+    degree = degrees((l_max + 1) ** 2)
+    values = rng.normal(size=len(degree)) * 0.35 * (degree + 1.0) ** -2 * np.sqrt(4 * np.pi)
+    values[0] = np.sqrt(4 * np.pi)
+    return ShCoefficients(values * 10)
 
 
 def contests(place: Path, only: str = "") -> Iterator[Contest]:
@@ -108,14 +138,14 @@ def _measuring() -> Iterator[Contest]:
         "descriptors",
         f"eight descriptors, {len(mesh.faces):,} faces",
         lambda: describe(fresh(mesh), KEYS),
-        lambda: by_trimesh(mesh.vertices, mesh.faces),
+        lambda: plain.by_trimesh(mesh.vertices, mesh.faces),
         "trimesh, its oriented box is no minimum",
     )
     yield Contest(
         "descriptors",
         "eight descriptors, 20 facets",
         lambda: describe(ConvexPolyhedron(coarse.half_spaces, coarse.vertices, coarse.facets), KEYS),
-        lambda: by_trimesh(solid.vertices, solid.faces),
+        lambda: plain.by_trimesh(solid.vertices, solid.faces),
         "trimesh, its oriented box is no minimum",
     )
     yield Contest(
@@ -142,7 +172,7 @@ def _harmonics() -> Iterator[Contest]:
         "SH fit",
         f"l = 30, rays of degree {DEGREE}, {len(surface.faces):,} faces",
         lambda: fit_harmonics(fresh(surface)),
-        (lambda: plain_fit(loaded.copy(), DEGREE, 30)) if can_cast(loaded) else None,
+        (lambda: plain.fit_harmonics(loaded.copy(), DEGREE, 30)) if plain.can_cast(loaded) else None,
         "trimesh's rays, pyshtools' expansion",
     )
     for level, l_max in ((4, 10), (5, 30)):
@@ -152,7 +182,7 @@ def _harmonics() -> Iterator[Contest]:
             "synthesis",
             f"l = {l_max}, {len(directions):,} vertices",
             lambda c=cut, k=level: radii_on_icosphere(c, k),
-            lambda t=theirs, d=directions: plain_surface(t, d),
+            lambda t=theirs, d=directions: plain.radii_of(t, d),
             "pyshtools.SHCoeffs.expand",
         )
     yield Contest(
@@ -195,7 +225,7 @@ def _loss() -> Iterator[Contest]:
         ("descriptors", {"lean": True, "exact": True}, "scipy, O'Rourke in steps of 1 degree"),
         ("all", {"overlap": "boolean"}, "the first, manifold3d's boolean"),
     ):
-        if how.get("overlap") == "boolean" and not HAS_BOOLEANS:
+        if how.get("overlap") == "boolean" and not plain.HAS_BOOLEANS:
             continue
         ours = LossFunction(target, LossWeights.from_preset(preset))
         theirs = plain_loss(target, **how)
@@ -236,7 +266,7 @@ def _coarsening() -> Iterator[Contest]:
 def _decimated(mesh: Mesh) -> object:
     vertices, _ = fast_simplification.simplify(np.array(mesh.vertices), np.array(mesh.faces), target_count=36)
     hull = ConvexHull(vertices)
-    return by_trimesh(hull.points, hull.simplices)
+    return plain.by_trimesh(hull.points, hull.simplices)
 
 
 def _shapes(count: int) -> list[tuple[Particle, SimpleNamespace]]:

@@ -6,9 +6,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from benchmarks import contests, plain, report, steps
+from benchmarks import contests, plain, steps
 from benchmarks.contests import Contest, Growth, Outcome
-from benchmarks.descriptors import by_trimesh, polyhedron, stone
+from benchmarks.plain import by_trimesh
+from benchmarks.steps import polyhedron, stone
 from regolith_studio.dem.angle_of_repose import measure_repose
 from regolith_studio.descriptors.describe import describe
 from regolith_studio.io.stl import stl_bytes
@@ -46,12 +47,12 @@ def test_that_the_report_can_be_read_by_people_and_programs(tmp_path: Path) -> N
         Outcome("mesh", "alone", "", "wall", 2.0, None, None, None, None, 1.0, None),
     ]
     growths = [Growth("fit", "l_max", (1, 2), (3.0, 6.0))]
-    paths = report.write(tmp_path, outcomes, growths, 3)
+    paths = contests.write(tmp_path, outcomes, growths, 3)
     said = json.loads((tmp_path / "benchmarks.json").read_text())
     assert said["contests"][0]["ratio"] == 5.0
     assert said["growth"][0]["exponent"] == pytest.approx(1.0)
     assert {path.suffix for path in paths} == {".json", ".png", ".svg"}
-    assert "5.0  4.0 to 6.0" in report.table(outcomes)
+    assert "5.0  4.0 to 6.0" in contests.table(outcomes)
 
 
 def test_that_the_plain_descriptors_are_those_of_the_program() -> None:

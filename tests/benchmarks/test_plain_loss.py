@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from benchmarks.coarsening_quality import public_errors, quality
-from benchmarks.plain_loss import PlainLoss, plain_annealing
+from benchmarks.plain import PlainLoss, plain_annealing
 from regolith_studio.coarsening.loss import LossFunction
 from regolith_studio.coarsening.target import Target
 from regolith_studio.coarsening.weights import LossWeights

@@ -47,13 +47,3 @@ def test_that_the_page_on_scans_has_the_defaults_of_the_code() -> None:
         f"if its diameter is more than {WIDE_NECK_OF_SMALL}.",
     ):
         assert sentence in page("segmentation")
-
-
-def test_that_materials_lose_as_much_by_rejection_as_the_guide_says() -> None:
-    rejected, radius, power = np.transpose(list(results("shape_models")["field of"]["rows"].values()))
-    parts = (
-        f"between {rejected.min():.0f} and {rejected.max():.0f} % are rejected",
-        f"the mean radius rises by {radius.min():.0f} to {radius.max():.0f} %",
-        f"A_2 falls by {-power.max():.0f} to {-power.min():.0f} %",
-    )
-    assert all(part in page("shape_model_methods") for part in parts)

@@ -5,8 +5,9 @@ import os
 import pytest
 from PySide6.QtGui import QGuiApplication
 
-from benchmarks.window_acts import RandomActs, dialogs_answered, errors_collected
 from regolith_studio.ui.app import open_window
+
+from .random_acts import RandomActs, dialogs_answered, errors_collected
 
 
 @pytest.fixture

@@ -2,14 +2,12 @@
 
 import random
 import sys
-import time
 import traceback
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from typing import Any
 from unittest.mock import patch
 
-import psutil
 import shiboken6
 from PySide6.QtCore import QEvent, QPoint, QPointF, Qt, QTimer
 from PySide6.QtGui import QDesktopServices, QDrag, QMouseEvent, QWheelEvent
@@ -216,34 +214,6 @@ def errors_collected(window: Any) -> Iterator[list[str]]:
     ):
         yield found
     window.toast.shown.disconnect(report)
-
-
-def act_for(window: Any, minutes: float, seed: int = 2) -> Iterator[str]:
-    """Act at random on all pages; one line every minute.
-
-    Raises
-    ------
-    RuntimeError
-        If something went wrong in the window.
-    """
-    acts = RandomActs(window, seed)
-    process, began, count = psutil.Process(), time.monotonic(), 0
-    with dialogs_answered(), errors_collected(window) as errors:
-        for minute in range(1, max(1, round(minutes)) + 1):
-            slowest = (0.0, "")
-            while time.monotonic() - began < 60.0 * minute:
-                start = time.monotonic()
-                what = acts.act()
-                slowest = max(slowest, (time.monotonic() - start, what))
-                count += 1
-                if errors:
-                    raise RuntimeError(f"act {count:,} of seed {seed}: {errors[0]}")
-            held = process.memory_info().rss / 1e6
-            others = sum(each.memory_info().rss for each in process.children(recursive=True)) / 1e6
-            yield (
-                f"{minute} min, {count:,} acts: {held:.0f} MB, other processes {others:.0f} MB, "
-                f"{len(window.session.particles)} particles, longest act {slowest[0]:.2f} s ({slowest[1]})"
-            )
 
 
 def _close_dialogs() -> None:
