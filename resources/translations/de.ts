@@ -780,6 +780,10 @@
         <translation>Angepasstes Ellipsoid</translation>
     </message>
     <message>
+        <source>BigDataViewer stores unsigned numbers as signed ones; they were read as unsigned.</source>
+        <translation>BigDataViewer speichert Zahlen ohne Vorzeichen als solche mit Vorzeichen; sie wurden ohne Vorzeichen gelesen.</translation>
+    </message>
+    <message>
         <source>Bin</source>
         <translation>Binning</translation>
     </message>
@@ -2802,6 +2806,10 @@
     <message>
         <source>Left out</source>
         <translation>Weggelassen</translation>
+    </message>
+    <message>
+        <source>Left out {count} files that hold no image of the series: {names}.</source>
+        <translation>Nicht gelesen: {count} Dateien ohne Bild der Serie: {names}.</translation>
     </message>
     <message>
         <source>Left out {count} images whose names do not fit: {names}.</source>
@@ -5500,6 +5508,10 @@
         <translation>Die Animation ist in {path}.</translation>
     </message>
     <message>
+        <source>The array was read as MATLAB stores it: its rows are along y, its columns along x.</source>
+        <translation>Das Feld wurde gelesen, wie MATLAB es speichert: Zeilen entlang y, Spalten entlang x.</translation>
+    </message>
+    <message>
         <source>The card {name} cannot be written ({reason}).</source>
         <translation>Die Karte {name} lässt sich nicht schreiben ({reason}).</translation>
     </message>
@@ -5614,6 +5626,10 @@
     <message>
         <source>The file states the width of a pixel only; the slices were assumed to be the same distance apart.</source>
         <translation>Die Datei nennt nur die Breite eines Pixels; als Abstand der Schichten wurde dieselbe Länge genommen.</translation>
+    </message>
+    <message>
+        <source>The file states voxels of {pixdim} and, by its matrix, of {matrix}; give the size of a voxel.</source>
+        <translation>Die Datei nennt Voxel von {pixdim} und nach ihrer Matrix von {matrix}; bitte die Voxelgröße angeben.</translation>
     </message>
     <message>
         <source>The files of the {count} open particles, as chosen now</source>
@@ -5838,6 +5854,10 @@
     <message>
         <source>The slice at {azimuth} degrees contains no particle.</source>
         <translation>Die Scheibe bei {azimuth} Grad enthält kein Partikel.</translation>
+    </message>
+    <message>
+        <source>The slices state no distance from each other; their thickness was taken for it.</source>
+        <translation>Die Schichten nennen keinen Abstand; ihre Dicke wurde dafür genommen.</translation>
     </message>
     <message>
         <source>The slices state no positions; they were ordered by their numbers.</source>
@@ -7740,12 +7760,16 @@
         <translation>x, y, z: Schichten zuletzt</translation>
     </message>
     <message>
-        <source>y, x, z: as MATLAB has pictures</source>
-        <translation>y, x, z: wie Bilder in MATLAB</translation>
+        <source>y, x, z: rows, columns, slices</source>
+        <translation>y, x, z: Zeilen, Spalten, Schichten</translation>
     </message>
     <message>
         <source>yes</source>
         <translation>ja</translation>
+    </message>
+    <message>
+        <source>z, x, y: as MATLAB writes HDF5</source>
+        <translation>z, x, y: wie MATLAB HDF5 schreibt</translation>
     </message>
     <message>
         <source>{at:,} of {total:,}</source>

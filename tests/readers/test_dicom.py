@@ -7,15 +7,19 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import numpy as np
+import pydicom
 import pytest
 from pydicom.dataset import Dataset, FileMetaDataset
 from pydicom.encaps import encapsulate
 from pydicom.uid import (
     UID,
+    BasicTextSRStorage,
     CTImageStorage,
     ExplicitVRBigEndian,
     ExplicitVRLittleEndian,
     ImplicitVRLittleEndian,
+    MediaStorageDirectoryStorage,
+    RLELossless,
 )
 
 from regolith_studio.errors import FileError
@@ -87,6 +91,83 @@ def test_that_every_voxel_is_in_its_place_with_its_edges(dtype: str, syntax: UID
     assert volume.voxel_size == pytest.approx((10.0, 20.0, 50.0))
     assert np.array_equal(volume.array.T, slices)
     assert np.array_equal(open_slabs(folder, kind="grey").read(2, 4).T, slices[2:4])
+
+
+@pytest.mark.parametrize("signed", [0, 1])
+@pytest.mark.parametrize("stored", [9, 12, 16])
+@pytest.mark.parametrize("packed", [False, True])
+def test_that_bits_above_those_stored_are_no_part_of_a_value(packed, stored, signed, tmp_path: Path) -> None:
+    """Signed numbers of 12 bits have their sign in bit 11; overlays may lie above it."""
+    folder = tmp_path / "scan"
+    folder.mkdir()
+    noise = np.random.default_rng(stored).integers(0, 1 << 16, SHAPE, dtype=np.uint16)
+    tags = {"BitsStored": stored, "HighBit": stored - 1, "PixelRepresentation": signed}
+    for number, image in enumerate(noise):
+        (folder / f"{number}.dcm").write_bytes(dicom(image, number, **tags))
+        if packed:
+            data = pydicom.dcmread(folder / f"{number}.dcm")
+            data.compress(RLELossless)
+            data.save_as(folder / f"{number}.dcm", enforce_file_format=True)
+    expected = np.stack([pydicom.dcmread(folder / f"{k}.dcm").pixel_array for k in range(SHAPE[0])])
+    array = read_volume(folder, kind="grey").array.T
+    assert array.dtype == ("int16" if signed else "uint16")
+    assert np.array_equal(array, expected)
+    assert array.max() < 1 << (stored - signed)
+
+
+def stranger(kind: UID, series_uid: str = "1.2.3.4") -> bytes:
+    """A file of DICOM without an image: a directory, a report."""
+    data = Dataset()
+    data.file_meta = FileMetaDataset()
+    data.file_meta.TransferSyntaxUID = ExplicitVRLittleEndian
+    data.file_meta.MediaStorageSOPClassUID = kind
+    data.file_meta.MediaStorageSOPInstanceUID = "1.2.3.5"
+    data.SeriesInstanceUID = series_uid
+    file = io.BytesIO()
+    data.save_as(file, enforce_file_format=True)
+    return file.getvalue()
+
+
+def test_that_files_without_an_image_of_the_series_are_left_out_and_named(tmp_path: Path) -> None:
+    folder = series(tmp_path / "scan")
+    (folder / "DICOMDIR").write_bytes(stranger(MediaStorageDirectoryStorage))
+    (folder / "report.dcm").write_bytes(stranger(BasicTextSRStorage, SERIES))
+    (folder / "scout.dcm").write_bytes(dicom(marked(SHAPE)[0], 0, JPEG, "1.2.3.4"))
+    assert np.array_equal(read_volume(folder, kind="grey").array.T, marked(SHAPE))
+    assert [str(note) for note in describe_volume(folder).notes] == [
+        "Left out 3 files that hold no image of the series: DICOMDIR, report.dcm, scout.dcm."
+    ]
+    (folder / "slice.dcm").write_bytes(dicom(marked(SHAPE)[0], 7, JPEG))
+    with pytest.raises(FileError, match=r"holds slice\.dcm, whose pixels are packed"):
+        describe_volume(folder)
+
+
+@pytest.mark.parametrize("digits", [4, 5, 8])
+def test_that_positions_are_even_within_their_own_rounding(digits: int, tmp_path: Path) -> None:
+    folder = tmp_path / "scan"
+    folder.mkdir()
+    step = 0.00731
+    for number in range(40):
+        place = [f"{x:.{digits}f}" for x in (0.0, 0.0, 1.0 + number * step)]
+        (folder / f"{number}.dcm").write_bytes(dicom(marked(SHAPE)[0], number, ImagePositionPatient=place))
+    assert describe_volume(folder).voxel_size[2] == pytest.approx(step, rel=0.003)
+    (folder / "20.dcm").unlink()
+    with pytest.raises(FileError, match="some are missing"):
+        describe_volume(folder)
+
+
+def test_that_a_thickness_is_taken_for_a_distance_with_a_note_only(tmp_path: Path) -> None:
+    folder = series(tmp_path / "scan", ImagePositionPatient=None, SliceThickness=0.07)
+    assert describe_volume(folder).voxel_size == pytest.approx((X, Y, 0.07))
+    assert [str(note) for note in describe_volume(folder).notes] == [
+        "The slices state no positions; they were ordered by their numbers.",
+        "The slices state no distance from each other; their thickness was taken for it.",
+    ]
+    folder = series(
+        tmp_path / "other", ImagePositionPatient=None, SliceThickness=0.07, SpacingBetweenSlices=0.08
+    )
+    assert describe_volume(folder).voxel_size == pytest.approx((X, Y, 0.08))
+    assert len(describe_volume(folder).notes) == 1
 
 
 def test_that_any_file_of_a_series_opens_all_of_it(tmp_path: Path) -> None:

@@ -15,8 +15,8 @@ from regolith_studio.readers.number_rows import float_or_nan
 from regolith_studio.readers.volume_formats import VolumeFormat
 from regolith_studio.readers.voxels.header import (
     OpenVolume,
-    Sizes,
     VoxelHeader,
+    hand_note,
     stated_edges,
     three_dimensions,
     voxel_type,
@@ -163,23 +163,23 @@ def _header(text: str, kind: str, vector: str | None, form: str) -> tuple[VoxelH
         )
     shape = three_dimensions(tuple(map(int, reversed(lattice[1].split()))))
     stored = np.dtype(_TYPES[kind]).newbyteorder(">" if form == "BINARY" else "<")
-    size, unit = _voxel_size(text, shape)
-    return VoxelHeader(shape, voxel_type(stored), size, unit), stored
+    edges = _signed_edges(text, shape)
+    named = re.search(r'Coordinates\s+"([^"\n]*)"', text)
+    name = named[1].encode("latin-1").decode("utf-8", "replace") if named else None
+    size, unit = stated_edges(edges, [name] * 3) if edges else (None, None)
+    return VoxelHeader(shape, voxel_type(stored), size, unit, None, hand_note(edges)), stored
 
 
-def _voxel_size(text: str, shape: tuple[int, int, int]) -> tuple[Sizes | None, str | None]:
-    """The bounding box reaches from the centre of the first voxel to that of the last."""
+def _signed_edges(text: str, shape: tuple[int, int, int]) -> list[float]:
+    """Along x, y and z, or none; the bounding box reaches from the first voxel's centre to the last's."""
     box = re.search(r"BoundingBox\s+([^,\n}]*)", text)
     words = box[1].split() if box else []
     if len(words) != 6 or min(shape) < 2:
-        return None, None
+        return []
     low, high = words[::2], words[1::2]
-    edges = [
+    return [
         (float_or_nan(b) - float_or_nan(a)) / (n - 1) for a, b, n in zip(low, high, shape[::-1], strict=True)
     ]
-    named = re.search(r'Coordinates\s+"([^"\n]*)"', text)
-    name = named[1].encode("latin-1").decode("utf-8", "replace") if named else None
-    return stated_edges(edges, [name] * 3)
 
 
 def _recognises(head: bytes) -> bool:

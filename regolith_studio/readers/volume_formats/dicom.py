@@ -15,7 +15,7 @@ from regolith_studio.errors import FileError
 from regolith_studio.messages import N_, Message
 from regolith_studio.readers.error_messages import display_name, printable
 from regolith_studio.readers.volume_formats import VolumeFormat
-from regolith_studio.readers.voxels.dicom_file import DicomFrame, frames_of, pixels_of
+from regolith_studio.readers.voxels.dicom_file import DicomFrame, PackedPixelsError, frames_of, pixels_of
 from regolith_studio.readers.voxels.folders import DICOM_SUFFIXES, dicom_names
 from regolith_studio.readers.voxels.header import (
     DatasetEntry,
@@ -27,6 +27,9 @@ from regolith_studio.readers.voxels.header import (
 
 SPACING_TOLERANCE = 0.01
 """Difference between two distances of slices, and offset of a slice within its plane, over one distance."""
+MAX_ROUNDING = 0.1
+"""Of positions, over the distance of slices."""
+_THICKNESS = N_("The slices state no distance from each other; their thickness was taken for it.")
 _BY_NUMBER = N_("The slices state no positions; they were ordered by their numbers.")
 
 
@@ -62,21 +65,76 @@ def open_dicom(path: Path, options: Mapping[str, Any]) -> DicomVoxels:
     """
     folder = path if path.is_dir() else path.parent
     names = [str(name) for name in options.get("names") or dicom_names(folder)]
-    series: dict[str, list[DicomFrame]] = {}
-    for name in names:
-        frames = frames_of(folder / name)
-        series.setdefault(frames[0].series, []).extend(frames)
+    series, others = _series(folder, names)
     wanted = options.get("dataset")
     if wanted is None and not path.is_dir():
-        wanted = frames_of(path)[0].series
+        wanted = _series_named(path)
     if wanted is not None and str(wanted) not in series:
         raise FileError(f"has no series “{printable(str(wanted))[:70]}”; it holds {len(series)}.")
     chosen = str(wanted) if wanted is not None else max(series, key=lambda key: len(series[key]))
+    left_out = _left_out(others, chosen)
     slices, step, notes = _ordered(series[chosen])
+    notes += left_out
     if wanted is None and len(series) > 1:
         template = N_("The folder holds {count} series; the longest was read.")
         notes = (Message(template, count=len(series)), *notes)
     return DicomVoxels(slices, _header(slices, step, notes, series, chosen))
+
+
+_Others = dict[str, PackedPixelsError | None]
+"""Files without an image, and those whose image is packed."""
+
+
+def _series(folder: Path, names: list[str]) -> tuple[dict[str, list[DicomFrame]], _Others]:
+    """The frames of each series, and the files that hold none that can be read.
+
+    Raises
+    ------
+    FileError
+        If a file is damaged, or all are of another kind or packed.
+    """
+    series: dict[str, list[DicomFrame]] = {}
+    others: _Others = {}
+    for name in names:
+        try:
+            frames = frames_of(folder / name)
+        except PackedPixelsError as error:
+            others[name] = error
+            continue
+        if not frames:
+            others[name] = None
+            continue
+        series.setdefault(frames[0].series, []).extend(frames)
+    if not series:
+        packed = next((error for error in others.values() if error is not None), None)
+        raise packed or FileError("holds no image: its DICOM files are of other kinds.")
+    return series, others
+
+
+def _series_named(path: Path) -> str:
+    frames = frames_of(path)
+    if not frames:
+        raise FileError("holds no image: it is DICOM of another kind; open the folder of the slices.")
+    return frames[0].series
+
+
+def _left_out(others: _Others, chosen: str) -> tuple[str, ...]:
+    """A note about files without an image of the series.
+
+    Raises
+    ------
+    FileError
+        If one of them is of the series and packed.
+    """
+    for error in others.values():
+        if error is not None and error.series in ("", chosen):
+            raise error
+    if not others:
+        return ()
+    names = [printable(name)[:30] for name in others]
+    shown = ", ".join(names[:3]) + (", …" if len(names) > 3 else "")
+    template = N_("Left out {count} files that hold no image of the series: {names}.")
+    return (Message(template, count=len(names), names=shown),)
 
 
 def _header(
@@ -138,27 +196,36 @@ def _ordered(slices: list[DicomFrame]) -> tuple[list[DicomFrame], float, tuple[s
             raise FileError(
                 "states neither positions nor different numbers of its slices, so that they have no order."
             )
-        return sorted(slices, key=lambda each: (each.number, each.frame)), first.step, (_BY_NUMBER,)
+        return sorted(slices, key=lambda each: (each.number, each.frame)), first.step, _by_number(first)
     places = _places(slices)
     order = np.argsort(places[:, 2], kind="stable")
     places = places[order]
     if len(slices) == 1:
-        return slices, first.step, ()
+        return slices, first.step, _thickness(first)
     gaps = np.diff(places[:, 2])
     step = float(gaps.mean())
     if gaps.min() <= SPACING_TOLERANCE * np.median(gaps):
         raise FileError("has two slices at one place; export one series into a folder of its own.")
-    if np.abs(gaps - step).max() > SPACING_TOLERANCE * step:
+    rounding = min(max(each.rounding for each in slices), MAX_ROUNDING * step)
+    if np.abs(gaps - step).max() > max(SPACING_TOLERANCE * step, 1.01 * rounding):
         raise FileError(
             f"has uneven slices, {gaps.min():.4g} to {gaps.max():.4g} mm apart: "
             "some are missing, or it is no volume."
         )
     drift = places[:, :2] - places[0, :2]
-    if np.abs(drift).max() > SPACING_TOLERANCE * step:
+    if np.abs(drift).max() > max(SPACING_TOLERANCE * step, 1.01 * rounding):
         raise FileError(
             "has slices that are shifted against each other (a tilted gantry); resample it first."
         )
     return [slices[k] for k in order], step, ()
+
+
+def _thickness(first: DicomFrame) -> tuple[str, ...]:
+    return (_THICKNESS,) if first.is_thickness else ()
+
+
+def _by_number(first: DicomFrame) -> tuple[str, ...]:
+    return (_BY_NUMBER, *_thickness(first))
 
 
 def _places(slices: list[DicomFrame]) -> NDArray[np.float64]:

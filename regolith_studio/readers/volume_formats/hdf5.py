@@ -51,10 +51,14 @@ class Hdf5Voxels:
         """Slices z0 to z1, shape (z1 - z0, ny, nx)."""
         axes, every = self._choose.axes, slice(None)
         picked = {"z": slice(z0, z1), "y": every, "x": every, "c": self._choose.channel, "t": 0}
+        if self._choose.layout.shape is not None:
+            picked |= {"y": slice(self.header.shape[1]), "x": slice(self.header.shape[2])}
         try:
             part = self._dataset[tuple(picked[axis] for axis in axes)]
         except (OSError, ValueError, RuntimeError):
             raise FileError(f"is damaged: its slices {z0 + 1} to {z1} cannot be unpacked.") from None
+        if self._choose.layout.unsigned:
+            part = part.view(np.uint16)
         kept = [axis for axis in axes if axis in "zyx"]
         if "z" not in kept:
             part, kept = part[np.newaxis], ["z", *kept]
@@ -100,10 +104,10 @@ def _chosen(file: Any, wanted: Any, axes: str) -> Hdf5Voxels:
         stated_axes(axes, len(candidate.shape))
     check_storage(dataset)
     _check_chunks(dataset)
-    size = element_size(dataset, candidate)
-    notes: tuple[str, ...] = ()
+    size, unit = element_size(dataset, candidate)
+    notes: tuple[str, ...] = candidate.layout.notes
     if wanted is None and len(candidates) > 1:
-        notes = (
+        notes += (
             Message(
                 N_("The file holds {count} volumes; {name} was read."),
                 count=len(candidates),
@@ -112,9 +116,9 @@ def _chosen(file: Any, wanted: Any, axes: str) -> Hdf5Voxels:
         )
     header = VoxelHeader(
         three_dimensions(candidate.spatial),
-        voxel_type(dataset.dtype),
+        voxel_type(np.dtype(candidate.dtype)),
         size,
-        "um" if size else None,
+        unit,
         None,
         notes,
         tuple(DatasetEntry(each.name, each.spatial[::-1], each.dtype) for each in candidates),
@@ -166,7 +170,7 @@ def _prepare() -> None:
 FORMAT = VolumeFormat(
     "hdf5",
     "an HDF5 file",
-    (".h5", ".hdf5", ".hdf", ".nxs"),
+    (".h5", ".hdf5", ".hdf", ".nxs", ".ims"),
     lambda head: head.startswith(b"\x89HDF\r\n\x1a\n"),
     open_hdf5,
     _prepare,

@@ -9,11 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from regolith_studio.errors import FileError
+from regolith_studio.messages import N_, Message
 from regolith_studio.readers.volume_formats import VolumeFormat
 from regolith_studio.readers.voxels.header import (
     MIRRORED,
+    SKEWED,
     Kind,
     OpenVolume,
+    Sizes,
     VoxelHeader,
     sizes_or_none,
     three_dimensions,
@@ -35,6 +38,10 @@ _REFUSED = {
     2304: "colours",
 }
 _UNITS = {1: "m", 2: "mm", 3: "um"}
+MAX_DIFFERENCE = 0.01
+"""Of an edge by pixdim and by the matrix, over the edge."""
+MAX_SKEW = 1e-3
+"""Cosine of two axes of the matrix."""
 _LABELS = 1002
 """Intent code of a volume of labels."""
 
@@ -161,13 +168,31 @@ def _voxel_header(fields: Fields, stored: np.dtype[Any]) -> VoxelHeader:
     edges = tuple(int(edge) for edge in fields["dim"][1 : dimensions + 1])
     shape = three_dimensions(edges[::-1])
     kept = [axis for axis, edge in enumerate(edges) if edge > 1 or dimensions == 3]
-    size = None
-    if len(kept) == 3 and max(kept) < 3:
-        size = sizes_or_none([float(fields["pixdim"][axis + 1]) for axis in kept])
+    size, doubts = _size(fields) if len(kept) == 3 and max(kept) < 3 else (None, ())
     unit = _UNITS.get(int(fields["units"]) & 7) if size else None
     kind: Kind | None = "labels" if fields["intent"] == _LABELS and stored.kind in "ui" else None
     notes = (MIRRORED,) if _is_mirrored(fields) else ()
-    return VoxelHeader(shape, voxel_type(stored), size, unit, kind, notes)
+    return VoxelHeader(shape, voxel_type(stored), size, unit, kind, doubts + notes)
+
+
+def _size(fields: Fields) -> tuple[Sizes | None, tuple[str, ...]]:
+    """The edges that pixdim states, unless the affine matrix states others; and notes."""
+    size = sizes_or_none([float(edge) for edge in fields["pixdim"][1:4]])
+    matrix = np.array(fields["rows"], dtype=np.float64).reshape(3, 4)[:, :3]
+    lengths = np.linalg.norm(matrix, axis=0)
+    if fields["forms"][1] <= 0 or not np.isfinite(matrix).all() or not lengths.all():
+        return size, ()
+    unit = matrix / lengths
+    skewed = (SKEWED,) if np.abs(unit.T @ unit - np.eye(3)).max() > MAX_SKEW else ()
+    if size is None:
+        return sizes_or_none(lengths.tolist()), skewed
+    if np.abs(lengths / size - 1.0).max() <= MAX_DIFFERENCE:
+        return size, skewed
+    shown = [" × ".join(f"{edge:.4g}" for edge in edges) for edges in (size, lengths)]
+    template = N_(
+        "The file states voxels of {pixdim} and, by its matrix, of {matrix}; give the size of a voxel."
+    )
+    return None, (Message(template, pixdim=shown[0], matrix=shown[1]), *skewed)
 
 
 def _is_mirrored(fields: Fields) -> bool:

@@ -19,6 +19,7 @@ from regolith_studio.readers.voxels.header import (
     OpenVolume,
     Sizes,
     VoxelHeader,
+    hand_note,
     stated_edges,
     three_dimensions,
     voxel_type,
@@ -162,6 +163,7 @@ def _voxel_size(fields: dict[str, str], sizes: list[int]) -> tuple[Sizes | None,
         notes = _about(np.array([v for v in vectors if len(v) == 3]), fields.get("space", ""))
     else:
         edges = [float_or_nan(word) for word in fields.get("spacings", "").split()]
+        notes = hand_note(edges)
         names = names or list(dict.fromkeys(_quoted(fields, "space units")))[:1] * len(sizes)
     if len(edges) != len(sizes) or len(kept) != 3:
         return None, None, ()

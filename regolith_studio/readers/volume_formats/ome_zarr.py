@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from regolith_studio.errors import FileError
+from regolith_studio.messages import N_, Message
 from regolith_studio.readers.error_messages import printable
 from regolith_studio.readers.units import in_one_unit
 from regolith_studio.readers.volume_formats import VolumeFormat
@@ -24,6 +25,7 @@ from regolith_studio.readers.voxels.header import (
     DatasetEntry,
     Sizes,
     VoxelHeader,
+    hand_note,
     sizes_or_none,
     three_dimensions,
     voxel_type,
@@ -141,11 +143,20 @@ def open_ome_zarr(path: Path, options: Mapping[str, Any]) -> ZarrVoxels:
         level.size,
         unit if level.size else None,
         "labels" if "image-label" in attributes else None,
-        (),
+        (*_notes(levels, level, options.get("dataset")), *hand_note(level.scale)),
         tuple(DatasetEntry(each.name, each.spatial[::-1], each.dtype.name, each.size) for each in levels),
         level.name,
     )
     return ZarrVoxels(_opened(path, level), level, header)
+
+
+def _notes(levels: list[_Level], level: _Level, wanted: Any) -> tuple[str, ...]:
+    """That one of several channels was read, where none was asked for."""
+    channels = sum(each.path == level.path for each in levels)
+    if channels == 1 or str(wanted or "").strip("/") == level.name:
+        return ()
+    template = N_("The file holds {count} volumes; {name} was read.")
+    return (Message(template, count=channels, name=printable(level.name)[:60]),)
 
 
 def _attributes(path: Path) -> dict[str, Any]:
@@ -297,8 +308,8 @@ def _check_codecs(codecs: Any, nested: bool = False) -> Any:
 
 
 def _chosen(levels: list[_Level], wanted: Any) -> _Level:
-    if wanted is None:
-        return levels[0]
+    if wanted is None:  # the finest, of several the first
+        return max(levels, key=lambda level: math.prod(level.spatial))
     for each in levels:
         if str(wanted).strip("/") in (each.name, each.path):
             return each

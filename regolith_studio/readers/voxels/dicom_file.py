@@ -6,6 +6,7 @@ functional groups (PS3.3 C.7.6.16), one item a frame, and what they share in one
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from decimal import Decimal
 from itertools import groupby
 from pathlib import Path
 from typing import Any
@@ -35,6 +36,7 @@ _TAGS = (
     "Rows",
     "Columns",
     "BitsAllocated",
+    "BitsStored",
     "PixelRepresentation",
     "SamplesPerPixel",
     "NumberOfFrames",
@@ -53,7 +55,8 @@ class DicomFrame:
 
     `number` is that of the file, `frame` that in the file, from 0, of `count`. `layout` is rows, columns, and
     the stored type; `spacing` the edges along x and y in millimetres; `directions` those of rows and columns,
-    shape (2, 3); `step` the stated distance to the next slice.
+    shape (2, 3); `step` the stated distance to the next slice, which is the thickness where `is_thickness`.
+    `rounding` is the last digit of the position, and `unused` the number of high bits that are not stored.
     """
 
     path: Path
@@ -69,10 +72,21 @@ class DicomFrame:
     slope: float
     intercept: float
     step: float
+    is_thickness: bool
+    rounding: float
+    unused: int
+
+
+class PackedPixelsError(FileError):
+    """A file whose pixels are packed in a way that is not read; `series` is that which it states."""
+
+    def __init__(self, sentence: str, series: str) -> None:
+        super().__init__(sentence)
+        self.series = series
 
 
 def frames_of(path: Path) -> list[DicomFrame]:
-    """What a file states of its frames, without their pixels.
+    """What a file states of its frames, without their pixels; none for a file of another kind than an image.
 
     Raises
     ------
@@ -81,10 +95,13 @@ def frames_of(path: Path) -> list[DicomFrame]:
     """
     data = _parsed(path, stop_before_pixels=True, specific_tags=list(_TAGS))
     name = display_name(path)
+    if not _is_image(data):
+        return []
     syntax = str(getattr(data.file_meta, "TransferSyntaxUID", ""))
     if syntax not in _READ:
-        raise FileError(
-            f"holds {name}, whose pixels are packed; unpack the series, for example with gdcmconv."
+        raise PackedPixelsError(
+            f"holds {name}, whose pixels are packed; unpack the series, for example with gdcmconv.",
+            str(data.get("SeriesInstanceUID", "")) if "Columns" in data else "",  # cut short otherwise
         )
     try:
         layout = _layout(data, name, syntax)
@@ -98,6 +115,13 @@ def frames_of(path: Path) -> list[DicomFrame]:
         raise
     except Exception:  # noqa: BLE001 (values are converted when they are asked for, and fail in many ways)
         raise FileError(f"holds {name}, whose header is damaged or lacks the size of its image.") from None
+
+
+def _is_image(data: Any) -> bool:
+    """Whether a file has the size of an image, or is not of a class that is known to have none."""
+    uid = getattr(data.file_meta, "MediaStorageSOPClassUID", "")
+    name = str(getattr(uid, "name", uid))
+    return "Image" in name or name == str(uid) or "Rows" in data or "Columns" in data
 
 
 def _layout(data: Any, name: str, syntax: str) -> tuple[int, int, str]:
@@ -137,7 +161,11 @@ def _frame(
     )
     if not np.isfinite([slope, intercept]).all():
         raise ValueError("no finite scale")
-    step = _value(groups[k], "SpacingBetweenSlices") or _value(groups[k], "SliceThickness") or 0.0
+    distance, thickness = (_value(groups[k], tag) for tag in ("SpacingBetweenSlices", "SliceThickness"))
+    bits = int(data["BitsAllocated"].value)
+    unused = bits - int(data.get("BitsStored", bits) or bits)
+    if not 0 <= unused < bits:
+        raise ValueError("more bits are stored than there are")
     return DicomFrame(
         path,
         str(data.get("SeriesInstanceUID", "")),
@@ -151,8 +179,19 @@ def _frame(
         None if directions is None else directions.reshape(2, 3),
         slope,
         intercept,
-        float(step),
+        float(distance or thickness or 0.0),
+        not distance and bool(thickness),
+        _rounding(_value(groups[k], "ImagePositionPatient")),
+        unused,
     )
+
+
+def _rounding(position: Any) -> float:
+    """One in the last digit of decimal numbers that a file holds as text; 0 where it has no position."""
+    if position is None:
+        return 0.0
+    exponents = [Decimal(str(each)).as_tuple().exponent for each in position]
+    return float(10.0 ** min(each for each in exponents if isinstance(each, int)))
 
 
 def _value(items: list[Any], tag: str) -> Any:
@@ -217,7 +256,13 @@ def _pixels(frame: DicomFrame) -> NDArray[Any]:
             f"is damaged: its slice {display_name(frame.path)} has {count:,} bytes of pixels "
             f"and needs {needed:,}."
         )
-    return np.frombuffer(found, stored, rows * columns).reshape(rows, columns)
+    pixels = np.frombuffer(found, stored, rows * columns).reshape(rows, columns)
+    if not frame.unused:
+        return pixels
+    own = pixels.astype(pixels.dtype.newbyteorder("="))
+    return (
+        own << frame.unused
+    ) >> frame.unused  # overlays out, and the sign into the bits that are not stored
 
 
 def _unpacked(path: Path, frames: list[DicomFrame]) -> Iterator[NDArray[Any]]:

@@ -11,6 +11,7 @@ import numpy as np
 from regolith_studio.errors import FileError
 from regolith_studio.readers.error_messages import printable
 from regolith_studio.readers.units import FILE_UNITS, in_one_unit
+from regolith_studio.readers.voxels.hdf5_layout import UNSTATED, StatedLayout, stated_layout
 from regolith_studio.readers.voxels.header import MAX_EDGE, VOXEL_TYPES, Sizes, sizes_or_none
 
 MAX_OBJECTS = 10_000
@@ -42,10 +43,13 @@ class Hdf5Volume:
     axes: str
     shape: tuple[int, ...]
     dtype: str
+    layout: StatedLayout = UNSTATED
 
     @property
     def spatial(self) -> tuple[int, int, int]:
         """Slices, rows, columns."""
+        if self.layout.shape is not None:
+            return self.layout.shape
         nz, ny, nx = (self.shape[self.axes.index(axis)] if axis in self.axes else 1 for axis in "zyx")
         return nz, ny, nx
 
@@ -63,7 +67,9 @@ def find_volumes(file: Any, axes: str = "") -> list[Hdf5Volume]:
     FileError
         If the file holds more objects than any volume file does.
     """
-    found = [candidate for path, dataset in _datasets(file) for candidate in _volumes_of(path, dataset, axes)]
+    found = [
+        candidate for path, dataset in _datasets(file) for candidate in _volumes_of(file, path, dataset, axes)
+    ]
     return sorted(found, key=lambda each: (each.path != _ILASTIK, -prod(each.shape), each.path, each.channel))
 
 
@@ -81,9 +87,13 @@ def check_storage(dataset: Any) -> None:
         raise FileError("maps these voxels from other files, which is not followed; copy them into one file.")
 
 
-def element_size(dataset: Any, candidate: Hdf5Volume) -> Sizes | None:
-    """Voxel edges along x, y and z in micrometres, by Fiji's ``element_size_um`` or by ilastik's tags."""
-    return _listed_size(dataset, candidate) or _tagged_size(dataset)
+def element_size(dataset: Any, candidate: Hdf5Volume) -> tuple[Sizes | None, str | None]:
+    """Voxel edges along x, y and z, and their unit.
+
+    By Fiji's ``element_size_um``, by ilastik's tags, or by the axes of another program.
+    """
+    size = _listed_size(dataset, candidate) or _tagged_size(dataset)
+    return (size, "um") if size else (candidate.layout.voxel_size, candidate.layout.unit)
 
 
 def _listed_size(dataset: Any, candidate: Hdf5Volume) -> Sizes | None:
@@ -146,13 +156,16 @@ def _datasets(file: Any) -> list[tuple[str, Any]]:
     return found
 
 
-def _volumes_of(path: str, dataset: Any, stated: str) -> list[Hdf5Volume]:
+def _volumes_of(file: Any, path: str, dataset: Any, stated: str) -> list[Hdf5Volume]:
     shape = dataset.shape
     if not shape or min(shape) < 1 or max(shape) > MAX_EDGE or not _is_number(dataset):
         return []
-    axes = stated.lower() if _fits(stated, len(shape)) else _axes(dataset, len(shape))
+    layout = stated_layout(file, path, dataset) if len(shape) > 2 else UNSTATED
+    axes = stated.lower() if _fits(stated, len(shape)) else _axes(dataset, layout)
     if axes is None:
         return []
+    if axes != layout.axes:
+        layout = StatedLayout(unsigned=layout.unsigned, notes=layout.notes if layout.unsigned else ())
     edges = dict(zip(axes, shape, strict=True))
     if (
         edges.get("t", 1) != 1
@@ -164,7 +177,8 @@ def _volumes_of(path: str, dataset: Any, stated: str) -> list[Hdf5Volume]:
     if channels > MAX_CHANNELS or (len(shape) - (channels > 1) < 3 and "z" not in axes):
         return []
     names = [path] if channels == 1 else [f"{path}[{channel}]" for channel in range(channels)]
-    return [Hdf5Volume(name, path, k, axes, tuple(shape), dataset.dtype.name) for k, name in enumerate(names)]
+    kind = "uint16" if layout.unsigned else dataset.dtype.name
+    return [Hdf5Volume(name, path, k, axes, tuple(shape), kind, layout) for k, name in enumerate(names)]
 
 
 def _fits(stated: str, dimensions: int) -> bool:
@@ -180,12 +194,26 @@ def _is_number(dataset: Any) -> bool:
     return f"{kind.kind}{kind.itemsize}" in VOXEL_TYPES
 
 
-def _axes(dataset: Any, dimensions: int) -> str | None:
-    """A letter for each axis: vigra's tags, an attribute ``axes``, dimension labels, or the usual order."""
-    for stated in (_tags(dataset), _letters(_attribute(dataset, "axes")), _labels(dataset)):
+def _axes(dataset: Any, layout: StatedLayout) -> str | None:
+    """A letter for each axis: vigra's tags, an attribute ``axes``, labels, the layout's, or the usual."""
+    dimensions = len(dataset.shape)
+    for stated in (_tags(dataset), _letters(_attribute(dataset, "axes")), _labels(dataset), layout.axes):
         if len(stated) == dimensions and len(set(stated)) == dimensions and set(stated) <= set("tczyx"):
             return stated
+    if dimensions > 3 and dataset.shape[0] == 1:
+        return _of_one(dataset.shape)
     return _GUESSED.get(dimensions)
+
+
+def _of_one(shape: tuple[int, ...]) -> str | None:
+    """Axes without names where the first has one element: a time, and perhaps channels before or after."""
+    if len(shape) == 4:
+        return "tzyx"
+    return (
+        "tczyx"
+        if len(shape) == 5 and (shape[1] == 1 or shape[4] > MAX_CHANNELS)
+        else _GUESSED.get(len(shape))
+    )
 
 
 def _tags(dataset: Any) -> str:

@@ -4,6 +4,7 @@ Inside the readers a volume is indexed [z, y, x], slices first, as nearly all fi
 public door (``readers.volumes``) turns it to the [x, y, z] of ``imaging.Volume``.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Literal, Protocol
@@ -196,6 +197,11 @@ def stated_edges(edges: Sequence[float], names: Sequence[str | None]) -> tuple[S
     if found is None:
         return size, None
     return sizes_or_none(list(found[0])), found[1]
+
+
+def hand_note(edges: Sequence[float]) -> tuple[str, ...]:
+    """The note that axes are left-handed, where an odd number of the signed steps along them is negative."""
+    return (MIRRORED,) if math.prod(edges) < 0.0 else ()
 
 
 def format_shape(shape: tuple[int, ...]) -> str:

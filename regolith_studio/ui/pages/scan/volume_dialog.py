@@ -29,7 +29,8 @@ RAW_SUFFIXES = (".raw", ".bin", ".vol", ".dat")
 AXES = (
     (None, N_("As the file says, else slices first (z, y, x)")),
     ("xyz", N_("x, y, z: slices last")),
-    ("yxz", N_("y, x, z: as MATLAB has pictures")),
+    ("yxz", N_("y, x, z: rows, columns, slices")),
+    ("zxy", N_("z, x, y: as MATLAB writes HDF5")),
 )
 ORDERS = (("little", N_("little endian")), ("big", N_("big endian")))
 KINDS = (
