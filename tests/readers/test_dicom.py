@@ -287,7 +287,10 @@ def bad_series() -> Iterator[tuple[Callable[[Path], object], str]]:
     for name in ("Rows", "Columns", "BitsAllocated"):
         yield lambda folder, n=name: series(folder, **{n: None}), "lacks the size"
     for name, value in (("Rows", 60), ("Columns", 6000), ("BitsAllocated", 32), ("BitsAllocated", 8)):
-        yield lambda folder, n=name, v=value: series(folder, **{n: v}), "bytes of pixels and needs"
+        yield (
+            lambda folder, n=name, v=value: series(folder, **{n: v}),
+            "bytes of pixels and needs|header is damaged",
+        )
     yield lambda folder: series(folder, PixelData=None), "0 bytes of pixels and needs"
     yield with_slice(0, Rows=5), "another size or pixel"
 

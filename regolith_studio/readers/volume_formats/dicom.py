@@ -206,14 +206,14 @@ def _ordered(slices: list[DicomFrame]) -> tuple[list[DicomFrame], float, tuple[s
     step = float(gaps.mean())
     if gaps.min() <= SPACING_TOLERANCE * np.median(gaps):
         raise FileError("has two slices at one place; export one series into a folder of its own.")
-    rounding = min(max(each.rounding for each in slices), MAX_ROUNDING * step)
+    rounding = min(*(each.rounding for each in slices), MAX_ROUNDING * step)  # trailing zeros are not written
     if np.abs(gaps - step).max() > max(SPACING_TOLERANCE * step, 1.01 * rounding):
         raise FileError(
             f"has uneven slices, {gaps.min():.4g} to {gaps.max():.4g} mm apart: "
             "some are missing, or it is no volume."
         )
     drift = places[:, :2] - places[0, :2]
-    if np.abs(drift).max() > max(SPACING_TOLERANCE * step, 1.01 * rounding):
+    if np.abs(drift).max() > max(SPACING_TOLERANCE * step, 0.55 * rounding):
         raise FileError(
             "has slices that are shifted against each other (a tilted gantry); resample it first."
         )
