@@ -92,9 +92,9 @@ class Table:
         raise KeyError(name)
 
 
-def csv_text(table: Table) -> str:
+def csv_text(table: Table, separator: str = ",") -> str:
     """The table as CSV: one header line (``name [unit]``), then the rows; missing values are empty."""
-    return _csv([[column.header for column in table.columns], *table.rows])
+    return _csv([[column.header for column in table.columns], *table.rows], separator)
 
 
 def csv_bytes(rows: Iterable[Sequence[object]]) -> bytes:
@@ -139,9 +139,9 @@ def rows_as_text(table: Table, digits: int = 3) -> tuple[Sequence[str], ...]:
     return (header, *[[_printed(cell, digits) for cell in row] for row in table.rows])
 
 
-def _csv(rows: Iterable[Sequence[object]]) -> str:
+def _csv(rows: Iterable[Sequence[object]], separator: str = ",") -> str:
     lines = _Lines()
-    writer = csv.writer(lines, lineterminator="\r\n")
+    writer = csv.writer(lines, delimiter=separator, lineterminator="\r\n")
     writer.writerows([_as_text(cell) if isinstance(cell, str) else cell for cell in row] for row in rows)
     return "".join(lines)
 

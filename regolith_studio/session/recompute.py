@@ -143,7 +143,7 @@ class LiveResults:
             self._session.failure_reporter(TITLES[kind])(failure)
 
         reactions = Reactions(finished, partial, failed, lambda: self._drop_dependents(kind))
-        self._board.start(kind, TITLES[kind], job, reactions)
+        self._board.start(kind, TITLES[kind], job, reactions, repeats=True)
 
     def _drop_dependents(self, kind: Kind) -> None:
         """Cancel the results that depend on `kind`, and clear them."""

@@ -132,6 +132,6 @@ class SessionEvents:
     opened_request = Signal()
     failed = Signal(Failure)
     problems = Signal(tuple)
-    """Files that were refused at opening, or particles that an export left out, as ``Problem``."""
+    """Files that were refused at opening, or particles that an export left out, as ``FileProblem``."""
     exported = Signal(object)
     """Path of the folder that was written."""

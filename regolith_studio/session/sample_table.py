@@ -35,7 +35,7 @@ Filter = Callable[[ParticleEntry], bool]
 def health_word(entry: ParticleEntry) -> str:
     """One word that says most: ``sound``, ``coarse``, ``repaired``, ``doubtful`` or ``unsound``.
 
-    Coarse: of few voxels. Mended: with a note on what was changed. Doubtful: with faults that leave a
+    Coarse: of few voxels. Repaired: with a note on what was changed. Doubtful: with faults that leave a
     volume and an area, such as tunnels and crossing faces. ``unknown`` until it is measured.
     """
     if entry.health is None:

@@ -178,7 +178,8 @@ class Session:
 
         title = N_("Restoring particles")
         job = Job(restore_particles, (recipe, base))
-        return self._board.start("load", title, job, Reactions(take, failed=self.failure_reporter(title)))
+        reactions = Reactions(take, failed=self.failure_reporter(title))
+        return self._board.start("load", title, job, reactions, repeats=True)
 
     def keep(self, ids: Collection[str]) -> None:
         """Close all particles but these.
@@ -312,6 +313,9 @@ class Session:
         partial: Callable[[Any], None] | None = None,
         failed: Callable[[Failed], None] | None = None,
         stopped: Callable[[], None] | None = None,
+        *,
+        repeats: bool = False,
+        after_running: bool = False,
     ) -> int:
         """Run any job in the background, the newest of its lane; returns the task's id.
 
@@ -320,6 +324,8 @@ class Session:
         finished, partial, failed, stopped
             Called in this thread while no newer job has taken the lane; without `failed`, a failure
             is emitted as ``events.failed``.
+        repeats, after_running
+            See :meth:`TaskBoard.start <regolith_studio.session.tasks.TaskBoard.start>`.
         """
         reactions = Reactions(
             finished,
@@ -327,7 +333,7 @@ class Session:
             failed or self.failure_reporter(title),
             stopped or (lambda: None),
         )
-        return self._board.start(lane, title, job, reactions)
+        return self._board.start(lane, title, job, reactions, repeats=repeats, after_running=after_running)
 
     def stop(self, lane: str) -> None:
         """Stop what runs in a lane, silently."""
@@ -387,7 +393,8 @@ class Session:
         def take(loaded: LoadedParticles) -> None:
             self._replace_particles(loaded, refs_of(loaded.particles, origin), add)
 
-        return self._board.start("load", title, job, Reactions(take, failed=self.failure_reporter(title)))
+        reactions = Reactions(take, failed=self.failure_reporter(title))
+        return self._board.start("load", title, job, reactions, repeats=True)
 
     def _replace_particles(
         self,
@@ -435,4 +442,4 @@ class Session:
         job = Job(measure_particles, (self._open_particles(),))
         title = N_("Measuring particles")
         reactions = Reactions(note, partial=note, failed=self.failure_reporter(title))
-        self._board.start("inspect", title, job, reactions)
+        self._board.start("inspect", title, job, reactions, repeats=True)

@@ -3,6 +3,7 @@
 import dataclasses
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 from regolith_studio.jobs.events import Event, Failed, Finished, Job, Partial, Progress, Started, Stopped
@@ -14,7 +15,8 @@ class Task:
     """One running job; `total` is 0 while its length is unknown.
 
     `pausable` says whether it can be paused between two of its steps, `paused` whether it is, `stopping`
-    that it ends after its present step.
+    that it ends after its present step. `repeats` says that the same work starts by itself when its file or
+    page is opened again, so that nothing is lost by stopping it.
     """
 
     id: int
@@ -26,6 +28,7 @@ class Task:
     pausable: bool = False
     paused: bool = False
     stopping: bool = False
+    repeats: bool = False
 
 
 @dataclass(frozen=True)
@@ -53,6 +56,7 @@ class TaskBoard:
         self._newest: dict[str, int] = {}
         self._tasks: dict[int, Task] = {}
         self._handles: dict[int, Handle] = {}
+        self._waiting: dict[str, Callable[[], int]] = {}
 
     @property
     def running(self) -> tuple[Task, ...]:
@@ -63,12 +67,33 @@ class TaskBoard:
         """Whether `lane` has a task that has not ended."""
         return self._newest.get(lane, 0) in self._tasks
 
-    def start(self, lane: str, title: str, job: Job, reactions: Reactions) -> int:
-        """Run `job`; the previous job of `lane` is cancelled and its events dropped. Returns its id."""
+    def start(
+        self,
+        lane: str,
+        title: str,
+        job: Job,
+        reactions: Reactions,
+        *,
+        repeats: bool = False,
+        after_running: bool = False,
+    ) -> int:
+        """Run `job`; the previous job of `lane` is cancelled and its events dropped. Returns its id.
+
+        Parameters
+        ----------
+        repeats
+            See :class:`Task`.
+        after_running
+            Let the running job of `lane` end and be shown first, and drop one that waits: for a control
+            that is dragged, where nothing would be seen if each new value stopped the job of the last.
+        """
+        if after_running and self.is_running(lane):
+            self._waiting[lane] = partial(self.start, lane, title, job, reactions, repeats=repeats)
+            return self._newest[lane]
         self.stop_lane(lane)
         self._number += 1
         number = self._newest[lane] = self._number
-        self._tasks[number] = Task(number, lane, title)
+        self._tasks[number] = Task(number, lane, title, repeats=repeats)
         self._changed()
         handle = self._runner.submit(job, lambda event: self._on_event(number, event, reactions), lane)
         if number in self._tasks:
@@ -79,6 +104,7 @@ class TaskBoard:
 
     def stop_lane(self, lane: str) -> None:
         """Cancel the job of `lane` silently: its reactions are not called any more."""
+        self._waiting.pop(lane, None)
         number = self._newest.pop(lane, 0)
         if handle := self._handles.get(number):
             handle.cancel()
@@ -128,12 +154,17 @@ class TaskBoard:
         self._changed()
 
     def _end(self, number: int, event: Finished | Failed | Stopped, reactions: Reactions) -> None:
+        lane = self._tasks[number].lane
         self._remove(number)
-        match event:
-            case Finished(value):
-                reactions.finished(value)
-            case Failed():
-                reactions.failed(event)
-            case Stopped():
-                reactions.stopped()
+        try:
+            match event:
+                case Finished(value):
+                    reactions.finished(value)
+                case Failed():
+                    reactions.failed(event)
+                case Stopped():
+                    reactions.stopped()
+        finally:
+            if start := self._waiting.pop(lane, None):
+                start()
         self._changed()

@@ -10,130 +10,129 @@ from PySide6.QtWidgets import QMainWindow, QMenu, QToolBar, QToolButton
 from regolith_studio.messages import N_
 from regolith_studio.ui.dialogs.command_palette import Command
 from regolith_studio.ui.icons import icon
-from regolith_studio.ui.page import BREAK, PAGE_MENU, ActionSpec, Page
+from regolith_studio.ui.page import BREAK, PAGE_MENU, VIEW, ActionSpec, Page
 from regolith_studio.ui.shortcuts import plain, shown_keys, with_keys
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import tr
 
-WITHIN_VIEW = (N_("Look &from"), N_("&Theme"))
-MENUS = (N_("&File"), N_("&Edit"), N_("&View"), N_("&Go"), PAGE_MENU, N_("&Help"))
+FILE, EDIT, GO, HELP, THEME = N_("&File"), N_("&Edit"), N_("&Go"), N_("&Help"), N_("&Theme")
+WITHIN_VIEW = (N_("Look &from"), THEME)
+MENUS = (FILE, EDIT, VIEW, GO, PAGE_MENU, HELP)
 
 ROWS: tuple[ActionSpec, ...] = (
     ActionSpec(
-        N_("&File"),
         "open",
         N_("&Open …"),
-        "open",
-        "Ctrl+O",
-        N_("Open meshes, folders, volumes or positions"),
-        None,
-        "words",
+        icon="open",
+        shortcut="Ctrl+O",
+        tip=N_("Open meshes, folders, volumes or positions"),
+        bar="words",
+        menu=FILE,
     ),
-    ActionSpec(N_("&File"), "open_folder", N_("Open &folder …"), "", "Ctrl+Shift+O"),
+    ActionSpec("open_folder", N_("Open &folder …"), shortcut="Ctrl+Shift+O", menu=FILE),
     ActionSpec(
-        N_("&File"),
         "open_sample",
         N_("Open &sample"),
-        "sample",
-        "",
-        N_("Open the shipped particles"),
+        icon="sample",
+        tip=N_("Open the shipped particles"),
         bar="words",
         label=N_("Sample"),
+        menu=FILE,
     ),
-    ActionSpec(N_("&File"), "recent", N_("Open &recent")),
+    ActionSpec("recent", N_("Open &recent"), menu=FILE),
     ActionSpec(
-        N_("&File"),
         "repair",
         N_("Repair &meshes on opening"),
-        "",
-        "",
-        N_("Report defects and repair them"),
+        tip=N_("Report defects and repair them"),
         checked=True,
+        menu=FILE,
     ),
-    ActionSpec(N_("&File"), BREAK, ""),
+    ActionSpec(BREAK, menu=FILE),
     ActionSpec(
-        N_("&File"),
         "export",
         N_("&Export dataset …"),
-        "export",
-        "Ctrl+E",
-        N_("Export a DEM dataset"),
-        None,
-        "words",
-        N_("Export"),
+        icon="export",
+        shortcut="Ctrl+E",
+        tip=N_("Export a DEM dataset"),
+        bar="words",
+        label=N_("Export"),
+        menu=FILE,
     ),
     ActionSpec(
-        N_("&File"),
         "save_recipe",
         N_("Save re&cipe …"),
-        "recipe",
-        "Ctrl+Alt+S",
-        N_("For regolith-studio run"),
+        icon="recipe",
+        shortcut="Ctrl+Alt+S",
+        tip=N_("For regolith-studio run"),
+        menu=FILE,
     ),
     ActionSpec(
-        N_("&File"),
         "run_batch",
         N_("Run as a &batch …"),
-        "",
-        "Ctrl+Alt+R",
-        N_("On this computer or on a cluster"),
+        shortcut="Ctrl+Alt+R",
+        tip=N_("On this computer or on a cluster"),
+        menu=FILE,
     ),
     ActionSpec(
-        N_("&File"),
         "report",
         N_("Repor&t …"),
-        "",
-        "",
-        N_("Figures and tables of the paper for the open particles, as one page"),
+        tip=N_("Figures and tables of the paper for the open particles, as one page"),
+        menu=FILE,
     ),
-    ActionSpec(N_("&File"), BREAK, ""),
-    ActionSpec(N_("&File"), "save_project", N_("&Save project"), "", "Ctrl+S"),
-    ActionSpec(N_("&File"), "save_project_as", N_("Save project &as …"), "", "Ctrl+Shift+S"),
-    ActionSpec(N_("&File"), BREAK, ""),
-    ActionSpec(N_("&File"), "quit", N_("&Quit"), "", "Ctrl+Q"),
-    ActionSpec(N_("&Edit"), "undo", N_("&Undo"), "undo", "Ctrl+Z", bar="icon"),
-    ActionSpec(N_("&Edit"), "redo", N_("&Redo"), "redo", "Ctrl+Shift+Z", bar="icon"),
-    ActionSpec(N_("&Edit"), BREAK, ""),
+    ActionSpec(BREAK, menu=FILE),
+    ActionSpec("save_project", N_("&Save project"), shortcut="Ctrl+S", menu=FILE),
+    ActionSpec("save_project_as", N_("Save project &as …"), shortcut="Ctrl+Shift+S", menu=FILE),
+    ActionSpec(BREAK, menu=FILE),
+    ActionSpec("quit", N_("&Quit"), shortcut="Ctrl+Q", menu=FILE),
+    ActionSpec("undo", N_("&Undo"), icon="undo", shortcut="Ctrl+Z", bar="icon", menu=EDIT),
+    ActionSpec("redo", N_("&Redo"), icon="redo", shortcut="Ctrl+Shift+Z", bar="icon", menu=EDIT),
+    ActionSpec(BREAK, menu=EDIT),
     ActionSpec(
-        N_("&Edit"), "copy_command", N_("Copy as co&mmand"), "", "", N_("The command line that does the same")
+        "copy_command", N_("Copy as co&mmand"), tip=N_("The command line that does the same"), menu=EDIT
     ),
-    ActionSpec(N_("&Edit"), "copy_python", N_("Copy as &Python"), "", "", N_("A script that does the same")),
-    ActionSpec(N_("&Edit"), BREAK, ""),
+    ActionSpec("copy_python", N_("Copy as &Python"), tip=N_("A script that does the same"), menu=EDIT),
+    ActionSpec(BREAK, menu=EDIT),
     ActionSpec(
-        N_("&Edit"), "palette", N_("&Commands …"), "", "Ctrl+Shift+P", N_("Any command by a few letters")
+        "palette",
+        N_("&Commands …"),
+        shortcut="Ctrl+Shift+P",
+        tip=N_("Any command by a few letters"),
+        menu=EDIT,
     ),
     ActionSpec(
-        N_("&Edit"), "preferences", N_("P&references …"), "", "Ctrl+,", N_("Language, theme, font size")
+        "preferences",
+        N_("P&references …"),
+        shortcut="Ctrl+,",
+        tip=N_("Language, theme, font size"),
+        menu=EDIT,
     ),
-    ActionSpec("&Go", "next_page", N_("&Next page"), "", "Ctrl+PgDown"),
-    ActionSpec("&Go", "previous_page", N_("&Previous page"), "", "Ctrl+PgUp"),
-    ActionSpec("&Go", BREAK, ""),
-    ActionSpec(N_("&Theme"), "theme_system", N_("As the &system")),
-    ActionSpec(N_("&Theme"), "theme_light", N_("&Light")),
-    ActionSpec(N_("&Theme"), "theme_dark", N_("&Dark")),
-    ActionSpec(N_("&View"), "tasks", N_("&Tasks"), "", "Ctrl+T", N_("Running tasks")),
-    ActionSpec(N_("&View"), "log", N_("L&og"), "", "Ctrl+Shift+L", N_("Messages so far")),
+    ActionSpec("next_page", N_("&Next page"), shortcut="Ctrl+PgDown", menu=GO),
+    ActionSpec("previous_page", N_("&Previous page"), shortcut="Ctrl+PgUp", menu=GO),
+    ActionSpec(BREAK, menu=GO),
+    ActionSpec("theme_system", N_("As the &system"), menu=THEME),
+    ActionSpec("theme_light", N_("&Light"), menu=THEME),
+    ActionSpec("theme_dark", N_("&Dark"), menu=THEME),
+    ActionSpec("tasks", N_("&Tasks"), shortcut="Ctrl+T", tip=N_("Running tasks"), menu=VIEW),
+    ActionSpec("log", N_("L&og"), shortcut="Ctrl+Shift+L", tip=N_("Messages so far"), menu=VIEW),
     ActionSpec(
-        N_("&View"),
         "standard_layout",
         N_("Standard la&yout"),
-        "",
-        "",
-        N_("Restore the standard sizes of all panels"),
+        tip=N_("Restore the standard sizes of all panels"),
+        menu=VIEW,
     ),
-    ActionSpec(N_("&View"), BREAK, ""),
-    ActionSpec(N_("&Help"), "tour", N_("&Tour"), "tour", "", N_("Tour of the window")),
-    ActionSpec(N_("&Help"), "guide", N_("&Guide"), "", "", N_("The manual of the program")),
+    ActionSpec(BREAK, menu=VIEW),
+    ActionSpec("tour", N_("&Tour"), icon="tour", tip=N_("Tour of the window"), menu=HELP),
+    ActionSpec("guide", N_("&Guide"), tip=N_("The manual of the program"), menu=HELP),
     ActionSpec(
-        N_("&Help"),
         "explain",
         N_("&Explain this page"),
-        "help",
-        "F1",
-        N_("The chapter of the guide on this page"),
+        icon="help",
+        shortcut="F1",
+        tip=N_("The chapter of the guide on this page"),
+        menu=HELP,
     ),
-    ActionSpec(N_("&Help"), "shortcuts", N_("&Keyboard and mouse"), "", "Ctrl+F1"),
-    ActionSpec(N_("&Help"), "about", N_("&About Regolith Studio")),
+    ActionSpec("shortcuts", N_("&Keyboard and mouse"), shortcut="Ctrl+F1", menu=HELP),
+    ActionSpec("about", N_("&About Regolith Studio"), menu=HELP),
 )
 
 
@@ -277,7 +276,7 @@ class Actions:
         self, page: Page, number: int, run: Callable[..., object], go: Callable[[str], object]
     ) -> None:
         words = f"&{number} {tr(page.title)}"
-        row = ActionSpec("&Go", page.key, words, page.icon, f"Alt+{number}", page.tip)
+        row = ActionSpec(page.key, words, icon=page.icon, shortcut=f"Alt+{number}", tip=page.tip, menu=GO)
         self._add(row, f"go.{page.key}", partial(go, page.key))
         mine = self._of_page[page.key]
         if any(each.bar for each in page.actions):

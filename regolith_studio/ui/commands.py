@@ -346,6 +346,7 @@ class Commands(QObject):
             Job(measure_first, (paths,)),
             dialog.set_first,
             failed=lambda _: None,  # it is reported when the file is opened
+            repeats=True,
         )
         accepted = dialog.exec() == QDialog.DialogCode.Accepted
         self._session.stop(LOOK)

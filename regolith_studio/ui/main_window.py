@@ -18,7 +18,7 @@ from regolith_studio.ui.appearance import Appearance
 from regolith_studio.ui.batch_runs import BatchRuns, ReportRuns
 from regolith_studio.ui.bindings import Bindings
 from regolith_studio.ui.commands import Commands
-from regolith_studio.ui.dialogs.closing import may_close, worth_asking
+from regolith_studio.ui.dialogs.closing import may_close, needs_confirmation
 from regolith_studio.ui.dialogs.command_palette import CommandPalette
 from regolith_studio.ui.dialogs.guide import guide_dialog
 from regolith_studio.ui.dialogs.help import CitationLinks, about_dialog
@@ -183,7 +183,7 @@ class MainWindow(QMainWindow):
         QTimer.singleShot(0, self, lambda: self.commands.open_paths(paths))
 
     def closeEvent(self, event: QCloseEvent) -> None:
-        reasons = worth_asking(self.session.tasks, [*self.pages.busy(), *self.projects.unsaved()])
+        reasons = needs_confirmation(self.session.tasks, [*self.pages.busy(), *self.projects.unsaved()])
         if not may_close(self, reasons):
             event.ignore()
             return

@@ -1,5 +1,6 @@
 """A page of the window: its protocol, its actions and its context; see :mod:`regolith_studio.ui.pages`."""
 
+import pkgutil
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,6 +18,10 @@ from regolith_studio.ui.commands import Commands
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.widgets.toast import Toast
 
+BREAK = "-"
+PAGE_MENU, VIEW = N_("&Page"), N_("&View")
+"""Menus of the commands of the page that is seen, and of what it shows."""
+
 
 @dataclass(frozen=True)
 class ActionSpec:
@@ -24,10 +29,8 @@ class ActionSpec:
 
     Parameters
     ----------
-    menu
-        Title of its menu; those of :data:`regolith_studio.ui.actions.WITHIN_VIEW` are menus within View.
     name
-        Of the command that it runs, and its object name.
+        Of the command that it runs, and its object name; :data:`BREAK` for a line between actions.
     text
         In the menu; "&" marks the letter.
     icon
@@ -43,22 +46,19 @@ class ActionSpec:
         without, empty for none.
     label
         One or two words for the tool bar; the text if empty.
+    menu
+        Title of its menu; those of :data:`regolith_studio.ui.actions.WITHIN_VIEW` are menus within View.
     """
 
-    menu: str
     name: str
-    text: str
+    text: str = ""
     icon: str = ""
     shortcut: str = ""
     tip: str = ""
     checked: bool | None = None
     bar: str = ""
     label: str = ""
-
-
-BREAK = "-"
-PAGE_MENU = N_("&Page")
-"""Menu of the commands of the page that is seen."""
+    menu: str = PAGE_MENU
 
 
 class PageWidget(QWidget):
@@ -108,7 +108,7 @@ class PageContext:
         Of the page.
     session
         Particles, choices, results, events; see :mod:`regolith_studio.session`.
-    wiring
+    bindings
         The page's own: what it refreshes is refreshed while the page is seen, and at its next visit
         if something has changed meanwhile.
     preferences
@@ -141,6 +141,9 @@ class PageContext:
         failed: Callable[[Failed], None] | None = None,
         stopped: Callable[[], None] | None = None,
         lane: str = "",
+        *,
+        repeats: bool = False,
+        after_running: bool = False,
     ) -> int:
         """Run a job in the background, seen in the task list; returns the number for :meth:`Session.cancel`.
 
@@ -155,8 +158,22 @@ class PageContext:
             failure that is not taken care of becomes a toast.
         lane
             Jobs of one lane of one page replace each other.
+        repeats
+            The job starts by itself when the page is opened again: closing the window does not ask about it.
+        after_running
+            Let the running job of the lane end and be shown first: for controls that are dragged.
         """
-        return self.session.run(f"{self.key}:{lane}", title, job, finished, partial, failed, stopped)
+        return self.session.run(
+            f"{self.key}:{lane}",
+            title,
+            job,
+            finished,
+            partial,
+            failed,
+            stopped,
+            repeats=repeats,
+            after_running=after_running,
+        )
 
     def stop(self, lane: str = "") -> None:
         """Stop what runs in a lane of this page, silently: its reactions are not called any more."""
@@ -189,7 +206,8 @@ class Page:
     tip
         One sentence on what can be done there.
     make
-        Makes the widget at the first visit; imports its modules inside, so that the window starts fast.
+        ``module:Class`` of the widget, called with its context; imported at the first visit, so that the
+        window starts fast.
     opens
         Kinds of files that :meth:`PageWidget.open_path` of this page opens.
     actions
@@ -201,12 +219,12 @@ class Page:
     icon: str
     order: int
     tip: str
-    make: Callable[[PageContext], PageWidget]
+    make: str
     actions: tuple[ActionSpec, ...] = ()
     opens: tuple[FileKind, ...] = ()
 
     def build(self, context: PageContext) -> PageWidget:
         """Make the widget of the page with all its parts."""
-        widget = self.make(context)
+        widget: PageWidget = pkgutil.resolve_name(self.make)(context)
         widget.build()
         return widget

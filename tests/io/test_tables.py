@@ -6,7 +6,7 @@ import json
 import numpy as np
 import pytest
 
-from regolith_studio.io.tables import Column, Table, rows_as_text, write_table
+from regolith_studio.io.tables import Column, Table, csv_text, rows_as_text, write_table
 from regolith_studio.studies.progress import StudyProgress
 
 
@@ -63,3 +63,10 @@ def test_that_progress_counts_up_to_its_total():
     assert StudyProgress(0, 0).share == 1.0
     with pytest.raises(ValueError, match="between"):
         StudyProgress(5, 4)
+
+
+def test_that_a_table_for_the_clipboard_keeps_the_commas_within_its_cells():
+    table = Table("Particles", (Column("name"), Column("volume", "um^3")), (("a, b", 1.5), ("c\td", 2.0)))
+    rows = list(csv.reader(csv_text(table, "\t").splitlines(), delimiter="\t"))
+    assert rows == [["name", "volume [um^3]"], ["a, b", "1.5"], ["c\td", "2.0"]]
+    assert '"a, b"' not in csv_text(table, "\t")

@@ -122,6 +122,13 @@ def __getattr__(name: str) -> object:
     """The page is made when it is asked for: only the window has Qt."""
     if name != "PAGE":
         raise AttributeError(name)
-    from regolith_studio.ui.page import Page, PageWidget
+    from regolith_studio.ui.page import Page
 
-    return Page("lunar_page", "Lunar", "sample", 1000, "Show the Moon.", lambda _context: PageWidget())
+    return Page("lunar_page", "Lunar", "sample", 1000, "Show the Moon.", f"{__name__}:make_page")
+
+
+def make_page(_context: object) -> object:
+    """An empty page."""
+    from regolith_studio.ui.page import PageWidget
+
+    return PageWidget()

@@ -1,6 +1,20 @@
 """Only the newest task of a lane is heard; the test decides when each job says what."""
 
-from regolith_studio.jobs.events import Failed, Finished, Job, Listener, Partial, Progress, Started, Stopped
+from typing import Any
+
+import pytest
+
+from regolith_studio.jobs.events import (
+    Event,
+    Failed,
+    Finished,
+    Job,
+    Listener,
+    Partial,
+    Progress,
+    Started,
+    Stopped,
+)
 from regolith_studio.session.tasks import Reactions, Task, TaskBoard
 
 
@@ -83,3 +97,69 @@ def test_that_a_failure_reaches_its_reaction() -> None:
     tasks.start("load", "Reading", JOB, Reactions(received.append, failed=received.append))
     puppet.listeners[0](Failed("Broken."))
     assert received == [Failed("Broken.")]
+
+
+def drag(tasks: TaskBoard, received: list[object], number: int, **reactions: Any) -> None:
+    callbacks = Reactions(
+        received.append, failed=lambda failure: received.append(failure.sentence), **reactions
+    )
+    tasks.start("hand", str(number), JOB, callbacks, after_running=True)
+
+
+def test_that_the_first_and_the_last_value_of_a_drag_are_computed_and_nothing_in_between() -> None:
+    puppet, tasks, received = board()
+    for number in range(5):
+        drag(tasks, received, number)
+    assert [task.title for task in tasks.running] == ["0"]
+    assert puppet.cancelled == []
+    puppet.listeners[0](Finished(0))
+    assert [task.title for task in tasks.running] == ["4"]
+    puppet.listeners[1](Finished(4))
+    assert received == [0, 4]
+    assert tasks.running == ()
+
+
+@pytest.mark.parametrize(
+    ("event", "expected"), [(Failed("too large", ""), ["too large", 2]), (Stopped(), [2])]
+)
+def test_that_the_waiting_job_follows_one_that_failed_or_was_stopped(
+    event: Event, expected: list[object]
+) -> None:
+    puppet, tasks, received = board()
+    drag(tasks, received, 1)
+    drag(tasks, received, 2)
+    puppet.listeners[0](event)
+    puppet.listeners[1](Finished(2))
+    assert received == expected
+
+
+def test_that_a_job_started_while_a_result_is_shown_replaces_the_waiting_one() -> None:
+    puppet, tasks, received = board()
+    again = Reactions(lambda _: drag(tasks, received, 3))
+    tasks.start("hand", "1", JOB, again, after_running=True)
+    drag(tasks, received, 2)
+    puppet.listeners[0](Finished(1))
+    assert [task.title for task in tasks.running] == ["3"]
+    puppet.listeners[1](Finished(3))
+    assert received == [3]
+    assert tasks.running == ()
+
+
+def test_that_an_error_while_a_result_is_shown_does_not_keep_the_next_from_running() -> None:
+    puppet, tasks, received = board()
+    tasks.start("hand", "1", JOB, Reactions(lambda _: 1 / 0), after_running=True)
+    drag(tasks, received, 2)
+    with pytest.raises(ZeroDivisionError):
+        puppet.listeners[0](Finished(1))
+    puppet.listeners[1](Finished(2))
+    assert received == [2]
+
+
+def test_that_stopping_a_lane_drops_the_job_that_waits() -> None:
+    puppet, tasks, received = board()
+    drag(tasks, received, 1)
+    drag(tasks, received, 2)
+    tasks.stop_lane("hand")
+    assert tasks.running == ()
+    assert puppet.cancelled == [0]
+    assert len(puppet.listeners) == 1

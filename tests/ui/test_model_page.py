@@ -295,9 +295,9 @@ def test_that_what_cannot_be_done_is_said(page):
 def test_that_a_model_and_a_card_are_saved_and_opened_again(page, tmp_path, monkeypatch):
     take(page, rough_sample())
     page.source.fit.click()
-    for name in ("m.json", "card.json"):
+    for name, save in (("m", page.save_model), ("card", page.save_card)):  # typed without the suffix
         monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *_, name=name: (str(tmp_path / name), ""))
-        page.save_model() if name == "m.json" else page.save_card()
+        save()
     assert read_shape_source(str(tmp_path / "card.json")).content.n_particles == 30
     monkeypatch.setattr(QFileDialog, "getOpenFileName", lambda *_: (str(tmp_path / "m.json"), ""))
     page.open_source()

@@ -15,7 +15,7 @@ from regolith_studio.resources import resource
 from regolith_studio.session.session import Session
 from regolith_studio.ui.bindings import Bindings
 from regolith_studio.ui.commands import Commands
-from regolith_studio.ui.page import PAGE_MENU, ActionSpec, Page, PageContext, PageWidget
+from regolith_studio.ui.page import ActionSpec, Page, PageContext, PageWidget
 from regolith_studio.ui.page_stack import PageStack
 from regolith_studio.ui.pages import PAGES
 from regolith_studio.ui.theme import DARK
@@ -60,8 +60,8 @@ def _numbers(total):
 
 
 def _page(key, order):
-    action = ActionSpec(PAGE_MENU, "count", "&Count")
-    return Page(key, key.title(), "sample", order, "A page.", _Counter, (action,))
+    action = ActionSpec("count", "&Count")
+    return Page(key, key.title(), "sample", order, "A page.", f"{__name__}:_Counter", (action,))
 
 
 @pytest.fixture
@@ -132,7 +132,7 @@ class _Holder(PageWidget):
 
 @pytest.mark.parametrize("slow", [False, True])
 def test_that_a_hidden_page_lets_go_what_is_not_open_any_more(stack, slow):
-    stack.pages["one"] = replace(stack.pages["one"], make=_Holder)
+    stack.pages["one"] = replace(stack.pages["one"], make=f"{__name__}:_Holder")
     one = stack.go("one")
     one.context.bindings.refresh("dataset_folder", one._hold, slow=slow, keeps_particles=True)
     stack.session.dataset_folder = Path("old")
@@ -187,7 +187,7 @@ class _Broken(PageWidget):
 
 def test_that_a_page_that_cannot_be_built_is_built_at_the_next_visit(stack):
     page = stack.pages["two"]
-    stack.pages["two"] = replace(page, make=_Broken)
+    stack.pages["two"] = replace(page, make=f"{__name__}:_Broken")
     stack.go("one")
     with pytest.raises(OSError, match="nothing there"):
         stack.go("two")

@@ -84,10 +84,10 @@ def dataset(tmp_path):
 
 def small(page, dataset):
     page.setup.set_dataset(dataset)
-    page.setup.particles.setValue(40)
     page.setup.test.setValue(LiftingCylinderTest(mass=0.003, lift_speed=0.15))
     page.setup.numerics.setValue(QUICK)
     page.setup.set_evaluation(min_particles=40)
+    page.setup.particles.setValue(40)
 
 
 def pile_of(angle, n=700):
@@ -206,12 +206,14 @@ def test_that_a_stopped_run_and_changed_values_leave_no_earlier_angle(
     assert "Not run yet" in page.verdict.text()
 
 
-def test_that_a_number_that_cannot_be_run_is_refused_in_the_form(page, dataset, wait):
+def test_that_values_that_cannot_be_run_are_refused_in_the_form(page, dataset, wait):
     page.setup.set_dataset(dataset)
-    page.setup.particles.setValue(100)
+    page.setup.set_evaluation(median_window=4)
+    page.setup.particles.setValue(301)
     wait(lambda: page.setup.problem.text() != "")
     assert not page.setup.run.isEnabled()
     assert page.setup.run.toolTip() == page.setup.problem.text()
+    page.setup.set_evaluation(median_window=5)
     page.setup.particles.setValue(300)
     wait(lambda: page.setup.problem.text() == "")
     assert page.setup.run.isEnabled()
@@ -597,3 +599,10 @@ def test_that_a_number_too_small_for_a_pile_is_refused_in_german(shown, speaking
     panel.show_consequences([], str(caught.value))
     assert panel.problem.text().startswith("120 Partikel")
     assert "150" in panel.problem.text()
+
+
+def test_that_no_run_can_be_set_up_with_fewer_particles_than_its_evaluation_accepts(page):
+    assert page.setup.particles.minimum() == EvaluationSettings().min_particles
+    page.setup.set_evaluation(min_particles=60)
+    page.setup.particles.setValue(10)
+    assert page.setup.request().case.n_particles == 60

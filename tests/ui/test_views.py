@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from functools import partial
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,15 +12,33 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 
 from regolith_studio.dem.snapshot import ParticleState
+from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
+from regolith_studio.geometry.half_spaces import HalfSpaces
+from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.scene import instancing, surfaces
 from regolith_studio.scene.cameras import CameraPose, framing_pose
 from regolith_studio.scene.palette import DARK
+from regolith_studio.session.results import ParticleEntry, Results
 from regolith_studio.ui.views.camera_link import CameraLink
 from regolith_studio.ui.views.factory import best_kind, make_view
+from regolith_studio.ui.views.three_views import ThreeViews
 
 BALL = icosphere(3).moved(scale=20.0)
+CUBE = ConvexPolyhedron.from_half_spaces(HalfSpaces(np.vstack([np.eye(3), -np.eye(3)]), np.full(6, 10.0)))
 EGG = BALL.moved(rotation=np.diag([1.0, 0.5, 1.6]))
+
+
+def test_that_a_polyhedron_that_has_not_changed_is_not_drawn_again(shown, monkeypatch):
+    views = shown(ThreeViews("image", lambda *_: None))
+    views.show_particle(ParticleEntry("ball", Particle("ball", BALL)))
+    drawn = []
+    monkeypatch.setattr(surfaces, "show_polyhedron", lambda *_: drawn.append(1))
+    results = Results(best=SimpleNamespace(polyhedron=CUBE, centre=(0.0, 0.0, 0.0)))
+    views.show_polyhedron(results)
+    views.show_polyhedron(replace(results, against_particle={}))
+    assert len(drawn) == 1
+    views.release()
 
 
 @pytest.fixture(params=["image", pytest.param("live", marks=pytest.mark.window)])

@@ -24,7 +24,7 @@ from regolith_studio.session.project import Project
 from regolith_studio.session.tasks import Task
 from regolith_studio.ui.activity import TaskListPanel, time_left
 from regolith_studio.ui.app import FILLED_CHECK, open_window, show_recovery_and_tour
-from regolith_studio.ui.dialogs.closing import worth_asking
+from regolith_studio.ui.dialogs.closing import needs_confirmation
 from regolith_studio.ui.dialogs.command_palette import CommandPalette
 from regolith_studio.ui.dialogs.export import ExportDialog
 from regolith_studio.ui.pages.lecture.page import LESSONS
@@ -119,7 +119,9 @@ def test_that_a_project_is_saved_and_brought_back(window, wait, tmp_path, monkey
     window.session.choose(n_facets=30)
     assert window.projects.modified
     assert window.windowTitle().startswith("work * – ")
-    assert worth_asking((), window.projects.unsaved()) == ["work.regolith has changes that are not saved."]
+    assert needs_confirmation((), window.projects.unsaved()) == [
+        "work.regolith has changes that are not saved."
+    ]
     window.go("sample").filter.clear()
     window.go("explore")
     window.commands.open_paths([target])
@@ -381,7 +383,7 @@ def test_that_the_standard_layout_acts_at_once_and_stays(window, monkeypatch):
 @pytest.mark.slow
 def test_that_closing_asks_while_a_study_runs(window):
     window.session.start_study("lmax_study")
-    assert worth_asking(window.session.tasks, [])
+    assert needs_confirmation(window.session.tasks, [])
     timer = answer("closing_stay")
     assert not window.close()
     timer.stop()
@@ -395,14 +397,14 @@ def test_that_closing_asks_while_a_study_runs(window):
     timer.stop()
 
 
-def test_that_short_work_is_not_asked_about():
-    lanes = ("fit", "surface", "descriptors", "coarsening", "load", "inspect", "lecture:annealing")
-    lanes += ("sample:faults", "scan:preview", "repose:preview", "dataset:library", "model:compare")
-    lanes += ("model:live", "lecture:field")
-    assert worth_asking([Task(n, lane, "x") for n, lane in enumerate(lanes)], []) == []
-    assert len(worth_asking([Task(1, "export", "Building the dataset")], ["A run is not saved."])) == 2
-    twins = [Task(1, "export", "Building the dataset"), Task(2, "dataset:build", "Building the dataset")]
-    assert len(worth_asking(twins, [])) == 1
+def test_that_closing_does_not_ask_about_work_that_repeats_itself():
+    repeating = Task(1, "explore:distances", "Measuring distances", repeats=True)
+    assert needs_confirmation([repeating], []) == []
+    builds = [Task(number, lane, "Building the dataset") for number, lane in ((2, "export"), (3, "build"))]
+    assert needs_confirmation([repeating, *builds], ["A run is not saved."]) == [
+        "Building the dataset is running.",
+        "A run is not saved.",
+    ]
 
 
 def test_that_rows_of_many_tasks_keep_their_height(shown, wait):

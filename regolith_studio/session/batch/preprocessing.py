@@ -1,6 +1,6 @@
 """Preprocessing of a recipe's inputs: extract the grains of volumes, fit the model of a population.
 
-Each lies in a folder of its own, named by a hash of all that it depends on, beside the journal: whole or not
+Each lies in a folder of its own, named by a hash of all that it depends on, beside the journal: complete or
 absent, so that a resumed run finds it.
 """
 

@@ -165,7 +165,7 @@ class GeneratedParticles:
 
     Parameters
     ----------
-    source, order, model, draws
+    source, request, model, draws
         Source and request, the fitted model and the drawn particles.
     groups
         Name of the part of the mixture each came from, or empty.

@@ -4,19 +4,13 @@ from collections.abc import Sequence
 
 from PySide6.QtWidgets import QMessageBox, QWidget
 
-from regolith_studio.session.choices import LIVE
 from regolith_studio.session.tasks import Task
 from regolith_studio.ui.translation import tr
 
-LESSONS = ("lecture:annealing", "lecture:degrees", "lecture:field")
-LOOKS = ("sample:faults", "scan:preview", "repose:preview", "dataset:library", "model:compare", "model:live")
-SHORT = {*(str(kind) for kind in LIVE), "load", "look", "inspect", *LESSONS, *LOOKS}
-"""Lanes whose work is repeated by itself when the file, or the page, is opened again."""
 
-
-def worth_asking(tasks: Sequence[Task], busy: Sequence[str]) -> list[str]:
-    """What closing would stop, a sentence each; none is said twice."""
-    titles = dict.fromkeys(tr(task.title) for task in tasks if task.lane not in SHORT)
+def needs_confirmation(tasks: Sequence[Task], busy: Sequence[str]) -> list[str]:
+    """What closing would stop, a sentence each, none of them twice; nothing of work that repeats itself."""
+    titles = dict.fromkeys(tr(task.title) for task in tasks if not task.repeats)
     return [*(tr("{task} is running.", task=title) for title in titles), *busy]
 
 

@@ -3,26 +3,24 @@ entry point ``regolith_studio.pages`` of another installed package.
 
 How to add a page
 -----------------
-Make the package ``ui/pages/<key>/`` and an icon ``resources/icons/<name>.svg``; nothing else needs to
-be edited. ``__init__.py`` stays cheap and announces the page; the widget lives in modules beside it::
+Make the package ``ui/pages/<key>/`` and an icon ``resources/icons/<name>.svg``. ``__init__.py`` stays cheap
+and announces the page; the widget lives in modules beside it::
 
     """Page "Grains": what it is for."""
 
-    from regolith_studio.ui.page import PAGE_MENU, ActionSpec
-    from regolith_studio.ui.page import Page, PageContext, PageWidget
-
-
-    def build(context: PageContext) -> PageWidget:
-        from regolith_studio.ui.pages.grains.page import GrainsPage
-
-        return GrainsPage(context)
-
+    from regolith_studio.ui.page import ActionSpec, Page
 
     PAGE = Page(
-        key="grains", title="Grains", icon="sample", order=25, tip="Count the grains.", make=build,
-        actions=(ActionSpec(PAGE_MENU, "count", "&Count", "play", "Ctrl+Return", bar="words"),),
+        key="grains",
+        title="Grains",
+        icon="sample",
+        order=25,
+        tip="Count the grains.",
+        make="regolith_studio.ui.pages.grains.page:GrainsPage",
+        actions=(ActionSpec("count", "&Count", icon="play", shortcut="Ctrl+Return", bar="words"),),
     )
 
+The window finds it by itself; its chapter in ``ui/dialogs/guide.py`` and its German texts are added by hand.
 and ``page.py``::
 
     class GrainsPage(PageWidget):

@@ -36,7 +36,7 @@ class Grip(Protocol):
 
     cursor: Qt.CursorShape
 
-    def keeps_particles(self, sight: Projection, x: float, y: float) -> bool:
+    def is_under_cursor(self, sight: Projection, x: float, y: float) -> bool:
         """Whether it is under the mouse."""
         ...
 
@@ -142,7 +142,7 @@ class CameraMouse:
 
     def _under(self, place: QPointF) -> Grip | None:
         sight = self._sight()
-        return next((grip for grip in self.grips if grip.keeps_particles(sight, place.x(), place.y())), None)
+        return next((grip for grip in self.grips if grip.is_under_cursor(sight, place.x(), place.y())), None)
 
     def _sight(self) -> Projection:
         return Projection(self._pose(), self._widget.width(), self._widget.height())

@@ -30,7 +30,7 @@ class DividerGrip:
     def __init__(self, divider: Divider, moved: Callable[[float], None]) -> None:
         self._divider, self._moved = divider, moved
 
-    def keeps_particles(self, sight: Projection, x: float, y: float) -> bool:  # noqa: ARG002
+    def is_under_cursor(self, sight: Projection, x: float, y: float) -> bool:  # noqa: ARG002
         """Whether the line is under the mouse."""
         return self._divider.shown and abs(x - self._divider.share * sight.width) <= REACH
 
@@ -60,7 +60,7 @@ class PlaneGrip:
     ) -> None:
         self._plane, self._moved = plane, moved
 
-    def keeps_particles(self, sight: Projection, x: float, y: float) -> bool:
+    def is_under_cursor(self, sight: Projection, x: float, y: float) -> bool:
         """Whether the frame is under the mouse."""
         known = self._plane()
         if known is None:

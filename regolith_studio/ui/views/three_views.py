@@ -139,9 +139,11 @@ class ThreeViews(QSplitter):
         if found is None or found.polyhedron is None:
             return
         solid, centre = found.polyhedron, np.asarray(found.centre, dtype=np.float64)
-        self._shapes[POLYHEDRON] = SceneShape(POLYHEDRON, solid, centre)
-        self.pointer.clear()
-        self._draw_polyhedron()
+        shown = self._shapes.get(POLYHEDRON)
+        if shown is None or shown.surface is not solid:  # results also change while the polyhedron stays
+            self._shapes[POLYHEDRON] = SceneShape(POLYHEDRON, solid, centre)
+            self.pointer.clear()
+            self._draw_polyhedron()
         parts = solid.n_parts if isinstance(solid, ConvexCompound) else 1
         facets = tr("{count} facets", count=solid.n_facets)
         if parts > 1:

@@ -1,4 +1,4 @@
-"""Messages in the corner of the window that disappear after some seconds."""
+"""Messages at the lower edge of the window that disappear after some seconds."""
 
 from collections.abc import Sequence
 
@@ -25,7 +25,7 @@ _MARGIN = 14
 
 
 class Toast(QFrame):
-    """Shows one message at a time at the lower right of its parent, with details on demand.
+    """Shows one message at a time at the lower edge of its parent, in the middle, with details on demand.
 
     ``shown`` carries kind, sentence and details of every message.
     """

@@ -2,15 +2,7 @@
 
 from regolith_studio.messages import N_
 from regolith_studio.session.file_kinds import FileKind
-from regolith_studio.ui.page import BREAK, PAGE_MENU, ActionSpec, Page, PageContext, PageWidget
-
-
-def build(context: PageContext) -> PageWidget:
-    """The page's widget."""
-    from regolith_studio.ui.pages.dataset.page import DatasetPage
-
-    return DatasetPage(context)
-
+from regolith_studio.ui.page import BREAK, ActionSpec, Page
 
 PAGE = Page(
     key="dataset",
@@ -18,15 +10,15 @@ PAGE = Page(
     icon="page_dataset",
     order=60,
     tip=N_("Choose representative particles, build a dataset, export it to DEM programs"),
-    make=build,
+    make="regolith_studio.ui.pages.dataset.page:DatasetPage",
     opens=(FileKind.DATASET,),
     actions=(
-        ActionSpec(PAGE_MENU, "find", N_("&Find representatives"), "", "F5"),
-        ActionSpec(PAGE_MENU, "build", N_("&Build the dataset …"), "", "Ctrl+Return"),
-        ActionSpec(PAGE_MENU, "open_dataset", N_("&Open a dataset …")),
-        ActionSpec(PAGE_MENU, "validate", N_("&Check the dataset")),
-        ActionSpec(PAGE_MENU, BREAK, ""),
-        ActionSpec(PAGE_MENU, "export", N_("&Export to DEM programs …"), "", "Ctrl+Shift+E"),
-        ActionSpec(PAGE_MENU, "library", N_("Show the &library")),
+        ActionSpec("find", N_("&Find representatives"), shortcut="F5"),
+        ActionSpec("build", N_("&Build the dataset …"), shortcut="Ctrl+Return"),
+        ActionSpec("open_dataset", N_("&Open a dataset …")),
+        ActionSpec("validate", N_("&Check the dataset")),
+        ActionSpec(BREAK),
+        ActionSpec("export", N_("&Export to DEM programs …"), shortcut="Ctrl+Shift+E"),
+        ActionSpec("library", N_("Show the &library")),
     ),
 )

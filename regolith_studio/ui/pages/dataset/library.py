@@ -88,7 +88,7 @@ class LibraryPanel(QWidget):
             self.place.setText(str(root))
             self._entries = ()
             job = Job(list_library, (Path(root), self._results()))
-            self._context.start(tr("Searching for datasets"), job, self._take, lane=LANE)
+            self._context.start(tr("Searching for datasets"), job, self._take, lane=LANE, repeats=True)
 
     def suggest(self, root: Path) -> None:
         """List this folder if none has been chosen yet; else update the list."""

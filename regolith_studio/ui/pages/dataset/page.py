@@ -1,4 +1,4 @@
-"""Controls on the right in the order of the work; curves above, representatives and exports below."""
+"""The page: finds representatives, builds, checks and exports a dataset."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace

@@ -2,16 +2,9 @@
 
 from regolith_studio.messages import N_
 from regolith_studio.scene.cameras import DIRECTIONS
-from regolith_studio.ui.page import BREAK, PAGE_MENU, ActionSpec, Page, PageContext, PageWidget
+from regolith_studio.ui.page import BREAK, VIEW, ActionSpec, Page
 
 _DIRECTION_KEYS = {"isometric": "Ctrl+0", "front": "Ctrl+1", "right": "Ctrl+3", "top": "Ctrl+7"}
-
-
-def build(context: PageContext) -> PageWidget:
-    """The page's widget."""
-    from regolith_studio.ui.pages.explore.page import ExplorePage
-
-    return ExplorePage(context)
 
 
 PAGE = Page(
@@ -20,141 +13,134 @@ PAGE = Page(
     icon="page_explore",
     order=10,
     tip=N_("One particle, its spherical-harmonics fit and its polyhedron side by side"),
-    make=build,
+    make="regolith_studio.ui.pages.explore.page:ExplorePage",
     actions=(
         ActionSpec(
-            N_("&View"),
             "link",
             N_("&Link cameras"),
-            "link",
-            "Ctrl+L",
-            N_("Rotate all views together"),
-            True,
+            icon="link",
+            shortcut="Ctrl+L",
+            tip=N_("Rotate all views together"),
+            checked=True,
             bar="under",
             label=N_("Link"),
+            menu=VIEW,
         ),
         ActionSpec(
-            N_("&View"),
             "reset",
             N_("&Reset cameras"),
-            "reset",
-            "Ctrl+R",
-            N_("Show the whole particle"),
+            icon="reset",
+            shortcut="Ctrl+R",
+            tip=N_("Show the whole particle"),
             bar="under",
             label=N_("Fit view"),
+            menu=VIEW,
         ),
-        ActionSpec(N_("&View"), "list", N_("Particle l&ist"), "", "", N_("Show the open particles"), True),
+        ActionSpec("list", N_("Particle l&ist"), tip=N_("Show the open particles"), checked=True, menu=VIEW),
         *(
-            ActionSpec(N_("Look &from"), f"look_{key}", each.label, "", _DIRECTION_KEYS.get(key, ""))
+            ActionSpec(
+                f"look_{key}", each.label, shortcut=_DIRECTION_KEYS.get(key, ""), menu=N_("Look &from")
+            )
             for key, each in DIRECTIONS.items()
         ),
-        ActionSpec(N_("&View"), BREAK, ""),
+        ActionSpec(BREAK, menu=VIEW),
         ActionSpec(
-            N_("&View"),
             "wireframe",
             N_("&Wireframe"),
-            "wireframe",
-            "Ctrl+M",
-            N_("Show triangles"),
-            False,
+            icon="wireframe",
+            shortcut="Ctrl+M",
+            tip=N_("Show triangles"),
+            checked=False,
             bar="under",
             label=N_("Triangles"),
+            menu=VIEW,
         ),
         ActionSpec(
-            N_("&View"),
             "heat",
             N_("&Distance map"),
-            "heat",
-            "Ctrl+D",
-            N_("Colour the fit by its distance from the particle"),
-            False,
+            icon="heat",
+            shortcut="Ctrl+D",
+            tip=N_("Colour the fit by its distance from the particle"),
+            checked=False,
             bar="under",
             label=N_("Distances"),
+            menu=VIEW,
         ),
         ActionSpec(
-            N_("&View"),
             "overlay",
             N_("&Overlay"),
-            "overlay",
-            "",
-            N_("One surface over another"),
-            False,
+            icon="overlay",
+            tip=N_("One surface over another"),
+            checked=False,
             bar="under",
             label=N_("Overlay"),
+            menu=VIEW,
         ),
         ActionSpec(
-            N_("&View"),
             "wipe",
             N_("Wi&pe"),
-            "wipe",
-            "Ctrl+I",
-            N_("Two surfaces on either side of a line"),
-            False,
+            icon="wipe",
+            shortcut="Ctrl+I",
+            tip=N_("Two surfaces on either side of a line"),
+            checked=False,
             bar="under",
             label=N_("Wipe"),
+            menu=VIEW,
         ),
         ActionSpec(
-            N_("&View"),
             "section",
             N_("Cross-s&ection"),
-            "section",
-            "Ctrl+K",
-            N_("Cut all views"),
-            False,
+            icon="section",
+            shortcut="Ctrl+K",
+            tip=N_("Cut all views"),
+            checked=False,
             bar="under",
             label=N_("Section"),
+            menu=VIEW,
         ),
         ActionSpec(
-            N_("&View"),
             "box",
             N_("&Bounding box"),
-            "box",
-            "Ctrl+B",
-            N_("The minimum-volume bounding box"),
-            False,
+            icon="box",
+            shortcut="Ctrl+B",
+            tip=N_("The minimum-volume bounding box"),
+            checked=False,
             bar="under",
             label=N_("Box"),
+            menu=VIEW,
         ),
         ActionSpec(
-            N_("&View"),
             "star_point",
             N_("Star &point"),
-            "star",
-            "",
-            N_("The star point and the surface hidden from it"),
-            False,
+            icon="star",
+            tip=N_("The star point and the surface hidden from it"),
+            checked=False,
             bar="under",
             label=N_("Star point"),
+            menu=VIEW,
         ),
         ActionSpec(
-            N_("&View"),
             "enlarge",
             N_("&Enlarge one view"),
-            "",
-            "Ctrl+Shift+M",
-            N_("Shows one view enlarged, then the next, then all"),
+            shortcut="Ctrl+Shift+M",
+            tip=N_("Shows one view enlarged, then the next, then all"),
+            menu=VIEW,
         ),
         ActionSpec(
-            PAGE_MENU,
             "change_unit",
             N_("Change length &unit …"),
             tip=N_("Read the files of the chosen particle in another unit"),
         ),
         ActionSpec(
-            PAGE_MENU,
             "save_picture",
             N_("Save &picture …"),
-            "camera",
-            "Ctrl+P",
-            N_("PNG"),
+            icon="camera",
+            shortcut="Ctrl+P",
+            tip=N_("PNG"),
             bar="under",
             label=N_("Picture"),
         ),
-        ActionSpec(
-            PAGE_MENU, "save_turntable", N_("Save &turntable …"), tip=N_("One turn: GIF, WebP, PNG files")
-        ),
-        ActionSpec(
-            PAGE_MENU, "save_animation", N_("Save &animation of l_max …"), tip=N_("GIF of l_max 0 to 30")
-        ),
+        ActionSpec("save_turntable", N_("Save &turntable …"), tip=N_("One turn: GIF, WebP, PNG files")),
+        ActionSpec("save_animation", N_("Save &animation of l_max …"), tip=N_("GIF of l_max 0 to 30")),
     ),
 )

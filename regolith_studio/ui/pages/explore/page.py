@@ -6,11 +6,12 @@ from functools import partial
 from PySide6.QtWidgets import QHBoxLayout, QMainWindow, QVBoxLayout, QWidget
 
 from regolith_studio.coarsening.progress import CoarseningProgress
+from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.jobs.events import Job
 from regolith_studio.messages import join_messages
 from regolith_studio.scene.cameras import DIRECTIONS
 from regolith_studio.scene.shapes import PARTICLE
 from regolith_studio.session.results import Results
-from regolith_studio.ui.latest_job import LatestJob
 from regolith_studio.ui.layout import padded, scrolled_column, side_by_side, stacked
 from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.pages.explore.facet_search import FacetSearch
@@ -45,12 +46,12 @@ class ExplorePage(PageWidget):
 
     def __init__(self, context: PageContext) -> None:
         super().__init__()
+        self._start = context.start
         self.setObjectName("explore")
         self._session, self._commands = context.session, context.commands
         self.particles, self.fit = ParticleListPanel(), FitPanel()
         self.coarsening, self.loss = CoarseningPanel(), LossPanel()
-        measuring = LatestJob(context, tr("Measuring distances"), "distances")
-        self.three_views = ThreeViews(context.views, measuring.submit)
+        self.three_views = ThreeViews(context.views, self._measure_distances)
         self.plots = PlotArea(self.three_views)
         self.verdict = VerdictPanel()
         self.three_views.hovered.connect(self._show_status)
@@ -64,6 +65,19 @@ class ExplorePage(PageWidget):
         for part in (self.particles, self.coarsening, self.three_views):
             part.set_theme(theme)
         self.plots.set_theme(theme)
+
+    def _measure_distances(
+        self, job: Job, show: Callable[[FloatArray], None], refuse: Callable[[str], None]
+    ) -> None:
+        self._start(
+            tr("Measuring distances"),
+            job,
+            show,
+            failed=lambda failure: refuse(failure.sentence),
+            lane="distances",
+            repeats=True,
+            after_running=True,
+        )
 
     def commands(self) -> Mapping[str, Callable[..., object]]:
         views = self.three_views

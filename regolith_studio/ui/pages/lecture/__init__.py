@@ -1,15 +1,7 @@
 """Page "Lecture": the paper's ideas step by step, large enough for the last row."""
 
 from regolith_studio.messages import N_
-from regolith_studio.ui.page import PAGE_MENU, ActionSpec, Page, PageContext, PageWidget
-
-
-def build(context: PageContext) -> PageWidget:
-    """The page's widget."""
-    from regolith_studio.ui.pages.lecture.page import LecturePage
-
-    return LecturePage(context)
-
+from regolith_studio.ui.page import ActionSpec, Page
 
 PAGE = Page(
     key="lecture",
@@ -17,18 +9,28 @@ PAGE = Page(
     icon="page_lecture",
     order=90,
     tip=N_("Annealing step by step, l_max growing, a random field on the sphere; large letters"),
-    make=build,
+    make="regolith_studio.ui.pages.lecture.page:LecturePage",
     actions=(
         ActionSpec(
-            PAGE_MENU, "play", N_("&Play or pause"), "play", "Ctrl+Space", N_("Step by step"), bar="words"
+            "play",
+            N_("&Play or pause"),
+            icon="play",
+            shortcut="Ctrl+Space",
+            tip=N_("Step by step"),
+            bar="words",
         ),
-        ActionSpec(PAGE_MENU, "back", N_("Step &back"), "", "PgUp"),
-        ActionSpec(PAGE_MENU, "forward", N_("Step &forward"), "", "PgDown", N_("One step")),
+        ActionSpec("back", N_("Step &back"), shortcut="PgUp"),
+        ActionSpec("forward", N_("Step &forward"), shortcut="PgDown", tip=N_("One step")),
         ActionSpec(
-            PAGE_MENU, "another", N_("&Another seed"), "dice", "Ctrl+Return", N_("Another seed"), bar="words"
+            "another",
+            N_("&Another seed"),
+            icon="dice",
+            shortcut="Ctrl+Return",
+            tip=N_("Another seed"),
+            bar="words",
         ),
-        ActionSpec(PAGE_MENU, "larger", N_("&Larger letters"), "", "Ctrl++"),
-        ActionSpec(PAGE_MENU, "smaller", N_("S&maller letters"), "", "Ctrl+-"),
-        ActionSpec(PAGE_MENU, "full_screen", N_("F&ull screen"), "", "F11", N_("Full screen on or off")),
+        ActionSpec("larger", N_("&Larger letters"), shortcut="Ctrl++"),
+        ActionSpec("smaller", N_("S&maller letters"), shortcut="Ctrl+-"),
+        ActionSpec("full_screen", N_("F&ull screen"), shortcut="F11", tip=N_("Full screen on or off")),
     ),
 )

@@ -9,7 +9,7 @@ from regolith_studio.jobs.events import Job
 from regolith_studio.jobs.lecture_jobs import DrawnField, draw_field_later
 from regolith_studio.scene.lecture_scenes import show_field
 from regolith_studio.shape_models.materials import materials
-from regolith_studio.ui.latest_job import LatestJob
+from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.pages.lecture import texts
 from regolith_studio.ui.pages.lecture.arrangement import lesson_columns
 from regolith_studio.ui.theme import Theme, current_theme
@@ -30,28 +30,28 @@ class FieldView(QWidget):
 
     Parameters
     ----------
-    kind
-        ``live`` or ``image``, of the views.
-    following
-        Draws what the spectrum makes, while it is dragged.
+    context
+        Of the page; what the spectrum makes is drawn while it is dragged.
     """
 
     seedChanged = Signal(int)  # noqa: N815
 
-    def __init__(self, kind: str, following: LatestJob) -> None:
+    def __init__(self, context: PageContext) -> None:
         super().__init__()
         self.setObjectName("lesson_field")
         self._theme = current_theme()
         self.seed = 0
         self.drawn: DrawnField | None = None
-        self._kind, self._following = kind, following
+        self._context = context
         self._unframed = True
 
     def build(self) -> None:
         """Make the parts, right after construction."""
         self.frames: dict[str, ViewFrame] = {}
         for name in ("sphere", "grain"):
-            self.frames[name] = ViewFrame(make_view(self._kind, self._theme.surroundings), f"field_{name}")
+            self.frames[name] = ViewFrame(
+                make_view(self._context.views, self._theme.surroundings), f"field_{name}"
+            )
         self.link = CameraLink([frame.view for frame in self.frames.values()])
         self.sentence = remark("", role="")
         self.sentence.setObjectName("field_sentence")
@@ -92,10 +92,14 @@ class FieldView(QWidget):
         self.formula.set_lines(*texts.field_lines(amplitudes.tolist()))
         self._unframed |= again
         seed = self.seed
-        self._following.submit(
+        self._context.start(
+            tr("Drawing particles"),
             Job(draw_field_later, (self.material.value(), amplitudes, seed)),
             lambda drawn: self._take(drawn, amplitudes, seed),
-            self.sentence.setText,
+            failed=lambda failure: self.sentence.setText(failure.sentence),
+            lane="field",
+            repeats=True,
+            after_running=True,
         )
 
     def set_theme(self, theme: Theme) -> None:

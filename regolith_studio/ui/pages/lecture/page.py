@@ -10,7 +10,6 @@ from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QTabWidget, QVBo
 from regolith_studio.jobs.events import Failed, Job
 from regolith_studio.jobs.lecture_jobs import trace_annealing, trace_degrees
 from regolith_studio.session.results import ParticleEntry
-from regolith_studio.ui.latest_job import LatestJob
 from regolith_studio.ui.layout import name_tabs
 from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.pages.lecture.annealing import AnnealingView
@@ -42,9 +41,8 @@ class LecturePage(PageWidget):
     def build(self) -> None:
         context = self._context
         views = context.views
-        following = LatestJob(context, tr("Drawing particles"), "field")
         self.annealing, self.degrees = AnnealingView(views), DegreesView(views)
-        self.field = FieldView(views, following)
+        self.field = FieldView(context)
         for lesson in (self.annealing, self.degrees, self.field):
             lesson.build()
         self.particle = ChoiceBox("lecture_particle", tr("Particle"), {})
@@ -191,6 +189,7 @@ class LecturePage(PageWidget):
             failed=self._refused,
             stopped=self._stopped,
             lane="annealing",
+            repeats=True,
         )
 
     def _stopped(self) -> None:
@@ -208,7 +207,9 @@ class LecturePage(PageWidget):
         self.degrees.show_particle(entry.particle.mesh, f"{tr(entry.particle.title)}, {entry.id}")
         show = self.degrees.show_steps
         job = Job(trace_degrees, (entry.particle.mesh, fit))
-        self._context.start(tr("Fitting degree by degree"), job, show, partial=show, lane="degrees")
+        self._context.start(
+            tr("Fitting degree by degree"), job, show, partial=show, lane="degrees", repeats=True
+        )
 
     def _show_particles(self) -> None:
         ids = [entry.id for entry in self._session.particles]

@@ -13,8 +13,8 @@ from regolith_studio.ui.widgets.formula import BREAK
 
 TERMS = (JACCARD, *LOSS_KEYS)
 REFUSED, ACCEPTED, LUCKY, START = "refused", "accepted", "lucky", "start"
+"""Outcomes of a step."""
 DEGREE = "l<sub>max</sub>"
-"""The outcome of a step as rich text."""
 GENERAL_LOSS = r"$L=\alpha_J\,J+\sum_i\alpha_i\,\varepsilon_i$"
 GENERAL_SERIES = r"$r(\theta,\varphi)=\sum_{l=0}^{l_{max}}\,\sum_{m=-l}^{l}c_{lm}\,Y_{lm}(\theta,\varphi)$"
 

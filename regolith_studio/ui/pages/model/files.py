@@ -27,7 +27,7 @@ def save_model(parent: QWidget, toast: Toast, model: FittedModel, source: ShapeS
     name, _ = QFileDialog.getSaveFileName(parent, tr("Save the model"), "model.json", tr(MODELS))
     if not name:
         return
-    path = Path(name if name.endswith(".json") else f"{name}.json")
+    path = _json_path(name)
     try:
         write_model(path, model, {"source": source.name, "sha256": source.sha256 or None})
     except RegolithError as error:
@@ -41,12 +41,17 @@ def save_card(parent: QWidget, context: PageContext, sample: Sample, source: Sha
     name, _ = QFileDialog.getSaveFileName(parent, tr("Save a material card"), "material.json", tr(CARDS))
     if not name:
         return
-    path = Path(name)
+    path = _json_path(name)
     key = re.sub(r"[^a-z0-9_]+", "_", path.stem.lower()).strip("_") or "material"
     template = N_("Statistics of {count} particles of {name}, made by Regolith Studio.")
     origin = Message(template, count=len(sample), name=source.name)
     job = Job(make_card, (sample, key, path.stem, origin))
     context.start(tr("Making a material card"), job, partial(_write_card, context.toast, path), lane="card")
+
+
+def _json_path(name: str) -> Path:
+    """The path of a name that the user may have typed without its suffix."""
+    return Path(name if name.endswith(".json") else f"{name}.json")
 
 
 def _write_card(toast: Toast, path: Path, card: MaterialCard) -> None:

@@ -27,7 +27,6 @@ from regolith_studio.readers.shape_files import ShapeSource, read_shape_source
 from regolith_studio.session.provenance import VirtualSource
 from regolith_studio.shape_models.protocol import EditableModel, FittedModel, relative_amplitudes
 from regolith_studio.shape_models.sample import Sample
-from regolith_studio.ui.latest_job import LatestJob
 from regolith_studio.ui.layout import padded, scrolled_column, side_by_side, stacked, tabs
 from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.pages.model.controls import DrawControls, SourceControls, default_degree, request_from
@@ -62,7 +61,6 @@ class ModelPage(PageWidget):
         self._fitted_to: tuple[object, ...] = ()
         self._drawn: GenerationResult | None = None
         self._live_seed = 0
-        self._following = LatestJob(context, tr("Drawing particles"), "live")
 
     def build(self) -> None:
         views, bindings, surroundings = (
@@ -279,7 +277,7 @@ class ModelPage(PageWidget):
         self.gallery.show_shapes(self._fitted.examples if self._fitted else (), drawn.examples)
         job = Job(compare_distributions, (self._sample(), drawn.draws))
         show = self.distributions.show_compared
-        self._context.start(tr("Comparing distributions"), job, show, lane="compare")
+        self._context.start(tr("Comparing distributions"), job, show, lane="compare", repeats=True)
         self._show_state()
 
     def _request_live(self, again: bool = False) -> None:
@@ -288,10 +286,14 @@ class ModelPage(PageWidget):
         if self._model is None or fitted is None:
             self.live.show_mesh(None)
             return
-        self._following.submit(
+        self._context.start(
+            tr("Drawing particles"),
             Job(draw_live, (self._model, self._live_seed)),
             lambda mesh: self._show_live(fitted, mesh, again),
-            lambda sentence: self.live.frame.set_texts(tr(DRAWN), sentence),
+            failed=lambda failure: self.live.frame.set_texts(tr(DRAWN), failure.sentence),
+            lane="live",
+            repeats=True,
+            after_running=True,
         )
 
     def _show_live(self, fitted: ModelFitResult, mesh: Mesh, again: bool) -> None:

@@ -287,6 +287,7 @@ class ReposePage(PageWidget):
             show,
             failed=lambda each: self.setup.show_consequences([], each.sentence),
             lane=PREVIEW,
+            repeats=True,
         )
 
     def _show_preview(self, request: ReposeRequest, prepared: PreparedCase, pile: ParticleState) -> None:

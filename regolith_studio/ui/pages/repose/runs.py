@@ -34,8 +34,8 @@ AGAINST: Mapping[str, tuple[str, ...]] = {
     N_("Number of particles"): ("case", "n_particles"),
     N_("Seed"): ("case", "seed"),
 }
+"""Parameters that distinguish runs, and where a document has them."""
 SHAPES = (N_("polyhedra"), N_("spheres"))
-"""Parameters that distinguish runs."""
 STATES = (
     *(N_("finished"), N_("stopped"), N_("failed")),
     *(N_("too few particles"), N_("layer"), N_("column stands"), N_("no flanks"), N_("scattered")),

@@ -36,6 +36,7 @@ from regolith_studio.ui.widgets.forms import SettingsForm
 from regolith_studio.ui.widgets.labels import ElidedLabel, heading, remark
 from regolith_studio.ui.widgets.presets import PresetForm
 
+MAX_PARTICLES = 400_000
 PRESETS = {N_("Teaching"): 300, N_("Standard"): 1000, N_("Fine"): 5000}
 SHAPES = {N_("The dataset's polyhedra"): "polyhedra", N_("Spheres of the same volumes"): "spheres"}
 COHESION = {
@@ -67,7 +68,7 @@ class SetupPanel(QWidget):
         self.particles = QSpinBox()
         self.particles.setObjectName("repose_particles")
         self.particles.setAccessibleName(tr("Number of particles"))
-        self.particles.setRange(40, 400_000)
+        self.particles.setMaximum(MAX_PARTICLES)
         self.particles.setSingleStep(100)
         self.particles.setKeyboardTracking(False)
         self.particles.setValue(PRESETS["Teaching"])
@@ -189,9 +190,10 @@ class SetupPanel(QWidget):
         try:
             self.test.restore(state.get("test", {}))
             self.contact.restore(state.get("contact", {}))
+            self.evaluation.setValue(state.get("evaluation", {}))
+            self._limit_particles()
             self.particles.setValue(int(state.get("particles", self.particles.value())))
             self.seed.setValue(int(state.get("seed", 0)))
-            self.evaluation.setValue(state.get("evaluation", {}))
             for key, form in self._numerics.items():
                 form.setValue(state.get("numerics", {}).get(key, {}))
         except (InputError, TypeError, ValueError, AttributeError):
@@ -250,10 +252,17 @@ class SetupPanel(QWidget):
         ):
             signal.connect(lambda *_: self.valueChanged.emit())
         self.evaluation.valueChanged.connect(lambda *_: self.evaluationChanged.emit())
+        self.evaluationChanged.connect(self._limit_particles)
+        self._limit_particles()
         self.engine.currentIndexChanged.connect(lambda *_: self._show_numerics())
         self._show_numerics()
         self.gravity.currentIndexChanged.connect(self._take_gravity)
         self.test.valueChanged.connect(self._show_gravity)
+
+    def _limit_particles(self) -> None:
+        """Begin at the fewest particles that the evaluation accepts: fewer would run for nothing."""
+        usual = EvaluationSettings().min_particles
+        self.particles.setMinimum(int(self.evaluation.value().get("min_particles", usual)))
 
     def _show_numerics(self) -> None:
         for key, form in self._numerics.items():

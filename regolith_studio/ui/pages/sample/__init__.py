@@ -1,15 +1,7 @@
 """Page "Sample": every open particle in one table, one scatter plot, and as groups with their statistics."""
 
 from regolith_studio.messages import N_
-from regolith_studio.ui.page import PAGE_MENU, ActionSpec, Page, PageContext, PageWidget
-
-
-def build(context: PageContext) -> PageWidget:
-    """The page's widget."""
-    from regolith_studio.ui.pages.sample.page import SamplePage
-
-    return SamplePage(context)
-
+from regolith_studio.ui.page import ActionSpec, Page
 
 PAGE = Page(
     key="sample",
@@ -17,16 +9,14 @@ PAGE = Page(
     icon="page_sample",
     order=20,
     tip=N_("All particles: table, scatter plot, health and statistics of groups"),
-    make=build,
+    make="regolith_studio.ui.pages.sample.page:SamplePage",
     actions=(
         ActionSpec(
-            PAGE_MENU, "export_table", N_("E&xport table …"), "export", tip=N_("As a CSV file"), bar="words"
+            "export_table", N_("E&xport table …"), icon="export", tip=N_("As a CSV file"), bar="words"
         ),
-        ActionSpec(PAGE_MENU, "copy_table", N_("&Copy table"), "", "", N_("Copy the rows for a spreadsheet")),
-        ActionSpec(PAGE_MENU, "explore", N_("Show in &Explore"), "page_explore", "Ctrl+Return"),
-        ActionSpec(
-            PAGE_MENU, "keep", N_("&Keep only these"), "", "", N_("Close all particles but the chosen rows")
-        ),
-        ActionSpec(PAGE_MENU, "clear_filter", N_("Clear &filter"), "", "Ctrl+Shift+F"),
+        ActionSpec("copy_table", N_("&Copy table"), tip=N_("Copy the rows for a spreadsheet")),
+        ActionSpec("explore", N_("Show in &Explore"), icon="page_explore", shortcut="Ctrl+Return"),
+        ActionSpec("keep", N_("&Keep only these"), tip=N_("Close all particles but the chosen rows")),
+        ActionSpec("clear_filter", N_("Clear &filter"), shortcut="Ctrl+Shift+F"),
     ),
 )

@@ -108,8 +108,8 @@ class SamplePage(PageWidget):
 
     def copy_table(self) -> None:
         """Copy the visible rows to the clipboard, separated by tabs."""
-        text = csv_text(sample_table(self.table.visible_entries()))
-        QApplication.clipboard().setText(text.replace(",", "\t"))
+        text = csv_text(sample_table(self.table.visible_entries()), separator="\t")
+        QApplication.clipboard().setText(text)
         self._context.toast.note(tr("The table is on the clipboard."))
 
     def keep_selected_particles(self) -> None:
@@ -203,7 +203,7 @@ class SamplePage(PageWidget):
             if entry.health is None:
                 return
             job = Job(find_faults, (entry.particle, entry.visibility))
-            self._context.start(tr("Checking the mesh"), job, self._take_faults, lane="faults")
+            self._context.start(tr("Checking the mesh"), job, self._take_faults, lane="faults", repeats=True)
 
     def _take_faults(self, found: dict[str, FloatArray]) -> None:
         self._faults = found

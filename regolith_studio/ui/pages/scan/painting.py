@@ -154,7 +154,7 @@ class Painting(QObject):
             return
         job = Job(predict_slices, (self._volume, self._slices.position, self.training))
         show = self._slices.show_predictions
-        self._context.start(tr("Predicting"), job, show, partial=show, lane="predict")
+        self._context.start(tr("Predicting"), job, show, partial=show, lane="predict", repeats=True)
 
     def _show(self) -> None:
         self._slices.show_strokes(*painted_rows(self.strokes)[:2])

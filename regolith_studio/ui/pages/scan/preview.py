@@ -70,6 +70,7 @@ class FramePreview(QObject):
             failed=self._fail,
             stopped=self._end,
             lane="preview",
+            repeats=True,
         )
 
     def _end(self) -> None:
@@ -93,7 +94,9 @@ class FramePreview(QObject):
                 compared_heights(settings.splitting.h_maxima),
             )
             job = Job(preview_heights, arguments)
-            self._context.start(tr("Grains at other h"), job, self._controls.show_heights, lane="heights")
+            self._context.start(
+                tr("Grains at other h"), job, self._controls.show_heights, lane="heights", repeats=True
+            )
 
 
 def compared_heights(h: float) -> tuple[float, ...]:

@@ -42,7 +42,7 @@ BAR_WIDTH = 200
 """Initial width of the choices in pixels."""
 COARSENING_TITLE = N_("Error of coarsened particles")
 TABS = {"facets": N_("Facets"), "tradeoff": N_("Overlap or descriptors"), "sensitivity": N_("Weights")}
-"""Object name of the tab after that of Fig. 8."""
+"""Object names and titles of the tabs after that of Fig. 8."""
 
 
 class StudiesPage(PageWidget):
