@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 from scipy.spatial.distance import cdist
 
-from regolith_studio.dataset.k_medoids import build_medoids, k_medoids, swap_medoids
+from regolith_studio.dataset.k_medoids import k_medoids
 from regolith_studio.errors import InputError
-from tests.filling import filled
 
 
 def cost(points: np.ndarray, chosen, weights=None) -> float:
@@ -77,14 +76,3 @@ def test_that_large_populations_are_searched_on_a_subset(monkeypatch) -> None:
 def test_that_an_impossible_number_is_refused(k: int) -> None:
     with pytest.raises(InputError, match="Between 1 and 3"):
         k_medoids(np.zeros((3, 2)), k)
-
-
-def test_that_the_compiled_search_is_the_plain_one() -> None:
-    points = np.random.default_rng(5).standard_normal((30, 2))
-    table, weights = cdist(points, points), np.ones(30)
-    arguments, nothing = (table, weights), np.empty(4, dtype=np.int64)
-    plain, built = (filled(f, arguments, nothing)[0] for f in (build_medoids.py_func, build_medoids))
-    assert np.array_equal(plain, built)
-    compiled = plain.copy()
-    assert swap_medoids.py_func(table, weights, plain) == swap_medoids(table, weights, compiled)
-    assert np.array_equal(plain, compiled)

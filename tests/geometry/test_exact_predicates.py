@@ -40,10 +40,3 @@ def test_that_signs_of_nearly_parallel_cross_products_are_true(seed: int) -> Non
     for axis in range(3):
         unit = np.eye(3)[axis]
         assert sign_of_cross_product(a, b, axis) == exact_sign(unit, a, b)
-
-
-def test_that_the_compiled_kernel_and_its_python_agree() -> None:
-    rng = np.random.default_rng(0)
-    a, b, c = rng.normal(size=(3, 3))
-    python = sign_of_triple_product.py_func  # type: ignore[attr-defined]
-    assert python(a, b, c) == sign_of_triple_product(a, b, c) == exact_sign(a, b, c)

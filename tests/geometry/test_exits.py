@@ -43,15 +43,3 @@ def test_that_of_planes_that_tie_the_first_is_named() -> None:
     for copies in (2, 3, 4):
         planes = np.vstack([[0.0, 1.0, 0.0], np.tile([1.0, 0.0, 0.0], (copies, 1))])
         assert left(planes, np.ones(copies + 1), rays)[1].tolist() == [1]
-
-
-def test_that_compiled_and_interpreted_exits_agree_to_the_bit() -> None:
-    rng = np.random.default_rng(3)
-    normals, offsets = rng.normal(size=(9, 3)), rng.uniform(0.5, 0.8, 9)
-    rays = np.ascontiguousarray(fibonacci_directions(700))
-    for mine, reference in zip(
-        left(normals, offsets, rays),
-        left(normals, offsets, rays, exits.py_func),  # type: ignore[attr-defined]
-        strict=True,
-    ):
-        assert (mine == reference).all()

@@ -123,14 +123,11 @@ def test_that_flat_clouds_have_no_hull() -> None:
 
 
 @pytest.mark.parametrize("shift", [0.0, 50.0])
-def test_that_compiled_moments_are_those_of_numpy_and_of_the_python_reference(shift: float) -> None:
+def test_that_moments_are_those_of_tetrahedra_from_the_middle(shift: float) -> None:
     mesh = rough_stone(3).moved(shift=(shift, 0.0, -shift))
     middle = mesh.bounds.mean(axis=0)
     arguments, nothing = (mesh.vertices, mesh.faces, middle), (np.empty(3), np.empty((3, 3)))
-    first, second, volume = filled(volume_moments, arguments, *nothing)
-    reference = filled(volume_moments.py_func, arguments, *nothing)  # type: ignore[attr-defined]
-    for ours, theirs in zip((first, second, volume), reference, strict=True):
-        assert np.asarray(ours) == pytest.approx(np.asarray(theirs), rel=1e-12, abs=1e-15)
+    _, second, volume = filled(volume_moments, arguments, *nothing)
     corners = mesh.triangles - middle
     six = np.linalg.det(corners)
     assert volume == pytest.approx(six.sum() / 6, rel=1e-12)

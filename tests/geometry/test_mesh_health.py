@@ -10,8 +10,7 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.mesh_health import MeshHealth, inspect
 from regolith_studio.geometry.self_intersection import count_self_intersections, mark_crossings
 from regolith_studio.geometry.sphere_points import icosphere
-from regolith_studio.geometry.topology import edge_table, find_bodies, genus, label_bodies, neighbours
-from tests.filling import filled
+from regolith_studio.geometry.topology import edge_table, find_bodies, genus, neighbours
 
 CORNERS = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], dtype=float)
 QUADS = np.array([[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]])
@@ -189,17 +188,6 @@ def test_that_the_report_survives_json():
     report = inspect(joined(CUBE, turned_round(torus()))).as_dict()
     assert json.loads(json.dumps(report)) == report
     assert {"bodies", "watertight", "problems", "sound", "handles"} <= report.keys()
-
-
-def test_that_the_pure_python_walk_agrees_with_the_compiled_one():
-    faces = joined(CUBE, turned_round(torus(8, 5)), moebius(9)).faces.copy()
-    faces[::7] = faces[::7, ::-1]
-    table = edge_table(faces, int(faces.max()) + 1)
-    across = neighbours(table)
-    start = np.full(len(faces), -1), np.zeros(len(faces), dtype=np.bool_)
-    walks = (filled(f, (across, table.forward), *start) for f in (label_bodies, label_bodies.py_func))
-    for compiled, plain in zip(*walks, strict=True):
-        assert np.array_equal(compiled, plain)
 
 
 def _side(a, b, c, d):

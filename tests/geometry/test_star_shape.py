@@ -8,7 +8,7 @@ from regolith_studio.geometry.mesh_health import inspect
 from regolith_studio.geometry.ray_casting import radial_hits
 from regolith_studio.geometry.self_intersection import count_self_intersections
 from regolith_studio.geometry.sphere_points import fibonacci_directions, icosphere
-from regolith_studio.geometry.star_shape import covers_once, is_star_shaped
+from regolith_studio.geometry.star_shape import is_star_shaped
 from regolith_studio.geometry.topology import Connectivity
 
 BALL = icosphere(3)
@@ -79,11 +79,6 @@ def test_that_health_does_not_depend_on_place_and_size(scale, shift):
     assert health.sound
     assert health.self_intersections == 0
     assert not health.problems
-
-
-def test_that_the_kernel_compiled_is_the_kernel_written():
-    for mesh in (rough(1, level=1), Mesh(BALL.vertices, BALL.faces[:, ::-1])):
-        assert covers_once(mesh.vertices, mesh.faces) == covers_once.py_func(mesh.vertices, mesh.faces)
 
 
 def test_that_what_is_remembered_of_faces_is_the_same_again_and_locked():

@@ -5,11 +5,10 @@ import pytest
 from scipy.special import sph_harm_y
 
 from regolith_studio.geometry.sphere_points import fibonacci_directions
-from regolith_studio.harmonics import legendre, shtools
+from regolith_studio.harmonics import shtools
 from regolith_studio.harmonics.coefficients import ShCoefficients, from_pyshtools, to_pyshtools
 from regolith_studio.harmonics.legendre import (
     analyse_rings,
-    fill_basis,
     harmonics,
     synthesise_rings,
 )
@@ -42,14 +41,6 @@ def test_that_harmonics_are_defined_at_the_poles():
     for degree in range(6):
         wanted = np.sqrt((2 * degree + 1) / (4 * np.pi))
         np.testing.assert_allclose(basis[degree**2 + degree], [wanted, (-1) ** degree * wanted], rtol=1e-14)
-
-
-def test_that_compiled_and_plain_kernels_agree():
-    directions = fibonacci_directions(7)
-    compiled, plain = np.empty((25, 7)), np.empty((25, 7))
-    fill_basis(directions, 4, compiled)
-    fill_basis.py_func(directions, 4, plain)
-    np.testing.assert_allclose(compiled, plain, rtol=1e-14)
 
 
 @pytest.fixture
@@ -94,20 +85,3 @@ def test_that_bits_do_not_depend_on_where_samples_lie(grid):
         again = np.empty(first.size + 8)[shift : shift + first.size]
         again[:] = first
         assert np.array_equal(synthesise_rings(again, zeros, 2 * degree + 1), back)
-
-
-def test_that_compiled_sums_are_those_of_the_reference():
-    rng, cosines = np.random.default_rng(1), np.array([-1.0, -0.3, 0.2, 0.9])
-    even, odd, values = rng.normal(size=(4, 6)), rng.normal(size=(4, 6)), rng.normal(size=36)
-    over_rings, over_degrees = [], []
-    for rings, degrees in (
-        (legendre._sum_over_rings, legendre._sum_over_degrees),
-        (legendre._sum_over_rings.py_func, legendre._sum_over_degrees.py_func),
-    ):
-        sums, waves = np.zeros(36), np.zeros((2, 4, 6))
-        rings(even, odd, cosines, 5, sums)
-        degrees(values, cosines, *waves)
-        over_rings.append(sums)
-        over_degrees.append(waves)
-    np.testing.assert_allclose(*over_rings, atol=1e-14)
-    np.testing.assert_allclose(*over_degrees, atol=1e-14)

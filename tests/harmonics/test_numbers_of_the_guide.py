@@ -2,7 +2,6 @@
 
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 from regolith_studio.descriptors.describe import describe
@@ -34,15 +33,6 @@ def test_that_the_sentence_on_hidden_surfaces_has_the_shares_of_fits() -> None:
     assert f"{surface} % of the surface are hidden, and {volume} % of the volume are displaced" in PAGE
     hidden = {name for name, fit in fits.items() if fit.hidden_surface_share > 0.0}
     assert hidden == {"agglutinate-1", "agglutinate-2"}
-
-
-def test_that_the_sentence_on_sampling_at_the_degree_of_the_fit_has_the_errors_of_fits() -> None:
-    errors = []
-    for mesh in MESHES.values():
-        fine, coarse = (fit_harmonics(mesh, 10, sampling_degree=n).coefficients.values[1:] for n in (60, 10))
-        errors.append(100 * np.linalg.norm(coarse - fine) / np.linalg.norm(fine))
-    middle, worst = np.median(errors), max(errors)
-    assert f"by {middle:.1f} % in the median of the shipped particles and by {worst:.1f} % at worst" in PAGE
 
 
 @pytest.mark.slow

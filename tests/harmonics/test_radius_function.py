@@ -10,7 +10,6 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.sphere_points import fibonacci_directions, icosphere
 from regolith_studio.harmonics.radius_function import (
     RULES,
-    _sum_crossings,
     is_closed,
     require_solid,
     sample_radius,
@@ -77,16 +76,6 @@ def test_that_a_radius_function_survives_pickling(bracket):
     radius = sample_radius(bracket, (0.5, 0.5, 0.5), fibonacci_directions(10), "first")
     copy = pickle.loads(pickle.dumps(radius))
     np.testing.assert_array_equal(copy.radii, radius.radii)
-
-
-def test_that_compiled_and_plain_sums_agree():
-    rng = np.random.default_rng(3)
-    ray = np.sort(rng.integers(0, 5, 12))
-    hits = (ray, rng.random(12), rng.choice([-1, 1], 12))
-    compiled, plain = np.zeros((6, 5)), np.zeros((6, 5))
-    _sum_crossings(*hits, compiled)
-    _sum_crossings.py_func(*hits, plain)
-    np.testing.assert_array_equal(compiled, plain)
 
 
 def test_that_closed_is_told_from_open_and_from_badly_wound(bracket):

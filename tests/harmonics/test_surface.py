@@ -7,7 +7,7 @@ import pytest
 from scipy.special import elliprg
 
 from regolith_studio.errors import GeometryError, InputError
-from regolith_studio.geometry.sphere_points import fibonacci_directions, icosphere
+from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.harmonics import synthesis
 from regolith_studio.harmonics.coefficients import ShCoefficients
 from regolith_studio.harmonics.fit import HarmonicFit, fit_harmonics
@@ -15,8 +15,6 @@ from regolith_studio.harmonics.legendre import harmonics
 from regolith_studio.harmonics.radius_function import is_closed, sample_radius
 from regolith_studio.harmonics.reference_surface import Ellipsoid
 from regolith_studio.harmonics.surface import (
-    _fill_radius,
-    _flat_volume,
     enclosed_volume,
     gallery,
     radii,
@@ -158,22 +156,3 @@ def test_that_shortfalls_are_those_of_chords_under_the_unit_circle():
     shortfall = edges.shortfalls(np.ones(len(sphere.vertices)), np.ones(len(edges.ends)))
     chords = np.linalg.norm(sphere.vertices[edges.ends].mean(axis=1), axis=1)
     assert (1 - chords).min() <= shortfall.min() <= shortfall.max() <= (1 - chords).max()
-
-
-def test_that_compiled_and_plain_kernels_agree(rough):
-    particle = rough(3)
-    cosines, compiled, plain = np.array([-0.5, 0.2, 0.9]), np.zeros((3, 5)), np.zeros((3, 5))
-    _fill_radius(particle.values, 3, cosines, compiled)
-    _fill_radius.py_func(particle.values, 3, cosines, plain)
-    np.testing.assert_allclose(compiled, plain, atol=1e-14)
-    directions = fibonacci_directions(4)
-    basis, values = harmonics(directions, 3), np.empty(4)
-    total, sums = np.zeros(4), np.zeros((4, 4))
-    synthesis._add_weighted.py_func(basis, particle.values, total)
-    np.testing.assert_allclose(total, particle.values @ basis)
-    synthesis._evaluate.py_func(directions, particle.values, 3, values)
-    np.testing.assert_allclose(values, particle.values @ basis, atol=1e-14)
-    sphere = icosphere(1)
-    assert _flat_volume.py_func(sphere.vertices, sphere.faces) == pytest.approx(sphere.volume, rel=1e-13)
-    synthesis._add_by_degree.py_func(basis, particle.values, sums)
-    np.testing.assert_allclose(sums, synthesis._running_sums(basis, particle.values, 3), atol=1e-15)

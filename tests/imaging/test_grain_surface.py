@@ -9,12 +9,11 @@ from scipy.spatial import ConvexHull, HalfspaceIntersection
 
 from regolith_studio.errors import InputError
 from regolith_studio.imaging import volume_slabs
-from regolith_studio.imaging.contours import MAX_DEPTH, _fill_squared, depth
+from regolith_studio.imaging.contours import MAX_DEPTH, depth
 from regolith_studio.imaging.extraction import ExtractedParticle, ExtractionSettings, extract_particles
 from regolith_studio.imaging.sample_volumes import sample_volume
 from regolith_studio.imaging.segmentation.segment import segment
 from regolith_studio.imaging.volume import Volume
-from tests.filling import filled
 from tools.make_samples.grains import even_sphere, random_rotation
 
 GREY = ExtractionSettings(exclude_border=False, min_voxels=0, surface="grey")
@@ -277,10 +276,3 @@ def test_that_depths_are_those_of_scipy_where_they_matter(case: int) -> None:
 
 def test_that_a_mask_without_an_outside_is_deep_everywhere() -> None:
     assert (depth(np.ones((3, 4, 5), dtype=bool)) == MAX_DEPTH).all()
-
-
-def test_that_the_kernel_is_its_python() -> None:
-    mask = masks()[1][:9, :8, :7].copy()
-    farthest = np.full(mask.shape, 9, dtype=np.int32)
-    one, other = (filled(f, (mask, 3), farthest)[0] for f in (_fill_squared, _fill_squared.py_func))
-    assert np.array_equal(one, other)

@@ -13,15 +13,12 @@ from regolith_studio.imaging.label_table import GrainCrop
 from regolith_studio.imaging.smoothing import windowed_sinc
 from regolith_studio.imaging.surface_refinement import (
     RefinementSettings,
-    _add_corner_normals,
-    _mark_doubtful,
     corner_normals,
     refined_to_mask,
     refined_to_scan,
     without_crossings,
 )
 from regolith_studio.imaging.voxelize import coverage
-from tests.filling import filled
 from tools.make_samples.random_fields import SphereField, power_law
 
 EDGE, BLUR = 45, 0.8
@@ -172,15 +169,3 @@ def test_that_a_surface_that_does_not_cross_stays_as_it_is() -> None:
 
 def test_that_normals_of_a_ball_point_away_from_its_centre() -> None:
     assert corner_normals(BALL.vertices, BALL.faces) == pytest.approx(COARSE_SPHERE.vertices, abs=0.02)
-
-
-def test_that_the_kernels_are_their_python() -> None:
-    inside = np.linalg.norm(np.moveaxis(np.indices((24, 24, 24)), 0, -1) - 12.2, axis=-1) < 9.0
-    inside[8:16] = False
-    normals = corner_normals(BALL.vertices, BALL.faces)
-    plain, _ = filled(_add_corner_normals.py_func, (BALL.vertices, BALL.faces), np.zeros(normals.shape))
-    assert np.allclose(normals, plain)
-    arguments, unmarked = (BALL.vertices, BALL.faces, normals, inside), np.zeros(len(BALL.faces), dtype=bool)
-    one, other = (filled(f, arguments, unmarked)[0] for f in (_mark_doubtful, _mark_doubtful.py_func))
-    assert np.array_equal(one, other)
-    assert 0 < np.count_nonzero(one) < len(one)

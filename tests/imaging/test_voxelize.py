@@ -5,8 +5,7 @@ import pytest
 
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.sphere_points import icosphere
-from regolith_studio.imaging.voxelize import _fill_coverage, coverage
-from tests.filling import filled
+from regolith_studio.imaging.voxelize import coverage
 
 CORNERS = np.array(list(np.ndindex(2, 2, 2)), dtype=float)
 HULL = Mesh(CORNERS, np.empty((0, 3), dtype=np.int64)).hull
@@ -37,10 +36,3 @@ def test_that_shares_add_up_to_the_volume(centre: tuple[float, float, float]) ->
     assert share.min() > -1e-6
     assert share.max() < 1 + 1e-6
     assert share[10, 10, 10] == pytest.approx(1.0)
-
-
-def test_that_the_kernel_is_its_python() -> None:
-    ball = Mesh(4.2 + 2.5 * icosphere(1).vertices, icosphere(1).faces)
-    arguments, share = (ball.vertices, ball.faces, 2), np.empty((9, 9, 9), dtype=np.float32)
-    one, other = (filled(f, arguments, share)[0] for f in (_fill_coverage, _fill_coverage.py_func))
-    assert np.allclose(one, other, atol=1e-6)

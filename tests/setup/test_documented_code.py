@@ -27,7 +27,7 @@ INDENTED = re.compile(r"(?:^    regolith-studio .*\n)+", re.MULTILINE)
 SPAN = re.compile(r"`regolith-studio ([a-z][^`]*)`")
 ELSEWHERE = ("SLURMCluster", "on_cluster", ">>> ")
 """Code that needs a cluster, and the exercises, which are tested by themselves."""
-SHORT = ("README.md", "first_steps.md")
+SHORT = ("README.md",)
 """Pages whose commands are run, in the folder of the fixture."""
 LONG = ("study", "demo", "run")
 
@@ -95,6 +95,7 @@ def table(values: np.ndarray) -> str:
 PYTHON = [(page, text) for page, text in blocks("python") if not any(word in text for word in ELSEWHERE)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("page", "text"), PYTHON, ids=[f"{page}-{i}" for i, (page, _) in enumerate(PYTHON)])
 @pytest.mark.usefixtures("here")
 def test_that_the_python_of_the_pages_runs(page: str, text: str) -> None:

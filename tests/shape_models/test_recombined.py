@@ -20,7 +20,6 @@ from regolith_studio.shape_models.realizations import virtual_mesh
 from regolith_studio.shape_models.sample import Sample
 from regolith_studio.shape_models.surface_forms import (
     SurfaceForms,
-    _fill_areas,
     _fill_turned,
     areas,
     mesh_features,
@@ -98,19 +97,16 @@ def test_that_features_are_the_descriptors_of_meshes(
     assert mesh_features(ellipsoids.coefficients)[1, 0] == pytest.approx(np.log(1.3 / 0.8), abs=2e-3)
 
 
-def test_that_areas_and_turned_extents_are_those_of_meshes_compiled_or_not() -> None:
+def test_that_areas_and_turned_extents_are_those_of_meshes() -> None:
     sphere = icosphere(3)
     points = np.stack([sphere.vertices * axes for axes in AXES]).astype(np.float32)
     turns = Rotation.from_rotvec([[0.3, 0.2, -0.4], [1.0, 0.0, 0.5]]).as_matrix()
     meshes = [Mesh(points[i] @ turn.T, sphere.faces) for i, turn in zip((1, 0), turns, strict=True)]
-    for fill in (_fill_turned, _fill_turned.py_func):
-        given = points, np.array([1, 0]), turns
-        turned, edges, _ = filled(fill, given, np.empty_like(points), np.zeros((2, 3)))
-        np.testing.assert_allclose(turned, [mesh.vertices for mesh in meshes], atol=1e-6)
-        np.testing.assert_allclose(edges, [np.ptp(mesh.bounds, axis=0) for mesh in meshes], rtol=1e-6)
-        np.testing.assert_allclose(areas(turned), [mesh.surface_area for mesh in meshes], rtol=1e-5)
-    plain = filled(_fill_areas.py_func, (points, sphere.faces), np.zeros(2))[0]
-    np.testing.assert_allclose(plain, areas(points), rtol=1e-5)
+    given = points, np.array([1, 0]), turns
+    turned, edges, _ = filled(_fill_turned, given, np.empty_like(points), np.zeros((2, 3)))
+    np.testing.assert_allclose(turned, [mesh.vertices for mesh in meshes], atol=1e-6)
+    np.testing.assert_allclose(edges, [np.ptp(mesh.bounds, axis=0) for mesh in meshes], rtol=1e-6)
+    np.testing.assert_allclose(areas(turned), [mesh.surface_area for mesh in meshes], rtol=1e-5)
 
 
 @pytest.mark.slow

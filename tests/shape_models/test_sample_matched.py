@@ -11,7 +11,7 @@ from regolith_studio.harmonics.legendre import harmonics
 from regolith_studio.harmonics.sphere_grid import sphere_grid
 from regolith_studio.harmonics.surface import reconstruct
 from regolith_studio.shape_models.inertia_ellipsoid import canonical, principal_axes
-from regolith_studio.shape_models.linear_maps import _cubic, mapped_radii, radius_tables
+from regolith_studio.shape_models.linear_maps import mapped_radii, radius_tables
 from regolith_studio.shape_models.materials import materials
 from regolith_studio.shape_models.models.sample_matched import MODEL, SampleMatchedSettings
 from regolith_studio.shape_models.novelty import distances_among, nearest_over_rotations
@@ -43,17 +43,6 @@ def test_that_tables_hold_the_series_between_their_nodes_and_at_the_poles(
     arguments = radius_tables(rows), np.arange(3), same, directions
     found, _ = filled(mapped_radii, arguments, np.empty((3, len(directions))))
     np.testing.assert_allclose(found, rows @ harmonics(directions, 10), rtol=4e-3)
-
-
-def test_that_compiled_lookups_equal_plain_python(rough_sample: Callable[..., Sample]) -> None:
-    tables = radius_tables(rough_sample(2, 4).coefficients)
-    directions = np.array([[0.6, 0.0, 0.8], [-0.6, -0.8, 0.0]])
-    maps = np.stack([np.diag([1.0, 2.0, 0.7]), np.eye(3)])
-    arguments = (tables, np.array([1, 0]), maps, directions)
-    nothing = np.empty((len(arguments[1]), len(arguments[3])))
-    plain, compiled = (filled(f, arguments, nothing)[0] for f in (mapped_radii.py_func, mapped_radii))
-    np.testing.assert_allclose(plain, compiled, rtol=1e-12)
-    assert _cubic.py_func(tables[0], 3, 4, 0.0, 0.0) == pytest.approx(float(tables[0, 5, 6]))
 
 
 def test_that_the_axes_of_an_ellipsoid_are_its_own() -> None:

@@ -98,7 +98,7 @@ def test_that_what_is_proven_is_true_on_a_fine_grid(seed: int) -> None:
         assert ratio.min() > 0.0
         assert not is_above_limit(top, bottom, limit, curve.low, curve.high) or ratio.min() >= limit
         assert not is_above_limit(top, bottom, 1.001 * ratio.min(), curve.low, curve.high)
-        assert is_above_limit.py_func(top, bottom, 0.0, curve.low, curve.high)  # type: ignore[attr-defined]
+        assert is_above_limit(top, bottom, 0.0, curve.low, curve.high)
         best = argmin_ratio(top, bottom, curve.low, curve.high)
         at = value(top, best) / value(bottom, best)
         assert at == pytest.approx(ratio.min(), rel=1e-4)
@@ -141,10 +141,9 @@ def test_that_the_least_box_on_a_curve_is_that_of_a_fine_grid(seed: int) -> None
     curve, _, _ = random_curve(seed)
     x = np.linspace(curve.low, curve.high, 2_001)
     volumes = [np.prod(np.ptp(points @ np.array(frame_on(curve, each)).T, axis=0)) for each in x]
-    for search in (min_on_curve, min_on_curve.py_func):  # type: ignore[attr-defined]
-        volume, _ = search(on(points), span_table(on(points)), curve, 0, 0, 0.0, empty_record(np.inf))
-        assert volume == pytest.approx(min(volumes), rel=1e-4)
-        assert volume <= min(volumes) * (1 + 1e-12)
+    volume, _ = min_on_curve(on(points), span_table(on(points)), curve, 0, 0, 0.0, empty_record(np.inf))
+    assert volume == pytest.approx(min(volumes), rel=1e-4)
+    assert volume <= min(volumes) * (1 + 1e-12)
 
 
 def test_that_a_facet_with_an_edge_that_is_ruled_out_is_not_asked() -> None:

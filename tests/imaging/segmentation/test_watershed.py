@@ -7,7 +7,6 @@ from skimage.measure import label
 from skimage.morphology import local_maxima, reconstruction
 from skimage.segmentation import watershed as skimage_watershed
 
-from regolith_studio.imaging.segmentation import watershed
 from regolith_studio.imaging.segmentation.splitting import (
     SplittingSettings,
     distance_map,
@@ -71,16 +70,6 @@ def test_that_the_pass_between_two_hills_is_where_they_meet() -> None:
     assert joined(flooded, SplittingSettings(h_maxima=0.0, relative=0.5)).max() == 2
     assert joined(flooded, SplittingSettings(h_maxima=0.0, relative=0.6)).max() == 1
     assert joined(flooded, SplittingSettings(enabled=False)).max() == 1
-
-
-def test_that_compiled_and_plain_flooding_agree(monkeypatch: pytest.MonkeyPatch) -> None:
-    distance = distance_map(blobs(2, 14), CUBE)
-    compiled = find_basins(distance, CUBE)
-    for name in ("_flood", "_root"):
-        monkeypatch.setattr(watershed, name, getattr(watershed, name).py_func)
-    plain = find_basins(distance, CUBE)
-    assert np.array_equal(compiled.basins, plain.basins)
-    assert np.array_equal(compiled.passes, plain.passes)
 
 
 @pytest.mark.parametrize("gap", [1.3, 1.6, 1.9])
