@@ -1,83 +1,105 @@
 """Regolith Studio: from X-ray micro-CT to DEM-ready particles whose geometry is right.
 
-Functions for notebooks, each imported from the folder of its name when first used::
+Functions for notebooks, in the order of the paper, each imported from its folder when first used::
 
     import regolith_studio as rs
 
-    particle = rs.read_mesh("grain.stl", unit="um")
-    rs.describe(particle)["sphericity"]
-    fit = rs.fit_harmonics(particle)
-    coarse = rs.coarsen(particle, n_facets=20)
-    rs.write_dataset("grains", rs.build_dataset([(particle, coarse)]))
+    grains = rs.extract(rs.read_volume("scan.tif", voxel_size=2.3))
+    fits = [rs.fit_harmonics(grain) for grain in grains]
+    virtual = rs.draw_particles(rs.fit_model(fits, l_max=10), 20)
+    coarse = [(particle, rs.coarsen(particle, n_facets=20)) for particle in virtual]
+    rs.write_dataset("grains", rs.build_dataset(coarse))
+    rs.simulate_repose("grains", "heap").measurement.angle
 """
 
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
+
+from regolith_studio.version import __version__
 
 if TYPE_CHECKING:
     from regolith_studio.coarsening.coarsen import coarsen
     from regolith_studio.coarsening.weights import LossWeights
     from regolith_studio.dataset.build import build_dataset
     from regolith_studio.dataset.folder_io import read_dataset, write_dataset
+    from regolith_studio.dataset.parameters import ContactParameters
     from regolith_studio.dem.angle_of_repose import measure_repose
+    from regolith_studio.dem.case import ReposeCase
     from regolith_studio.descriptors.describe import describe
     from regolith_studio.harmonics.fit import fit_harmonics
     from regolith_studio.harmonics.surface import reconstruct
     from regolith_studio.jobs.events import result_of
     from regolith_studio.jobs.repose_calibration import calibrate_repose
+    from regolith_studio.jobs.repose_jobs import ReposeRequest
+    from regolith_studio.pipeline import draw_particles, export_dataset, extract, fit_model, simulate_repose
     from regolith_studio.readers.particles import read_mesh, read_particles, sample_particles
+    from regolith_studio.readers.volumes.read import read_volume
     from regolith_studio.scene.repose_export import export_repose
-    from regolith_studio.shape_models.models.gaussian_field import GaussianRadiusModel
     from regolith_studio.web.notebook import show
 
-__version__ = "0.1.0"
 __all__ = [
-    "GaussianRadiusModel",
+    "ContactParameters",
     "LossWeights",
+    "ReposeCase",
+    "ReposeRequest",
     "__version__",
     "build_dataset",
     "calibrate_repose",
     "coarsen",
     "describe",
+    "draw_particles",
+    "export_dataset",
     "export_repose",
+    "extract",
     "fit_harmonics",
+    "fit_model",
     "measure_repose",
     "read_dataset",
     "read_mesh",
     "read_particles",
+    "read_volume",
     "reconstruct",
     "result_of",
     "sample_particles",
     "show",
+    "simulate_repose",
     "write_dataset",
 ]
 
-_LAZY_EXPORTS = {
-    "GaussianRadiusModel": "shape_models.models.gaussian_field:GaussianRadiusModel",
-    "LossWeights": "coarsening.weights:LossWeights",
-    "build_dataset": "dataset.build:build_dataset",
-    "calibrate_repose": "jobs.repose_calibration:calibrate_repose",
-    "coarsen": "coarsening.coarsen:coarsen",
-    "describe": "descriptors.describe:describe",
-    "export_repose": "scene.repose_export:export_repose",
-    "fit_harmonics": "harmonics.fit:fit_harmonics",
-    "measure_repose": "dem.angle_of_repose:measure_repose",
-    "read_dataset": "dataset.folder_io:read_dataset",
-    "read_mesh": "readers.particles:read_mesh",
-    "read_particles": "readers.particles:read_particles",
-    "reconstruct": "harmonics.surface:reconstruct",
-    "result_of": "jobs.events:result_of",
-    "sample_particles": "readers.particles:sample_particles",
-    "show": "web.notebook:show",
-    "write_dataset": "dataset.folder_io:write_dataset",
+_MODULES = {
+    "ContactParameters": "dataset.parameters",
+    "LossWeights": "coarsening.weights",
+    "ReposeCase": "dem.case",
+    "ReposeRequest": "jobs.repose_jobs",
+    "build_dataset": "dataset.build",
+    "calibrate_repose": "jobs.repose_calibration",
+    "coarsen": "coarsening.coarsen",
+    "describe": "descriptors.describe",
+    "draw_particles": "pipeline",
+    "export_dataset": "pipeline",
+    "export_repose": "scene.repose_export",
+    "extract": "pipeline",
+    "fit_harmonics": "harmonics.fit",
+    "fit_model": "pipeline",
+    "measure_repose": "dem.angle_of_repose",
+    "read_dataset": "dataset.folder_io",
+    "read_mesh": "readers.particles",
+    "read_particles": "readers.particles",
+    "read_volume": "readers.volumes.read",
+    "reconstruct": "harmonics.surface",
+    "result_of": "jobs.events",
+    "sample_particles": "readers.particles",
+    "show": "web.notebook",
+    "simulate_repose": "pipeline",
+    "write_dataset": "dataset.folder_io",
 }
+"""Module of each function."""
 
 
 def __getattr__(name: str) -> Any:
-    if name not in _LAZY_EXPORTS:
+    if name not in _MODULES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    module, attribute = _LAZY_EXPORTS[name].split(":")
-    value = getattr(import_module(f"{__name__}.{module}"), attribute)
+    value = getattr(import_module(f"{__name__}.{_MODULES[name]}"), name)
     globals()[name] = value
     return value
 

@@ -11,9 +11,9 @@ from typing import Any
 
 import typer
 
-from regolith_studio import __version__
 from regolith_studio.cli.options import Json
 from regolith_studio.cli.terminal import print_json, run_with_progress
+from regolith_studio.version import __version__
 
 
 def check(json: Json = False) -> None:

@@ -65,7 +65,7 @@ def _without_command(
     version: Annotated[bool, typer.Option("--version", help="Print the version and stop.")] = False,
 ) -> None:
     if version:
-        from regolith_studio import __version__
+        from regolith_studio.version import __version__
 
         typer.echo(__version__)
         raise typer.Exit

@@ -142,14 +142,14 @@ def _heap(dataset: Path, folder: Path, seed: int, problems: list[str]) -> "Steps
     from regolith_studio.dem.case import ReposeCase
     from regolith_studio.dem.engines.mujoco.settings import MujocoSettings
     from regolith_studio.dem.run_io import TIMES, read_shapes
-    from regolith_studio.jobs.repose_jobs import ReposeRequest, simulate_repose
+    from regolith_studio.jobs.repose_jobs import ReposeRequest, repose_steps
     from regolith_studio.session.outputs.demo_page import HEAP_PICTURE
 
     settings = MujocoSettings(time_step=0.04, iterations=15, rest_energy=1e-3)
     case = ReposeCase(n_particles=N_HEAP, seed=seed + 1)  # the heap of seed 0 has no angle
     request = ReposeRequest(case, settings=settings)
     with _noted(problems):
-        done = yield from simulate_repose(dataset, folder, request)
+        done = yield from repose_steps(dataset, folder, request)
         (folder / TIMES).unlink()
         title = f"Illustration: {N_HEAP} particles are too few for an angle of repose"
         given = (read_shapes(folder), done.ending.particles, request.case.test, title)

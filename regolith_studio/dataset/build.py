@@ -5,7 +5,6 @@ from dataclasses import dataclass, replace
 from importlib.metadata import PackageNotFoundError, version
 from typing import Protocol
 
-import regolith_studio
 from regolith_studio.dataset.alignment import aligned
 from regolith_studio.dataset.dataset import Approximation, Dataset, Provenance, Representative
 from regolith_studio.dataset.size_distributions import (
@@ -20,6 +19,7 @@ from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.convex_compound import Polyhedron
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.io.file_names import unique_name
+from regolith_studio.version import __version__
 
 PACKAGES = ("numpy", "scipy", "numba", "pyshtools", "scikit-image", "fast-simplification", "vtk")
 
@@ -133,7 +133,7 @@ def build_dataset(
 
 def software_versions() -> dict[str, str]:
     """Versions of the program and of the packages that its results depend on."""
-    found = {"regolith-studio": regolith_studio.__version__}
+    found = {"regolith-studio": __version__}
     for package in PACKAGES:
         try:
             found[package] = version(package)

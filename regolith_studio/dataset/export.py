@@ -10,7 +10,6 @@ from dataclasses import asdict, dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any
 
-import regolith_studio
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.folder_io import IGNORED_FILES
 from regolith_studio.dataset.parameters import ContactParameters, LiftingCylinderTest, ScriptTimes
@@ -20,6 +19,7 @@ from regolith_studio.io.atomic import exchange, filled_folder, recover_folder
 from regolith_studio.io.json_text import canonical_json, parse_strict_json
 from regolith_studio.io.tables import csv_bytes
 from regolith_studio.messages import N_
+from regolith_studio.version import __version__
 
 FORMAT = "regolith-studio-export"
 RECORD, README = "export.json", "README.txt"
@@ -277,7 +277,7 @@ def _with_readme(
         "exporter": exporter.key,
         "dataset": dataset.name,
         "dataset_sha256": dataset_hash,
-        "software": f"regolith-studio {regolith_studio.__version__}",
+        "software": f"regolith-studio {__version__}",
         "units": exporter.units,
         "options": asdict(options),
         "loses": list(exporter.loses),
@@ -294,7 +294,7 @@ def _readme(
     lines = [
         f"{dataset.name} for {exporter.label}",
         "",
-        f"Written by Regolith Studio {regolith_studio.__version__} from a dataset of {len(dataset)} shapes.",
+        f"Written by Regolith Studio {__version__} from a dataset of {len(dataset)} shapes.",
         "",
         f"Units: {exporter.units}",
         f"To use: {load_command(exporter, Path())}",

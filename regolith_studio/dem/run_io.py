@@ -12,7 +12,6 @@ from typing import Any
 
 import numpy as np
 
-import regolith_studio
 from regolith_studio.dataset.parameters import ContactParameters, LiftingCylinderTest, missing_in_paper
 from regolith_studio.dem.angle_of_repose import ReposeMeasurement, measurement_document
 from regolith_studio.dem.case import PreparedCase, ReposeCase
@@ -28,6 +27,7 @@ from regolith_studio.io.json_text import canonical_json, parse_strict_json
 from regolith_studio.io.natural_order import natural_key
 from regolith_studio.io.output_lock import NEW, hidden_beside, output_lock
 from regolith_studio.messages import Message, from_json, to_json
+from regolith_studio.version import __version__
 
 FORMAT = "regolith-studio-repose"
 SCHEMA_VERSION = 1
@@ -319,7 +319,7 @@ def run_document(
             "settings": asdict(settings),
             "capabilities": asdict(engine.capabilities),
         },
-        "software": {"regolith-studio": regolith_studio.__version__},
+        "software": {"regolith-studio": __version__},
         "length_unit": "m",
         "case": case_document(case),
         "not_given_in_the_paper": [

@@ -90,7 +90,7 @@ def result_of(steps: Steps) -> Any:
     Parameters
     ----------
     steps
-        A job that has been called: ``result_of(simulate_repose(dataset, folder, request))``.
+        A job that has been called: ``result_of(repose_steps(dataset, folder, request))``.
 
     Raises
     ------

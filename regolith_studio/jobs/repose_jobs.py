@@ -90,7 +90,7 @@ class ReposeRun:
     measurement: ReposeMeasurement | NotAPileError
 
 
-def simulate_repose(dataset_folder: Path, folder: Path, request: ReposeRequest) -> Steps:
+def repose_steps(dataset_folder: Path, folder: Path, request: ReposeRequest) -> Steps:
     """Draw particles from a dataset on disk, simulate, measure, write; returns :class:`ReposeRun`.
 
     Partial results are :class:`~regolith_studio.dem.engine.Snapshot`. What was saved stays when the run

@@ -23,7 +23,7 @@ from regolith_studio.jobs.coarsening_jobs import CoarseningRequest
 from regolith_studio.jobs.dataset_jobs import DatasetOptions, build_dataset_folder
 from regolith_studio.jobs.events import Job, Partial, Progress, Started, Steps
 from regolith_studio.jobs.executor import Executor, open_executor, value_of
-from regolith_studio.jobs.repose_jobs import PROGRESS_STEPS, ReposeRequest, simulate_repose
+from regolith_studio.jobs.repose_jobs import PROGRESS_STEPS, ReposeRequest, repose_steps
 from regolith_studio.messages import N_, Message
 from regolith_studio.studies.repose import ReposeStudy, runs_from
 from regolith_studio.studies.repose_surface import ReposeSurface
@@ -226,7 +226,7 @@ def _link(source: str, target: str) -> None:
 def simulate_study_run(dataset: Path, place: Path, request: ReposeRequest) -> Steps:
     """Simulate one run in `place`; returns its document, even if it failed."""
     try:
-        run = yield from simulate_repose(dataset, place, request)
+        run = yield from repose_steps(dataset, place, request)
     except EngineError as error:
         return error.document
     return dict(run.document)

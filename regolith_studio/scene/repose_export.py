@@ -12,7 +12,6 @@ import numpy as np
 import pyvista as pv
 from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
 
-import regolith_studio
 from regolith_studio.dataset.export import README, RECORD, check_export_folder
 from regolith_studio.dem.heap_files import RunShapes, extended_xyz, heap_glb, run_shapes
 from regolith_studio.dem.run_io import (
@@ -33,6 +32,7 @@ from regolith_studio.io.stl import stl_bytes
 from regolith_studio.jobs.events import Progress, Started, Steps, result_of
 from regolith_studio.messages import N_
 from regolith_studio.scene.instancing import COLOURS
+from regolith_studio.version import __version__
 
 FORMAT = "regolith-studio-repose-export"
 SERIES, SHAPE_TABLE, HEAP = "particles.pvd", "shapes.vtm", "heap.glb"
@@ -231,7 +231,7 @@ class _StageWriter:
             name=self._run.folder.resolve().name,
             n=self.n_particles,
             moments=len(self.times),
-            version=regolith_studio.__version__,
+            version=__version__,
         )
 
     def _record(self, states: Sequence[Path], every: int) -> dict[str, object]:
@@ -242,7 +242,7 @@ class _StageWriter:
         return {
             "format": FORMAT,
             "schema_version": 1,
-            "software": f"regolith-studio {regolith_studio.__version__}",
+            "software": f"regolith-studio {__version__}",
             "length_unit": "m",
             "every": every,
             "times_s": self.times,

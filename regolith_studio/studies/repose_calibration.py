@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 from scipy.stats import t as student_t
 
-import regolith_studio
 from regolith_studio.dem.angle_of_repose import NEIGHBOURHOOD
 from regolith_studio.io.tables import Cell, Column, Table
 from regolith_studio.messages import N_, Message, Number
@@ -20,6 +19,7 @@ from regolith_studio.studies.calibration import (
     calibrate,
     density_of,
 )
+from regolith_studio.version import __version__
 
 ANGLE, BULK_DENSITY = "angle", "bulk_density"
 UNITS = {ANGLE: "deg", BULK_DENSITY: "kg/m^3"}
@@ -171,7 +171,7 @@ def calibration_document(calibration: ReposeCalibration) -> dict[str, Any]:
     return {
         "format": "regolith-studio-repose-calibration",
         "schema_version": 2,
-        "software": {"regolith-studio": regolith_studio.__version__},
+        "software": {"regolith-studio": __version__},
         "confidence": CONFIDENCE,
         "n_runs": len(calibration.runs),
         "targets": [_target(calibration, k) for k in range(len(calibration.targets))],

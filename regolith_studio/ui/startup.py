@@ -15,11 +15,11 @@ from PySide6.QtCore import QCoreApplication, QLocale, QSocketNotifier, Qt, QTime
 from PySide6.QtGui import QColor, QFont, QIcon, QPainter, QPixmap, QSurfaceFormat
 from PySide6.QtWidgets import QApplication, QLabel
 
-from regolith_studio import __version__
 from regolith_studio.errors import MissingRequirement
 from regolith_studio.resources import resource
 from regolith_studio.ui.icons import pixmap
 from regolith_studio.ui.views.factory import surface_format
+from regolith_studio.version import __version__
 
 EXIT_TIMEOUT = 1.5
 """Seconds that the process may outlive its window."""

@@ -28,7 +28,7 @@ from regolith_studio.dem.separation import overlap_depths
 from regolith_studio.dem.snapshot import EngineState, Snapshot, read_particle_state
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray
-from regolith_studio.jobs.repose_jobs import ReposeRequest, simulate_repose
+from regolith_studio.jobs.repose_jobs import ReposeRequest, repose_steps
 
 TEST = LiftingCylinderTest(mass=0.003, lift_speed=0.15)
 SHORT = {"rest_energy": 2e-3, "rest_time": 1.0, "snapshots": 20}
@@ -263,7 +263,7 @@ def test_that_a_killed_run_goes_on_and_ends_as_one_that_was_not(
     request = ReposeRequest(
         ReposeCase(TEST, n_particles=40, seed=1), key, quick(key), EvaluationSettings(min_particles=40)
     )
-    for _ in simulate_repose(boxes_folder, tmp_path / "whole", request):
+    for _ in repose_steps(boxes_folder, tmp_path / "whole", request):
         pass
     kill_after_states(boxes_folder, tmp_path / "killed", request, 5, monkeypatch)
     (stage,) = tmp_path.glob(".killed*")
@@ -271,7 +271,7 @@ def test_that_a_killed_run_goes_on_and_ends_as_one_that_was_not(
     written = {path.name for path in snapshot_files(stage)}
     for path in snapshot_files(stage)[:2]:
         path.write_bytes(b"was here")  # a run from the beginning would write it again
-    for _ in simulate_repose(boxes_folder, tmp_path / "killed", request):
+    for _ in repose_steps(boxes_folder, tmp_path / "killed", request):
         pass
     assert sorted(path.name for path in tmp_path.iterdir()) == ["killed", "whole"]
     assert snapshot_files(tmp_path / "killed")[0].read_bytes() == b"was here"
@@ -297,7 +297,7 @@ def test_that_what_another_run_left_is_not_gone_on_from(
     kill_after_states(boxes_folder, tmp_path / "run", request, 5, monkeypatch)
     other = replace(request, case=replace(request.case, seed=2))
     for name in ("run", "fresh"):
-        for _ in simulate_repose(boxes_folder, tmp_path / name, other):
+        for _ in repose_steps(boxes_folder, tmp_path / name, other):
             pass
     assert read_run(tmp_path / "run").document == read_run(tmp_path / "fresh").document
     names = [[path.name for path in snapshot_files(tmp_path / name)] for name in ("run", "fresh")]

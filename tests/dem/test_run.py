@@ -34,8 +34,8 @@ from regolith_studio.jobs.events import Partial, Progress
 from regolith_studio.jobs.repose_jobs import (
     ReposeRequest,
     measure_result,
+    repose_steps,
     simulate_prepared,
-    simulate_repose,
 )
 from regolith_studio.jobs.repose_study import (
     ReposeStudyRequest,
@@ -230,7 +230,7 @@ def test_that_values_are_read_as_their_key_has_them() -> None:
 def test_that_a_crash_of_the_engine_is_one_sentence_and_keeps_the_last_snapshot(
     boxes_folder: Path, tmp_path: Path
 ) -> None:
-    steps = simulate_repose(
+    steps = repose_steps(
         boxes_folder, tmp_path / "run", replace(ORDER, settings=replace(QUICK, snapshots=500))
     )
     _until_moment(steps)
@@ -245,7 +245,7 @@ def test_that_a_crash_of_the_engine_is_one_sentence_and_keeps_the_last_snapshot(
 
 
 def test_that_a_cancelled_run_ends_its_process_and_says_so(boxes_folder: Path, tmp_path: Path) -> None:
-    steps = simulate_repose(boxes_folder, tmp_path / "run", ORDER)
+    steps = repose_steps(boxes_folder, tmp_path / "run", ORDER)
     _until_moment(steps)
     (child,) = _workers()
     (stage,) = tmp_path.glob(".run.*.regolith-new")
@@ -275,11 +275,11 @@ def test_that_a_run_that_cannot_write_says_so(boxes_folder: Path, tmp_path: Path
 def test_that_a_folder_is_not_overwritten_unless_asked(boxes_folder: Path, tmp_path: Path) -> None:
     (tmp_path / "mine.txt").write_text("mine")
     with pytest.raises(FileError, match=r"other files \(mine.txt\)"):
-        list(simulate_repose(boxes_folder, tmp_path, ORDER))
+        list(repose_steps(boxes_folder, tmp_path, ORDER))
     (tmp_path / "run").mkdir()
     (tmp_path / "run" / "repose.json").write_text("{}")
     with pytest.raises(FileError, match="holds a run already"):
-        list(simulate_repose(boxes_folder, tmp_path / "run", ORDER))
+        list(repose_steps(boxes_folder, tmp_path / "run", ORDER))
     with pytest.raises(FileError, match="no result"):
         read_run(tmp_path / "run")
 
@@ -288,7 +288,7 @@ def test_that_a_stopped_run_replaces_no_finished_one(
     finished: Path, boxes_folder: Path, tmp_path: Path
 ) -> None:
     shutil.copytree(finished, tmp_path / "run")
-    steps = simulate_repose(boxes_folder, tmp_path / "run", replace(ORDER, overwrite=True))
+    steps = repose_steps(boxes_folder, tmp_path / "run", replace(ORDER, overwrite=True))
     _until_moment(steps)
     steps.close()
     assert read_run(tmp_path / "run").document == read_run(finished).document
@@ -304,7 +304,7 @@ def test_that_a_second_run_into_a_folder_is_one_sentence(boxes_folder: Path, tmp
         assert other.stdout is not None
         assert other.stdout.readline() == "locked\n"
         with pytest.raises(FileError, match="Another process is writing to"):
-            list(simulate_repose(boxes_folder, tmp_path / "run", ORDER))
+            list(repose_steps(boxes_folder, tmp_path / "run", ORDER))
         other.communicate("\n")
     assert list(tmp_path.iterdir()) == []
 

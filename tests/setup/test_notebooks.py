@@ -27,7 +27,7 @@ def executed(tmp_path_factory: pytest.TempPathFactory) -> dict[str, nbformat.Not
 
 def test_that_the_page_links_every_notebook() -> None:
     page = (FOLDER.parent / "window.md").read_text(encoding="utf-8")
-    assert len(NOTEBOOKS) == 4
+    assert len(NOTEBOOKS) == 5
     assert all(f"<notebooks/{path.name}>" in page for path in NOTEBOOKS)
 
 
@@ -48,6 +48,14 @@ def test_that_the_first_notebook_shows_the_views_and_an_exact_polyhedron(execute
 def test_that_the_notebook_of_the_heap_finds_the_angle_of_the_cone(executed) -> None:
     text = outputs(executed["angle_of_repose"], "text/plain")
     assert float(text.partition(" degrees")[0].split("'")[-1]) == pytest.approx(27.0, abs=0.3)
+
+
+@pytest.mark.slow
+def test_that_the_notebook_of_the_paper_goes_from_scan_to_angle_in_thirty_lines(executed) -> None:
+    code = [cell for cell in executed["paper"].cells if cell.cell_type == "code"]
+    assert sum(bool(line) for cell in code for line in cell.source.splitlines()) <= 30
+    angle = float(code[-1]["outputs"][-1]["data"]["text/plain"])
+    assert 10.0 < angle < 50.0
 
 
 @pytest.mark.slow

@@ -193,7 +193,7 @@ def test_that_a_stopped_run_and_changed_values_leave_no_earlier_angle(
         yield Partial(Snapshot(pile_of(20.0, 40), 0.5, "lift"))
         raise JobCancelled("stopped")
 
-    monkeypatch.setattr("regolith_studio.ui.pages.repose.page.simulate_repose", stopped)
+    monkeypatch.setattr("regolith_studio.ui.pages.repose.page.repose_steps", stopped)
     page.run_test()
     wait(lambda: not page.busy())
     assert "stopped" in page.verdict.text()

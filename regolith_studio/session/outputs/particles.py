@@ -10,7 +10,6 @@ from typing import Any
 
 import numpy as np
 
-from regolith_studio import __version__
 from regolith_studio.dataset.build import software_versions
 from regolith_studio.harmonics.coefficients import CONVENTION
 from regolith_studio.imaging.extraction import ExtractedParticle
@@ -34,6 +33,7 @@ from regolith_studio.shape_models.materials import MaterialCard
 from regolith_studio.shape_models.protocol import FittedModel
 from regolith_studio.shape_models.realizations import Realizations
 from regolith_studio.shape_models.sample import Sample
+from regolith_studio.version import __version__
 
 STL_HEADER = "Regolith Studio, particle, micrometres"
 RECIPE, LISTED = "extraction.json", "extract.sha256"

@@ -15,7 +15,7 @@ from regolith_studio.descriptors.catalogue import CATALOGUE, LOSS_KEYS
 from regolith_studio.errors import InputError
 from regolith_studio.io.tables import Column, Table, write_table
 from regolith_studio.jobs.dataset_jobs import DatasetBuildResult, DatasetOptions, build_dataset_folder
-from regolith_studio.jobs.repose_jobs import ReposeRequest, ReposeRun, simulate_repose
+from regolith_studio.jobs.repose_jobs import ReposeRequest, ReposeRun, repose_steps
 from regolith_studio.jobs.representatives_jobs import RepresentativesRequest
 from regolith_studio.jobs.study_jobs import study_coarsening, study_gallery
 from regolith_studio.session.outputs.studies import STUDIES
@@ -226,7 +226,7 @@ def simulate_heap(draft: ReportDraft, title: str) -> SectionSteps:
         return ReportSection(title, ("No heap was asked for.",))
     _ = draft.representatives
     folder = draft.folder / HEAP
-    run: ReposeRun = yield from simulate_repose(draft.folder / DATASET, folder, ReposeRequest(_case(draft)))
+    run: ReposeRun = yield from repose_steps(draft.folder / DATASET, folder, ReposeRequest(_case(draft)))
     (folder / TIMES).unlink()  # differs from run to run
     if not isinstance(run.measurement, ReposeMeasurement):
         return ReportSection(title, (_run_sentence(run),), problem=str(run.measurement))

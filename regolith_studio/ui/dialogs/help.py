@@ -14,10 +14,10 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from regolith_studio import __version__
 from regolith_studio.ui.icons import pixmap
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.labels import CITATION, heading, remark
+from regolith_studio.version import __version__
 
 PAPER = (
     "Geometry-Preserving Mesh Coarsening of Stochastically Generated Regolith Particles"

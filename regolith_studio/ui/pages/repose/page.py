@@ -32,7 +32,7 @@ from regolith_studio.jobs.repose_jobs import (
     ReposeRun,
     preview_repose,
     remeasure,
-    simulate_repose,
+    repose_steps,
 )
 from regolith_studio.messages import N_
 from regolith_studio.scene.repose_export import ReposeExport, repose_export_steps
@@ -183,7 +183,7 @@ class ReposePage(PageWidget):
         self._start_preview(dataset, request)
         self._context.start(
             tr("Angle of repose, {count:,} particles", count=request.case.n_particles),
-            Job(simulate_repose, (dataset, folder, request)),
+            Job(repose_steps, (dataset, folder, request)),
             self._finished,
             partial=self._show_moment,
             failed=self._failed,
