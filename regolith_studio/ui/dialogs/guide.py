@@ -33,6 +33,7 @@ CONTENTS = "index"
 MARGINS = 40
 """Pixels beside a picture."""
 _REFERENCE = re.compile(r"\{doc\}`(?:([^`<]+?)\s*<)?([\w-]+)>?`")
+_DOWNLOAD = re.compile(r"\{download\}`([^`<]+?)\s*<[^>]+>`")
 _DIRECTIVE = re.compile(r"^(```|:::)\{.*?^\1\s*$", re.DOTALL | re.MULTILINE)
 
 
@@ -66,7 +67,7 @@ class GuideBrowser(QTextBrowser):
 
 def as_markdown(text: str) -> str:
     """A chapter without the directives of Sphinx, its references as links."""
-    plain = _DIRECTIVE.sub("", text)
+    plain = _DOWNLOAD.sub(r"\1", _DIRECTIVE.sub("", text))
     return _REFERENCE.sub(lambda found: f"[{found[1] or found[2]}]({found[2]}.md)", plain)
 
 

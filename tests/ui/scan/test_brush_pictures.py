@@ -1,4 +1,4 @@
-"""The second shipped scan from strokes to corrected grains, in the five pictures of the guide.
+"""The second shipped scan from strokes to corrected grains, in the four pictures of the guide.
 
 ``REGOLITH_STUDIO_UPDATE=1`` writes the pictures anew.
 """
@@ -49,7 +49,6 @@ def test_that_the_guide_shows_the_way_from_strokes_to_corrected_grains(page, pic
     wait(lambda: page.scan is not None, SECONDS)
     page.slices.go_to(PLACE)
     wait(lambda: page.preview.found is not None, SECONDS)
-    pictured("1_threshold")
 
     painted = read_volume(sample_file("strokes", "gradient")).array
     page.tabs.setCurrentWidget(page.brush)
@@ -59,16 +58,16 @@ def test_that_the_guide_shows_the_way_from_strokes_to_corrected_grains(page, pic
         page.painting._push((*page.painting.strokes, Stroke(np.argwhere(painted == label + 1), label)))
     wait(lambda: page.painting.training is not None and len(page.slices._predicted) == 3, SECONDS)
     wait(lambda: all(each.grain.shape == (128, 128) for each in page.slices._predicted.values()), SECONDS)
-    pictured("2_strokes")
+    pictured("strokes")
     page.brush.overlay.setCurrentIndex(page.brush.overlay.findData("probability"))
-    pictured("3_probability")
+    pictured("probability")
 
     press(page.brush.use)
     page.tabs.setCurrentWidget(page.controls)
     press(page.workflow.search)
     wait(lambda: page.grains is not None and page.slices._surface is not None, SECONDS)
     assert page.grains.n_grains == 30
-    pictured("4_grains")
+    pictured("grains")
 
     page.tabs.setCurrentWidget(page.edits)
     page.edits.tools["cut"].click()
@@ -79,4 +78,4 @@ def test_that_the_guide_shows_the_way_from_strokes_to_corrected_grains(page, pic
     wait(lambda: page.grains is not None and page.grains.n_grains == 31, SECONDS)
     wait(lambda: page.slices._surface[0] is page.grains.labels, SECONDS)
     assert len(page.slices._highlighted) >= 1
-    pictured("5_correction")
+    pictured("correction")
