@@ -65,9 +65,9 @@ def errors(truth: Mesh, rng: np.random.Generator) -> list[float]:
     bright, _ = ndimage.label(ndimage.median_filter(grey, 3) >= 62 + CONTRAST / 2)
     own = bright == bright[(EDGE // 2,) * 3]
     found = grey_mesh(GrainCrop(own, np.zeros_like(own), grey.astype(np.int16)), own)
-    if not isinstance(found, Mesh):
+    if isinstance(found, str):
         sys.exit(f"The grey values did not tell: {found}")
-    meshes = mask_mesh(share >= 0.5), found
+    meshes = mask_mesh(share >= 0.5), found.mesh
     true = truth.volume, truth.surface_area
     made = [
         100 * (value / wanted - 1)

@@ -10,7 +10,7 @@ The volume is seen slab by slab for the sizes and boxes of the labels; each is c
 """
 
 from collections.abc import Callable, Generator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property, partial
 from typing import Any, Literal, get_args
 
@@ -22,7 +22,13 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle, Source
 from regolith_studio.imaging.bounding_boxes import Box, box_between, grown, n_voxels, touches, within
 from regolith_studio.imaging.connected_components import largest_component, pores_filled
-from regolith_studio.imaging.grain_surface import MARGIN, grey_mesh, mask_mesh
+from regolith_studio.imaging.grain_surface import (
+    MARGIN,
+    MAX_NOISE_OF_SHAPE,
+    clipped_share,
+    grey_mesh,
+    mask_mesh,
+)
 from regolith_studio.imaging.label_table import contact_areas, grain_crop, label_table
 from regolith_studio.imaging.volume import Origin, Volume
 from regolith_studio.imaging.volume_slabs import BATCH_VOXELS, ParallelMap, SharedArray, in_batches
@@ -39,6 +45,8 @@ CLOSED_GAP = 2.16
 """Width in voxels of the gap beside the point where two balls touch that blur closes at most. A wider contact
 is that of two pieces; the mean of balls in packings with a blur of 0.8 voxels is 1.4."""
 _COARSE, _OF_MASK = "Only", "The surface is that of the mask"
+_MAX_CLIPPED = 0.05
+"""Share of a grain's voxels at the end of the range of grey values from which on it is said."""
 _BATCH_SHARE = 8
 """Of the smallest batch of voxels: a surface takes long however small its grain is."""
 
@@ -54,7 +62,8 @@ class ExtractionSettings:
     min_voxels
         Leave out what has fewer voxels; 268 are those of a ball of 8 voxels in diameter.
     warn_diameter
-        Note on particles below this diameter, in voxels, that their shape is coarse.
+        Note on particles below this diameter, in voxels, that their shape is coarse; thin ones by their
+        shortest axis.
     fill_pores
         Close pores that have no way out.
     iterations, pass_band
@@ -239,7 +248,9 @@ class LabelSelection:
     Parameters
     ----------
     boxes, sizes
-        Box and number of voxels of each label.
+        Box and number of voxels of the largest piece of each label.
+    strays
+        Of the labels of several pieces, the number of these, and of voxels outside of the largest.
     border, small
         Labels that are left out, as in an :class:`Extraction`.
     """
@@ -248,6 +259,7 @@ class LabelSelection:
     sizes: Mapping[int, int]
     border: tuple[int, ...]
     small: tuple[int, ...]
+    strays: Mapping[int, tuple[int, int]] = field(default_factory=dict)
 
     @property
     def wanted(self) -> dict[int, Box]:
@@ -283,11 +295,33 @@ def select_labels(
     """
     table = label_table(volume, run)
     boxes, sizes = table.boxes(), table.sizes()
+    strays: dict[int, tuple[int, int]] = {}
+    pieces = in_batches(run, partial(_largest_piece, SharedArray(volume.array)), boxes.items(), _size_of_row)
+    for label, (box, size, n_pieces) in zip(tuple(boxes), pieces, strict=True):
+        if n_pieces > 1:
+            strays[label] = n_pieces, sizes[label] - size
+            boxes[label], sizes[label] = box, size
     border = [k for k, box in boxes.items() if settings.exclude_border and touches(box, volume.shape)]
     if segmented and border:
         border += pieces_of_cut_grains(contact_areas(volume, run), sizes, border)
     small = [k for k in set(boxes).difference(border) if sizes[k] < settings.min_voxels]
-    return LabelSelection(boxes, sizes, tuple(border), tuple(sorted(small)))
+    return LabelSelection(boxes, sizes, tuple(border), tuple(sorted(small)), strays)
+
+
+def _largest_piece(labels: SharedArray, row: tuple[int, Box]) -> tuple[Box, int, int]:
+    """Box and voxels of the largest face-connected piece of a label, and the number of its pieces."""
+    label, box = row
+    body, count = largest_component(np.ascontiguousarray(labels.array[box] == label))
+    if count < 2:
+        return box, int(np.count_nonzero(body)), count
+    low = np.array([side.start for side in box])
+    filled = [np.flatnonzero(body.any(axis=tuple({0, 1, 2} - {axis}))) for axis in range(3)]
+    ends = np.array([[places[0], places[-1] + 1] for places in filled])
+    return box_between(low + ends[:, 0], low + ends[:, 1]), int(np.count_nonzero(body)), count
+
+
+def _size_of_row(row: tuple[int, Box]) -> int:
+    return n_voxels(row[1])
 
 
 def pieces_of_cut_grains(
@@ -380,6 +414,8 @@ class LabelCut:
         Box of the label, and what of the grey values about it is used.
     voxel_size, origin
         Of the volume.
+    strays
+        Number of its pieces, and of voxels outside of the largest.
     """
 
     labels: SharedArray
@@ -393,6 +429,7 @@ class LabelCut:
     voxel_size: FloatArray
     origin: Origin
     settings: ExtractionSettings
+    strays: tuple[int, int]
 
     def placed(self, mesh: Mesh, box: Box) -> Mesh:
         """A mesh in voxels of `box` at its place in the volume, in micrometres."""
@@ -425,6 +462,7 @@ def _cuts(
             volume.voxel_size,
             volume.origin,
             settings,
+            chosen.strays.get(label, (1, 0)),
         )
         for label, box in chosen.wanted.items()
     ]
@@ -447,35 +485,61 @@ def surface_of_label(cut: LabelCut) -> tuple[Mesh, tuple[str, ...], Surface]:
     """
     settings = cut.settings
     if cut.grey is None:
-        body, notes = _one_body(np.ascontiguousarray(cut.labels.array[cut.box] == cut.label), settings)
+        body, notes = _one_body(np.ascontiguousarray(cut.labels.array[cut.box] == cut.label), cut)
         return cut.mask_surface(body), tuple(notes), "mask"
     crop = grain_crop(cut.labels, cut.grey, cut.label, cut.wider)
     part = within(cut.box, cut.wider)
-    body, notes = _one_body(crop.own[part], settings)
+    body, notes = _one_body(crop.own[part], cut)
     padding = [(a.start, n - a.stop) for a, n in zip(part, crop.own.shape, strict=True)]
     cubic = float(np.ptp(cut.voxel_size)) <= 1e-3 * float(cut.voxel_size.max())
-    mesh = grey_mesh(crop, np.pad(body, padding), settings.iterations, settings.pass_band, cubic)
-    if isinstance(mesh, str):
-        notes.append(f"{_OF_MASK}: {mesh}.")
+    found = grey_mesh(crop, np.pad(body, padding), settings.iterations, settings.pass_band, cubic)
+    clipped, end = clipped_share(crop.values[part], body)
+    if clipped > _MAX_CLIPPED:
+        notes.append(
+            f"{100 * clipped:.0f} % of its voxels have the grey value {end}, where the scan was clipped: its "
+            "surface lies too far outside, by an unknown distance."
+        )
+    if isinstance(found, str):
+        notes.append(f"{_OF_MASK}: {found}.")
         return cut.mask_surface(body), tuple(notes), "mask"
-    return cut.placed(mesh, cut.wider), tuple(notes), "grey"
+    if found.noise > MAX_NOISE_OF_SHAPE:
+        notes.append(
+            f"{_OF_MASK}, its volume that of the grey values: their noise is {100 * found.noise:.0f} % "
+            "of the contrast."
+        )
+    return cut.placed(found.mesh, cut.wider), tuple(notes), "grey"
 
 
-def _one_body(mask: BoolArray, settings: ExtractionSettings) -> tuple[BoolArray, list[str]]:
+def _one_body(mask: BoolArray, cut: LabelCut) -> tuple[BoolArray, list[str]]:
     """The largest face-connected body, its closed pores filled, and notes on it."""
-    notes = []
-    body, count = largest_component(mask)
+    notes, settings = [], cut.settings
+    body, _ = largest_component(mask)
+    count, dropped = cut.strays
     if count > 1:
-        dropped = int(np.count_nonzero(mask) - np.count_nonzero(body))
         notes.append(f"The label had {count} separate parts; the largest was kept, {dropped} voxels dropped.")
     if settings.fill_pores:
         filled = pores_filled(body)
         if closed := int(np.count_nonzero(filled) - np.count_nonzero(body)):
             notes.append(f"Closed pores of {closed} voxels were filled.")
         body = filled
-    if (diameter := voxel_diameter(int(np.count_nonzero(body)))) < settings.warn_diameter:
+    diameter, thickness = voxel_diameter(int(np.count_nonzero(body))), _thickness(body)
+    if min(diameter, thickness) < settings.warn_diameter:
+        place = "" if diameter < settings.warn_diameter else " where it is thinnest"
         notes.append(
-            f"{_COARSE} {diameter:.1f} voxels in diameter: volume and above all surface area are coarse "
-            f"below {settings.warn_diameter:g}."
+            f"{_COARSE} {thickness if place else diameter:.1f} voxels in diameter{place}: volume and "
+            f"above all surface area are coarse below {settings.warn_diameter:g}."
         )
     return body, notes
+
+
+def _thickness(body: BoolArray) -> float:
+    """Shortest axis, in voxels, of the ellipsoid with the second moments of a body."""
+    covariance = np.zeros((3, 3))
+    for one, other in ((0, 1), (0, 2), (1, 2)):
+        plane = body.sum(axis=3 - one - other).astype(np.float64)
+        weights = plane / plane.sum()
+        at = np.meshgrid(*(np.arange(n, dtype=np.float64) for n in plane.shape), indexing="ij")
+        off = [axis - float((weights * axis).sum()) for axis in at]
+        covariance[one, other] = covariance[other, one] = (weights * off[0] * off[1]).sum()
+        covariance[one, one], covariance[other, other] = ((weights * each**2).sum() for each in off)
+    return float(np.sqrt(20.0 * (max(float(np.linalg.eigvalsh(covariance)[0]), 0.0) + 1.0 / 12.0)))

@@ -13,6 +13,7 @@ any. What lies deeper in the grain than its rim does not count (:mod:`~regolith_
 blur as the grain does, and scales it to that volume.
 """
 
+from dataclasses import dataclass
 from typing import Any
 
 import cc3d
@@ -51,6 +52,10 @@ _TWICING, _TWICING_OF_UNEQUAL = 0.9, 0.6
 """Factor of the twicing at the end (see ``surface_refinement``), and in voxels with unequal edges: steps
 along their long edge widen the smoothing, so that 0.9 makes areas 1 to 2 % too large at 1 : 1 : 3."""
 
+MAX_NOISE_OF_SHAPE = 0.2
+"""Noise, as a share of the contrast, beyond which the shape is that of the mask and only the volume that of
+the grey values: for shapes of 16 to 32 voxels, round, edged and rough, its area is nearer then."""
+
 Floats = NDArray[np.float32]
 
 _without_specks: Any = cc3d.dust
@@ -63,13 +68,21 @@ _MASK_WIDENING, _MASK_TWICING = 2.0, 1.4
 chosen on balls, ellipsoids, polyhedra and rough grains of 24 to 48 voxels."""
 
 
+@dataclass(frozen=True, eq=False)
+class GreySurface:
+    """A surface from grey values, in voxels, and their noise as a share of the contrast."""
+
+    mesh: Mesh
+    noise: float
+
+
 def grey_mesh(
     crop: GrainCrop,
     body: BoolArray,
     iterations: int = 20,
     pass_band: float = 0.13,
     cubic_voxels: bool = True,
-) -> Mesh | str:
+) -> GreySurface | str:
     """The grain's surface in voxels of the crop, or the reason why the grey values do not define it.
 
     Where other grains touch it, the surface is that of the mask; brightness between two grains
@@ -96,6 +109,8 @@ def grey_mesh(
     volume = float(rim.sum(dtype=np.float64))
     if not 1.0 / _MAX_VOLUME_RATIO < volume / np.count_nonzero(body) < _MAX_VOLUME_RATIO:
         return "its brightness and its number of voxels tell different volumes"
+    if found.noise > MAX_NOISE_OF_SHAPE:
+        return GreySurface(with_volume(mask_mesh(body, iterations, pass_band), volume), found.noise)
     rough = body_contour(ndimage.gaussian_filter(rim, PRESMOOTHING))
     mesh = windowed_sinc(rough, iterations, pass_band)
     if iterations:
@@ -105,7 +120,7 @@ def grey_mesh(
         blur = _blur(rim, found.noise, mesh, cubic_voxels)
         fit = refined_to_scan(mesh, rim, told, blur, how)
         mesh = without_crossings(fit, windowed_sinc(rough, iterations, min(LIGHT_SMOOTHING * pass_band, 2.0)))
-    return with_volume(mesh, volume)
+    return GreySurface(with_volume(mesh, volume), found.noise)
 
 
 def _rim(share: Floats, others: BoolArray, inside: Floats, outside: Floats) -> tuple[Floats, BoolArray]:
@@ -153,6 +168,21 @@ def _blur(rim: Floats, noise: float, mesh: Mesh, cubic_voxels: bool) -> FloatArr
         expected = (area * np.sqrt(along @ blur**2)) @ along
         blur = np.clip(blur * measured / expected, *_BLURS)
     return blur
+
+
+def clipped_share(values: NDArray[Any], body: BoolArray) -> tuple[float, int]:
+    """Share of a grain's voxels at an end of the scanner's range, where values are cut off, and that end.
+
+    The ends are those of the type and, with 16 bits and more, the highest numbers of 10, 12 and 14 bits.
+    """
+    if values.dtype.kind not in "ui":
+        return 0.0, 0
+    limits = np.iinfo(values.dtype)
+    ends = {limits.min, limits.max} | ({1023, 4095, 16383} if limits.bits > 8 else set())
+    own = values[body]
+    shares = {end: float(np.mean(own == end)) for end in ends if end in (own.min(), own.max())}
+    end = max(shares, key=shares.__getitem__, default=0)
+    return shares.get(end, 0.0), int(end)
 
 
 def mask_mesh(body: BoolArray, iterations: int = 20, pass_band: float = 0.13) -> Mesh:

@@ -132,6 +132,34 @@ def test_that_separate_parts_and_closed_pores_are_mended_and_said() -> None:
     assert any("pores of 8 voxels" in note for note in particle.notes)
 
 
+def test_that_what_is_kept_of_a_label_is_what_is_weighed() -> None:
+    """Two strays in the corners of the volume made the box that of the volume, and the weight 84,480."""
+    array = np.zeros((40, 40, 40), dtype=np.uint8)
+    array[10:22, 12:24, 14:26] = 1
+    clean = extract_particles(Volume(array.copy(), (1, 1, 1), "labels", "clean")).found[0]
+    array[0, 0, 0] = array[39, 39, 39] = 1
+    stray = extract_particles(Volume(array, (1, 1, 1), "labels", "stray"))
+    (found,) = stray.found
+    assert stray.border == ()
+    assert found.weight == pytest.approx((40 / 27) ** 3) == clean.weight
+    assert found.n_voxels == 12**3 == clean.n_voxels
+    assert np.array_equal(found.particle.mesh.vertices, clean.particle.mesh.vertices)
+    assert "3 separate parts; the largest was kept, 2 voxels dropped" in " ".join(found.particle.notes)
+
+
+@pytest.mark.parametrize(("edges", "thin"), [((36, 9, 9), True), ((36, 36, 7), True), ((20, 20, 20), False)])
+def test_that_the_warning_of_few_voxels_goes_by_the_thinnest_extent(
+    edges: tuple[int, int, int], thin: bool
+) -> None:
+    """An ellipsoid with these axes: the ball of a needle's volume has 14 voxels across, of a plate's 21."""
+    at = np.moveaxis(np.indices((44, 44, 44)), 0, -1) - 21.5
+    mask = ((2 * at / edges) ** 2).sum(axis=-1) <= 1
+    (found,) = extract_particles(Volume(mask.astype(np.uint8), (1, 1, 1), "labels", "one")).found
+    notes = " ".join(found.particle.notes)
+    assert ("voxels in diameter where it is thinnest" in notes) == bool(notes) == thin
+    assert not thin or float(notes.split()[1]) == pytest.approx(min(edges), abs=0.3)
+
+
 def test_that_extraction_tells_how_far_it_is() -> None:
     array = np.zeros((30, 30, 30), dtype=np.uint8)
     array[2:14, 2:14, 2:14] = 1

@@ -109,3 +109,28 @@ def test_that_noise_of_a_quarter_of_the_contrast_lets_no_pore_or_core_through(in
     labels = Volume(mask.astype(np.uint8), (1, 1, 1), "labels", "one")
     (found,) = extract_particles(labels, GREY, grey=grey).found
     assert found.particle.mesh.volume == pytest.approx(4 / 3 * np.pi * RADIUS**3, rel=0.025)
+
+
+def test_that_a_grain_whose_grey_values_are_clipped_says_so() -> None:
+    """At 255 the half of the contrast is no longer known: the volume is too large by an unknown amount."""
+    body = ball(CENTRE, RADIUS)
+    values = np.clip(30 + 300 * ndimage.gaussian_filter(body, BLUR), 0, 255).astype(np.uint8)
+    labels = Volume((values >= 140).astype(np.uint8), (1, 1, 1), "labels", "one")
+    for dtype, clipped in ((np.uint8, True), (np.uint16, False)):
+        grey = Volume(values.astype(dtype), (1, 1, 1), "grey", "scan")
+        (found,) = extract_particles(labels, GREY, grey=grey).found
+        said = "have the grey value 255, where the scan was clipped" in " ".join(found.particle.notes)
+        assert said == clipped
+
+
+@pytest.mark.parametrize("noise", [0.25, 0.33])
+def test_that_noise_makes_no_area_but_a_note(noise: float) -> None:
+    """The shape that follows the grey values had 2 to 4 % too much area."""
+    grey = scan(ball(CENTRE, RADIUS), noise)
+    mask = ndimage.binary_fill_holes(ndimage.median_filter(grey.array, 3) >= AIR + CONTRAST / 2)
+    mask = ndimage.label(mask)[0] == ndimage.label(mask)[0][20, 20, 20]
+    labels = Volume(mask.astype(np.uint8), (1, 1, 1), "labels", "one")
+    (found,) = extract_particles(labels, GREY, grey=grey).found
+    assert found.particle.mesh.surface_area == pytest.approx(4 * np.pi * RADIUS**2, rel=0.025)
+    assert found.particle.mesh.volume == pytest.approx(4 / 3 * np.pi * RADIUS**3, rel=0.01)
+    assert "its volume that of the grey values: their noise is" in " ".join(found.particle.notes)
