@@ -8,6 +8,8 @@ import pytest
 
 from regolith_studio.harmonics.coefficients import degrees, orders
 from regolith_studio.harmonics.io import from_complex_rows
+from regolith_studio.shape_models.models import MODELS
+from regolith_studio.shape_models.protocol import FittedModel
 from regolith_studio.shape_models.sample import Sample
 
 
@@ -24,6 +26,33 @@ def _rough_sample(n: int = 60, l_max: int = 6, seed: int = 0, spread: float = 0.
 def rough_sample() -> Callable[..., Sample]:
     """``rough_sample(n=60, l_max=6, seed=0, spread=0.3)``."""
     return _rough_sample
+
+
+def _quick_fit(key: str, sample: Sample, l_max: int) -> FittedModel:
+    """A model that compares few surfaces: what holds for every draw holds for its draws."""
+    model = MODELS[key]
+    few = {"n_candidates": 4} if key == "recombined" else {}
+    return model.fit(sample, model.Settings(l_max=l_max, **few))
+
+
+@pytest.fixture(scope="session")
+def quick_fit() -> Callable[[str, Sample, int], FittedModel]:
+    """``quick_fit(key, sample, l_max)``."""
+    return _quick_fit
+
+
+class _FittedModels(dict[str, FittedModel]):
+    """Models by key, fitted when they are first looked up."""
+
+    def __missing__(self, key: str) -> FittedModel:
+        self[key] = _quick_fit(key, _rough_sample(60, 6), 4)
+        return self[key]
+
+
+@pytest.fixture(scope="session")
+def fitted() -> dict[str, FittedModel]:
+    """Each model fitted once to 60 rough particles, at l_max = 4."""
+    return _FittedModels()
 
 
 @pytest.fixture(scope="session")

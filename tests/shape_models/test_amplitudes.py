@@ -6,7 +6,7 @@ import pytest
 from regolith_studio.errors import InputError
 from regolith_studio.shape_models.materials import materials
 from regolith_studio.shape_models.models import MODELS
-from regolith_studio.shape_models.protocol import EditableModel, relative_amplitudes
+from regolith_studio.shape_models.protocol import EditableModel, FittedModel, relative_amplitudes
 from regolith_studio.shape_models.sample import Sample
 from tests.plugin import lunar_kinds
 
@@ -16,13 +16,13 @@ from tests.plugin import lunar_kinds
     [pytest.param(key, marks=pytest.mark.slow) if key == "hull_field" else key for key in sorted(MODELS)],
 )
 def test_that_every_model_shows_about_the_amplitudes_of_its_sample(
-    key: str, rough_sample: Callable[..., Sample]
+    key: str, rough_sample: Callable[..., Sample], quick_fit: Callable[..., FittedModel]
 ) -> None:
     """Root of the mean of (c_lm / c_00)^2, from the coefficients; models of ln r agree to first order."""
     sample = rough_sample(200, 4, spread=0.05)
     shares = (sample.coefficients / sample.coefficients[:, :1]) ** 2
     expected = [np.sqrt(shares[:, degree**2 : (degree + 1) ** 2].mean()) for degree in range(1, 5)]
-    fitted = MODELS[key].fit(sample, MODELS[key].Settings(l_max=4))
+    fitted = quick_fit(key, sample, 4)
     np.testing.assert_allclose(relative_amplitudes(fitted), expected, rtol=0.1)
 
 

@@ -18,14 +18,7 @@ from regolith_studio.shape_models.protocol import FittedModel
 from regolith_studio.shape_models.realizations import virtual_mesh
 from regolith_studio.shape_models.sample import Sample
 
-L_MAX = 4
 keys = pytest.mark.parametrize("key", sorted(MODELS))
-
-
-@pytest.fixture(scope="module")
-def fitted(rough_sample: Callable[..., Sample]) -> dict[str, FittedModel]:
-    sample = rough_sample(60, 6)
-    return {key: model.fit(sample, model.Settings(l_max=L_MAX)) for key, model in MODELS.items()}
 
 
 def test_that_the_models_are_found_by_themselves() -> None:
@@ -153,17 +146,19 @@ def test_that_a_degree_beyond_the_sample_is_refused(key: str, rough_sample: Call
 
 
 @keys
-def test_that_two_particles_are_enough(key: str, rough_sample: Callable[..., Sample]) -> None:
-    model = MODELS[key].fit(rough_sample(2), MODELS[key].Settings(l_max=3))
+def test_that_two_particles_are_enough(
+    key: str, rough_sample: Callable[..., Sample], quick_fit: Callable[..., FittedModel]
+) -> None:
+    model = quick_fit(key, rough_sample(2), 3)
     assert np.isfinite(model.draw(5, 0).coefficients).all()
 
 
 @keys
 def test_that_particles_of_one_size_are_drawn_at_that_size(
-    key: str, rough_sample: Callable[..., Sample]
+    key: str, rough_sample: Callable[..., Sample], quick_fit: Callable[..., FittedModel]
 ) -> None:
     sample = rough_sample(20, 3, spread=0.0)
-    radii = MODELS[key].fit(sample, MODELS[key].Settings(l_max=3)).draw(300, 0).equivalent_radii()
+    radii = quick_fit(key, sample, 3).draw(300, 0).equivalent_radii()
     assert radii.mean() == pytest.approx(sample.equivalent_radii.mean(), rel=0.03)
 
 

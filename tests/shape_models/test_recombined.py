@@ -123,7 +123,7 @@ def test_that_draws_have_the_means_and_deviations_of_the_sample(rough_sample: Ca
 
 
 def test_that_no_particle_lends_its_surface_to_itself(rough_sample: Callable[..., Sample]) -> None:
-    model = MODEL.fit(rough_sample(12, 4), RecombinedSettings(l_max=4))
+    model = MODEL.fit(rough_sample(12, 4), RecombinedSettings(l_max=4, n_candidates=1))
     targets = np.repeat(np.arange(12), 40)
     wanted = np.repeat(model.forms.features[:, 2], 40)
     assert (model._lenders(targets, wanted, np.random.default_rng(0)) != targets).all()
@@ -132,7 +132,8 @@ def test_that_no_particle_lends_its_surface_to_itself(rough_sample: Callable[...
 def test_that_sizes_are_the_measured_ones_each_as_often(rough_sample: Callable[..., Sample]) -> None:
     """A chunk of 500 from 250 particles has each twice, give or take the end of a stratum."""
     sample = rough_sample(250, 4)
-    radii = MODEL.fit(sample, RecombinedSettings(l_max=4, size_jitter=0.0)).draw(500, 1).equivalent_radii()
+    settings = RecombinedSettings(l_max=4, n_candidates=1, size_jitter=0.0)
+    radii = MODEL.fit(sample, settings).draw(500, 1).equivalent_radii()
     expected = np.repeat(np.sort(sample.equivalent_radii), 2)
     np.testing.assert_allclose(np.sort(radii), expected, rtol=1e-4)
 
