@@ -1,5 +1,6 @@
 """Dialog of a batch run, on this machine or on a cluster: outputs, folder, workers; then its progress."""
 
+import html
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,6 +17,7 @@ from regolith_studio.session.recipe import Outputs
 from regolith_studio.ui.dialogs.batch_fields import SourceField, WorkersField
 from regolith_studio.ui.dialogs.run_dialog import RunDialog
 from regolith_studio.ui.translation import tr, tr_count
+from regolith_studio.ui.translation.plain_text import Markup
 from regolith_studio.ui.widgets.labels import remark
 
 RESULTS = {
@@ -129,7 +131,8 @@ class BatchDialog(RunDialog):
         if not isinstance(value, ExecutorReady):
             return
         who = tr_count(N_("1 worker"), N_("{count} workers"), value.workers)
-        link = f'<a href="{value.dashboard}">{value.dashboard}</a>'
+        address = html.escape(value.dashboard)
+        link = Markup(f'<a href="{address}">{address}</a>')
         self.dashboard.setText(
             tr("{who}, dashboard at {link}", who=who, link=link) if value.dashboard else who
         )

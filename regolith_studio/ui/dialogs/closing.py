@@ -6,6 +6,7 @@ from PySide6.QtWidgets import QMessageBox, QWidget
 
 from regolith_studio.session.tasks import Task
 from regolith_studio.ui.translation import tr
+from regolith_studio.ui.translation.plain_text import inert
 
 
 def needs_confirmation(tasks: Sequence[Task], busy: Sequence[str]) -> list[str]:
@@ -19,7 +20,7 @@ def may_close(parent: QWidget, reasons: Sequence[str]) -> bool:
     if not reasons:
         return True
     title = tr("Close Regolith Studio?")
-    box = QMessageBox(QMessageBox.Icon.Question, title, "\n".join(reasons), parent=parent)
+    box = QMessageBox(QMessageBox.Icon.Question, title, "\n".join(map(inert, reasons)), parent=parent)
     box.setObjectName("closing")
     box.setInformativeText(tr("Closing the window stops or discards this."))
     stay = box.addButton(tr("Keep working"), QMessageBox.ButtonRole.RejectRole)

@@ -30,6 +30,7 @@ from regolith_studio.session.tasks import Task
 from regolith_studio.ui.dialogs.folder import FolderDialog
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.translation.numbers import number_text
+from regolith_studio.ui.translation.plain_text import Markup, rich
 from regolith_studio.ui.widgets.labels import remark, rich_symbol
 
 
@@ -65,7 +66,7 @@ def summary(count: int, choices: Choices, cost: str = "") -> list[tuple[str, str
             l_max=choices.l_max,
         )
         if cost:
-            target += f"<br>{choices.selected}: {cost}"
+            target = Markup(f"{rich(target)}<br>{rich(choices.selected)}: {rich(cost)}")
     size = count * (84 + 50 * (4 * choices.facet_count - 12)) / 1024
     files = tr("{count}, as unit-volume STL files, {size:,.0f} KiB in all", count=count, size=size)
     if choices.stop_at == "error":
@@ -76,7 +77,7 @@ def summary(count: int, choices: Choices, cost: str = "") -> list[tuple[str, str
         (tr("Polyhedra"), facet_limit_text(choices)),
         (tr("Target"), target),
         (tr("Method"), method),
-        (tr("Weights"), (weights or tr("none")) + f" ({preset})"),
+        (tr("Weights"), (weights or tr("none")) + f" ({rich(preset)})"),
         (tr("Additional files"), tr("weights, size distribution, descriptors, provenance (JSON)")),
     ]
 

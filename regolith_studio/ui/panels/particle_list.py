@@ -14,6 +14,7 @@ from regolith_studio.session.sample_table import health_sentences, health_word
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import tr, translate
 from regolith_studio.ui.translation.numbers import number_text
+from regolith_studio.ui.translation.plain_text import inert
 from regolith_studio.ui.widgets.definitions import definition
 from regolith_studio.ui.widgets.labels import heading, remark, short_number
 from regolith_studio.ui.widgets.particle_table_model import (
@@ -96,7 +97,7 @@ class _Model(ParticleTableModel):
             case Qt.ItemDataRole.ToolTipRole:
                 values = [f"{tr(each.title)} {each.text(entry)}" for each in COLUMNS[WORDS:]]
                 health = map(translate, health_sentences(entry))
-                return "\n".join([entry.id, ", ".join(values), *health])
+                return inert("\n".join([entry.id, ", ".join(values), *health]))
             case Qt.ItemDataRole.TextAlignmentRole if column >= WORDS:
                 return RIGHT
         return None

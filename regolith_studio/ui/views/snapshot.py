@@ -9,6 +9,7 @@ from PySide6.QtGui import QColor, QImage, QPainter, QPen, QPolygonF, QTextDocume
 from regolith_studio.scene.annotations import bar_length, length_text
 from regolith_studio.scene.projection import Projection
 from regolith_studio.ui.theme import Theme
+from regolith_studio.ui.translation.plain_text import rich
 from regolith_studio.ui.views.protocol import Picture
 from regolith_studio.ui.views.view_frame import ViewFrame
 
@@ -67,7 +68,7 @@ def _heading(frame: ViewFrame, theme: Theme, width: float) -> QTextDocument:
     made.setDocumentMargin(4)
     made.setHtml(
         f'<div style="color:{theme.text}"><b>{frame.title}</b></div>'
-        f'<div style="color:{theme.muted}">{frame.detail.text()}</div>'
+        f'<div style="color:{theme.muted}">{rich(frame.detail.text())}</div>'
     )
     made.setPageSize(QSizeF(width, -1))
     made.setTextWidth(width)

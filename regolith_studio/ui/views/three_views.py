@@ -1,6 +1,5 @@
 """Particle, fit and polyhedron side by side in three views."""
 
-import html
 from collections.abc import Callable
 from functools import partial
 from typing import Any
@@ -26,6 +25,7 @@ from regolith_studio.session.results import ParticleEntry, Results
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.translation.numbers import number_text
+from regolith_studio.ui.translation.plain_text import Markup, rich
 from regolith_studio.ui.views.camera_link import CameraLink
 from regolith_studio.ui.views.comparison import COMPARE, Comparison, partners_of
 from regolith_studio.ui.views.facet_hover import FacetHover
@@ -108,9 +108,9 @@ class ThreeViews(QSplitter):
         self.views[PARTICLE].draw(lambda plotter: surfaces.show_particle(plotter, mesh))
         self.comparison.set_shapes(self._shapes, *NAMES)
         self.frames[PARTICLE].set_texts(
-            f"{tr(entry.particle.title)}, {html.escape(entry.id)}",
+            f"{tr(entry.particle.title)}, {rich(entry.id)}",
             tr("{size}, {count:,} triangles", size=_lengths(mesh.bounds), count=len(mesh.faces)),
-            html.escape(entry.id),
+            rich(entry.id),
         )
         self.link.frame(mesh.vertices)
 
@@ -119,7 +119,7 @@ class ThreeViews(QSplitter):
         if mesh is None or PARTICLE not in self._shapes:
             return
         self._shapes[FIT] = SceneShape(FIT, mesh)
-        degree = f"l<sub>max</sub>&nbsp;=&nbsp;{l_max}"
+        degree = Markup(f"l<sub>max</sub>&nbsp;=&nbsp;{l_max}")
         count = (l_max + 1) ** 2
         self._size_of_fit = tr(
             "{count:,} coefficients, {triangles:,} triangles", count=count, triangles=len(mesh.faces)

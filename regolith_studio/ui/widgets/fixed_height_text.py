@@ -4,9 +4,11 @@ from collections.abc import Sequence
 
 from PySide6.QtCore import QEvent, QPoint, QSize, Qt, QTimer
 from PySide6.QtGui import QResizeEvent
+from PySide6.QtGui import Qt as QtOfText
 from PySide6.QtWidgets import QLabel, QScrollArea, QSizePolicy, QToolButton, QVBoxLayout, QWhatsThis, QWidget
 
 from regolith_studio.ui.translation import tr
+from regolith_studio.ui.translation.plain_text import rich
 
 NOTE_LINES = 2
 """Visible lines of a note between controls."""
@@ -64,7 +66,8 @@ class FixedHeightText(QScrollArea):
 
     def whole_text(self) -> str:
         """All that the visible labels say."""
-        return "<br>".join(each.text() for each in self._texts if each.text() and not each.isHidden())
+        texts = [each.text() for each in self._texts if each.text() and not each.isHidden()]
+        return "<br>".join(text if QtOfText.mightBeRichText(text) else rich(text) for text in texts)
 
     def sizeHint(self) -> QSize:
         return QSize(super().sizeHint().width(), self._lines * self.line + ACCENTS + 2 * self.frameWidth())

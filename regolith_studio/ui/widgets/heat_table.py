@@ -19,6 +19,7 @@ from PySide6.QtWidgets import (
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.translation.numbers import localized
+from regolith_studio.ui.translation.plain_text import inert
 from regolith_studio.ui.widgets.table import FontRowHeight
 
 _MAX_HEADER_SHARE, _MIN_HEADER_SHARE = 0.33, 0.2
@@ -90,7 +91,7 @@ class HeatTable(QWidget):
         self.table.setHorizontalHeaderLabels(list(columns))
         for number, text in enumerate(rows):
             if (item := self.table.verticalHeaderItem(number)) is not None:
-                item.setToolTip(text)
+                item.setToolTip(inert(text))
         set_head_tips(self.table, tips)
         self._fill()
 
@@ -167,7 +168,7 @@ def set_head_tips(table: QTableWidget, tips: Sequence[str]) -> None:
     """Set the tool tips of the first columns."""
     for column, tip in enumerate(tips):
         if (item := table.horizontalHeaderItem(column)) is not None:
-            item.setToolTip(tip)
+            item.setToolTip(inert(tip))
 
 
 def keep_legible(table: QTableWidget, width: int, heights: FontRowHeight, lines: int) -> None:

@@ -8,6 +8,7 @@ from PySide6.QtGui import QFocusEvent, QPainter, QPaintEvent, QResizeEvent
 from PySide6.QtWidgets import QLabel, QSizePolicy, QWidget
 
 from regolith_studio.ui.translation.numbers import localized, number_text
+from regolith_studio.ui.translation.plain_text import Markup, inert, rich
 
 _TAG = re.compile(r"(<[^<>]*>)")
 _CITED = re.compile(
@@ -22,9 +23,9 @@ _SYMBOL = re.compile(r"\b([lDA])_(min|max|l)\b")
 _SUBSCRIPT = re.compile(r"([A-Za-zΨ])_([A-Za-z0-9]+)")
 
 
-def rich_symbol(text: str) -> str:
+def rich_symbol(text: str) -> Markup:
     """A symbol such as ``D_min`` as rich text with a real subscript."""
-    return _SUBSCRIPT.sub(r"\1<sub>\2</sub>", html.escape(text))
+    return Markup(_SUBSCRIPT.sub(r"\1<sub>\2</sub>", html.escape(text)))
 
 
 def plain_symbol(text: str) -> str:
@@ -34,8 +35,8 @@ def plain_symbol(text: str) -> str:
 
 def with_subscripts(words: str) -> str:
     """Rich text in which symbols have subscripts; a text without symbols is returned unchanged."""
-    rich, count = _SYMBOL.subn(r"\1<sub>\2</sub>", html.escape(words, quote=False))
-    return rich if count else words
+    found, count = _SYMBOL.subn(r"\1<sub>\2</sub>", rich(words))
+    return Markup(found) if count else words
 
 
 def unbroken(rich: str) -> str:
@@ -45,9 +46,8 @@ def unbroken(rich: str) -> str:
 
 def with_citations(words: str) -> str:
     """Rich text in which every reference to the paper is a link; a text without one is returned unchanged."""
-    rich = words if _TAG.search(words) else html.escape(words, quote=False)
-    linked, count = _CITED.subn(rf'<a href="{CITATION}">\1</a>', rich)
-    return linked if count else words
+    linked, count = _CITED.subn(rf'<a href="{CITATION}">\1</a>', rich(words))
+    return Markup(linked) if count else inert(words)
 
 
 class CitingLabel(QLabel):
@@ -100,9 +100,13 @@ class WrappedLabel(QLabel):
     """A wrapped text whose minimum height holds all of its lines."""
 
     def __init__(self, text: str = "") -> None:
-        super().__init__(text)
+        super().__init__(inert(text))
         self.setWordWrap(True)
         self.setAlignment(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignTop)
+
+    def setText(self, text: str) -> None:
+        """Show another text."""
+        super().setText(inert(text))
 
     def minimumSizeHint(self) -> QSize:
         return QSize(super().minimumSizeHint().width(), max(self.heightForWidth(self.width()), 0))
@@ -151,7 +155,7 @@ class ElidedLabel(QWidget):
         """Show another text."""
         if text != self._text:
             self._text = text
-            self.setToolTip(text)
+            self.setToolTip(inert(text))
             self.setAccessibleName(text)
             self.update()
 

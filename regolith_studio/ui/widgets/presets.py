@@ -12,6 +12,7 @@ from regolith_studio.errors import InputError
 from regolith_studio.messages import N_
 from regolith_studio.session.preferences import UserPresets
 from regolith_studio.ui.translation import tr
+from regolith_studio.ui.translation.plain_text import inert
 from regolith_studio.ui.widgets.combo_box import ComboBoxRow, ElidedComboBox
 from regolith_studio.ui.widgets.forms import ParameterForm
 from regolith_studio.ui.widgets.wrapping_row import WrappingRow
@@ -107,7 +108,7 @@ class PresetBar(QWidget):
             for row, entry in enumerate(self._entries):
                 moved = modified and entry.key == key
                 self.box.setItemText(row, tr(MODIFIED, preset=entry.label) if moved else entry.label)
-        self.box.setToolTip(self.box.currentText())  # whole, where the box is narrow
+        self.box.setToolTip(inert(self.box.currentText()))  # whole, where the box is narrow
         self.reset.setEnabled(modified)
         own = any(entry.own and entry.key == key for entry in self._entries)
         self.delete.setEnabled(own)

@@ -18,6 +18,7 @@ from PySide6.QtWidgets import (
 
 from regolith_studio.readers.particles import FileProblem
 from regolith_studio.ui.translation import tr, translate
+from regolith_studio.ui.translation.plain_text import inert
 
 NOTE_SECONDS = 6
 PROBLEM_SECONDS = 20
@@ -112,7 +113,7 @@ def show_details(parent: QWidget, sentence: str, details: str) -> None:
     dialog.setWindowTitle(tr("Message"))
     dialog.resize(680, 380)
     layout = QVBoxLayout(dialog)
-    first = QLabel(sentence)
+    first = QLabel(inert(sentence))
     first.setWordWrap(True)
     text = QPlainTextEdit(details)
     text.setReadOnly(True)

@@ -232,7 +232,7 @@ class FolderPanel(QWidget):
 
     def folder_name(self) -> str:
         """Folder name, after that of the dataset."""
-        return file_stem(self.name.text().strip() or "dataset")
+        return file_stem("_".join(self.name.text().split()) or "dataset")
 
     def show_dataset(self, words: str) -> None:
         """Describe the current dataset."""

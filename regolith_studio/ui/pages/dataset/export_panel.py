@@ -25,6 +25,7 @@ from regolith_studio.errors import InputError
 from regolith_studio.messages import N_
 from regolith_studio.session.recipe import Exports
 from regolith_studio.ui.translation import tr
+from regolith_studio.ui.translation.plain_text import Markup, inert, rich
 from regolith_studio.ui.widgets.collapsible import Collapsible
 from regolith_studio.ui.widgets.forms import ParameterForm
 from regolith_studio.ui.widgets.labels import ElidedLabel, heading, remark
@@ -200,7 +201,7 @@ class ExportPanel(QWidget):
         elif not self._allowed():
             problem = f"{tr(EXPORTERS[altering[0]].label)}: {tr(EXPORTERS[altering[0]].alters)}"
         self.export.setEnabled(getattr(self, "_ready", False) and bool(self.chosen()) and not problem)
-        self.export.setToolTip(problem)
+        self.export.setToolTip(inert(problem))
         self.chosenChanged.emit()
 
     def refusing(self) -> list[str]:
@@ -254,10 +255,12 @@ class LossesLabel(QScrollArea):
                 + tr("<b>{label}</b> does not contain: {lost}.", label=tr(each.label), lost=lost)
                 + changed
                 + "<br>"
-                + tr("Units: {units}", units=tr(each.units))
+                + rich(tr("Units: {units}", units=tr(each.units)))
                 + ".</p>"
             )
-        self.label.setText("".join(lines) or tr("Select a format to see what its files do not contain."))
+        self.label.setText(
+            Markup("".join(lines)) or tr("Select a format to see what its files do not contain.")
+        )
 
 
 class ExportsList(QWidget):

@@ -26,6 +26,7 @@ from regolith_studio.ui.layout import side_by_side
 from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import tr
+from regolith_studio.ui.translation.plain_text import inert
 from regolith_studio.ui.widgets.labels import ElidedLabel, remark
 from regolith_studio.ui.widgets.thumbnails import thumbnail
 
@@ -136,8 +137,8 @@ class LibraryPanel(QWidget):
     def _item(self, entry: CatalogEntry) -> QTreeWidgetItem:
         item = QTreeWidgetItem([entry.name, entry.problem or entry.detail])
         item.setData(0, ROLE, entry)
-        item.setToolTip(0, str(entry.folder))
-        item.setToolTip(1, entry.problem or entry.detail)
+        item.setToolTip(0, inert(str(entry.folder)))
+        item.setToolTip(1, inert(entry.problem or entry.detail))
         if entry.mesh is not None:
             key = (entry.sha256, self._theme.polyhedron)
             if key not in self._pictures:

@@ -54,6 +54,7 @@ from regolith_studio.ui.pages.dataset.view_data import (
 )
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import tr, tr_count
+from regolith_studio.ui.translation.plain_text import inert
 from regolith_studio.ui.widgets.headline import Headline
 
 FIND, BUILD, EXPORT = "find", "build", "export"
@@ -332,7 +333,7 @@ class DatasetPage(PageWidget):
         if not self.representatives.start.isEnabled():
             reason = tr("There are too few particles to choose from: open two or more.")
         self.folder.build.setEnabled(not reason)
-        self.folder.build.setToolTip(reason)
+        self.folder.build.setToolTip(inert(reason))
 
     def _classes(self) -> Sequence[ShapeClass]:
         if self._dataset is not None:

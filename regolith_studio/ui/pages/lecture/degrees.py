@@ -13,6 +13,7 @@ from regolith_studio.ui.pages.lecture.arrangement import lesson_columns
 from regolith_studio.ui.pages.lecture.playback_bar import PlaybackBar
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import tr, tr_count
+from regolith_studio.ui.translation.plain_text import Markup
 from regolith_studio.ui.views.camera_link import CameraLink
 from regolith_studio.ui.views.factory import make_view
 from regolith_studio.ui.views.view_frame import ViewFrame
@@ -104,7 +105,7 @@ class DegreesView(QWidget):
         self.sentence.setText(texts.degree_sentence(step))
         self.formula.set_lines(*texts.degree_lines(step))
         count = (step.l_max + 1) ** 2
-        degree = f"l<sub>max</sub>&nbsp;=&nbsp;{step.l_max}"
+        degree = Markup(f"l<sub>max</sub>&nbsp;=&nbsp;{step.l_max}")
         self.frames["fit"].set_texts(
             tr("Spherical-harmonics fit, {degree}", degree=degree),
             tr_count(N_("1 coefficient"), N_("{count:,} coefficients"), count),

@@ -18,6 +18,7 @@ from regolith_studio.ui.pages.lecture.field import FieldView
 from regolith_studio.ui.pages.lecture.playback_bar import PlaybackBar
 from regolith_studio.ui.theme import Theme, current_theme, ensure_polished, letters_share
 from regolith_studio.ui.translation import tr
+from regolith_studio.ui.translation.plain_text import rich
 from regolith_studio.ui.widgets.combo_box import ChoiceBox
 
 LETTERS, FEW_LINES, LETTERS_OF_FEW = 1.35, 54, 1.1
@@ -204,7 +205,7 @@ class LecturePage(PageWidget):
         if fit is None or self._made_for.get("degrees") == (fit,):
             return
         self._made_for["degrees"] = (fit,)
-        self.degrees.show_particle(entry.particle.mesh, f"{tr(entry.particle.title)}, {entry.id}")
+        self.degrees.show_particle(entry.particle.mesh, f"{tr(entry.particle.title)}, {rich(entry.id)}")
         show = self.degrees.show_steps
         job = Job(trace_degrees, (entry.particle.mesh, fit))
         self._context.start(

@@ -17,6 +17,7 @@ from regolith_studio.scene.cameras import Direction, filled, framing_pose
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.translation.numbers import number_text
+from regolith_studio.ui.translation.plain_text import inert
 from regolith_studio.ui.views.camera_link import CameraLink
 from regolith_studio.ui.views.factory import make_view
 from regolith_studio.ui.views.view_frame import ViewFrame
@@ -173,7 +174,7 @@ class RunPlayer(QWidget):
             self._show(read_final_state(self._files[number]))
         except FileError as error:
             self.stop()
-            self.clock.setText(str(error))
+            self.clock.setText(inert(str(error)))
 
     def _show(self, pile: ParticleState) -> None:
         if self._files:

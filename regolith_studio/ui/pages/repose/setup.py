@@ -29,6 +29,7 @@ from regolith_studio.jobs.runners.process_pool import cores
 from regolith_studio.messages import N_
 from regolith_studio.ui.translation import tr, translate
 from regolith_studio.ui.translation.numbers import number_text
+from regolith_studio.ui.translation.plain_text import Markup, inert, rich
 from regolith_studio.ui.widgets.collapsible import Collapsible
 from regolith_studio.ui.widgets.combo_box import ElidedComboBox
 from regolith_studio.ui.widgets.fixed_height_text import FixedHeightText
@@ -153,7 +154,7 @@ class SetupPanel(QWidget):
 
     def show_consequences(self, sentences: list[str], problem: str = "") -> None:
         """Show the scaling report of the values, or why they are invalid."""
-        self.scaling_report.setText("<br>".join(sentences))
+        self.scaling_report.setText(Markup("<br>".join(map(rich, sentences))))
         self.problem.setText(translate(problem))
         self.problem.setVisible(bool(problem))
         self._enable_run()
@@ -168,7 +169,7 @@ class SetupPanel(QWidget):
         """Let the test be run, or say at the button why it cannot."""
         problem = self.problem.text() if not self.problem.isHidden() else ""
         self.run.setEnabled(self._dataset is not None and not problem and not self._running)
-        self.run.setToolTip(problem or tr("Fill, lift, measure"))
+        self.run.setToolTip(inert(problem) or tr("Fill, lift, measure"))
 
     def state(self) -> dict[str, Any]:
         """The values as plain JSON."""

@@ -26,6 +26,7 @@ from regolith_studio.ui.pages.sample.table import FORM_WORDS, HEALTH_WORDS, Samp
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.translation.numbers import with_decimal_point
+from regolith_studio.ui.translation.plain_text import rich
 from regolith_studio.ui.views.camera_link import CameraLink
 from regolith_studio.ui.views.factory import make_view
 from regolith_studio.ui.views.view_frame import ViewFrame
@@ -190,7 +191,7 @@ class SamplePage(PageWidget):
             self.table.choose([entry.id], entry.id)
             self._show_pictures()
         mesh = entry.particle.mesh
-        title = f"{tr(entry.particle.title)}, {entry.id}"
+        title = f"{tr(entry.particle.title)}, {rich(entry.id)}"
         self.frame.set_texts(title, " ".join(translated_health(entry)))
         if mesh is not self._shown:
             self._shown = mesh

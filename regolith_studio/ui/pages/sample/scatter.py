@@ -17,6 +17,7 @@ from regolith_studio.session.results import ParticleEntry
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import tr, tr_count
 from regolith_studio.ui.translation.numbers import number_text
+from regolith_studio.ui.translation.plain_text import rich
 from regolith_studio.ui.widgets.combo_box import ElidedComboBox
 from regolith_studio.ui.widgets.definitions import definition
 from regolith_studio.ui.widgets.labels import rich_symbol
@@ -108,7 +109,9 @@ class ScatterPanel(QWidget):
         groups = list(dict.fromkeys(entry.particle.group for entry in self._entries))
         for number, group in enumerate(groups):
             self._draw_group([e for e in self._entries if e.particle.group == group], number)
-        named = [(DESCRIPTOR_COLOURS[n % len(DESCRIPTOR_COLOURS)], g) for n, g in enumerate(groups) if g]
+        named = [
+            (DESCRIPTOR_COLOURS[n % len(DESCRIPTOR_COLOURS)], str(rich(g))) for n, g in enumerate(groups) if g
+        ]
         self.plot.set_legend(named if len(groups) > 1 else [])
         count = len(self._entries)
         self.plot.set_remark(tr_count(N_("1 particle"), N_("{count} particles"), count))

@@ -15,6 +15,7 @@ from regolith_studio.session.sample_table import Filter, form_of, has_weights, h
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import tr, translate
 from regolith_studio.ui.translation.numbers import number_text
+from regolith_studio.ui.translation.plain_text import inert
 from regolith_studio.ui.widgets.definitions import definition
 from regolith_studio.ui.widgets.labels import plain_symbol, short_number
 from regolith_studio.ui.widgets.particle_table_model import (
@@ -121,7 +122,7 @@ class SampleTableModel(ParticleTableModel):
             case Qt.ItemDataRole.DecorationRole if asked.key == HEALTH:
                 return self._icons.get(health_word(entry))
             case Qt.ItemDataRole.ToolTipRole:
-                return _tip(entry) if asked.key == HEALTH else asked.text(entry)
+                return _tip(entry) if asked.key == HEALTH else inert(asked.text(entry))
             case Qt.ItemDataRole.TextAlignmentRole if column >= WORDS:
                 return RIGHT
         return None

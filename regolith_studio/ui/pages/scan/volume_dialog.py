@@ -22,6 +22,7 @@ from regolith_studio.readers.volume_formats import WITH_AXES
 from regolith_studio.readers.volumes.header import RawLayout, VolumeHeader
 from regolith_studio.ui.pages.scan.controls import choice
 from regolith_studio.ui.translation import tr, translate
+from regolith_studio.ui.translation.plain_text import inert
 from regolith_studio.ui.widgets.labels import remark
 from regolith_studio.ui.widgets.number_fields import DecimalField
 
@@ -192,7 +193,7 @@ class VolumeDialog(QDialog):
         form.addRow(tr("Voxel size x, y, z"), _row([*self.edges, self.unit]))
         form.addRow(tr("Content"), self.kind)
         layout = QVBoxLayout(self)
-        layout.addWidget(QLabel(self._path.name))
+        layout.addWidget(QLabel(inert(self._path.name)))
         layout.addWidget(self.facts)
         layout.addLayout(form)
         self._buttons.accepted.connect(self.accept)

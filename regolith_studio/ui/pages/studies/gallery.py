@@ -22,6 +22,7 @@ from regolith_studio.messages import N_
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.translation.numbers import number_text
+from regolith_studio.ui.translation.plain_text import inert
 from regolith_studio.ui.widgets.heat_table import centred_remark
 from regolith_studio.ui.widgets.study_frame import StudyFrame
 from regolith_studio.ui.widgets.thumbnails import thumbnail
@@ -99,7 +100,7 @@ class GalleryPanel(QWidget):
         item.setTextAlignment(Qt.AlignmentFlag.AlignCenter)
         if found is None:
             item.setText("–")
-            item.setToolTip(cell.outcome.problem or "")
+            item.setToolTip(inert(cell.outcome.problem or ""))
             return item
         item.setIcon(QIcon(thumbnail(found.mesh, self._colour, SIZE)))
         item.setText(f"J {number_text(found.jaccard_distance, '.1%')}")

@@ -21,6 +21,7 @@ from PySide6.QtWidgets import (
 from regolith_studio.errors import RegolithError
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import tr
+from regolith_studio.ui.translation.plain_text import inert
 from regolith_studio.ui.widgets.labels import unbroken
 from regolith_studio.ui.widgets.plots.canvas import CountAxis, FittedAxis, PlotCanvas
 from regolith_studio.ui.widgets.plots.export import FIGURE_WRITERS, plain_text, save_figure, save_numbers
@@ -188,7 +189,7 @@ class Plot(QWidget):
         words = self.value_at(place)
         if self.canvas.toolTip() != words:
             QToolTip.hideText()
-            self.canvas.setToolTip(words)
+            self.canvas.setToolTip(inert(words))
 
     def redraw(self) -> None:
         """Draw everything again, after the theme has changed."""
@@ -251,7 +252,7 @@ class Plot(QWidget):
         try:
             write(path)
         except RegolithError as error:
-            QMessageBox.warning(self, title, str(error))
+            QMessageBox.warning(self, title, inert(str(error)))
 
     def pen(self, colour: str, width: float = 1.0, dash: bool = False) -> object:
         """A solid or dashed pen."""
