@@ -3304,6 +3304,10 @@
         <translation>Nachbarn</translation>
     </message>
     <message>
+        <source>Neither the x-z nor the y-z section has two straight flanks.</source>
+        <translation>Weder der Schnitt x-z noch der Schnitt y-z hat zwei gerade Flanken.</translation>
+    </message>
+    <message>
         <source>New keys of the chosen command</source>
         <translation>Neue Tasten des gewählten Befehls</translation>
     </message>
@@ -5832,6 +5836,10 @@
         <translation>Das Skript ist in der Zwischenablage.</translation>
     </message>
     <message>
+        <source>The section at {azimuth} degrees has no two flanks: its two lines do not meet at a tip between them.</source>
+        <translation>Der Schnitt bei {azimuth} Grad hat keine zwei Flanken: seine beiden Geraden treffen sich nicht in einer Spitze dazwischen.</translation>
+    </message>
+    <message>
         <source>The section at {azimuth} degrees has no two flanks: {points} surface points lie between the cuts, and each flank needs {needed} that rise to an apex.</source>
         <translation>Der Schnitt bei {azimuth} Grad hat keine zwei Flanken: {points} Oberflächenpunkte liegen zwischen den Grenzen, und jede Flanke braucht {needed}, die zu einer Spitze ansteigen.</translation>
     </message>
@@ -5912,6 +5920,10 @@
         <translation>Die ganze Probe</translation>
     </message>
     <message>
+        <source>The x-z and the y-z section give {paper} degrees, outside of the interval of all sections: the heap is not round, and its angle depends on the direction.</source>
+        <translation>Die Schnitte x-z und y-z ergeben {paper} Grad, außerhalb des Intervalls aller Schnitte: der Haufen ist nicht rund, und sein Winkel hängt von der Richtung ab.</translation>
+    </message>
+    <message>
         <source>Theme</source>
         <translation>Farbschema</translation>
     </message>
@@ -5990,6 +6002,10 @@
     <message>
         <source>This run was not finished: {state}.</source>
         <translation>Dieser Lauf wurde nicht beendet: {state}.</translation>
+    </message>
+    <message>
+        <source>This section has no two straight flanks and is not measured.</source>
+        <translation>Dieser Schnitt hat keine zwei geraden Flanken und wird nicht gemessen.</translation>
     </message>
     <message>
         <source>Three-dimensional views: {how}</source>
@@ -7140,8 +7156,8 @@
         <translation>kleinster Durchmesser</translation>
     </message>
     <message>
-        <source>mm, mg, ms; coarse graining applied</source>
-        <translation>mm, mg, ms; mit Coarse-Graining</translation>
+        <source>mm, mg, ms, or um, pg, ms below some 5 um; coarse graining applied</source>
+        <translation>mm, mg, ms, oder um, pg, ms unter etwa 5 um; mit Coarse-Graining</translation>
     </message>
     <message>
         <source>model</source>

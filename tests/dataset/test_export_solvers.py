@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import trimesh
 from scipy.spatial import ConvexHull
 from scipy.spatial.transform import Rotation
 
@@ -82,6 +83,95 @@ def test_that_a_tube_for_few_particles_is_as_full_as_the_papers(dataset: Dataset
     fill = volume / 0.55 / (np.pi / 4 * tube.diameter**2)
     assert fill / tube.diameter == pytest.approx(2.75 / 2)
     assert fitted_cylinder(dataset, OPTIONS.replaced(n_particles=1_000_000, diameter=0.003)).diameter == 0.003
+
+
+# --- sizes
+
+SHAPES = {"flat": cuboid(8.0, 8.0, 0.8), "needle": cuboid(10.0, 1.0, 1.0), "round": entry(1)[1].polyhedron}
+
+
+def of_size(micrometres: float) -> tuple[Dataset, ExportOptions]:
+    """A flat box, a needle and a round polyhedron of one size, in a cylinder that they fit into."""
+    entries = [(Particle(name, shape.mesh), Coarse(shape, np.zeros(3))) for name, shape in SHAPES.items()]
+    sizes = DiscreteSizeDistribution.of([micrometres], [1])
+    options = OPTIONS.replaced(n_particles=12, diameter=0.2, height=0.8)
+    return build_dataset(entries, sizes=sizes, name="sizes"), options
+
+
+def mass_of(options: ExportOptions, micrometres: float) -> float:
+    """Of a particle, in kilograms."""
+    return options.contact.density * np.pi / 6 * (micrometres * 1e-6) ** 3
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("size", [0.5, 50.0, 5000.0])
+def test_that_mujoco_loads_particles_of_any_size(size: float, tmp_path: Path) -> None:
+    mujoco = pytest.importorskip("mujoco")
+    dataset, options = of_size(size)
+    folder = exported(dataset, "mujoco", tmp_path / "x", options)
+    model = mujoco.MjModel.from_xml_path(str(folder / "particles.xml"))
+    data = mujoco.MjData(model)
+    per_metre, per_kilogram = (1e6, 1e15) if size < 1.0 else (1e3, 1e6)
+    assert model.body_mass[1:] == relative(np.full(12, mass_of(options, size) * per_kilogram), 1e-5)
+    assert -model.opt.gravity[2] == relative(9.81 * per_metre * 1e-6)
+    for _ in range(20):
+        mujoco.mj_step(model, data)
+    assert np.isfinite(data.qpos).all()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("size", [0.5, 50.0, 5000.0])
+@pytest.mark.parametrize("key", ["lammps", "lammps-clumps"])
+def test_that_lammps_loads_particles_of_any_size(key: str, size: float, tmp_path: Path, lammps) -> None:
+    dataset, options = of_size(size)
+    folder = exported(dataset, key, tmp_path / "x", options)
+    done = lammps("-in", "in.particles", "-var", "steps", "20", cwd=folder)
+    assert done.returncode == 0, done.stdout[-2000:]
+    if key == "lammps":
+        mass = float(done.stdout.split("total mass ")[-1].split()[0])
+        assert mass == relative(12 * mass_of(options, size), 1e-9)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("size", [0.5, 50.0, 5000.0])
+def test_that_trimesh_loads_particles_of_any_size(size: float, tmp_path: Path) -> None:
+    dataset, options = of_size(size)
+    scene = trimesh.load_scene(exported(dataset, "gltf", tmp_path / "gltf", options) / "particles.glb")
+    assert len(scene.graph.nodes_geometry) == 12
+    for name in scene.graph.nodes_geometry:
+        matrix, mesh = scene.graph[name]
+        volume = scene.geometry[mesh].volume * np.linalg.det(matrix[:3, :3])
+        assert volume == relative(np.pi / 6 * (size * 1e-3) ** 3, 1e-4)
+    for key in ("chrono", "aspherix", "edem"):
+        folder = exported(dataset, key, tmp_path / key, options)
+        meshes = [path for path in sorted(folder.rglob("shape_*")) if path.suffix in (".stl", ".obj")]
+        assert len(meshes) == 3
+        for path in meshes:
+            assert trimesh.load_mesh(path).volume == relative(1.0, 1e-6)
+
+
+@needs_yade
+@pytest.mark.slow
+@pytest.mark.parametrize("size", [2.5, 50.0, 5000.0])
+def test_that_yade_loads_particles_of_any_size(size: float, tmp_path: Path) -> None:
+    dataset, options = of_size(size)
+    folder = exported(dataset, "yade", tmp_path / "x", options)
+    run_yade(folder, "--check", "--run", "50")
+    found = json.loads((folder / "check.json").read_text())["particles"]
+    assert [body["mass"] for body in found] == relative([mass_of(options, size)] * 12, 1e-9)
+    assert (folder / "positions.csv").exists()
+
+
+def test_that_sizes_which_a_target_refuses_are_named_with_what_would_do(tmp_path: Path) -> None:
+    dataset, options = of_size(0.5)
+    with pytest.raises(DatasetError, match=r"of 0\.5 um.*a coarse-graining factor of 5 would do"):
+        exported(dataset, "yade", tmp_path / "x", options)
+    assert not (tmp_path / "x").exists()
+    exported(dataset, "yade", tmp_path / "x", options.replaced(coarse_graining_factor=5.0))
+    tiny = of_size(1e-4)[0]
+    with pytest.raises(DatasetError, match=r"MuJoCo refuses .* a coarse-graining factor \d+ times as large"):
+        exported(tiny, "mujoco", tmp_path / "y", options)
+    assert not (tmp_path / "y").exists()
 
 
 # --- YADE

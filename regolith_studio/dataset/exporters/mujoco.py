@@ -1,19 +1,33 @@
 """MuJoCo: an MJCF model of drawn particles, falling on a plate."""
 
+from dataclasses import dataclass
 from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.export import NOTES, Exporter, ExportOptions, shape_names, sizes_csv
-from regolith_studio.dataset.packing import pack_on_lattice
+from regolith_studio.dataset.packing import PackedParticles, pack_on_lattice
+from regolith_studio.errors import DatasetError
 from regolith_studio.geometry.convex_compound import ConvexCompound, Polyhedron
 from regolith_studio.messages import N_
 
-MILLIMETRES = 1e3
-"""Per metre."""
 
-_NOTE = b"""Lengths in mm, masses in mg, times in ms (forces in mN): in SI units MuJoCo refuses particles this
+@dataclass(frozen=True)
+class _Units:
+    """Names of the units of length and mass, and how many of them are a metre and a kilogram; times in ms."""
+
+    length: str
+    mass: str
+    per_metre: float
+    per_kilogram: float
+
+
+UNITS = (_Units("mm", "mg", 1e3, 1e6), _Units("um", "pg", 1e6, 1e15))
+MIN_MOMENT = 1e-13
+"""Smallest moment of inertia in the units of the file; MuJoCo refuses bodies below 1e-15 (mjMINVAL)."""
+
+_NOTE = """Lengths in {length}, masses in {mass}, times in ms: in SI units MuJoCo refuses particles this
 small. Each mesh of the file is a shape of volume 1 with a scale; bodies of the same shape and size share
 one. A compound is a body of several geoms, one a convex part, with mass and inertia of the union.
 Contacts of MuJoCo are soft constraints with Coulomb friction, not Hertz, Mindlin or JKR."""
@@ -21,14 +35,15 @@ Contacts of MuJoCo are soft constraints with Coulomb friction, not Hertz, Mindli
 
 def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
     bodies = pack_on_lattice(dataset, options)
-    keys, density = shape_names(dataset), options.contact.density * 1e-3
-    scales = bodies.scale * MILLIMETRES
+    units = _units(dataset, bodies, options.contact.density)
+    keys, density = shape_names(dataset), options.contact.density * units.per_kilogram / units.per_metre**3
+    scales = bodies.scale * units.per_metre
     shapes = [one.shape for one in dataset.representatives]
     assets: dict[tuple[int, float], str] = {}
     lines = []
     for index, (which, scale) in enumerate(zip(bodies.class_index.tolist(), scales.tolist(), strict=True)):
         mesh = assets.setdefault((which, scale), f"{keys[which]}_{len(assets)}")
-        place, turn = bodies.position[index] * MILLIMETRES, bodies.orientation[index]
+        place, turn = bodies.position[index] * units.per_metre, bodies.orientation[index]
         lines += [
             f'    <body name="particle_{index}" pos="{_row(place)}" quat="{_row(turn)}">',
             "      <freejoint/>",
@@ -45,20 +60,44 @@ def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
         for (which, scale), mesh in assets.items()
         for name, part in zip(_mesh_names(mesh, shapes[which]), shapes[which].part_meshes, strict=True)
     ]
-    reach = float(np.abs(bodies.position).max() * MILLIMETRES) * 4
-    text = _model(dataset.name, options, density, reach, meshes, lines)
-    return {"particles.xml": text.encode("utf-8"), "sizes.csv": sizes_csv(dataset), NOTES: _NOTE}
+    reach = float(np.abs(bodies.position).max() * units.per_metre) * 4
+    text = _model(dataset.name, options, units, reach, meshes, lines)
+    notes = _NOTE.format(length=units.length, mass=units.mass).encode("utf-8")
+    return {"particles.xml": text.encode("utf-8"), "sizes.csv": sizes_csv(dataset), NOTES: notes}
+
+
+def _units(dataset: Dataset, bodies: PackedParticles, density: float) -> _Units:
+    """The first units in which MuJoCo takes the smallest moment of inertia.
+
+    Raises
+    ------
+    DatasetError
+        If there are none.
+    """
+    least = np.array([np.linalg.eigvalsh(each.shape.mesh.inertia)[0] for each in dataset.representatives])
+    smallest = float((least[bodies.class_index] * density * bodies.scale**5).min())
+    for units in UNITS:
+        if smallest * units.per_kilogram * units.per_metre**2 > MIN_MOMENT:
+            return units
+    factor = (MIN_MOMENT / (smallest * UNITS[-1].per_kilogram * UNITS[-1].per_metre ** 2)) ** 0.2
+    raise DatasetError(
+        f"MuJoCo refuses bodies with so small moments of inertia as those of the smallest particle, "
+        f"{1e6 * bodies.diameter.min():.3g} um; a coarse-graining factor {np.ceil(factor):g} times as large "
+        "would do."
+    )
 
 
 def _model(
-    name: str, options: ExportOptions, density: float, reach: float, meshes: list[str], bodies: list[str]
+    name: str, options: ExportOptions, units: _Units, reach: float, meshes: list[str], bodies: list[str]
 ) -> str:
     contact, test = options.contact, options.test
+    density = contact.density * units.per_kilogram / units.per_metre**3
+    gravity = test.gravity * units.per_metre * 1e-6
     return "\n".join(
         [
             f"<mujoco model={quoteattr(name)}>",
-            "  <!-- mm, mg, ms; z up -->",
-            f'  <option gravity="0 0 {-test.gravity * 1e-3!r}" timestep="0.01" integrator="implicitfast"/>',
+            f"  <!-- {units.length}, {units.mass}, ms; z up -->",
+            f'  <option gravity="0 0 {-gravity!r}" timestep="0.01" integrator="implicitfast"/>',
             '  <compiler inertiafromgeom="auto" boundmass="0" boundinertia="0"/>',
             f'  <statistic extent="{reach!r}"/>',
             "  <default>",
@@ -100,7 +139,7 @@ def _row(values: np.ndarray) -> str:
 EXPORTER = Exporter(
     key="mujoco",
     label="MuJoCo (MJCF)",
-    units=N_("mm, mg, ms; coarse graining applied"),
+    units=N_("mm, mg, ms, or um, pg, ms below some 5 um; coarse graining applied"),
     carries=(N_("drawn particles: shape, size, orientation"), N_("mass and inertia"), N_("friction")),
     loses=(
         N_("weights and size distributions: only a sample is drawn (sizes.csv has them)"),

@@ -13,7 +13,10 @@ from regolith_studio.dataset.export import (
     shape_names,
     sizes_csv,
 )
+from regolith_studio.dataset.lifting_cylinder import MICROMETRE
 from regolith_studio.dataset.packing import PackedParticles, fitted_cylinder, pack_on_lattice
+from regolith_studio.dataset.sampling import sample_dataset
+from regolith_studio.errors import DatasetError
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.convex_compound import Polyhedron
 from regolith_studio.geometry.mesh import Mesh
@@ -24,6 +27,9 @@ from regolith_studio.resources import resource
 
 OVERLAP = 1e-2
 """Share of its volume by which the largest particle overlaps another under the weight of all."""
+
+MIN_DIAMETER = 2.5e-6
+"""In metres. YADE takes lengths below 3e-10 m as none, a share of 1e-4 here."""
 
 PART_MASS = 0.01
 """Share of a compound's mass that its parts have in YADE."""
@@ -51,6 +57,7 @@ COLUMNS = ("class", "scale", "diameter_m", "x", "y", "z", "qw", "qx", "qy", "qz"
 
 
 def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
+    _check_size(dataset, options)
     options = replace(options, test=fitted_cylinder(dataset, options))
     bodies = pack_on_lattice(dataset, options, within=options.test.diameter)
     return {
@@ -60,6 +67,17 @@ def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
         "sizes.csv": sizes_csv(dataset),
         NOTES: _NOTE.format(n=len(bodies), wide=options.test.diameter * 1e3).encode("utf-8"),
     }
+
+
+def _check_size(dataset: Dataset, options: ExportOptions) -> None:
+    drawn = sample_dataset(dataset, options.n_particles, options.seed).diameter
+    needed = round(MIN_DIAMETER / (float(drawn.min()) * MICROMETRE), 6)
+    if options.coarse_graining_factor < needed:
+        size = float(drawn.min()) * options.coarse_graining_factor
+        raise DatasetError(
+            f"YADE cannot hold particles of {size:.3g} um, since it takes lengths below 0.0003 um as none; "
+            f"a coarse-graining factor of {np.ceil(needed):g} would do."
+        )
 
 
 def _rows(bodies: PackedParticles) -> list[tuple[object, ...]]:
