@@ -18,7 +18,7 @@ from regolith_studio.dem.angle_of_repose import measure_repose
 from regolith_studio.dem.evaluation.settings import EvaluationSettings, NotAPileError
 
 ANGLES = (20, 27, 34, 40)
-GRAINS = (300, 1000, 5000)
+GRAINS = (150, 200, 300, 1000, 5000)
 
 Case = tuple[str, int, int, int]
 

@@ -367,18 +367,21 @@ def in_words(document: dict[str, Any]) -> str:
     low, high = document["interval_deg"]
     lines = [
         f"angle of repose      {document['angle_deg']:.1f} deg ({low:.1f} to {high:.1f}, "
-        f"{100 * document['settings']['confidence']:g} % interval, {len(document['sections'])} sections)"
+        f"{100 * document['settings']['confidence']:g} % interval, "
+        f"{len(document['sections'])} of {document['settings']['azimuths']} sections)"
     ]
-    for section in document["sections"][:2]:
+    in_paper = [section for section in document["sections"] if section["plane"]]
+    for section in in_paper:
         two = section["asymmetric"]
         lines.append(
             f"section {section['plane']}          left {two['left_deg']:.1f}  right {two['right_deg']:.1f}  "
             f"symmetric {section['symmetric']['angle_deg']:.1f}"
         )
-    lines.append(
-        f"these two sections   asymmetric {paper['asymmetric']['mean_deg']:.1f}  "
-        f"symmetric {paper['symmetric']['mean_deg']:.1f}"
-    )
+    if len(in_paper) == 2:
+        lines.append(
+            f"these two sections   asymmetric {paper['asymmetric']['mean_deg']:.1f}  "
+            f"symmetric {paper['symmetric']['mean_deg']:.1f}"
+        )
     return "\n".join(lines)
 
 

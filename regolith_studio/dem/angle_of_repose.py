@@ -44,6 +44,13 @@ ROUGH_SHARE = 0.3
 the silhouette is the highest of more grains. Measured: 0.28, on noisy cones of 5,000 balls."""
 PAPER_AZIMUTHS = (0.0, 90.0)
 """Degrees of x-z and y-z."""
+NO_TIP = N_(
+    "The section at {azimuth} degrees has no two flanks: its two lines do not meet at a tip between them."
+)
+NOT_ROUND = N_(
+    "The x-z and the y-z section give {paper} degrees, outside of the interval of all sections: "
+    "the heap is not round, and its angle depends on the direction."
+)
 
 
 @dataclass(frozen=True)
@@ -61,9 +68,9 @@ class ReposeMeasurement:
     Parameters
     ----------
     sections
-        The first is x-z, the second y-z, further azimuths follow.
+        Those that have two flanks: x-z and y-z first, further azimuths follow.
     paper_asymmetric, paper_symmetric
-        Over the two sections of the paper: four flanks, two roofs.
+        Over those of the paper's two sections that have two flanks.
     asymmetric, symmetric
         Over all sections.
     interval
@@ -99,6 +106,10 @@ class ReposeMeasurement:
         """The asymmetric mean over all sections."""
         return self.asymmetric.mean
 
+    def section_at(self, azimuth: float) -> Section | None:
+        """The section at an azimuth in degrees, or ``None`` if it has no two flanks."""
+        return next((each for each in self.sections if each.azimuth == azimuth), None)
+
 
 def measure_repose(
     points: ArrayLike,
@@ -133,7 +144,10 @@ def measure_repose(
     mean_diameter = float(sizes.mean())
     level = base_level(where, sizes) if base is None else base
     surfaces, left_out = _surfaces(where, sizes, level, mean_diameter, settings)
-    sections, refused = _sections(surfaces, mean_diameter, settings)
+    fitted, refused = _sections(surfaces, mean_diameter, settings)
+    _check_straightness(fitted)
+    sections = [each for each in fitted if each.has_tip]
+    refused += [_without_tip(each) for each in fitted if not each.has_tip]
     if len(sections) < settings.azimuths / 2:
         raise NotAPileError(
             Message(
@@ -142,7 +156,9 @@ def measure_repose(
                 total=settings.azimuths,
             )
         )
-    _check_straightness(sections)
+    paper = [each for each in sections if each.azimuth in PAPER_AZIMUTHS]
+    if not paper:
+        raise NotAPileError(Message(N_("Neither the x-z nor the y-z section has two straight flanks.")))
     warnings = [*left_out, *refused]
     if len(where) < RELIABLE_N:
         warnings.append(COARSE_PILE)
@@ -150,10 +166,12 @@ def measure_repose(
     shift = _cut_shift(sections, surfaces, mean_diameter, settings)
     terms = (standard_interval(flanks, settings.confidence), shift, rough_tilt(sections))
     half_width = float(np.linalg.norm(terms))
+    if len(paper) == 2 and abs(np.mean(_flanks(paper)) - np.mean(flanks)) > half_width:
+        warnings.append(Message(NOT_ROUND, paper=Number(float(np.mean(_flanks(paper))), ".1f")))
     return ReposeMeasurement(
         sections=tuple(sections),
-        paper_asymmetric=_spread(_flanks(sections[:2])),
-        paper_symmetric=_spread([each.symmetric.angle for each in sections[:2]]),
+        paper_asymmetric=_spread(_flanks(paper)),
+        paper_symmetric=_spread([each.symmetric.angle for each in paper]),
         asymmetric=_spread(flanks),
         symmetric=_spread([each.symmetric.angle for each in sections]),
         interval=(float(np.mean(flanks)) - half_width, float(np.mean(flanks)) + half_width),
@@ -247,21 +265,27 @@ def _surface(
 def _sections(
     surfaces: Mapping[float, Profile], mean_diameter: float, settings: EvaluationSettings
 ) -> tuple[list[Section], list[str]]:
-    """The fits at each azimuth, and why others are left out."""
+    """The fits at each azimuth, and why others are left out: all that have no two flanks."""
     sections: list[Section] = []
     left_out: list[str] = []
     for azimuth, profile in surfaces.items():
         try:
             sections.append(evaluate_section(profile, azimuth, mean_diameter, settings))
         except NotAPileError as refusal:
-            if azimuth in PAPER_AZIMUTHS:
+            if azimuth in PAPER_AZIMUTHS and refusal.status != "no flanks":
                 raise
             left_out.append(Message(LEFT_OUT, reason=refusal.sentence))
     return sections, left_out
 
 
+def _without_tip(section: Section) -> str:
+    return Message(LEFT_OUT, reason=Message(NO_TIP, azimuth=Number(section.azimuth, "g")))
+
+
 def _check_straightness(sections: Sequence[Section]) -> None:
     """Refuse domes and heaps with hollow flanks, where their curvature is certain."""
+    if not sections:
+        return
     curvatures = [each for section in sections for each in section.curvature]
     mean = float(np.mean(curvatures))
     if abs(mean) > max(MAX_CURVATURE, standard_interval(curvatures, 0.99)):
@@ -280,8 +304,11 @@ def _cut_shift(
     for factor in (2 / 3, 4 / 3):
         toe, bottom = min(settings.toe * factor, 10.0), min(settings.cut_bottom * factor, 0.45)
         try:
-            others, _ = _sections(surfaces, mean_diameter, replace(settings, toe=toe, cut_bottom=bottom))
+            fitted, _ = _sections(surfaces, mean_diameter, replace(settings, toe=toe, cut_bottom=bottom))
         except NotAPileError:
+            continue
+        others = [each for each in fitted if each.has_tip]
+        if not others:
             continue
         shifts.append(abs(float(np.mean(_flanks(others)) - angle)))
     return max(shifts)

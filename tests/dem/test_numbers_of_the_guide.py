@@ -121,5 +121,5 @@ INTERVALS = json.loads((ROOT / "benchmarks/results/repose_intervals.json").read_
 @pytest.mark.slow
 def test_that_a_row_of_the_table_of_intervals_is_measured_again() -> None:
     first, heaps = INTERVALS["first_seed"], INTERVALS["heaps"]
-    cases = [("equal, clean", 300, angle, first + k) for angle in ANGLES for k in range(heaps)]
-    assert line("equal, clean", 300, np.array([measured(case) for case in cases])) == INTERVALS["rows"][0]
+    cases = [("equal, clean", 150, angle, first + k) for angle in ANGLES for k in range(heaps)]
+    assert line("equal, clean", 150, np.array([measured(case) for case in cases])) == INTERVALS["rows"][0]

@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.collections import EllipseCollection
 from matplotlib.figure import Figure
 
-from regolith_studio.dem.angle_of_repose import ReposeMeasurement
+from regolith_studio.dem.angle_of_repose import PAPER_AZIMUTHS, ReposeMeasurement
 from regolith_studio.dem.evaluation.profile import project
 from regolith_studio.dem.evaluation.section import Section
 from regolith_studio.geometry.arrays import FloatArray
@@ -24,19 +24,22 @@ def section_figure(points: FloatArray, diameters: FloatArray, measurement: Repos
     """The x-z and y-z sections; positions and diameters in metres."""
     figure = Figure(figsize=(10.5, 3.2), layout="constrained")
     axes = figure.subplots(1, 2, sharey=True)
-    for axis, section in zip(axes, measurement.sections[:2], strict=True):
+    for axis, plane, azimuth in zip(axes, ("x-z", "y-z"), PAPER_AZIMUTHS, strict=True):
+        section = measurement.section_at(azimuth)
+        axis.set_xlabel(f"{plane[0]} (mm)")
+        if section is None:
+            axis.set_title(f"{plane}: no two flanks")
+            continue
         _draw_particles(axis, points, diameters, measurement, section)
         _draw_fits(axis, section)
-        plane = "x-z" if section.azimuth == 0.0 else "y-z"
         axis.set_title(
             f"{plane}: {section.asymmetric.left.angle:.1f}° | {section.asymmetric.right.angle:.1f}°"
         )
-        axis.set_xlabel("x (mm)" if section.azimuth == 0.0 else "y (mm)")
         reach, top = framed(section)
         axis.set_xlim(-MILLIMETRE * reach, MILLIMETRE * reach)
         axis.set_ylim(0.0, MILLIMETRE * top)
     axes[0].set_ylabel("z (mm)")
-    handles, labels = axes[0].get_legend_handles_labels()
+    handles, labels = max((axis.get_legend_handles_labels() for axis in axes), key=lambda each: len(each[1]))
     figure.legend(handles, labels, loc="outside lower center", ncols=4, frameon=False)
     low, high = measurement.interval
     figure.suptitle(

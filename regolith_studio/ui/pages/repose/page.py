@@ -9,7 +9,7 @@ from PySide6.QtCore import QTimer
 from PySide6.QtWidgets import QFileDialog, QHBoxLayout, QVBoxLayout, QWidget
 
 from regolith_studio.dataset.parameters import LiftingCylinderTest
-from regolith_studio.dem.angle_of_repose import ReposeMeasurement
+from regolith_studio.dem.angle_of_repose import PAPER_AZIMUTHS, ReposeMeasurement
 from regolith_studio.dem.case import PreparedCase
 from regolith_studio.dem.engines import engine_named
 from regolith_studio.dem.evaluation.settings import NotAPileError
@@ -408,8 +408,12 @@ class ReposePage(PageWidget):
         interval = tr("{low:.1f}° to {high:.1f}°", low=low, high=high)
         self.angle.caption(1, tr("{share:.0%} interval", share=measured.settings.confidence))
         self.angle.show_values((localized(f"{measured.angle:.1f}°"), interval), angle_text(measured))
-        self.x_z.show_section(self._pile, measured.sections[0])
-        self.y_z.show_section(self._pile, measured.sections[1])
+        for plot, azimuth in zip((self.x_z, self.y_z), PAPER_AZIMUTHS, strict=True):
+            section = measured.section_at(azimuth)
+            if section is None:
+                plot.show_nothing(tr("This section has no two straight flanks and is not measured."))
+            else:
+                plot.show_section(self._pile, section)
 
     def _show_nothing(self, sentence: str) -> None:
         """Show that there is no measurement of what is seen, and why."""
