@@ -1,6 +1,6 @@
 """The friction that boxes feel which slide down a slope on MuJoCo, over settings of the solver.
 
-    python -m benchmarks.sliding_friction [DEGREES] [RESULT.json]
+    python -m benchmarks.sliding_friction [DEGREES] [RESULT.json] [FIRST CASES]
 
 40 boxes, cubes and bricks (3 : 2 : 1.5) that lie flat, of two sizes, on the plate with a friction of 0.8, for
 12 sqrt(d/g); three seeds. Felt is tan(slope) - a / (g cos(slope)). A row holds the mean over all boxes, over
@@ -8,7 +8,7 @@ cubes and over bricks, the share that has turned by more than 20 degrees, and th
 """
 
 import sys
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import mujoco
@@ -42,6 +42,15 @@ CASES: Mapping[str, tuple[tuple[float, float], dict[str, Any]]] = {
     "pyramidal cone": (USUAL, {"cone": mujoco.mjtCone.mjCONE_PYRAMIDAL}),
 }
 """Largest move in a step and smallest share of the step, and options of the solver."""
+STIFFNESS: Mapping[str, MujocoSettings] = {
+    "contact time of 4 steps": MujocoSettings(contact_steps=4),
+    "contact time of 8 steps": MujocoSettings(contact_steps=8),
+    "an eighth of the step, contact time of 2": MujocoSettings(time_step=0.025 / 8),
+    "an eighth of the step, contact time of 16, exact": MujocoSettings(
+        time_step=0.025 / 8, contact_steps=16, iterations=200, tolerance=1e-10
+    ),
+}
+"""Steps that a contact takes, and the step."""
 
 
 def box_dataset() -> Dataset:
@@ -60,13 +69,16 @@ def box(a: float, b: float, c: float) -> ConvexPolyhedron:
 
 
 def slide(
-    degrees: float, seed: int, options: Mapping[str, Any] | None = None
+    degrees: float,
+    seed: int,
+    options: Mapping[str, Any] | None = None,
+    settings: MujocoSettings | None = None,
 ) -> tuple[FloatArray, FloatArray, FloatArray, dict[float, int]]:
     """What each box feels, its largest turn in degrees, whether it is a brick (each of shape (40,)); and the
     number of steps of each length."""
     test = LiftingCylinderTest(mass=0.003, plate_friction=FRICTION)
     prepared = prepare(box_dataset(), ReposeCase(test, n_particles=N_BOXES, seed=seed))
-    solver = simulation.MujocoSolver(prepared, MujocoSettings())
+    solver = simulation.MujocoSolver(prepared, settings or MujocoSettings())
     half = np.array([shape[:, 2].max() for shape in prepared.shapes])[prepared.class_index]
     rows = solver.data.qpos.reshape(-1, 7)
     heights = half * prepared.scales / prepared.mean_diameter
@@ -91,20 +103,27 @@ def slide(
     return felt, turn, np.array(prepared.class_index == 1), steps
 
 
-def main(degrees: float, result: str) -> None:
-    """Print a row for each case."""
+def main(degrees: float, result: str, n_cases: int) -> None:
+    """Print a row for each of the first cases, and for each stiffness of the contacts."""
     rows: Rows = {}
-    for name, (limits, options) in CASES.items():
+    for name, (limits, options) in list(CASES.items())[:n_cases]:
         simulation.MAX_MOVE, simulation.SMALLEST_SHARE = limits
-        found = [slide(degrees, seed, options) for seed in SEEDS]
-        felt, turn, brick = (np.concatenate([each[k] for each in found]) for k in range(3))
-        steps = np.mean([sum(each[3].values()) for each in found])
-        share = np.mean(turn > TUMBLED)
-        values = (felt.mean(), felt[~brick].mean(), felt[brick].mean(), share, float(steps))
-        show_row(rows, name, values, 3)
+        add_row(rows, name, [slide(degrees, seed, options) for seed in SEEDS])
+    simulation.MAX_MOVE, simulation.SMALLEST_SHARE = USUAL
+    for name, settings in STIFFNESS.items():
+        add_row(rows, name, [slide(degrees, seed, None, settings) for seed in SEEDS])
     add_result(result, f"slope of {degrees:g} degrees", rows, seeds=list(SEEDS))
 
 
+def add_row(rows: Rows, name: str, found: Sequence[tuple[Any, ...]]) -> None:
+    """Print a row and keep it."""
+    felt, turn, brick = (np.concatenate([each[k] for each in found]) for k in range(3))
+    steps = np.mean([sum(each[3].values()) for each in found])
+    share = np.mean(turn > TUMBLED)
+    values = (felt.mean(), felt[~brick].mean(), felt[brick].mean(), share, steps)
+    show_row(rows, name, [float(value) for value in values], 3)
+
+
 if __name__ == "__main__":
-    words = [*sys.argv[1:], *("50", "")[len(sys.argv) - 1 :]]
-    main(float(words[0]), words[1])
+    words = [*sys.argv[1:], *("50", "", str(len(CASES)))[len(sys.argv) - 1 :]]
+    main(float(words[0]), words[1], int(words[2]))

@@ -177,6 +177,16 @@ def test_that_grains_which_slide_fast_feel_the_friction_that_is_set(monkeypatch:
     assert np.mean([slide(50.0, seed)[0] for seed in SEEDS]) < 0.75
 
 
+@pytest.mark.slow
+def test_that_cubes_slide_flat_where_a_contact_takes_four_steps() -> None:
+    """A rigid cube does not topple while friction is below 1; contacts of two steps turn some over."""
+    _, turn, brick, _ = slide(39.66, 2)
+    assert turn[brick].max() < TUMBLED < turn[~brick].max()
+    felt, turn, _, _ = slide(39.66, 2, None, MujocoSettings(contact_steps=4))
+    assert turn.max() < TUMBLED
+    assert felt.mean() == pytest.approx(FRICTION, abs=0.02)
+
+
 def test_that_a_run_says_which_steps_it_took(boxes: Dataset) -> None:
     prepared, settings = prepare(boxes, ReposeCase(n_particles=120, seed=2)), MujocoSettings()
     solver = simulation.MujocoSolver(prepared, settings)
