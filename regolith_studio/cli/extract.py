@@ -198,6 +198,8 @@ def extract(
                 "(NaN or infinity) and are in no grain."
             ]
         )
+    if done.facts is not None:
+        print_errors(f"{given.path.name}: {remark}" for remark in done.facts.remarks)
     if json:
         print_json(document)
     else:

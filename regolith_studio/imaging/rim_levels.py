@@ -62,6 +62,8 @@ _MIN_WEIGHT = 0.002
 """Share of the voxels about a place that a layer must hold."""
 _BLURS, _USUAL_BLUR = (0.3, 1.4), 0.85
 """Limits of the blur, in voxels, and what is taken where other grains are near nearly everywhere."""
+_MIN_WIDTH = 0.6
+"""What counts at least as the blur where the shell begins: depths of voxels are no more exact than that."""
 _MIN_FREE = 0.1
 """Share of the surface without other grains near it from which on the blur is measured."""
 
@@ -190,7 +192,8 @@ def _rim_level(grain: _Grain, depths: Floats, blur: float) -> tuple[Floats, Floa
         Standard deviation of the edge, in voxels.
     """
     above, noise = grain.above, grain.noise
-    early, usual = (blur * each for each in _BEGIN)
+    wide = max(blur, _MIN_WIDTH)
+    early, usual = (wide * each for each in _BEGIN)
     steps = [early, usual, *(usual + _THICKNESS * (k + 1) for k in range(_LAYERS))]
     indices = np.flatnonzero((depths > early) & (depths <= steps[-1]))
     if not len(indices):
@@ -207,7 +210,7 @@ def _rim_level(grain: _Grain, depths: Floats, blur: float) -> tuple[Floats, Floa
     if not seen.any():
         return None
     level = np.where(seen, level, np.float32(np.average(level, weights=weight)))
-    begin = np.where(thin & seen, _FULL_IF_THIN * blur, _FULL * blur).astype(np.float32)
+    begin = np.where(thin & seen, _FULL_IF_THIN * wide, _FULL * wide).astype(np.float32)
     return _spread(level, above.shape), _spread(begin, above.shape)
 
 

@@ -19,7 +19,9 @@ from regolith_studio.imaging.extraction import (
     ExtractionSettings,
     extraction_steps,
 )
+from regolith_studio.imaging.scan_outside import ScanOutside, background_filled, find_outside
 from regolith_studio.imaging.segmentation.segment import Segmentation
+from regolith_studio.imaging.segmentation.thresholding import ThresholdSettings, hidden_class
 from regolith_studio.imaging.volume import Volume, VolumeKind
 from regolith_studio.imaging.volume_slabs import ScratchArrays, SliceSource
 from regolith_studio.jobs.compile_kernels import compile_first
@@ -46,6 +48,7 @@ class SegmentationSummary:
     n_grains: int
     n_small: int
     n_not_finite: int
+    remarks: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -208,8 +211,13 @@ def _extract(
         facts: SegmentationSummary | None = None
         labels, grey = volume, None
         if volume.kind == "grey":
+            threshold = recipe.segmentation.threshold
+            outside = None if threshold.method == "probability" else find_outside(volume)
+            if outside is not None:
+                volume = background_filled(volume, outside, threshold, scratch)
             segmentation: Segmentation = yield from segment_volume(volume, recipe.segmentation, scratch, run)
-            facts, labels, grey = _summary_of(segmentation), segmentation.labels, volume
+            facts = _summary_of(segmentation, threshold, outside)
+            labels, grey = segmentation.labels, volume
             del segmentation
         if labels_file is not None:
             yield from write_labels(labels, recipe.extraction, labels_file, grey is not None)
@@ -254,13 +262,30 @@ def _handed_over(
         yield Progress(step.done, step.total, step.name)
 
 
-def _summary_of(segmentation: Segmentation) -> SegmentationSummary:
+def _summary_of(
+    segmentation: Segmentation, threshold: ThresholdSettings, outside: ScanOutside | None
+) -> SegmentationSummary:
+    remarks = []
+    if outside is not None:
+        value = "no number (NaN)" if np.isnan(outside.value) else f"the value {outside.value:g}"
+        remarks.append(
+            f"{100 * outside.share:.1f} % of the voxels, outside of the scanner's circle, have {value} and "
+            "are taken as what lies between grains."
+        )
+    hidden = hidden_class(segmentation.seen, segmentation.level, threshold)
+    if hidden is not None:
+        first, second, gap = hidden
+        remarks.append(
+            f"The voxels that are no grain at {segmentation.level:g} are of two kinds, about {first:g} and "
+            f"{second:g}: if the latter are grains, take --threshold {gap:g} or multi-otsu."
+        )
     return SegmentationSummary(
         segmentation.level,
         segmentation.n_bodies,
         segmentation.n_grains,
         segmentation.n_small,
         segmentation.n_not_finite,
+        tuple(remarks),
     )
 
 

@@ -134,3 +134,13 @@ def test_that_noise_makes_no_area_but_a_note(noise: float) -> None:
     assert found.particle.mesh.surface_area == pytest.approx(4 * np.pi * RADIUS**2, rel=0.025)
     assert found.particle.mesh.volume == pytest.approx(4 / 3 * np.pi * RADIUS**3, rel=0.01)
     assert "its volume that of the grey values: their noise is" in " ".join(found.particle.notes)
+
+
+def test_that_a_small_ball_without_blur_has_its_volume() -> None:
+    """No blur is the sharpest edge that depths of voxels can tell."""
+    radius, noise = 6.57, np.random.default_rng(3).standard_normal((EDGE,) * 3)
+    own = np.linalg.norm(PLACES - CENTRE, axis=-1) < radius
+    grey = Volume((100 + 50 * own + 5 * noise).astype(np.float32), (1, 1, 1), "grey", "scan")
+    labels = Volume(own.astype(np.uint8), (1, 1, 1), "labels", "one")
+    (found,) = extract_particles(labels, GREY, grey=grey).found
+    assert found.particle.mesh.volume == pytest.approx(np.count_nonzero(own), rel=0.015)

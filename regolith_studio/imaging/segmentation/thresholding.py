@@ -5,6 +5,7 @@ from typing import Any, Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy import ndimage, signal
 from skimage import filters
 
 from regolith_studio.errors import InputError
@@ -14,6 +15,9 @@ from regolith_studio.messages import N_, Message, Number
 ThresholdMethod = Literal["otsu", "multi-otsu", "manual", "probability"]
 THRESHOLD_METHODS: tuple[ThresholdMethod, ...] = get_args(ThresholdMethod)
 N_BINS = 256
+_PEAK_WIDTH, _GAP, _HIDDEN_SHARE = 2.0, 0.6, 0.005
+"""Standard deviation in bins by which a histogram is smoothed before its peaks are looked for, depth of the
+gap beside a peak over its height, and least share of the voxels in a peak."""
 
 _otsu: Any = filters.threshold_otsu
 _multi_otsu: Any = filters.threshold_multiotsu
@@ -195,6 +199,31 @@ def level_of(seen: Histogram, settings: ThresholdSettings, dtype: np.dtype[Any])
             _multi_otsu(classes=settings.classes, hist=(seen.counts, centres))[settings.boundary - 1]
         )
     return float(seen.edges[np.searchsorted(seen.edges, found, side="right")])
+
+
+def hidden_class(
+    seen: Histogram, level: float, settings: ThresholdSettings
+) -> tuple[float, float, float] | None:
+    """Grey values of the two peaks between which the voxels that are no grain part, and of the gap between.
+
+    An automatic threshold that parts the brightest grains from all others leaves dim ones below it: then
+    these voxels have two peaks in the histogram, of which the one towards the level is that of grains.
+    """
+    if not settings.is_automatic:
+        return None
+    centres, counts = seen.centres, ndimage.gaussian_filter1d(seen.counts.astype(np.float64), _PEAK_WIDTH)
+    rest = centres >= level if settings.dark else centres < level
+    centres, counts = centres[rest], counts[rest]
+    if settings.dark:
+        centres, counts = centres[::-1], counts[::-1]
+    peaks, _ = signal.find_peaks(np.concatenate([[0.0], counts, [0.0]]))
+    for last in reversed(peaks - 1):
+        first = int(counts[: last + 1].argmax())
+        gap = first + int(counts[first : last + 1].argmin())
+        is_peak = counts[gap] < _GAP * counts[last]
+        if first < last and is_peak and counts[gap:].sum() > _HIDDEN_SHARE * seen.counts.sum():
+            return float(centres[first]), float(centres[last]), float(centres[gap])
+    return None
 
 
 def weak_level(level: float, settings: ThresholdSettings) -> float:
