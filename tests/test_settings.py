@@ -8,8 +8,7 @@ import pytest
 from regolith_studio.cli.dataclass_options import with_dataclass_options
 from regolith_studio.errors import InputError
 from regolith_studio.harmonics.fit_options import FitOptions
-from regolith_studio.harmonics.radius_function import RULES
-from regolith_studio.harmonics.reference_surface import REFERENCES
+from regolith_studio.harmonics.radius_function import REFERENCES, RULES
 from regolith_studio.harmonics.star_point import STAR_POINT_RULES
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.recipe import Recipe

@@ -346,8 +346,7 @@ def _statistics(against: str, folders: list[Path]) -> tuple[list[str], dict[str,
     import numpy as np
 
     from regolith_studio.dataset.folder_io import read_dataset
-    from regolith_studio.studies.repose_surface import shape_statistics
-    from regolith_studio.studies.response_surface import fit_response_surface
+    from regolith_studio.studies.repose_surface import fit_response_surface, shape_statistics
 
     keys = [key.strip() for key in against.split(",") if key.strip()]
     if not keys:

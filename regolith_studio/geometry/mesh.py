@@ -1,9 +1,16 @@
-"""Closed triangular meshes: the shape of a particle as scanned, fitted or drawn."""
+"""Closed triangular meshes: the shape of a particle as scanned, fitted or drawn.
+
+Cached properties that hold arrays, within a limit on the memory that all of them take.
+"""
 
 import hashlib
+from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from threading import Lock
+from typing import Any, Generic, TypeVar, overload
+from weakref import ReferenceType, ref
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -17,10 +24,74 @@ from regolith_studio.geometry.arrays import (
     locked_integers,
     used_vertices,
 )
-from regolith_studio.geometry.cached_arrays import CachedArray
 from regolith_studio.geometry.kernels import kernel
 from regolith_studio.geometry.mass_properties import volume_moments
 from regolith_studio.geometry.vectors import cross, dot, mixed, row
+
+T = TypeVar("T")
+
+ALWAYS_CACHED_BYTES = 16_384
+"""Bytes up to which a value stays for as long as its owner does."""
+MAX_CACHED_BYTES = 64_000_000
+"""Bytes that all larger values together may take, apart from those of the last owner."""
+
+
+class CachedArray(Generic[T]):
+    """A property that is computed at its first access and then cached, like ``cached_property``.
+
+    Large values are dropped again, oldest first, when all of them together take more than
+    :data:`MAX_CACHED_BYTES`, and recomputed at the next access: hundreds of open particles do not each hold
+    the arrays that they were measured by.
+
+    Parameters
+    ----------
+    compute
+        A method without arguments whose value is an array, or has arrays as ``vertices`` and ``faces``.
+    """
+
+    def __init__(self, compute: Callable[[Any], T]) -> None:
+        self._compute, self._name = compute, compute.__name__
+        self.__doc__ = compute.__doc__
+
+    @overload
+    def __get__(self, owner: None, kind: type) -> "CachedArray[T]": ...
+    @overload
+    def __get__(self, owner: object, kind: type) -> T: ...
+    def __get__(self, owner: object | None, kind: type) -> "CachedArray[T] | T":
+        if owner is None:
+            return self
+        value = self._compute(owner)
+        owner.__dict__[self._name] = value
+        if (size := _bytes(value)) > ALWAYS_CACHED_BYTES:
+            _ledger.add(owner, self._name, size)
+        return value
+
+
+class _CacheLedger:
+    """The large cached values, oldest first."""
+
+    def __init__(self) -> None:
+        self._lock = Lock()
+        self._entries: deque[tuple[ReferenceType[object], str, int]] = deque()
+        self._size = 0
+
+    def add(self, owner: object, name: str, size: int) -> None:
+        with self._lock:
+            self._entries.append((ref(owner), name, size))
+            self._size += size
+            while self._size > MAX_CACHED_BYTES and self._entries[0][0]() is not owner:
+                oldest, name, size = self._entries.popleft()
+                self._size -= size
+                if (gone := oldest()) is not None:
+                    gone.__dict__.pop(name, None)
+
+
+_ledger = _CacheLedger()
+
+
+def _bytes(value: Any) -> int:
+    parts = (value,) if hasattr(value, "nbytes") else (value.vertices, value.faces)
+    return sum(int(part.nbytes) for part in parts)
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,6 +7,14 @@ aside by infinitely little (Edelsbrunner and Muecke 1990), the same for all tria
 the crossings of every ray add up to the winding number of the mesh about the origin: 1 inside a closed
 mesh, also where the ray runs exactly through a vertex. Rays are looked up in bins of the unit sphere: rows
 are bands of equal height in z, and so of equal area; columns are equal steps of longitude.
+
+Signs of small determinants without rounding error.
+
+Products are split into sums of two floats (Dekker 1971) and added up as expansions whose parts do not
+overlap (Shewchuk 1997), so that the sign is the true one for the numbers given. They must be free of
+underflow: either zero or not far below 1e-60.
+
+How well a convex polyhedron covers a particle: the Jaccard distance (Eq. 7).
 """
 
 from collections.abc import Callable
@@ -16,11 +24,122 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from regolith_studio.errors import GeometryError
 from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats, locked_integers
-from regolith_studio.geometry.exact_predicates import sign_of_cross_product, sign_of_triple_product
+from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
+from regolith_studio.geometry.half_spaces import HalfSpaces
 from regolith_studio.geometry.kernels import inline_kernel, kernel
 from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.sphere_points import fibonacci_directions
 from regolith_studio.geometry.vectors import Vector, along, cross, dot, length, mixed, row
+
+N_RAYS = 16_000
+
+
+def jaccard_distance(mesh: Mesh, polyhedron: ConvexPolyhedron | HalfSpaces, n_rays: int = N_RAYS) -> float:
+    """1 - V(M n P) / V(M u P), the paper's IoU (Eq. 7): 0 where both are the same, 1 where disjoint.
+
+    Rays from the origin, which lies strictly inside the polyhedron, meet every crossing of the mesh, so
+    that the mesh need not be star-shaped. All volumes are taken by the same quadrature; its error is
+    about 0.0002 for 2,000 rays and 0.00002 for 16,000.
+
+    Parameters
+    ----------
+    mesh
+        Closed and outward-oriented, in the frame of the polyhedron.
+    polyhedron
+        Bounded; only its half-spaces count.
+    n_rays
+        Directions of the quadrature.
+
+    Raises
+    ------
+    GeometryError
+        If the mesh encloses no volume or the polyhedron is unbounded.
+    """
+    solid = (
+        polyhedron
+        if isinstance(polyhedron, ConvexPolyhedron)
+        else ConvexPolyhedron.from_half_spaces(polyhedron)
+    )
+    directions = fibonacci_directions(n_rays)
+    radius = solid.half_spaces.radii(directions)
+    hits = radial_hits(mesh, np.zeros(3), directions)
+    own = float(np.sum(hits.sign * hits.distance**3))
+    if not own > 0.0:
+        raise GeometryError("The mesh encloses no volume.")
+    shared = float(np.sum(hits.sign * np.minimum(hits.distance, radius[hits.ray]) ** 3))
+    return 1.0 - shared / (own + float(np.sum(radius**3)) - shared)
+
+
+SPLITTER = 134217729.0
+"""2**27 + 1: cuts a float in two halves of 26 bits."""
+
+
+@kernel
+def sign_of_triple_product(a: FloatArray, b: FloatArray, c: FloatArray) -> int:
+    """Sign of a . (b x c): -1, 0 or +1."""
+    parts = np.zeros(24)
+    count = 0
+    for i in range(3):
+        j, k = (i + 1) % 3, (i + 2) % 3
+        count = _add_product(parts, count, b[j], c[k], a[i])
+        count = _add_product(parts, count, -b[k], c[j], a[i])
+    return _sign(parts, count)
+
+
+@kernel
+def sign_of_cross_product(a: FloatArray, b: FloatArray, axis: int) -> int:
+    """Sign of component `axis` of a x b: -1, 0 or +1."""
+    parts = np.zeros(8)
+    j, k = (axis + 1) % 3, (axis + 2) % 3
+    count = _add_product(parts, 0, a[j], b[k], 1.0)
+    count = _add_product(parts, count, -a[k], b[j], 1.0)
+    return _sign(parts, count)
+
+
+@kernel
+def _add_product(parts: FloatArray, count: int, x: float, y: float, z: float) -> int:
+    """Add x * y * z to an expansion of `count` parts; returns how many it has now."""
+    high, low = _product(x, y)
+    for part in (high, low):
+        first, second = _product(part, z)
+        count = _add(parts, count, second)
+        count = _add(parts, count, first)
+    return count
+
+
+@kernel
+def _product(x: float, y: float) -> tuple[float, float]:
+    """x * y as a rounded product and what the rounding lost."""
+    product = x * y
+    x_high = SPLITTER * x - (SPLITTER * x - x)
+    y_high = SPLITTER * y - (SPLITTER * y - y)
+    x_low, y_low = x - x_high, y - y_high
+    lost = x_low * y_low - (((product - x_high * y_high) - x_low * y_high) - x_high * y_low)
+    return product, lost
+
+
+@kernel
+def _add(parts: FloatArray, count: int, value: float) -> int:
+    """Grow an expansion by one float: its parts stay free of overlap and rise in magnitude."""
+    carried = value
+    for i in range(count):
+        total = carried + parts[i]
+        virtual = total - carried
+        parts[i] = (carried - (total - virtual)) + (parts[i] - virtual)
+        carried = total
+    parts[count] = carried
+    return count + 1
+
+
+@kernel
+def _sign(parts: FloatArray, count: int) -> int:
+    for i in range(count - 1, -1, -1):
+        if parts[i] != 0.0:
+            return 1 if parts[i] > 0.0 else -1
+    return 0
+
 
 ROUNDING = 16.0 * 2.0**-53
 """Error of a triple product of floats, as a share of the product of the three lengths."""

@@ -14,11 +14,12 @@ from regolith_studio.geometry.particle import Particle, solid_of
 from regolith_studio.harmonics.coefficients import ShCoefficients, checked_degree
 from regolith_studio.harmonics.radius_function import (
     DEFAULT_RULE,
+    REFERENCES,
+    Ellipsoid,
     RadiusFunction,
     require_solid,
     sample_radius,
 )
-from regolith_studio.harmonics.reference_surface import REFERENCES, Ellipsoid
 from regolith_studio.harmonics.star_point import STAR_POINT_RULES, centre_of_mass, least_hidden_volume
 from regolith_studio.harmonics.transform import SAMPLING_DEGREE, RayGrid, analyse, band_limited, ray_grid
 from regolith_studio.harmonics.visibility import hidden_surface_share

@@ -15,7 +15,7 @@ from regolith_studio.geometry.arrays import FloatArray, IntArray
 from regolith_studio.harmonics.coefficients import CONVENTION, ShCoefficients, degrees, orders
 from regolith_studio.harmonics.fit import HarmonicFit
 from regolith_studio.harmonics.fit_options import MAX_TABLE_DEGREE
-from regolith_studio.harmonics.reference_surface import Ellipsoid
+from regolith_studio.harmonics.radius_function import Ellipsoid
 
 FORMAT = "regolith-studio fit"
 SYMMETRY_TOLERANCE = 1e-4

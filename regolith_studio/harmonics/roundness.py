@@ -6,7 +6,7 @@ from scipy.spatial import Delaunay
 from regolith_studio.errors import GeometryError
 from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray
 from regolith_studio.harmonics.fit import HarmonicFit
-from regolith_studio.harmonics.reference_surface import best_fit_ellipsoid
+from regolith_studio.harmonics.radius_function import best_fit_ellipsoid
 from regolith_studio.harmonics.surface import radii, reconstruct
 
 N_OUTLINE = 1024

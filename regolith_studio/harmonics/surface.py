@@ -14,7 +14,7 @@ from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.harmonics.coefficients import ShCoefficients
 from regolith_studio.harmonics.fit import HarmonicFit
 from regolith_studio.harmonics.legendre import fill_legendre, legendre_factors
-from regolith_studio.harmonics.reference_surface import Ellipsoid
+from regolith_studio.harmonics.radius_function import Ellipsoid
 from regolith_studio.harmonics.synthesis import (
     icosphere_edges,
     radii_along,

@@ -19,9 +19,9 @@ from regolith_studio.descriptors.comparison import relative_errors
 from regolith_studio.descriptors.describe import Descriptors, describe
 from regolith_studio.errors import JobCancelled
 from regolith_studio.geometry.convex_compound import ConvexCompound
-from regolith_studio.geometry.jaccard import jaccard_distance
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
+from regolith_studio.geometry.ray_casting import jaccard_distance
 from regolith_studio.harmonics.coefficients import ShCoefficients
 from regolith_studio.harmonics.fit import HarmonicFit
 from regolith_studio.harmonics.fit_options import DEFAULT_FIT_OPTIONS, FitOptions

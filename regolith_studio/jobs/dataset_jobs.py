@@ -18,7 +18,7 @@ from regolith_studio.dataset.export import (
 )
 from regolith_studio.dataset.exporters import EXPORTERS
 from regolith_studio.dataset.folder_io import dataset_hash, read_dataset, write_dataset
-from regolith_studio.dataset.representation import polyhedra_errors
+from regolith_studio.dataset.quality import polyhedra_errors
 from regolith_studio.dataset.size_distributions import Weighting
 from regolith_studio.dataset.size_parsing import SizeRule, parse_sizes
 from regolith_studio.dataset.streaming import check_count

@@ -148,7 +148,7 @@ def calibrate_repose(
 
 def write_calibration(calibration: ReposeCalibration, folder: Path) -> list[str]:
     """Write the result so far and the runs beside it in one step; names of the files."""
-    from regolith_studio.studies.figures.calibration import write_calibration_files  # matplotlib
+    from regolith_studio.studies.figures.repose import write_calibration_files  # matplotlib
 
     return write_with_runs(folder, KIND, lambda stage: write_calibration_files(calibration, stage))
 

@@ -180,8 +180,10 @@ def write_study(study: ReposeStudy, folder: Path, surface: ReposeSurface | None 
     FileError
         If the folder cannot be written.
     """
-    from regolith_studio.studies.figures.repose import write_repose_study  # matplotlib
-    from regolith_studio.studies.figures.response_surface import write_surface
+    from regolith_studio.studies.figures.repose import (
+        write_repose_study,  # matplotlib
+        write_surface,
+    )
 
     def write(stage: Path) -> tuple[Path, ...]:
         files = write_repose_study(study, stage, STUDY)

@@ -5,8 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from regolith_studio.dataset.dataset import Representation
-from regolith_studio.dataset.quality import QualityCurve, curve_counts, quality_steps
-from regolith_studio.dataset.representation import representation_of
+from regolith_studio.dataset.quality import QualityCurve, curve_counts, quality_steps, representation_of
 from regolith_studio.dataset.representatives import (
     NEEDED,
     RepresentativeSelection,

@@ -9,8 +9,8 @@ import numpy as np
 
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.harmonics.coefficients import ShCoefficients
-from regolith_studio.harmonics.rotation import rotated
 from regolith_studio.harmonics.sphere_grid import SphereGrid, enclosed_volumes, sphere_grid
+from regolith_studio.harmonics.transform import rotated
 
 _BATCH = 100
 _MIN_MOMENT = 1e-30

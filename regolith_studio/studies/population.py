@@ -16,9 +16,9 @@ from regolith_studio.descriptors.describe import describe
 from regolith_studio.errors import InputError, RegolithError
 from regolith_studio.geometry.arrays import FloatArray, IntArray
 from regolith_studio.messages import N_, Message
+from regolith_studio.shape_models.goodness_of_fit import distances_among, nearest_over_rotations
 from regolith_studio.shape_models.inertia_ellipsoid import canonical
 from regolith_studio.shape_models.models import MODELS
-from regolith_studio.shape_models.novelty import distances_among, nearest_over_rotations
 from regolith_studio.shape_models.realizations import Realizations, virtual_mesh
 from regolith_studio.shape_models.sample import Sample
 from regolith_studio.studies.population_distances import (

@@ -23,6 +23,7 @@ from regolith_studio.dataset.multisphere import (
     inner_points,
     inscribed_spheres,
     sphere_fit_errors,
+    sphere_masses,
     union_moments,
 )
 from regolith_studio.dataset.packing import pack_on_lattice
@@ -34,7 +35,6 @@ from regolith_studio.dataset.size_distributions import (
     SieveSizeDistribution,
     size_classes,
 )
-from regolith_studio.dataset.sphere_masses import sphere_masses
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.half_spaces import HalfSpaces
 from tests.tolerance import relative

@@ -7,7 +7,7 @@ import pytest
 from scipy.stats import norm, wasserstein_distance
 
 from regolith_studio.dataset.build import build_dataset
-from regolith_studio.dataset.representation import polyhedra_errors, representation_of
+from regolith_studio.dataset.quality import polyhedra_errors, representation_of
 from regolith_studio.dataset.representatives import (
     choose_representatives,
     representation_error,

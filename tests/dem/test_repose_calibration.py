@@ -23,8 +23,7 @@ from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.half_spaces import HalfSpaces
 from regolith_studio.jobs import repose_jobs
 from regolith_studio.jobs.events import Steps
-from regolith_studio.studies.figures import calibration as figures
-from regolith_studio.studies.figures import repose as section_figures
+from regolith_studio.studies.figures import repose as figures
 from tests.dem.interrupted_study import tree, write_figure
 from tests.dem.packings import cone
 
@@ -55,8 +54,7 @@ def cone_engine(
 def calibrated(boxes_folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Command:
     """The command, on an engine that needs no time."""
     monkeypatch.setattr(repose_jobs, "run_engine", cone_engine)
-    for module in (figures, section_figures):
-        monkeypatch.setattr(module, "write_figure", write_figure)
+    monkeypatch.setattr(figures, "write_figure", write_figure)
 
     def calibrate(*words: str, place: str = "found") -> int:
         request = ["repose", "calibrate", str(boxes_folder), "-o", str(tmp_path / place), "-n", str(N)]

@@ -7,7 +7,7 @@ import weakref
 import numpy as np
 import pytest
 
-from regolith_studio.geometry import cached_arrays
+from regolith_studio.geometry import mesh as cached_arrays
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.sphere_points import icosphere
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from regolith_studio.geometry.arrays import FloatArray
-from regolith_studio.geometry.exact_predicates import sign_of_cross_product, sign_of_triple_product
+from regolith_studio.geometry.ray_casting import sign_of_cross_product, sign_of_triple_product
 
 
 def exact_sign(a: FloatArray, b: FloatArray, c: FloatArray) -> int:

@@ -5,7 +5,7 @@ import pytest
 
 from regolith_studio.errors import GeometryError
 from regolith_studio.geometry import ConvexPolyhedron, HalfSpaces, Mesh
-from regolith_studio.geometry.jaccard import jaccard_distance
+from regolith_studio.geometry.ray_casting import jaccard_distance
 from regolith_studio.geometry.sphere_points import icosphere
 from tests.geometry.solids import cuboid, folded_stone, rotation, winding_numbers
 

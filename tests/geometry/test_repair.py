@@ -11,8 +11,7 @@ from regolith_studio.errors import GeometryError
 from regolith_studio.geometry.hole_filling import fill_holes, hole_boundaries, least_area_triangles
 from regolith_studio.geometry.merge_vertices import merged_vertices
 from regolith_studio.geometry.mesh import Mesh
-from regolith_studio.geometry.non_manifold import wedge_neighbours
-from regolith_studio.geometry.repair import repair
+from regolith_studio.geometry.repair import repair, wedge_neighbours
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.geometry.topology import edge_table, neighbours
 from tests.filling import filled

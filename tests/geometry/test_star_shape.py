@@ -4,11 +4,10 @@ import numpy as np
 import pytest
 
 from regolith_studio.geometry.mesh import Mesh
-from regolith_studio.geometry.mesh_health import inspect
+from regolith_studio.geometry.mesh_health import inspect, is_star_shaped
 from regolith_studio.geometry.ray_casting import radial_hits
 from regolith_studio.geometry.self_intersection import count_self_intersections
 from regolith_studio.geometry.sphere_points import fibonacci_directions, icosphere
-from regolith_studio.geometry.star_shape import is_star_shaped
 from regolith_studio.geometry.topology import Connectivity
 
 BALL = icosphere(3)

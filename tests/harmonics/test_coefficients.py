@@ -11,8 +11,8 @@ from regolith_studio.errors import InputError
 from regolith_studio.geometry.sphere_points import fibonacci_directions
 from regolith_studio.harmonics.coefficients import ShCoefficients, from_pyshtools, orders, to_pyshtools
 from regolith_studio.harmonics.legendre import harmonics
-from regolith_studio.harmonics.rotation import rotated
 from regolith_studio.harmonics.spectrum import power_spectrum
+from regolith_studio.harmonics.transform import rotated
 
 
 def test_that_the_mean_radius_of_a_sphere_is_its_radius():

@@ -8,7 +8,7 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.harmonics.coefficients import ShCoefficients
 from regolith_studio.harmonics.fit import HarmonicFit, fit_harmonics
-from regolith_studio.harmonics.reference_surface import Ellipsoid
+from regolith_studio.harmonics.radius_function import Ellipsoid
 from regolith_studio.harmonics.roundness import inscribed_radius, outline_roundness, wadell_roundness
 
 ANGLES = np.linspace(0.0, 2 * np.pi, 2048, endpoint=False)

@@ -10,10 +10,13 @@ from scipy.stats import spearmanr
 
 from regolith_studio.descriptors.describe import describe
 from regolith_studio.errors import InputError
-from regolith_studio.shape_models.calibration import features_and_target, measured_features
+from regolith_studio.shape_models.calibration import (
+    FineDegrees,
+    GaussianCopula,
+    features_and_target,
+    measured_features,
+)
 from regolith_studio.shape_models.convex_hull import ROWS, hull_grid, supports
-from regolith_studio.shape_models.copula import GaussianCopula
-from regolith_studio.shape_models.fine_degrees import FineDegrees
 from regolith_studio.shape_models.inertia_ellipsoid import forms, log_ellipsoids, with_forms
 from regolith_studio.shape_models.log_radius import log_shapes
 from regolith_studio.shape_models.materials import materials

@@ -7,9 +7,9 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from regolith_studio.harmonics.coefficients import ShCoefficients
-from regolith_studio.harmonics.rotation import rotated
+from regolith_studio.harmonics.transform import rotated
+from regolith_studio.shape_models.goodness_of_fit import distances_among, nearest_over_rotations
 from regolith_studio.shape_models.inertia_ellipsoid import canonical
-from regolith_studio.shape_models.novelty import distances_among, nearest_over_rotations
 from regolith_studio.shape_models.sample import Sample
 
 

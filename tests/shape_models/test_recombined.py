@@ -12,18 +12,19 @@ from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.harmonics.coefficients import orders
 from regolith_studio.harmonics.sphere_grid import sphere_grid
 from regolith_studio.harmonics.surface import reconstruct
+from regolith_studio.shape_models.goodness_of_fit import distances_among, nearest_over_rotations
 from regolith_studio.shape_models.inertia_ellipsoid import canonical, principal_axes
 from regolith_studio.shape_models.mapped_surfaces import MappedSurfaces
-from regolith_studio.shape_models.models.recombined import MODEL, RecombinedSettings
-from regolith_studio.shape_models.novelty import distances_among, nearest_over_rotations
-from regolith_studio.shape_models.realizations import virtual_mesh
-from regolith_studio.shape_models.sample import Sample
-from regolith_studio.shape_models.surface_forms import (
+from regolith_studio.shape_models.models.recombined import (
+    MODEL,
+    RecombinedSettings,
     SurfaceForms,
     _fill_turned,
     areas,
     mesh_features,
 )
+from regolith_studio.shape_models.realizations import virtual_mesh
+from regolith_studio.shape_models.sample import Sample
 from tests.filling import filled
 
 AXES = np.array([[1.0, 1.0, 1.0], [0.8, 1.0, 1.3]])

@@ -10,11 +10,11 @@ from regolith_studio.harmonics.coefficients import ShCoefficients, orders
 from regolith_studio.harmonics.legendre import harmonics
 from regolith_studio.harmonics.sphere_grid import sphere_grid
 from regolith_studio.harmonics.surface import reconstruct
+from regolith_studio.shape_models.goodness_of_fit import distances_among, nearest_over_rotations
 from regolith_studio.shape_models.inertia_ellipsoid import canonical, principal_axes
-from regolith_studio.shape_models.linear_maps import mapped_radii, radius_tables
+from regolith_studio.shape_models.mapped_surfaces import mapped_radii, radius_tables
 from regolith_studio.shape_models.materials import materials
 from regolith_studio.shape_models.models.sample_matched import MODEL, SampleMatchedSettings
-from regolith_studio.shape_models.novelty import distances_among, nearest_over_rotations
 from regolith_studio.shape_models.realizations import virtual_mesh
 from regolith_studio.shape_models.sample import Sample
 from regolith_studio.shape_models.shape_features import SPHERICITY, outer_features_of_radii

@@ -22,7 +22,7 @@ from regolith_studio.harmonics.fit_options import FitOptions
 from regolith_studio.harmonics.surface import reconstruct
 from regolith_studio.readers.particles import sample_particles
 from regolith_studio.studies.error_bands import pooled_rmsre
-from regolith_studio.studies.figures.lmax import lmax_figure, write_lmax_study
+from regolith_studio.studies.figures.degrees import lmax_figure, write_lmax_study
 from regolith_studio.studies.lmax import (
     BOX_NOTE,
     LmaxStudy,

@@ -13,7 +13,7 @@ from regolith_studio.geometry.convex_compound import ConvexCompound
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.half_spaces import HalfSpaces
 from regolith_studio.geometry.mesh import Mesh
-from regolith_studio.studies.figures.polyhedron_gallery import (
+from regolith_studio.studies.figures.degrees import (
     EDGE,
     VIEW,
     gallery_figure,

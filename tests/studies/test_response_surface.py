@@ -5,8 +5,7 @@ import pytest
 
 from regolith_studio.errors import InputError
 from regolith_studio.studies.repose import runs_from
-from regolith_studio.studies.repose_surface import fit_repose_surface
-from regolith_studio.studies.response_surface import ResponseSurface, fit_response_surface
+from regolith_studio.studies.repose_surface import ResponseSurface, fit_repose_surface, fit_response_surface
 
 from .test_repose_means import document
 

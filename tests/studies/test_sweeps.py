@@ -11,7 +11,7 @@ import pytest
 from regolith_studio.coarsening.weights import JACCARD, LossWeights
 from regolith_studio.errors import InputError
 from regolith_studio.studies.coarsening import COLUMNS, CoarseningStudy
-from regolith_studio.studies.figures.sweeps import write_sweep
+from regolith_studio.studies.figures.coarsening import write_sweep
 from regolith_studio.studies.loss_variants import (
     LossVariant,
     facet_count_variants,

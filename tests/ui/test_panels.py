@@ -18,8 +18,7 @@ from regolith_studio.geometry.mesh_health import inspect
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.harmonics.fit_options import AUTOMATIC
-from regolith_studio.harmonics.radius_function import RULES
-from regolith_studio.harmonics.reference_surface import REFERENCES
+from regolith_studio.harmonics.radius_function import REFERENCES, RULES
 from regolith_studio.harmonics.star_point import STAR_POINT_RULES
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.results import ParticleEntry, Results

@@ -6,8 +6,7 @@ import numpy as np
 
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.export import NOTES, Exporter, ExportOptions, shape_names, sizes_csv
-from regolith_studio.dataset.multisphere import fit_spheres_by, sphere_fit_errors
-from regolith_studio.dataset.sphere_masses import sphere_masses
+from regolith_studio.dataset.multisphere import fit_spheres_by, sphere_fit_errors, sphere_masses
 from regolith_studio.io.tables import csv_bytes
 from regolith_studio.messages import N_
 

@@ -25,12 +25,12 @@ from regolith_studio.messages import N_
 from regolith_studio.shape_models.calibration import (
     CalibrationOffset,
     CalibrationTarget,
+    FineDegrees,
+    GaussianCopula,
     features_and_target,
     measured_features,
 )
 from regolith_studio.shape_models.chunked_sampling import CHUNK, SizedSampler
-from regolith_studio.shape_models.copula import GaussianCopula
-from regolith_studio.shape_models.fine_degrees import FineDegrees
 from regolith_studio.shape_models.inertia_ellipsoid import log_ellipsoids, with_forms
 from regolith_studio.shape_models.log_radius import log_shapes
 from regolith_studio.shape_models.sample import Sample

@@ -7,11 +7,19 @@ the one is kept whose sphericity is nearest to that of the other particle.
 What a map, the choice and the cut at l_max change is measured on draws and taken off what is asked for: first
 the power of each degree, then mean and deviation of aspect ratio, sphericity and share of the hull. Sizes,
 forms and sphericities are those of measured particles; it makes none beyond them.
+
+Measured surfaces apart from their forms, on coarse meshes: quick to turn, to stretch and to compare.
+
+Each surface is mapped linearly to its sphere of inertia. Turned there and stretched to the form of another
+particle it is a new body, whose sphericity follows from the area of the stretched mesh. The form along a
+principal axis is the geometric mean of the extent and of the axis of the ellipsoid of inertia: of real grains
+the aspect ratio of the minimum-volume box lies half-way between those of the two.
 """
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
+from itertools import product
 from typing import Any, ClassVar
 
 import numpy as np
@@ -20,8 +28,14 @@ from scipy.spatial.transform import Rotation
 
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats
+from regolith_studio.geometry.kernels import kernel
+from regolith_studio.geometry.sphere_points import icosphere
+from regolith_studio.harmonics.legendre import harmonics
+from regolith_studio.harmonics.sphere_grid import enclosed_volumes, sphere_grid
 from regolith_studio.messages import N_
 from regolith_studio.shape_models.chunked_sampling import CHUNK
+from regolith_studio.shape_models.convex_hull import hull_grid
+from regolith_studio.shape_models.inertia_ellipsoid import PrincipalAxes, principal_axes
 from regolith_studio.shape_models.mapped_surfaces import (
     SurfaceSampler,
     SurfaceSettings,
@@ -30,7 +44,192 @@ from regolith_studio.shape_models.mapped_surfaces import (
 )
 from regolith_studio.shape_models.realizations import positive_rows
 from regolith_studio.shape_models.sample import Sample
-from regolith_studio.shape_models.surface_forms import N_FEATURES, SurfaceForms, mesh_features
+from regolith_studio.shape_models.shape_features import log_share
+
+Floats = NDArray[np.float32]
+
+COARSE, FINE = 3, 4
+"""Levels of the icospheres: of surfaces that are tried, and of those whose sphericity is measured."""
+N_FEATURES = 3
+"""Columns of :func:`mesh_features`."""
+MIN_HULL_DEGREE = 13
+FACTORS = (0.5, 2.0)
+"""Limits of the factor on the logarithms of a form."""
+BOX_TURN = 0.35
+"""Boxes are turned out of the principal axes by so much, to either side about each of them, radians."""
+_MIN_RADIUS = 1e-3
+_BATCH = 250
+
+
+@dataclass(frozen=True, eq=False)
+class SurfaceForms:
+    """Surfaces of n particles on their spheres of inertia, and the forms that they had.
+
+    Parameters
+    ----------
+    vertices
+        On the sphere of inertia, in the frame of the principal axes, shape (n, 642, 3).
+    to_sphere
+        Linear maps of the particles there, shape (n, 3, 3).
+    from_frame
+        Principal axes as columns, shape (n, 3, 3): maps back from the frame of the axes.
+    forms
+        Along the principal axes, with a product of one, shape (n, 3).
+    features
+        As :func:`mesh_features`, shape (n, 3).
+    area_factors
+        Sphericity times the area of a mesh of unit volume, shape (n,): what the coarse mesh does not see of
+        the surface stays the same when it is stretched.
+    """
+
+    vertices: Floats
+    to_sphere: FloatArray
+    from_frame: FloatArray
+    forms: FloatArray
+    features: FloatArray
+    area_factors: FloatArray
+
+    @classmethod
+    def of(cls, rows: FloatArray, found: PrincipalAxes) -> "SurfaceForms":
+        """Of radius functions (n, (l_max + 1)^2) with these principal axes."""
+        lengths = np.exp(found.log_ratios)
+        radii = rows @ harmonics(icosphere(COARSE).vertices, round(rows.shape[1] ** 0.5) - 1)
+        points = (radii[:, :, None] * icosphere(COARSE).vertices) @ found.axes
+        features = mesh_features(rows, found.axes)
+        return cls(
+            (points / lengths[:, None, :]).astype(np.float32),
+            np.swapaxes(found.axes, 1, 2) / lengths[:, :, None],
+            found.axes,
+            _unit_product(np.sqrt(np.ptp(points, axis=1) * lengths)),
+            features,
+            areas(points) / (1 + np.exp(-features[:, 1])),
+        )
+
+    def elongated(self, targets: IntArray, changes: FloatArray) -> FloatArray:
+        """Forms (k, 3) of the particles `targets` with ln(longest / shortest) changed by `changes`."""
+        logs = np.log(self.forms[targets])
+        factors = 1 + changes / np.maximum(np.ptp(logs, axis=1), 1e-9)
+        return np.asarray(np.exp(logs * np.clip(factors, *FACTORS)[:, None]))
+
+    def stretched(
+        self, picks: IntArray, turns: FloatArray, wanted: FloatArray
+    ) -> tuple[FloatArray, FloatArray]:
+        """Surfaces turned on the sphere of inertia and stretched along the axes to other forms.
+
+        Parameters
+        ----------
+        picks
+            Whose surfaces, shape (k,).
+        turns
+            Rotations, shape (k, 3, 3).
+        wanted
+            Forms, shape (k, 3).
+
+        Returns
+        -------
+        Linear maps of determinant one (k, 3, 3), and ln(s / (1 - s)) of the sphericities (k,).
+        """
+        turned, edges = (
+            np.empty((len(picks), *self.vertices.shape[1:]), dtype=np.float32),
+            np.empty((len(picks), 3)),
+        )
+        _fill_turned(self.vertices, picks, turns, turned, edges)
+        factors = _unit_product(wanted / np.sqrt(edges))
+        turned *= factors[:, None, :].astype(np.float32)
+        return factors[:, :, None] * turns, log_share(self.area_factors[picks] / areas(turned))
+
+
+def areas(vertices: FloatArray | Floats) -> FloatArray:
+    """Areas (n,) of meshes with these vertices (n, v, 3) and the triangles of the icosphere with so many."""
+    level = {len(icosphere(each).vertices): each for each in (COARSE, FINE)}[vertices.shape[1]]
+    found = np.empty(len(vertices))
+    _fill_areas(np.ascontiguousarray(vertices, dtype=np.float32), icosphere(level).faces, found)
+    return found
+
+
+@kernel
+def _fill_areas(vertices: Floats, faces: IntArray, found: FloatArray) -> None:
+    """Fill `found`, shape (n,), with the areas of the triangles `faces` (f, 3) of each row of `vertices`."""
+    for n in range(len(vertices)):
+        points, total = vertices[n], 0.0
+        for f in range(len(faces)):
+            a, b, c = faces[f, 0], faces[f, 1], faces[f, 2]
+            ux, uy, uz = points[b, 0] - points[a, 0], points[b, 1] - points[a, 1], points[b, 2] - points[a, 2]
+            vx, vy, vz = points[c, 0] - points[a, 0], points[c, 1] - points[a, 1], points[c, 2] - points[a, 2]
+            x, y, z = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
+            total += np.sqrt(x * x + y * y + z * z)
+        found[n] = 0.5 * total
+
+
+@kernel
+def _fill_turned(
+    vertices: Floats, picks: IntArray, turns: FloatArray, turned: Floats, edges: FloatArray
+) -> None:
+    """Fill `turned`, shape (k, v, 3), with the rows `picks` of `vertices` under the rotations `turns`, and
+    `edges`, shape (k, 3), with the extents along the axes."""
+    for n in range(len(picks)):
+        points = vertices[picks[n]]
+        for k in range(3):
+            a, b, c = np.float32(turns[n, k, 0]), np.float32(turns[n, k, 1]), np.float32(turns[n, k, 2])
+            low, high = np.float32(np.inf), np.float32(-np.inf)
+            for v in range(len(points)):
+                value = a * points[v, 0] + b * points[v, 1] + c * points[v, 2]
+                turned[n, v, k] = value
+                low, high = min(low, value), max(high, value)
+            edges[n, k] = high - low
+
+
+def mesh_features(rows: FloatArray, axes: FloatArray | None = None) -> FloatArray:
+    """ln of the aspect ratio, and ln(s / (1 - s)) of the sphericity and of the share of the hull.
+
+    The aspect ratio is that of the smallest of 27 boxes about the principal axes.
+
+    Parameters
+    ----------
+    rows
+        Coefficients of radius functions, shape (n, (l_max + 1)^2).
+    axes
+        Their principal axes as columns, shape (n, 3, 3), where they are known.
+
+    Returns
+    -------
+    Shape (n, 3).
+    """
+    known = principal_axes(rows).axes if axes is None else axes
+    batches = range(0, len(rows), _BATCH)
+    return np.concatenate([_of_batch(rows[i : i + _BATCH], known[i : i + _BATCH]) for i in batches])
+
+
+def _unit_product(values: FloatArray) -> FloatArray:
+    """Rows (n, 3) divided by the cube root of their product."""
+    return np.asarray(values / np.cbrt(values.prod(axis=1, keepdims=True)))
+
+
+def _of_batch(rows: FloatArray, axes: FloatArray) -> FloatArray:
+    l_max = round(rows.shape[1] ** 0.5) - 1
+    scaled = rows / (rows[:, :1] / np.sqrt(4 * np.pi))
+    grid = sphere_grid(3 * l_max // 2 + 1, l_max)
+    volumes = enclosed_volumes(grid.values(scaled), grid)
+    sphere = icosphere(FINE)
+    surface = (scaled @ harmonics(sphere.vertices, l_max))[:, :, None] * sphere.vertices
+    sphericities = np.pi ** (1 / 3) * (6 * volumes) ** (2 / 3) / areas(surface)
+    hulls = hull_grid(max(MIN_HULL_DEGREE, l_max), l_max)
+    convexities = hulls.convexities(np.maximum(hulls.grid.values(scaled), _MIN_RADIUS))
+    return np.column_stack(
+        [_log_aspect_ratios(surface, axes), log_share(sphericities), log_share(convexities)]
+    )
+
+
+def _log_aspect_ratios(vertices: FloatArray, axes: FloatArray) -> FloatArray:
+    """ln(longest / shortest edge) of the smallest box about `axes` (n, 3, 3) of each mesh (n, v, 3)."""
+    turns = Rotation.from_rotvec(list(product((-BOX_TURN, 0.0, BOX_TURN), repeat=3))).as_matrix()
+    frames = np.swapaxes(axes[:, None] @ turns, 2, 3).reshape(len(axes), -1, 3).astype(np.float32)
+    edges = np.empty((len(axes), len(turns), 3))
+    for found, mesh, frame in zip(edges, vertices.astype(np.float32), frames, strict=True):
+        found[:] = np.ptp(frame @ mesh.T, axis=1).reshape(-1, 3)
+    smallest = edges[np.arange(len(edges)), edges.prod(axis=2).argmin(axis=1)]
+    return np.asarray(np.log(smallest.max(axis=1) / smallest.min(axis=1)))
+
 
 KEY = "recombined"
 ROUNDS = 3
@@ -76,8 +275,8 @@ class Recombined(SurfaceSampler):
     Parameters
     ----------
     offsets, spreads
-        What is asked for of the features of :mod:`~regolith_studio.shape_models.surface_forms`: mean + offset
-        + spread (measured - mean), shapes (3,); zeros and ones if ``None``.
+        What is asked for of the features of :class:`SurfaceForms`: mean + offset + spread
+        (measured - mean), shapes (3,); zeros and ones if ``None``.
     """
 
     offsets: FloatArray | None = None

@@ -1,8 +1,13 @@
-"""Fig. 8 as a heat map, and error against face count."""
+"""Fig. 8 as a heat map, and error against face count.
 
+Figures and files of parameter sweeps of a coarsening.
+"""
+
+from collections.abc import Callable, Mapping
 from pathlib import Path
 
 import numpy as np
+from matplotlib.colors import TwoSlopeNorm
 from matplotlib.figure import Figure
 
 from regolith_studio.coarsening.weights import JACCARD, WEIGHT_KEYS
@@ -16,6 +21,82 @@ from regolith_studio.studies.coarsening import (
     rmsre_table,
 )
 from regolith_studio.studies.figures.files import with_subscript, write_figure
+from regolith_studio.studies.sweeps import (
+    SWEEPS,
+    descriptor_error,
+    differences,
+    format_difference,
+    pareto_front,
+    significant,
+)
+
+BELOW = 0.02
+"""Room below 0, as a share of the axis: the marker of a row without errors is whole."""
+MIN_SPAN = 0.01
+"""Percentage points: where all changes are smaller, they are drawn as none."""
+
+
+def tradeoff_figure(study: CoarseningStudy) -> Figure:
+    """Mean RMSRE of the descriptors against the mean Jaccard distance; a line through the Pareto front."""
+    x, y = 100 * study.rmsre[:, -1], 100 * descriptor_error(study.rmsre)
+    x_ends = 100 * study.bands[..., -1]
+    y_ends = 100 * study.band_of(descriptor_error(study.resampled))
+    figure = Figure(figsize=(7.5, 4.5), layout="constrained")
+    axis = figure.subplots()
+    best = list(pareto_front(study))
+    axis.plot(
+        x[best], y[best], color="#888888", linewidth=1, linestyle="--", label="no row is better in both"
+    )
+    for r, row in enumerate(study.rows):
+        axis.errorbar(
+            x[r],
+            y[r],
+            xerr=np.maximum(0.0, [[x[r] - x_ends[0, r]], [x_ends[1, r] - x[r]]]),
+            yerr=np.maximum(0.0, [[y[r] - y_ends[0, r]], [y_ends[1, r] - y[r]]]),
+            fmt="o",
+            markersize=5,
+            color=f"C{r % 10}",
+            elinewidth=0.8,
+            capsize=2,
+            label=row.label,
+        )
+    axis.set_xlabel("mean Jaccard distance (%)")
+    axis.set_ylabel("mean RMSRE of the six descriptors (%)")
+    axis.set_ylim(bottom=-BELOW * axis.get_ylim()[1])
+    axis.grid(True, alpha=0.3)
+    figure.legend(loc="outside right upper", frameon=False, fontsize="small")
+    return figure
+
+
+def sensitivity_figure(study: CoarseningStudy) -> Figure:
+    """Changes in percentage points, one row a changed weight; numbers in brackets may be chance."""
+    values, sure = 100 * differences(study)[0], significant(study)
+    n_rows = len(values)
+    figure = Figure(figsize=(9.0, 1.6 + 0.34 * n_rows), layout="constrained")
+    axis = figure.subplots()
+    span = max(MIN_SPAN, float(np.abs(values).max(initial=0.0)))
+    norm = TwoSlopeNorm(0.0, -span, span)
+    image = axis.imshow(values, aspect="auto", cmap="RdBu_r", norm=norm)
+    for r in range(n_rows):
+        for k in range(len(COLUMNS)):
+            text = format_difference(values[r, k])
+            axis.text(
+                k,
+                r,
+                text if sure[r, k] or text == "0" else f"({text})",
+                ha="center",
+                va="center",
+                color="white" if abs(values[r, k]) > 0.6 * span else "black",
+                fontsize=8,
+            )
+    axis.set_xticks(range(len(COLUMNS)), [column_symbol(key) for key in COLUMNS])
+    axis.set_yticks(range(n_rows), [row.label for row in study.rows[1:]])
+    axis.xaxis.tick_top()
+    figure.colorbar(image, ax=axis).set_label(
+        "change of RMSRE (percentage points); in brackets: may be chance"
+    )
+    return figure
+
 
 PAPER_SYMBOLS = {JACCARD: "IoU"}
 
@@ -71,6 +152,23 @@ def facet_count_figure(study: CoarseningStudy) -> Figure:
     axis.grid(True, which="major", alpha=0.3)
     figure.legend(loc="outside right upper", frameon=False)
     return figure
+
+
+FIGURES: Mapping[str, Callable[[CoarseningStudy], Figure]] = {
+    "facets": facet_count_figure,
+    "tradeoff": tradeoff_figure,
+    "sensitivity": sensitivity_figure,
+}
+"""By key of :data:`~regolith_studio.studies.sweeps.SWEEPS`."""
+
+
+def write_sweep(key: str, study: CoarseningStudy, folder: Path) -> tuple[Path, ...]:
+    """Tables (CSV, JSON) of rows and of particles, and the figure (PNG, SVG)."""
+    return (
+        *write_table(SWEEPS[key].table(study), folder, key),
+        *write_table(particle_table(study), folder, f"{key}_particles"),
+        *write_figure(FIGURES[key](study), folder, key),
+    )
 
 
 def write_coarsening_study(

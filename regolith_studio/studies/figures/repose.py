@@ -1,19 +1,166 @@
-"""Angle of repose: sections through a pile with the fitted flanks (Fig. 9), and angles against a value."""
+"""Angle of repose: sections through a pile with the fitted flanks (Fig. 9), and angles against a value.
 
+Calibration: the runs against each parameter, its posterior density, and its interval after each run.
+
+Response surface of the angle of repose over shape statistics: one panel a statistic, and its files.
+"""
+
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import EllipseCollection
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
 from regolith_studio.dem.angle_of_repose import PAPER_AZIMUTHS, ReposeMeasurement
 from regolith_studio.dem.evaluation.profile import project
 from regolith_studio.dem.evaluation.section import Section
+from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.io.json_text import json_bytes
 from regolith_studio.io.tables import write_table
-from regolith_studio.studies.figures.files import write_figure
+from regolith_studio.studies.calibration import CONFIDENCE, density_of
+from regolith_studio.studies.figures.files import with_subscript, write_figure
 from regolith_studio.studies.repose import ReposeStudy, repose_means, repose_table
+from regolith_studio.studies.repose_calibration import (
+    ANGLE,
+    ReposeCalibration,
+    calibration_document,
+    calibration_table,
+    probabilities_of,
+)
+from regolith_studio.studies.repose_surface import ReposeSurface, surface_document, surface_table
+
+SURFACE_STEM = "response_surface"
+
+
+def write_surface(found: ReposeSurface, folder: Path) -> tuple[Path, ...]:
+    """Table (CSV, JSON), terms and effects (JSON) and figure (PNG, SVG)."""
+    terms = folder / f"{SURFACE_STEM}_terms.json"
+    terms.write_bytes(json_bytes(surface_document(found)))
+    table = write_table(surface_table(found), folder, SURFACE_STEM)
+    return (*table, terms, *write_figure(surface_figure(found), folder, SURFACE_STEM))
+
+
+def surface_figure(found: ReposeSurface) -> Figure:
+    """The surface along each statistic, all others at their means, with its interval; the runs as dots."""
+    surface, n = found.surface, len(found.surface.factors)
+    figure = Figure(figsize=(3.6 * n + 0.6, 3.4), layout="constrained")
+    statistics = dict(zip(found.study.values, found.statistics, strict=True))
+    for k, axis in enumerate(figure.subplots(1, n, squeeze=False, sharey=True)[0]):
+        places = np.tile(surface.centre, (60, 1))
+        places[:, k] = np.linspace(found.statistics[:, k].min(), found.statistics[:, k].max(), 60)
+        mean, half = surface.predict(places)
+        axis.plot(places[:, k], mean, color="0.3")
+        axis.fill_between(places[:, k], mean - half, mean + half, color="0.3", alpha=0.2)
+        for run in found.study.runs:
+            if run.angle is not None:
+                axis.plot(statistics[run.value][k], run.angle, "o", color="#0072b2", markersize=4)
+        axis.set_xlabel(with_subscript(CATALOGUE[surface.factors[k]].symbol))
+        axis.grid(True, alpha=0.3)
+        if k == 0:
+            axis.set_ylabel("angle of repose (°)")
+    return figure
+
+
+RUNS, POSTERIOR, WANTED = "#0072b2", "#009e73", "#e69f00"
+STEM = "calibration"
+
+
+def write_calibration_files(calibration: ReposeCalibration, folder: Path) -> tuple[Path, ...]:
+    """``calibration.json``, the table of the runs (``runs.csv``, ``runs.json``) and the figure (PNG, SVG)."""
+    document = folder / f"{STEM}.json"
+    document.write_bytes(json_bytes(calibration_document(calibration)))
+    table = write_table(calibration_table(calibration), folder, "runs")
+    return (document, *table, *write_figure(calibration_figure(calibration), folder, STEM))
+
+
+def calibration_figure(calibration: ReposeCalibration) -> Figure:
+    """A row a parameter, three columns: angles, density, intervals."""
+    n = len(calibration.parameters)
+    figure = Figure(figsize=(10.5, 3.1 * n), layout="constrained")
+    for k, row in enumerate(figure.subplots(n, 3, squeeze=False)):
+        _draw_angles(row[0], calibration, k)
+        _draw_density(row[1], calibration, k)
+        draw = _draw_probabilities if calibration.parameters[k].choices else _draw_intervals
+        draw(row[2], calibration, k)
+    return figure
+
+
+def _draw_angles(axis: Axes, calibration: ReposeCalibration, k: int) -> None:
+    """Angles of the runs; with a single parameter also the prediction, with its standard deviation."""
+    target = next(each for each in calibration.targets if each.name == ANGLE)
+    low, high = target.value - target.error, target.value + target.error
+    axis.axhspan(low, high, color=WANTED, alpha=0.3, label="wanted")
+    posterior = calibration.posterior
+    if len(calibration.parameters) == 1:
+        order = np.argsort(posterior.points[:, 0])
+        where, mean = posterior.points[order, 0], posterior.predicted[order, 0]
+        spread = posterior.deviations[order, 0]
+        axis.fill_between(where, mean - spread, mean + spread, color=RUNS, alpha=0.2, label="predicted")
+        if calibration.runs:
+            seen = [run.result(ANGLE) for run in calibration.runs]
+            axis.set_ylim(np.nanmin([low, *seen]) - 5.0, np.nanmax([high, *seen]) + 5.0)
+    for run in calibration.runs:
+        axis.errorbar(run.values[k], run.result(ANGLE), run.error(ANGLE), fmt="o", color=RUNS, capsize=3)
+    if choices := calibration.parameters[k].choices:
+        _name_choices(axis, choices)
+    axis.set_xlabel(_label(calibration, k))
+    axis.set_ylabel("angle of repose (°)")
+    axis.legend(frameon=False)
+
+
+def _draw_density(axis: Axes, calibration: ReposeCalibration, k: int) -> None:
+    posterior, parameter = calibration.posterior, calibration.parameters[k]
+    where, density = density_of(posterior, parameter, k)
+    if parameter.choices:
+        axis.bar(where, density, color=POSTERIOR, alpha=0.4)
+        _name_choices(axis, parameter.choices)
+    else:
+        axis.fill_between(where, density, step="mid", color=POSTERIOR, alpha=0.4)
+        axis.axvline(float(posterior.best[k]), color=POSTERIOR, label="best")
+        axis.axvline(calibration.next_values[k], color="0.3", linestyle=":", label="next run")
+    axis.axhline(1.0, color="0.5", linewidth=0.8, linestyle="--", label="before the first run")
+    axis.set_xlabel(_label(calibration, k))
+    axis.set_ylabel("posterior density over prior")
+    axis.legend(frameon=False)
+
+
+def _draw_probabilities(axis: Axes, calibration: ReposeCalibration, k: int) -> None:
+    """Of each choice, before the first and after each run."""
+    parameter = calibration.parameters[k]
+    found = [probabilities_of(each, parameter, k) for each in calibration.posteriors]
+    for name in parameter.choices:
+        axis.plot(range(len(found)), [each[name] for each in found], "o-", label=name)
+    axis.set_ylim(0.0, 1.0)
+    axis.set_xlabel("runs")
+    axis.xaxis.set_major_locator(MaxNLocator(integer=True))
+    axis.set_ylabel(f"probability of the {_label(calibration, k)}")
+    axis.legend(frameon=False)
+
+
+def _draw_intervals(axis: Axes, calibration: ReposeCalibration, k: int) -> None:
+    intervals = np.array([each.intervals[k] for each in calibration.posteriors])
+    numbers = np.arange(len(intervals))
+    axis.fill_between(numbers, *intervals.T, color=POSTERIOR, alpha=0.4)
+    best = [float(each.best[k]) for each in calibration.posteriors]
+    axis.plot(numbers[1:], best[1:], "o-", color=POSTERIOR)
+    axis.set_title(f"best and {100 * CONFIDENCE:g} % interval", fontsize="medium")
+    axis.set_xlabel("runs")
+    axis.xaxis.set_major_locator(MaxNLocator(integer=True))
+    axis.set_ylabel(_label(calibration, k))
+
+
+def _name_choices(axis: Axes, choices: Sequence[str]) -> None:
+    axis.set_xlim(-0.5, len(choices) - 0.5)
+    axis.set_xticks(range(len(choices)), choices, rotation=20, ha="right", rotation_mode="anchor")
+
+
+def _label(calibration: ReposeCalibration, k: int) -> str:
+    return calibration.parameters[k].name.replace("_", " ")
+
 
 MILLIMETRE = 1e3
 LEFT, RIGHT, BOTH = "#0072b2", "#e69f00", "#009e73"

@@ -17,8 +17,7 @@ from regolith_studio.coarsening.target import Target
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.exits import exits
 from regolith_studio.geometry.half_spaces import HalfSpaces
-from regolith_studio.geometry.jaccard import jaccard_distance
-from regolith_studio.geometry.ray_casting import radial_hits
+from regolith_studio.geometry.ray_casting import jaccard_distance, radial_hits
 from regolith_studio.geometry.sphere_points import fibonacci_directions, icosphere
 from tests.filling import filled
 
