@@ -5,6 +5,7 @@ import numpy as np
 from regolith_studio.errors import GeometryError
 from regolith_studio.geometry.arrays import FloatArray, IntArray
 from regolith_studio.geometry.kernels import kernel_noalloc
+from regolith_studio.geometry.longest_chord import longest_chord
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.minimum_box.extents import extreme_vertices_of_each
 from regolith_studio.geometry.minimum_box.hull_topology import facets_of_hull
@@ -20,7 +21,7 @@ ROUNDING = 1e-12
 def feret_max(hull: Mesh) -> float:
     """Largest Feret diameter: the largest distance between two vertices."""
     middle, size = _frame(hull)
-    return size * _longest_chord((hull.vertices - middle) / size)
+    return size * longest_chord((hull.vertices - middle) / size)
 
 
 def feret_min(hull: Mesh) -> float:
@@ -35,17 +36,6 @@ def feret_min(hull: Mesh) -> float:
 def _frame(hull: Mesh) -> tuple[FloatArray, float]:
     low, high = hull.bounds
     return (low + high) / 2, float((high - low).max())
-
-
-@kernel_noalloc
-def _longest_chord(points: FloatArray) -> float:
-    """Largest distance between two points."""
-    longest = 0.0
-    for i in range(len(points)):
-        for j in range(i):
-            chord = mixed(row(points, i), 1.0, row(points, j), -1.0)
-            longest = max(longest, dot(chord, chord))
-    return float(np.sqrt(longest))
 
 
 def _min_width(points: FloatArray, faces: IntArray) -> float:

@@ -74,7 +74,7 @@ def _columns(
     if width == 3:
         return named_columns(("x", "y", "z")), ()
     names = _WITH_SPECIES.get(width, ())
-    is_word = bool(np.isnan(float_or_nan(rows[0][0])))
+    is_word = bool(names) and bool(np.isnan(float_or_nan(rows[0][0])))
     if not names or not (is_word or counts_first(_numbers(rows, NamedColumns((1, 2, 3), 0)))):
         raise FileError(f"has {width} columns that it does not name; {NAME_THEM}.")
     if is_word and width == 4:
@@ -87,7 +87,7 @@ def _of_properties(parts: list[str]) -> NamedColumns:
     """The columns of an extended XYZ file: name, kind and count of each."""
     place, axes, size, is_radius = 0, None, None, True
     for name, _kind, count in zip(parts[::3], parts[1::3], parts[2::3], strict=False):
-        step = int(count) if count.isdigit() and len(count) < 4 else 0
+        step = int(count) if re.fullmatch(r"[0-9]{1,3}", count) else 0
         if name.lower() in ("pos", "position") and step == 3:
             axes = (place, place + 1, place + 2)
         if name.lower() in _SIZES and step == 1:

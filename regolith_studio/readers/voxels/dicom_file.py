@@ -119,8 +119,11 @@ def frames_of(path: Path) -> list[DicomFrame]:
 
 def _is_image(data: Any) -> bool:
     """Whether a file has the size of an image, or is not of a class that is known to have none."""
-    uid = getattr(data.file_meta, "MediaStorageSOPClassUID", "")
-    name = str(getattr(uid, "name", uid))
+    try:
+        uid = getattr(data.file_meta, "MediaStorageSOPClassUID", "")
+        name = str(getattr(uid, "name", uid))
+    except Exception:  # noqa: BLE001 (values are converted when they are asked for, and fail in many ways)
+        return True
     return "Image" in name or name == str(uid) or "Rows" in data or "Columns" in data
 
 
