@@ -188,16 +188,16 @@ def _reach(polyhedron: Polyhedron) -> float:
 
 
 N_GALLERY_COLUMNS = 4
-CELL = 1.9
+SURFACE_CELL = 1.9
 """Inches."""
-COLOUR = np.array([0.62, 0.66, 0.71])
+SURFACE_COLOUR = np.array([0.62, 0.66, 0.71])
 
 
 def degree_figure(surfaces: Mapping[str, Mesh | None]) -> Figure:
     """Each surface under its title, all at one scale; an empty place says that the radius is negative."""
     columns = min(N_GALLERY_COLUMNS, len(surfaces))
     rows = ceil(len(surfaces) / columns)
-    figure = Figure(figsize=(CELL * columns, (CELL + 0.2) * rows), layout="constrained")
+    figure = Figure(figsize=(SURFACE_CELL * columns, (SURFACE_CELL + 0.2) * rows), layout="constrained")
     axes = list(figure.subplots(rows, columns, squeeze=False).flat)
     flat = [mesh.vertices @ VIEW[:2].T for mesh in surfaces.values() if mesh is not None]
     low = np.min([each.min(axis=0) for each in flat], axis=0)
@@ -226,7 +226,7 @@ def draw_shaded(axis: Axes, mesh: Mesh) -> None:
     order = np.argsort(corners[:, :, 2].mean(axis=1), kind="stable")
     light = (normals[seen] / lengths[seen, None]) @ (LIGHT / np.linalg.norm(LIGHT))
     brightness = 0.35 + 0.65 * np.clip(light, 0.0, 1.0)
-    colours = np.clip(brightness[order, None] * COLOUR, 0.0, 1.0)
+    colours = np.clip(brightness[order, None] * SURFACE_COLOUR, 0.0, 1.0)
     outlines = corners[order, :, :2]
     axis.add_collection(
         PolyCollection(
