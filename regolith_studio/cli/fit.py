@@ -1,7 +1,8 @@
 """``fit``: spherical-harmonics coefficients and power spectrum of a sample."""
 
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -22,6 +23,13 @@ from regolith_studio.cli.options import (
 from regolith_studio.cli.terminal import print_errors, print_json, run_with_progress
 from regolith_studio.harmonics.fit_options import FitOptions
 
+if TYPE_CHECKING:
+    from regolith_studio.geometry.particle import Particle
+    from regolith_studio.harmonics.fit import HarmonicFit
+    from regolith_studio.jobs.particle_jobs import FitRequest
+
+_MOST_LINES = 5
+"""Fits that are far off that are named one by one."""
 FitFile = Annotated[
     Path,
     typer.Option(
@@ -69,14 +77,30 @@ def fit(
         Choices(l_max=l_max, seed=seed, level=level)
         request = FitRequest(l_max, radii)
     loaded = reading.read(meshes)
-    sample = FittedSample.of(loaded.particles, run_with_progress(fit_sample(loaded.particles, request, jobs)))
+    fitted = run_with_progress(fit_sample(loaded.particles, request, jobs))
+    sample = FittedSample.of(loaded.particles, fitted)
     print_errors(f"{name}: {sentence}" for name, sentence in sample.failed)
     holes: dict[str, str] = {}
     if sample.fits:
         holes = write_fits(output, sample, surfaces, level)
         print_errors(f"{name}: {sentence}" for name, sentence in holes.items())
+        _print_far_fits(loaded.particles, fitted, request, jobs)
         if json:
             print_json(fits_document(sample))
         else:
             typer.echo(f"{len(sample.fits)} fits up to l = {l_max} in {output}")
     raise typer.Exit(exit_code(loaded, len(sample.failed) + len(holes)))
+
+
+def _print_far_fits(
+    particles: "Sequence[Particle]", fitted: "Sequence[HarmonicFit | str]", request: "FitRequest", jobs: int
+) -> None:
+    """Print which fits are far off, the first few in full."""
+    from regolith_studio.jobs.fit_checks import check_fits
+
+    found = [(each, fit) for each, fit in zip(particles, fitted, strict=True) if not isinstance(fit, str)]
+    steps = check_fits([each for each, _ in found], [fit for _, fit in found], request, jobs)
+    said = zip(found, run_with_progress(steps), strict=True)
+    lines = [f"{each.name}: {sentence}" for (each, _), sentence in said if sentence]
+    more = len(lines) - _MOST_LINES
+    print_errors(lines[:_MOST_LINES] + ([f"{more} more fits are as far off."] if more > 0 else []))

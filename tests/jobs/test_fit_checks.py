@@ -1,0 +1,51 @@
+"""A fit whose descriptors are far from those of its particle says so, and which degree would be near."""
+
+import re
+from typing import Any
+
+import numpy as np
+
+from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.particle import Particle
+from regolith_studio.geometry.sphere_points import icosphere
+from regolith_studio.jobs.events import Steps
+from regolith_studio.jobs.fit_checks import TOLERANCE, check_fits
+from regolith_studio.jobs.particle_jobs import FitRequest, fit_sample
+
+
+def result_of(steps: Steps) -> Any:
+    while True:
+        try:
+            next(steps)
+        except StopIteration as end:
+            return end.value
+
+
+def bumpy(amplitude: float, degree: int) -> Mesh:
+    """A sphere with waves that harmonics below `degree` do not have."""
+    sphere = icosphere(5)
+    x, y = sphere.vertices[:, 0], sphere.vertices[:, 1]
+    waves = np.real((x + 1j * y) ** degree)
+    return Mesh(sphere.vertices * (1 + amplitude * waves)[:, None], sphere.faces)
+
+
+def sentence(mesh: Mesh, l_max: int) -> str:
+    particles, request = [Particle("grain", mesh)], FitRequest(l_max)
+    return result_of(check_fits(particles, result_of(fit_sample(particles, request)), request))[0]
+
+
+def test_that_a_fit_without_the_waves_of_its_grain_names_the_degree_that_has_them() -> None:
+    assert TOLERANCE == 0.05
+    said = sentence(bumpy(0.2, 12), 10)
+    assert re.match(r"The fit up to l = 10 is off by more than 5 % in .*sphericity \d+ %", said)
+    assert said.endswith("; l_max 15 would do.")
+
+
+def test_that_a_near_fit_says_nothing() -> None:
+    assert sentence(bumpy(0.2, 12), 20) == ""
+    assert sentence(icosphere_mesh(), 4) == ""
+
+
+def icosphere_mesh() -> Mesh:
+    sphere = icosphere(4)
+    return Mesh(sphere.vertices, sphere.faces)
