@@ -77,6 +77,7 @@ def rebuilt(half_spaces: HalfSpaces) -> ConvexPolyhedron:
     shape read from a file is bit for bit the one that was written.
     """
     solid = ConvexPolyhedron.from_half_spaces(half_spaces)
+    # Normalising a unit vector may change its last bit; two or three times and it does not any more.
     for _ in range(10):
         again = ConvexPolyhedron.from_half_spaces(
             HalfSpaces(solid.half_spaces.normals, solid.half_spaces.offsets)
@@ -97,6 +98,7 @@ def principal_axes(mesh: Mesh) -> FloatArray:
     axes = columns.T
     for axis in axes[:2]:
         skew = _third_moment(mesh, axis)
+        # Of a symmetric shape the moment is rounding, whose sign differs from one processor to the next.
         lean = skew if abs(skew) > 1e-9 * abs(mesh.volume) ** 2 else axis[np.abs(axis).argmax()]
         axis *= np.sign(lean)
     axes[2] = np.cross(axes[0], axes[1])

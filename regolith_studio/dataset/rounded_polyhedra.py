@@ -48,6 +48,7 @@ def rounded(shape: ConvexPolyhedron, rounding: float) -> RoundedPolyhedron:
     radius = rounding * float(planes.offsets.min())
     while True:
         core = _eroded(shape, radius)
+        # A small facet between large ones vanishes as all move inwards; radius 0 always keeps it.
         if core.n_facets == shape.n_facets or radius < 1e-9 * float(planes.offsets.min()):
             return RoundedPolyhedron(core, radius)
         radius /= 2

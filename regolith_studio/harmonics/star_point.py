@@ -37,8 +37,9 @@ def kernel_centre(mesh: Mesh) -> FloatArray:
         If the kernel is empty: no point sees the whole surface.
     """
     size = mesh.volume ** (1 / 3)
-    keep = mesh.face_areas > 1e-14 * mesh.surface_area
+    keep = mesh.face_areas > 1e-14 * mesh.surface_area  # slivers have a normal of rounding errors
     normals = mesh.face_area_vectors[keep] / mesh.face_areas[keep, None]
+    # HiGHS has absolute tolerances of 1e-7: the programme is solved at unit volume about the centroid.
     corners = (mesh.triangles[keep, 0] - mesh.centroid) / size
     offsets = np.einsum("ij,ij->i", normals, corners)
     rows = np.column_stack([normals, np.ones(len(normals))])
@@ -102,8 +103,10 @@ def inner_point(mesh: Mesh) -> FloatArray:
     """
     size = float(np.ptp(mesh.bounds, axis=0).max())
     best, length = None, 0.0
+    # Large faces first: a line from a sliver may leave at once.
     for face in np.argsort(mesh.face_areas)[::-1][:32]:
         inward = -mesh.face_area_vectors[face] / mesh.face_areas[face]
+        # Off the face, which would otherwise be the first that the line meets.
         origin = mesh.triangles[face].mean(axis=0) + 1e-9 * size * inward
         hits = radial_hits(mesh, origin, inward[None, :])
         if len(hits.distance) and hits.sign[0] > 0 and hits.distance[0] > length:

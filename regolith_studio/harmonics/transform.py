@@ -132,9 +132,9 @@ def _ray_grid(degree: int) -> RayGrid:
     z = np.repeat(cosine, n_longitudes)
     ring = np.sqrt(1 - z**2)
     angle = np.tile(longitude, len(cosine))
-    upright = np.column_stack([ring * np.cos(angle), ring * np.sin(angle), z])
+    untilted = np.column_stack([ring * np.cos(angle), ring * np.sin(angle), z])
     solid_angles = np.repeat(weights * 2 * np.pi / n_longitudes, n_longitudes)
-    return RayGrid(degree, upright @ TILT.T, solid_angles)
+    return RayGrid(degree, untilted @ TILT.T, solid_angles)
 
 
 def analyse(grid: RayGrid, samples: FloatArray, l_max: int) -> ShCoefficients:

@@ -99,7 +99,7 @@ class FineDegrees:
         """The lowest `count` of the degrees, at least one."""
         return FineDegrees(self.offset[:count], self.slopes[:count], self.factor[:count, :count])
 
-    def louder(self, change: float) -> "FineDegrees":
+    def scaled(self, change: float) -> "FineDegrees":
         """The same with ln P_l larger by `change` at all degrees."""
         return replace(self, offset=np.asarray(self.offset) + change)
 

@@ -110,6 +110,7 @@ class SizedSampler(ChunkedSampler):
         """
         bounds = checked_bounds(size_range)
         for rng, wanted in chunks(n, seed):
+            # A chunk is drawn whole and cut afterwards, or a shorter draw would use other random numbers.
             radii, components = self.sizes.draw(CHUNK, rng, bounds)
             shapes, origins = self.shapes(radii, components, rng)
             rows = sized(shapes, radii, self.scale)[:wanted]
@@ -224,6 +225,7 @@ def accepted(
         rows = propose(CHUNK)
         good = np.flatnonzero(acceptable(rows))
         if count + len(good) >= wanted:
+            # Draws after the last one that is used are not counted, or the rate would depend on CHUNK.
             last = int(good[wanted - count - 1])
             return np.concatenate([*kept, rows[good[: wanted - count]]]), rejected + last + 1 - (
                 wanted - count

@@ -68,7 +68,7 @@ def _of_batch(coefficients: FloatArray) -> PrincipalAxes:
         :, None, None
     ]
     squares, axes = np.linalg.eigh(second)
-    axes[np.linalg.det(axes) < 0, :, 0] *= -1
+    axes[np.linalg.det(axes) < 0, :, 0] *= -1  # eigenvectors may be a mirror image, which rotations are not
     cubes = (products[:, :, None] * u[:, None, :]).reshape(-1, 27)
     third = ((squared * squared * squared * grid.weights) @ cubes / 6).reshape(-1, 3, 3, 3)
     skews = np.einsum("nabc,nai,nbi,nci->ni", third, axes, axes, axes, optimize=True)
@@ -87,7 +87,7 @@ def canonical(coefficients: FloatArray) -> FloatArray:
     for i, row in enumerate(coefficients):
         frame = found.axes[i, :, ::-1].T
         frame = frame * np.where(found.skews[i, ::-1] < 0, -1.0, 1.0)[:, None]
-        frame[2] = np.cross(frame[0], frame[1])
+        frame[2] = np.cross(frame[0], frame[1])  # not by its own moment, which would mirror some particles
         rows[i] = rotated(ShCoefficients(row), frame).values / scales[i]
     return rows
 

@@ -67,6 +67,7 @@ def model_from(document: Mapping[str, Any]) -> FittedModel:
         if key not in MODELS:
             raise FileError(f"There is no model called {key!r}, only {', '.join(MODELS)}.")
         model = MODELS[key].restored(values, arrays)
+        # Values may each be possible and together impossible: only a draw shows what the file would do.
         with np.errstate(all="ignore"):
             draws = model.draw(N_TRIED, 0)
             radii = draws.equivalent_radii()

@@ -53,6 +53,7 @@ def log_shapes(sample: Sample) -> LogShapes:
     rows = np.empty_like(usable.coefficients)
     for block, radii in grid.blocks(usable.coefficients):
         sizes = usable.equivalent_radii[block, None]
+        # The radius is positive where it was tested; on this finer grid it may still dip below zero.
         rows[block] = grid.expanded(np.log(np.maximum(radii, 1e-3 * sizes) / sizes))
     return LogShapes(rows, usable.equivalent_radii, len(sample) - len(usable))
 

@@ -114,7 +114,7 @@ class MaterialCard(BaseModel):
         radii = sample.star_shaped().equivalent_radii
         hull, judgement = None, None
         if degree >= DEGREES[0]:
-            hull, judgement = _judged_hull_field(sample.truncated(degree))
+            hull, judgement = _evaluated_hull_field(sample.truncated(degree))
         try:
             return cls(
                 name=name,
@@ -171,7 +171,7 @@ class MaterialCard(BaseModel):
         return LogField(4 * np.pi * amplitudes**2, sizes, self.unit, self.median_radius)
 
 
-def _judged_hull_field(sample: Sample) -> tuple[dict[str, Any], dict[str, float]]:
+def _evaluated_hull_field(sample: Sample) -> tuple[dict[str, Any], dict[str, float]]:
     """Numbers of the hull field of a sample, and the distances of its draws from the sample in percent.
 
     Aspect ratio, sphericity and share of the hull are the outer features of

@@ -244,6 +244,7 @@ def fit_mixture(sizes: FloatArray, powers: FloatArray, k: int, rng: np.random.Ge
     powers
         Sum of squares at each degree, shape (n, l_max + 1).
     """
+    # A degree without power in one component would have a variance of 0 and an infinite likelihood.
     floor = np.maximum(powers.mean(axis=0) * 1e-9, 1e-300)
     shares = _start(sizes, np.log(np.maximum(powers[:, 1:], floor[1:])), k, rng)
     before = -np.inf
@@ -255,6 +256,7 @@ def fit_mixture(sizes: FloatArray, powers: FloatArray, k: int, rng: np.random.Ge
         if now - before < TOLERANCE * abs(now):
             break
         before = now
+    # Components have no order of their own: the largest first, so that two starts can be compared.
     order = np.argsort(-mixture.weights, kind="stable")
     return Mixture(
         mixture.weights[order],
@@ -267,6 +269,7 @@ def fit_mixture(sizes: FloatArray, powers: FloatArray, k: int, rng: np.random.Ge
 
 def _start(sizes: FloatArray, heights: FloatArray, k: int, rng: np.random.Generator) -> FloatArray:
     """Shares of 0 and 1, softened so that no part is empty, shape (n, k)."""
+    # The low degrees separate constituents; the many high ones, all alike, would outweigh them in distances.
     features = np.column_stack([sizes, heights[:, : min(6, heights.shape[1])]])
     features = (features - features.mean(axis=0)) / np.maximum(features.std(axis=0), 1e-9)
     labels = (
@@ -282,5 +285,6 @@ def _maximised(sizes: FloatArray, powers: FloatArray, shares: FloatArray, floor:
     orders = 2 * np.arange(powers.shape[1]) + 1
     spectra = np.maximum(shares.T @ powers / members[:, None], floor) / orders
     spectra[:, 0] = 0.0
+    # Without a lowest deviation a component shrinks to one particle, where the likelihood has no bound.
     deviations = np.sqrt(np.maximum(variances, MIN_DEVIATION**2))
     return Mixture(members / members.sum(), means, deviations, spectra, 0.0)

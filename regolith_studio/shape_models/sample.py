@@ -14,7 +14,7 @@ from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats
 from regolith_studio.harmonics.coefficients import ShCoefficients
 from regolith_studio.harmonics.sphere_grid import expanded_volumes, sphere_grid
 
-FEWEST = 2
+MIN_PARTICLES = 2
 IDENTICAL = 1e-9
 """Spread of the coefficients, as a share of the mean radius, below which particles count as identical."""
 
@@ -76,7 +76,7 @@ class Sample:
                 f"l_max = {degrees[0]} or fit them again."
             )
         if not particles:
-            raise InputError(f"A model needs at least {FEWEST} particles, got none.")
+            raise InputError(f"A model needs at least {MIN_PARTICLES} particles, got none.")
         return cls(np.stack([each.values for each in particles]), tuple(names), unit)
 
     def __reduce__(self) -> tuple[Callable[..., "Sample"], tuple[Any, ...]]:
@@ -93,12 +93,13 @@ class Sample:
     @cached_property
     def equivalent_radii(self) -> FloatArray:
         """Radius of the sphere with each particle's volume, shape (n,); exact by quadrature."""
+        # r^3 has degree 3 l_max, which Gauss-Legendre quadrature of half that degree integrates exactly.
         grid = sphere_grid(3 * self.l_max // 2 + 1, self.l_max)
         volumes = expanded_volumes(self.coefficients, grid)
         return np.asarray(np.cbrt(3 * volumes / (4 * np.pi)))
 
     @cached_property
-    def lowest_radii(self) -> FloatArray:
+    def min_radii(self) -> FloatArray:
         """Smallest radius of each particle on a grid of twice the degree, shape (n,)."""
         grid = sphere_grid(2 * self.l_max + 1, self.l_max)
         return grid.lowest(self.coefficients)
@@ -134,13 +135,14 @@ class Sample:
         InputError
             If fewer than two are left.
         """
-        keep = np.flatnonzero(self.lowest_radii > 0)
+        keep = np.flatnonzero(self.min_radii > 0)
         if len(keep) == len(self):
             return self
-        if len(keep) < FEWEST:
+        if len(keep) < MIN_PARTICLES:
             raise InputError(
                 f"Only {len(keep)} of {len(self)} particles have a positive radius everywhere at l_max = "
-                f"{self.l_max}, and a model needs {FEWEST}: choose a lower l_max or fit with an ellipsoid."
+                f"{self.l_max}, and a model needs {MIN_PARTICLES}: choose a lower "
+                "l_max or fit with an ellipsoid."
             )
         return self.chosen(keep)
 
@@ -151,8 +153,8 @@ class Sample:
 
 
 def _check(rows: FloatArray, names: tuple[str, ...]) -> None:
-    if len(rows) < FEWEST:
-        raise InputError(f"A model needs at least {FEWEST} different particles, got {len(rows)}.")
+    if len(rows) < MIN_PARTICLES:
+        raise InputError(f"A model needs at least {MIN_PARTICLES} different particles, got {len(rows)}.")
     broken = np.flatnonzero(~np.isfinite(rows).all(axis=1))
     if len(broken):
         raise InputError(

@@ -27,7 +27,7 @@ def pooled_rmsre(errors: FloatArray, counts: ArrayLike) -> FloatArray:
 
 def resampled_counts(n: int, seed: int) -> FloatArray:
     """How often each of `n` particles is drawn in each bootstrap sample, shape (N_RESAMPLES, n)."""
-    if not n:
+    if not n:  # multinomial refuses an empty list of shares
         return np.zeros((N_RESAMPLES, 0))
     rng = np.random.default_rng(np.random.SeedSequence(seed))
     return np.asarray(rng.multinomial(n, np.full(n, 1.0 / n), N_RESAMPLES), dtype=np.float64)

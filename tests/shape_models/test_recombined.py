@@ -127,7 +127,7 @@ def test_that_no_particle_lends_its_surface_to_itself(rough_sample: Callable[...
     model = MODEL.fit(rough_sample(12, 4), RecombinedSettings(l_max=4, n_candidates=1))
     targets = np.repeat(np.arange(12), 40)
     wanted = np.repeat(model.forms.features[:, 2], 40)
-    assert (model._lenders(targets, wanted, np.random.default_rng(0)) != targets).all()
+    assert (model._donors(targets, wanted, np.random.default_rng(0)) != targets).all()
 
 
 def test_that_sizes_are_the_measured_ones_each_as_often(rough_sample: Callable[..., Sample]) -> None:

@@ -16,7 +16,7 @@ def sphere(radius: float, l_max: int = 2) -> np.ndarray:
 def test_that_spheres_have_their_radius_as_equivalent_radius() -> None:
     sample = Sample(np.stack([sphere(2.0), sphere(3.0)]))
     np.testing.assert_allclose(sample.equivalent_radii, [2.0, 3.0], rtol=1e-13)
-    np.testing.assert_allclose(sample.lowest_radii, [2.0, 3.0], rtol=1e-13)
+    np.testing.assert_allclose(sample.min_radii, [2.0, 3.0], rtol=1e-13)
 
 
 def test_that_the_volume_of_a_shifted_sphere_is_found_from_its_series() -> None:

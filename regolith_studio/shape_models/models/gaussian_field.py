@@ -89,7 +89,7 @@ class GaussianField(RejectionSampler):
         length = (self.l_max + 1) ** 2
         rows = rng.standard_normal((n, length)) * np.sqrt(self.spectrum)[degrees(length)]
         rows[:, 0] += self.mean
-        return np.column_stack([rows, np.zeros(n)])
+        return np.column_stack([rows, np.zeros(n)])  # components travel with the rows through rejection
 
     def stored(self) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
         """Plain values for JSON, no arrays."""

@@ -207,6 +207,7 @@ class HullField(SizedSampler):
         field = replace(self, spectrum=spectrum, fine=fine)
         wanted = whole_features_of_radii(usable.coefficients).mean(axis=0)
         for _ in range(FINE_ROUNDS):
+            # The same numbers each round: what changes from one to the next is the correction, not the noise.
             rng = np.random.default_rng(np.random.SeedSequence(0))
             radii, components = field.sizes.draw(N_COMPARED, rng)
             missing = wanted - whole_features_of_log_radii(field.shapes(radii, components, rng)[0]).mean(
@@ -214,7 +215,7 @@ class HullField(SizedSampler):
             )
             shift = np.array(field.shift)
             shift[CONVEXITY] += FINE_RATES[1] * missing[CONVEXITY]
-            fine = fine.louder(-FINE_RATES[0] * float(missing[SPHERICITY]))
+            fine = fine.scaled(-FINE_RATES[0] * float(missing[SPHERICITY]))
             field = replace(field, shift=shift, fine=fine)
         return field
 
@@ -267,6 +268,7 @@ class HullFieldModel:
         sizes = SIZE_LAWS[chosen.size_law](usable.equivalent_radii)
         spectrum = mean_powers / (2 * np.arange(usable.l_max + 1) + 1)
         plain = HullField(GaussianCopula.of(table), sizes, spectrum, sample.unit)
+        # The distances that the facetings are compared by are noise where there are few particles.
         if len(usable) < MIN_TO_CHOOSE:
             field = _calibrated(plain, target, N_COMPARED)[0]
         else:

@@ -186,7 +186,7 @@ class LogFieldModel:
         field = LogField(spectrum, sizes, sample.unit, reference, exponents)
         if chosen.spectrum == "pooled":
             return field
-        order = np.argsort(radii, kind="stable")
+        order = np.argsort(radii, kind="stable")  # neighbours in size are neighbours in the arrays
         return replace(field, powers=powers[order], radii=radii[order])
 
     def restored(self, values: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> LogField:
@@ -208,12 +208,14 @@ def _exponents(powers: FloatArray, relative: FloatArray) -> FloatArray:
     Limited to a slope of 4 either way, and zero if the sizes hardly differ.
     """
     logs = np.log(relative) - np.log(relative).mean()
+    # Particles of one size leave the slope to rounding.
     if not logs.std() > 1e-3:
         return np.zeros(powers.shape[1])
     floor = np.maximum(powers.mean(axis=0) * 1e-9, 1e-300)
     heights = np.log(np.maximum(powers, floor))
     slopes = logs @ (heights - heights.mean(axis=0)) / (logs @ logs)
     slopes[0] = 0.0
+    # A few particles of extreme size can give slopes that make draws beyond the sample explode.
     return np.asarray(np.clip(slopes, -4.0, 4.0))
 
 

@@ -237,7 +237,7 @@ ROUNDS = 3
 SPREADS = (0.5, 2.0)
 """Limits of the factors on deviations that are asked for."""
 ATTEMPTS = 5
-"""Times that a particle is made anew where the cut has a negative radius; then it stays as measured."""
+"""Times that a particle is drawn again where the cut has a negative radius; then it stays as measured."""
 
 
 @dataclass(frozen=True)
@@ -303,17 +303,17 @@ class Recombined(SurfaceSampler):
         self, _radii: FloatArray, components: IntArray, rng: np.random.Generator
     ) -> tuple[FloatArray, dict[str, IntArray]]:
         """Surfaces on the forms of the particles `components`, and where the surfaces are from."""
-        rows, parents = self._made(components, rng)
+        rows, parents = self._drawn_on(components, rng)
         for _ in range(ATTEMPTS):
             bad = np.flatnonzero(~positive_rows(rows))
             if not len(bad):
                 break
-            rows[bad], parents[bad] = self._made(components[bad], rng)
+            rows[bad], parents[bad] = self._drawn_on(components[bad], rng)
         bad = np.flatnonzero(~positive_rows(rows))
         rows[bad], parents[bad] = self.surfaces.cut[components[bad]], components[bad]
         return rows, {"parents": parents}
 
-    def _made(self, targets: IntArray, rng: np.random.Generator) -> tuple[FloatArray, IntArray]:
+    def _drawn_on(self, targets: IntArray, rng: np.random.Generator) -> tuple[FloatArray, IntArray]:
         """Rows on the forms of `targets`, and the particles that their surfaces are from."""
         measured = self.forms.features[targets]
         middle = self.forms.features.mean(axis=0)
@@ -322,16 +322,20 @@ class Recombined(SurfaceSampler):
         parents, maps = np.zeros_like(targets), np.empty((len(targets), 3, 3))
         nearest = np.full(len(targets), np.inf)
         for _ in range(self.settings.n_candidates):
-            picks = self._lenders(targets, wanted[:, 2], rng)
+            picks = self._donors(targets, wanted[:, 2], rng)
             turns = Rotation.from_quat(rng.standard_normal((len(targets), 4))).as_matrix()
-            tried, sphericities = self.forms.stretched(picks, turns, forms)
+            trial_maps, sphericities = self.forms.stretched(picks, turns, forms)
             distance = np.abs(sphericities - wanted[:, 1])
             better = distance < nearest
-            nearest[better], parents[better], maps[better] = distance[better], picks[better], tried[better]
+            nearest[better], parents[better], maps[better] = (
+                distance[better],
+                picks[better],
+                trial_maps[better],
+            )
         whole = self.forms.from_frame[targets] @ maps @ self.forms.to_sphere[parents]
         return self.mapped(parents, np.asarray(np.linalg.inv(whole), dtype=np.float64)), parents
 
-    def _lenders(self, targets: IntArray, convexities: FloatArray, rng: np.random.Generator) -> IntArray:
+    def _donors(self, targets: IntArray, convexities: FloatArray, rng: np.random.Generator) -> IntArray:
         """A particle for each target, not itself, out of those nearest to a share of the hull."""
         order, n = self._by_convexity, len(self.surfaces)
         count = min(self.settings.n_neighbours, n)
@@ -341,9 +345,9 @@ class Recombined(SurfaceSampler):
         itself = order[found] == targets
         return np.asarray(order[np.where(itself, np.where(found + 1 < n, found + 1, found - 1), found)])
 
-    def roughened(self) -> "Recombined":
+    def roughness_corrected(self) -> "Recombined":
         """The model with the gain by which its particles have the power of the measured ones."""
-        rows, targets = self._tried(0)
+        rows, targets = self._trial_draws(0)
         return self.calibrated(gain=roughness_gain(rows, self.surfaces.cut[targets]))
 
     def corrected(self, number: int) -> "Recombined":
@@ -352,7 +356,7 @@ class Recombined(SurfaceSampler):
         Each round has particles of its own and takes the 1 / `number`-th part of what is missing, so that
         their noise averages out (Robbins and Monro 1951).
         """
-        rows, targets = self._tried(number)
+        rows, targets = self._trial_draws(number)
         measured, drawn = self.forms.features[targets], mesh_features(rows)
         missing = measured.mean(axis=0) - drawn.mean(axis=0)
         ratio = (measured.std(axis=0) + 1e-9) / (drawn.std(axis=0) + 1e-9)
@@ -361,11 +365,11 @@ class Recombined(SurfaceSampler):
             spreads=np.clip(np.asarray(self.spreads) * ratio ** (1 / number), *SPREADS),
         )
 
-    def _tried(self, number: int) -> tuple[FloatArray, IntArray]:
+    def _trial_draws(self, number: int) -> tuple[FloatArray, IntArray]:
         """A chunk of particles for a round of calibration, and whose forms they have."""
         rng = np.random.default_rng(np.random.SeedSequence(number))
         targets = rng.permutation(np.resize(rng.permutation(len(self.surfaces)), CHUNK))
-        return self._made(targets, rng)[0], targets
+        return self._drawn_on(targets, rng)[0], targets
 
 
 class RecombinedModel:
@@ -390,7 +394,7 @@ class RecombinedModel:
             raise InputError(f"The surfaces tried must be at least 1, got {chosen.n_candidates}.")
         surfaces = measured_surfaces(sample, chosen, chosen.n_neighbours)
         fitted = Recombined(surfaces.coefficients, chosen, sample.unit)
-        fitted = fitted.roughened() if surfaces.loses_by_mapping else fitted
+        fitted = fitted.roughness_corrected() if surfaces.loses_by_mapping else fitted
         for number in range(1, ROUNDS + 1):
             fitted = fitted.corrected(number)
         return fitted

@@ -92,10 +92,10 @@ class SampleMatched(SurfaceSampler):
 
     @cached_property
     def _neighbours(self) -> IntArray:
-        """Particles that may lend their ellipsoid: the nearest in the two axis ratios, shape (n, k).
+        """Particles whose ellipsoid may be used: the nearest in the two axis ratios, shape (n, k).
 
         Where a particle is not among the nearest of its neighbour, it stands there itself: so each ellipsoid
-        is lent as often as it was measured, and long and flat ones are not lost to the middle.
+        is used as often as it was measured, and long and flat ones are not lost to the middle.
         """
         ratios = self.surfaces.axes.log_ratios[:, [0, 2]]
         spread = np.maximum(ratios.std(axis=0), 1e-9)
@@ -114,8 +114,8 @@ class SampleMatched(SurfaceSampler):
         """
         column = rng.integers(self._neighbours.shape[1], size=len(radii))
         forms = self._neighbours[components, column]
-        spins = _spins(rng, self.settings.turn) * self._roundness(components, forms)[:, None]
-        rows = self._turned(components, forms, spins)
+        rotations = _random_rotations(rng, self.settings.turn) * self._roundness(components, forms)[:, None]
+        rows = self._rotated(components, forms, rotations)
         if self.settings.mirrored:
             rows[:, orders(rows.shape[1]) < 0] *= -1.0  # y -> -y
         return rows, {"parents": components}
@@ -125,35 +125,35 @@ class SampleMatched(SurfaceSampler):
         shares = np.exp(self.surfaces.axes.log_ratios[:, 0] - self.surfaces.axes.log_ratios[:, 2])
         return np.asarray(np.minimum(shares[parents], shares[forms]))
 
-    def _turned(self, parents: IntArray, forms: IntArray, spins: FloatArray) -> FloatArray:
-        """Coefficients of the particles `parents` on the ellipsoids of `forms`, turned by `spins` (n, 3)."""
-        rows = self._mapped(parents, forms, spins)
+    def _rotated(self, parents: IntArray, forms: IntArray, rotations: FloatArray) -> FloatArray:
+        """Coefficients of the particles `parents` on the ellipsoids of `forms`, after `rotations` (n, 3)."""
+        rows = self._mapped(parents, forms, rotations)
         for halving in range(HALVINGS + 1):
             bad = np.flatnonzero(~positive_rows(rows))
             if not len(bad):
                 break
             share = 0.0 if halving == HALVINGS else 0.5 ** (halving + 1)
             own = parents[bad] if halving == HALVINGS else forms[bad]
-            rows[bad] = self._mapped(parents[bad], own, spins[bad] * share)
+            rows[bad] = self._mapped(parents[bad], own, rotations[bad] * share)
         bad = np.flatnonzero(~positive_rows(rows))
         rows[bad] = self.surfaces.cut[parents[bad]]
         return rows
 
-    def _mapped(self, parents: IntArray, forms: IntArray, spins: FloatArray) -> FloatArray:
+    def _mapped(self, parents: IntArray, forms: IntArray, rotations: FloatArray) -> FloatArray:
         axes, lengths = self.surfaces.axes.axes[parents], np.exp(self.surfaces.axes.log_ratios)
         back = np.swapaxes(axes, 1, 2) / lengths[forms][:, :, None]
-        turn_back = Rotation.from_rotvec(-spins).as_matrix()
+        turn_back = Rotation.from_rotvec(-rotations).as_matrix()
         inverses = (axes * lengths[parents][:, None, :]) @ turn_back @ back
         return self.mapped(parents, inverses)
 
-    def roughened(self) -> "SampleMatched":
+    def roughness_corrected(self) -> "SampleMatched":
         """The same with the gain by which its particles have the power of the measured ones."""
         draws = replace(self, gain=None).draw(N_COMPARED, 0)
         measured = self.surfaces.cut[draws.parents]
         return self.calibrated(gain=roughness_gain(draws.coefficients, measured))
 
 
-def _spins(rng: np.random.Generator, turn: float) -> FloatArray:
+def _random_rotations(rng: np.random.Generator, turn: float) -> FloatArray:
     """Rotation vectors (CHUNK, 3) with random axes."""
     axes = rng.standard_normal((CHUNK, 3))
     axes /= np.linalg.norm(axes, axis=1, keepdims=True)
@@ -184,7 +184,7 @@ class SampleMatchedModel:
             raise InputError(f"The turn must be 0 to 2 radians, got {chosen.turn:g}.")
         surfaces = measured_surfaces(sample, chosen, chosen.n_neighbours)
         fitted = SampleMatched(surfaces.coefficients, chosen, sample.unit)
-        return fitted.roughened() if surfaces.loses_by_mapping else fitted
+        return fitted.roughness_corrected() if surfaces.loses_by_mapping else fitted
 
     def restored(self, values: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> SampleMatched:
         """The model from its stored values."""
