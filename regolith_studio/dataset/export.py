@@ -4,7 +4,7 @@ import hashlib
 import os
 import shlex
 import subprocess
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass, field, fields, replace
 from pathlib import Path
@@ -152,6 +152,11 @@ def case_settings(options: ExportOptions) -> dict[str, Any]:
         **{part: asdict(getattr(options, part)) for part in PARTS},
         "coarse_graining_factor": options.coarse_graining_factor,
     }
+
+
+def number_row(values: Iterable[float]) -> str:
+    """Numbers between blanks, with all their digits."""
+    return " ".join(repr(float(value)) for value in values)
 
 
 def write_export(

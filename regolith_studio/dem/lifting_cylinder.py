@@ -5,9 +5,10 @@ sqrt(d / g). Friction, shape and the ratio of cohesion to weight are free of uni
 """
 
 import json
-from collections.abc import Callable, Generator
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Generator, Mapping
 from dataclasses import dataclass, field
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -235,6 +236,55 @@ def resume_lifting(run: LiftingRun, state: EngineState) -> Generator[Snapshot, N
     run.solver.phase = run.phase
     run.solver.load(state.solver)
     return (yield from _go_on(run, resumed=True))
+
+
+@dataclass(frozen=True)
+class SteppedEngine(ABC):
+    """An engine of which only the solver is its own.
+
+    Parameters
+    ----------
+    seconds_per_step
+        Processor time of a particle and a step at 1,000 particles, by the kind of their shapes.
+    exponent
+        By which a step of a particle costs more, of the number of particles over 1,000.
+    further_part
+        Cost of a further part of a compound, in that of a convex particle.
+    halved_steps
+        Number of steps over that of steps that are never halved.
+    """
+
+    seconds_per_step: Mapping[str, float]
+    exponent: float
+    further_part: float
+    halved_steps: float = 1.0
+
+    @abstractmethod
+    def solver(self, prepared: PreparedCase, settings: Any) -> Solver:
+        """The solver of a case.
+
+        Raises
+        ------
+        InputError
+            If the case has what the solver does not represent.
+        """
+
+    def seconds(self, prepared: PreparedCase, settings: Any) -> float:
+        """From the cost of a step and the expected length of the phases."""
+        steps = self.halved_steps * expected_duration(prepared) / settings.time_step
+        parts = 1.0 + self.further_part * prepared.further_parts
+        cost = self.seconds_per_step[prepared.case.shapes] * parts * (len(prepared) / 1000) ** self.exponent
+        return float(1.0 + cost * len(prepared) * steps)
+
+    def simulate(self, prepared: PreparedCase, settings: Any) -> Generator[Snapshot, None, SimulationResult]:
+        """Fill, settle, lift, rest."""
+        return simulate_lifting(LiftingRun(prepared, settings, self.solver(prepared, settings)))
+
+    def resume(
+        self, prepared: PreparedCase, settings: Any, state: EngineState
+    ) -> Generator[Snapshot, None, SimulationResult]:
+        """Go on from a state."""
+        return resume_lifting(LiftingRun(prepared, settings, self.solver(prepared, settings)), state)
 
 
 def _go_on(run: LiftingRun, *, resumed: bool = False) -> Generator[Snapshot, None, SimulationResult]:

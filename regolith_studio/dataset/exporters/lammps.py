@@ -3,7 +3,7 @@
 import numpy as np
 
 from regolith_studio.dataset.dataset import Dataset
-from regolith_studio.dataset.export import NOTES, Exporter, ExportOptions, sizes_csv
+from regolith_studio.dataset.export import NOTES, Exporter, ExportOptions, number_row, sizes_csv
 from regolith_studio.dataset.packing import PackedParticles, pack_on_lattice
 from regolith_studio.dataset.rounded_polyhedra import RoundedPolyhedron, rounded
 from regolith_studio.errors import DatasetError
@@ -69,12 +69,12 @@ def _data(dataset: Dataset, bodies: PackedParticles, shapes: list[RoundedPolyhed
     lines = ["Regolith Studio: bodies rounded/polyhedron, SI units", "", f"{len(bodies)} atoms"]
     lines += [f"{len(bodies)} bodies", "1 atom types", ""]
     lines += [
-        f"{_row(pair)} {axis}lo {axis}hi"
+        f"{number_row(pair)} {axis}lo {axis}hi"
         for axis, pair in zip("xyz", zip(low, high, strict=True), strict=True)
     ]
     lines += ["", "Atoms # body", ""]
     lines += [
-        f"{index + 1} 1 1 {float(mass)!r} {_row(place)}"
+        f"{index + 1} 1 1 {float(mass)!r} {number_row(place)}"
         for index, (mass, place) in enumerate(zip(masses, bodies.position, strict=True))
     ]
     lines += ["", "Bodies", ""]
@@ -133,10 +133,6 @@ def _input(dataset: Dataset, bodies: PackedParticles, options: ExportOptions, bo
         timestep=0.01 * float(np.sqrt(options.contact.density * float(bodies.scale.min()) ** 3 / stiffness)),
         **bounds,
     )
-
-
-def _row(values: "np.ndarray | tuple[float, ...]") -> str:
-    return " ".join(repr(float(value)) for value in values)
 
 
 EXPORTER = Exporter(

@@ -3,7 +3,7 @@
 import numpy as np
 
 from regolith_studio.dataset.dataset import Dataset
-from regolith_studio.dataset.export import NOTES, Exporter, ExportOptions, shape_names, sizes_csv
+from regolith_studio.dataset.export import NOTES, Exporter, ExportOptions, number_row, shape_names, sizes_csv
 from regolith_studio.dataset.multisphere import fit_spheres_by, sphere_fit_errors
 from regolith_studio.dataset.packing import PackedParticles, pack_on_lattice
 from regolith_studio.geometry.arrays import FloatArray
@@ -76,9 +76,9 @@ def _data(bodies: PackedParticles, clumps: list[FloatArray]) -> str:
         scale, turn = float(bodies.scale[index]), bodies.rotation_of(index)
         places = bodies.position[index] + clumps[which][:, :3] @ turn.T * scale
         for place, radius in zip(places.tolist(), (clumps[which][:, 3] * scale).tolist(), strict=True):
-            atoms.append(f"{len(atoms) + 1} 1 {_row(place)} {2 * radius!r} 1.0 {index + 1}")
+            atoms.append(f"{len(atoms) + 1} 1 {number_row(place)} {2 * radius!r} 1.0 {index + 1}")
     lines = ["Regolith Studio: clumps of spheres, SI units", "", f"{len(atoms)} atoms", "1 atom types", ""]
-    lines += [f"{_row([low[k], high[k]])} {axis}lo {axis}hi" for k, axis in enumerate("xyz")]
+    lines += [f"{number_row([low[k], high[k]])} {axis}lo {axis}hi" for k, axis in enumerate("xyz")]
     return "\n".join([*lines, "", "Atoms # hybrid sphere bond", "", *atoms, ""])
 
 
@@ -90,7 +90,7 @@ def _bodies(dataset: Dataset, bodies: PackedParticles, density: float) -> str:
         tensor = turn @ dataset.representatives[which].shape.mesh.inertia @ turn.T * density * scale**5
         entries = tensor[[0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]]
         values = [density * scale**3, *bodies.position[index].tolist(), *entries.tolist()]
-        lines.append(f"{index + 1} {_row(values)} 0 0 0 0 0 0 0 0 0")
+        lines.append(f"{index + 1} {number_row(values)} 0 0 0 0 0 0 0 0 0")
     return "\n".join([*lines, ""])
 
 
@@ -118,10 +118,6 @@ def _input(
         gravity=options.test.gravity,
         every=EVERY,
     )
-
-
-def _row(values: "FloatArray | list[float]") -> str:
-    return " ".join(repr(float(value)) for value in values)
 
 
 EXPORTER = Exporter(

@@ -6,7 +6,7 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 
 from regolith_studio.dataset.dataset import Dataset
-from regolith_studio.dataset.export import NOTES, Exporter, ExportOptions, shape_names, sizes_csv
+from regolith_studio.dataset.export import NOTES, Exporter, ExportOptions, number_row, shape_names, sizes_csv
 from regolith_studio.dataset.packing import PackedParticles, pack_on_lattice
 from regolith_studio.errors import DatasetError
 from regolith_studio.geometry.convex_compound import ConvexCompound, Polyhedron
@@ -45,7 +45,7 @@ def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
         mesh = assets.setdefault((which, scale), f"{keys[which]}_{len(assets)}")
         place, turn = bodies.position[index] * units.per_metre, bodies.orientation[index]
         lines += [
-            f'    <body name="particle_{index}" pos="{_row(place)}" quat="{_row(turn)}">',
+            f'    <body name="particle_{index}" pos="{number_row(place)}" quat="{number_row(turn)}">',
             "      <freejoint/>",
             *_inertial(shapes[which], density * scale**3, scale),
             *(
@@ -56,7 +56,8 @@ def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
         ]
     meshes = [
         f'    <mesh name="{name}" inertia="exact" scale="{scale!r} {scale!r} {scale!r}" '
-        f'vertex="{_row(part.vertices.ravel())}" face="{" ".join(map(str, part.faces.ravel().tolist()))}"/>'
+        f'vertex="{number_row(part.vertices.ravel())}" '
+        f'face="{" ".join(map(str, part.faces.ravel().tolist()))}"/>'
         for (which, scale), mesh in assets.items()
         for name, part in zip(_mesh_names(mesh, shapes[which]), shapes[which].part_meshes, strict=True)
     ]
@@ -129,11 +130,7 @@ def _inertial(shape: Polyhedron, mass: float, scale: float) -> list[str]:
     if not isinstance(shape, ConvexCompound):
         return []
     tensor = (shape.inertia * mass * scale**2)[[0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]]
-    return [f'      <inertial pos="0 0 0" mass="{mass!r}" fullinertia="{_row(tensor)}"/>']
-
-
-def _row(values: np.ndarray) -> str:
-    return " ".join(map(repr, np.asarray(values).tolist()))
+    return [f'      <inertial pos="0 0 0" mass="{mass!r}" fullinertia="{number_row(tensor)}"/>']
 
 
 EXPORTER = Exporter(

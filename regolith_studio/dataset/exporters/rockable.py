@@ -3,7 +3,7 @@
 import numpy as np
 
 from regolith_studio.dataset.dataset import Dataset
-from regolith_studio.dataset.export import NOTES, Exporter, ExportOptions, shape_names, sizes_csv
+from regolith_studio.dataset.export import NOTES, Exporter, ExportOptions, number_row, shape_names, sizes_csv
 from regolith_studio.dataset.rounded_polyhedra import rounded_parts
 from regolith_studio.geometry.convex_compound import Polyhedron
 from regolith_studio.messages import N_
@@ -51,28 +51,24 @@ def _block(key: str, shape: Polyhedron, rounding: float) -> tuple[str, float, in
     volume = bodies[0][0].volume if len(bodies) == 1 else shape.volume
     low, high = corners.min(axis=0), corners.max(axis=0)
     lines = ["<", f"name {key}", f"radius {radius!r}", "preCompDone y"]
-    lines += [f"nv {len(corners)}", *(_row(corner) for corner in corners)]
+    lines += [f"nv {len(corners)}", *(number_row(corner) for corner in corners)]
     lines += [f"ne {len(edges)}", *(f"{a} {b}" for a, b in edges)]
     lines += [f"nf {len(facets)}"]
     lines += [" ".join(map(str, (len(facet), *facet))) for facet in facets]
     lines += [
-        f"obb.extent {_row((high - low) / 2 + radius)}",
+        f"obb.extent {number_row((high - low) / 2 + radius)}",
         "obb.e1 1 0 0",
         "obb.e2 0 1 0",
         "obb.e3 0 0 1",
-        f"obb.center {_row((high + low) / 2)}",
+        f"obb.center {number_row((high + low) / 2)}",
         "position 0 0 0",
         "orientation 1 0 0 0",
         f"volume {volume!r}",
-        f"I/m {_row(shape.mesh.inertia.diagonal())}",
+        f"I/m {number_row(shape.mesh.inertia.diagonal())}",
         ">",
         "",
     ]
     return "\n".join(lines), volume, len(corners)
-
-
-def _row(values: np.ndarray) -> str:
-    return " ".join(repr(float(value)) for value in values)
 
 
 EXPORTER = Exporter(

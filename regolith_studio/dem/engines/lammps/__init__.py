@@ -31,7 +31,7 @@ class LammpsEngine:
 
     key: str = "lammps"
     label: str = "LAMMPS"
-    order: int = 1
+    order: int = 2
     licence: str = "GPL-2.0, run as a separate program"
     Settings: type[LammpsSettings] = LammpsSettings
     capabilities: EngineCapabilities = REPRESENTS

@@ -1,28 +1,15 @@
 """Rapier (Apache 2): real convex polyhedra, Coulomb friction and restitution, on several threads."""
 
-from collections.abc import Generator
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from importlib.metadata import PackageNotFoundError, version
 
 from regolith_studio.dem.case import PreparedCase
-from regolith_studio.dem.engine import Availability, EngineCapabilities, SimulationResult
+from regolith_studio.dem.engine import Availability, EngineCapabilities
 from regolith_studio.dem.engines.rapier.settings import RapierSettings
-from regolith_studio.dem.lifting_cylinder import (
-    LiftingRun,
-    expected_duration,
-    resume_lifting,
-    simulate_lifting,
-)
-from regolith_studio.dem.snapshot import EngineState, Snapshot
+from regolith_studio.dem.lifting_cylinder import Solver, SteppedEngine
 from regolith_studio.errors import InputError
 from regolith_studio.messages import N_
-
-SECONDS_PER_PARTICLE_AND_STEP = {"polyhedra": 10e-6, "spheres": 3e-6}
-"""Of processor time; that of polyhedra measured at 1,000 particles of 20 facets."""
-COST_EXPONENT = 0.2
-"""Of the number of particles over 1,000: measured up to 100,000, which cost 2.4 times as much a step."""
-FURTHER_PART = 0.5
-"""Cost of a further part of a compound, in that of a convex particle; measured: 2.5 times at four parts."""
 
 REPRESENTS = EngineCapabilities(
     shape=N_("the convex polyhedra, their edges rounded by 0.5 % of the diameter"),
@@ -37,7 +24,7 @@ REPRESENTS = EngineCapabilities(
 
 
 @dataclass(frozen=True)
-class RapierEngine:
+class RapierEngine(SteppedEngine):
     """For many particles; needs no program besides its Python package."""
 
     key: str = "rapier"
@@ -46,6 +33,12 @@ class RapierEngine:
     licence: str = "Apache-2.0"
     Settings: type[RapierSettings] = RapierSettings
     capabilities: EngineCapabilities = REPRESENTS
+    seconds_per_step: Mapping[str, float] = field(default_factory={"polyhedra": 10e-6, "spheres": 3e-6}.copy)
+    """That of polyhedra measured at 1,000 particles of 20 facets."""
+    exponent: float = 0.2
+    """Measured up to 100,000 particles, which cost 2.4 times as much a step."""
+    further_part: float = 0.5
+    """Measured: 2.5 times at four parts."""
 
     def find(self) -> Availability:
         """Whether the package is installed."""
@@ -54,41 +47,21 @@ class RapierEngine:
         except PackageNotFoundError:
             return Availability(problem=N_("Rapier is not installed; install the package rapier3d."))
 
-    def seconds(self, prepared: PreparedCase, settings: RapierSettings) -> float:
-        """From the cost of a step and the expected length of the phases."""
-        steps = expected_duration(prepared) / settings.time_step
-        cost = SECONDS_PER_PARTICLE_AND_STEP[prepared.case.shapes] * (
-            1.0 + FURTHER_PART * prepared.further_parts
-        )
-        return 1.0 + cost * len(prepared) * steps * float((len(prepared) / 1000) ** COST_EXPONENT)
-
-    def simulate(
-        self, prepared: PreparedCase, settings: RapierSettings
-    ) -> Generator[Snapshot, None, SimulationResult]:
-        """Fill, settle, lift, rest.
+    def solver(self, prepared: PreparedCase, settings: RapierSettings) -> Solver:
+        """Rapier with the particles of a case.
 
         Raises
         ------
         InputError
             If the case has what the solver does not represent.
         """
-        return simulate_lifting(_run(prepared, settings))
+        if prepared.surface_energy > 0.0:
+            raise InputError("Rapier has no cohesion; take LAMMPS, or cohesion none.")
+        if prepared.case.contact.rolling_friction > 0.0:
+            raise InputError("Rapier has no rolling resistance; take MuJoCo or LAMMPS.")
+        from regolith_studio.dem.engines.rapier.simulation import RapierSolver
 
-    def resume(
-        self, prepared: PreparedCase, settings: RapierSettings, state: EngineState
-    ) -> Generator[Snapshot, None, SimulationResult]:
-        """Go on from a state."""
-        return resume_lifting(_run(prepared, settings), state)
-
-
-def _run(prepared: PreparedCase, settings: RapierSettings) -> LiftingRun:
-    if prepared.surface_energy > 0.0:
-        raise InputError("Rapier has no cohesion; take LAMMPS, or cohesion none.")
-    if prepared.case.contact.rolling_friction > 0.0:
-        raise InputError("Rapier has no rolling resistance; take MuJoCo or LAMMPS.")
-    from regolith_studio.dem.engines.rapier.simulation import RapierSolver
-
-    return LiftingRun(prepared, settings, RapierSolver(prepared, settings))
+        return RapierSolver(prepared, settings)
 
 
 ENGINE = RapierEngine()

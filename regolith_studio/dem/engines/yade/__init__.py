@@ -31,7 +31,7 @@ class YadeEngine:
 
     key: str = "yade"
     label: str = "YADE"
-    order: int = 2
+    order: int = 3
     licence: str = "GPL-2.0, run as a separate program"
     Settings: type[YadeSettings] = YadeSettings
     capabilities: EngineCapabilities = REPRESENTS
