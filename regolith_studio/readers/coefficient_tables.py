@@ -10,7 +10,7 @@ from regolith_studio.errors import FileError, GeometryError, InputError
 from regolith_studio.geometry.particle import Particle, Source
 from regolith_studio.harmonics.coefficients import ShCoefficients
 from regolith_studio.harmonics.io import from_complex_rows, from_shtools_rows
-from regolith_studio.readers.error_messages import message_about, plural
+from regolith_studio.readers.error_messages import lower_first, message_about, plural
 from regolith_studio.readers.file_bytes import sha256_of
 from regolith_studio.readers.sandbox.parent import Sandbox, shared_sandbox
 from regolith_studio.readers.units import unit_factor
@@ -141,7 +141,7 @@ def _as_predicate(sentence: str) -> str:
     """The error of a check as the end of a sentence that begins with the file's name."""
     if sentence.startswith(("has ", "does ", "cannot ")):
         return sentence
-    return f"is not a valid table of coefficients: {sentence[0].lower()}{sentence[1:]}"
+    return f"is not a valid table of coefficients: {lower_first(sentence)}"
 
 
 TABLE_SUFFIXES = (".anm", ".sh", ".shc")
@@ -187,6 +187,5 @@ def read_table_particle(
     try:
         mesh = reconstruct(coefficients, level=5 if coefficients.l_max > _FINE_DEGREE else 4)
     except GeometryError as error:
-        sentence = f"holds no particle: {str(error)[0].lower()}{str(error)[1:]}"
-        raise GeometryError(message_about(path, sentence)) from None
+        raise GeometryError(message_about(path, f"holds no particle: {lower_first(str(error))}")) from None
     return Particle(table.name, mesh, group, replace(table.source, l_max=l_max), notes)

@@ -11,6 +11,11 @@ def printable(text: str) -> str:
     return "".join(sign if sign.isprintable() else "?" for sign in text)
 
 
+def lower_first(sentence: str) -> str:
+    """A sentence as the end of another one."""
+    return sentence[0].lower() + sentence[1:]
+
+
 def plural(number: int, noun: str) -> str:
     """``1 column``, ``2 columns``."""
     return f"{number:,} {noun}{'' if number == 1 else 's'}"

@@ -27,7 +27,13 @@ from regolith_studio.readers.coefficient_tables import (
     TableReading,
     read_table_particle,
 )
-from regolith_studio.readers.error_messages import display_name, message_about, plural, printable
+from regolith_studio.readers.error_messages import (
+    display_name,
+    lower_first,
+    message_about,
+    plural,
+    printable,
+)
 from regolith_studio.readers.file_bytes import sha256_of
 from regolith_studio.readers.formats import mesh_suffixes
 from regolith_studio.readers.sandbox.parent import Sandbox, shared_sandbox
@@ -263,7 +269,7 @@ def _read_mesh(file: MeshFile, unit: str, repair: bool, sandbox: Sandbox | None)
             notes += inspect(mesh).problems
     except GeometryError as error:
         left_out = "".join(f" {note}" for note in answer.header["notes"] if note.startswith("Left out"))
-        reason = f"holds no particle: {_lower(str(error))}{left_out}"
+        reason = f"holds no particle: {lower_first(str(error))}{left_out}"
         raise GeometryError(message_about(path, reason)) from None
     source = Source(str(path), answer.header["sha256"], unit, repair)
     return Particle(path.stem, mesh, file.group, source, notes, file.weight, repaired)
@@ -369,10 +375,6 @@ def _in_folder(folder: Path, several: bool) -> Iterator[MeshFile]:
 
 def _log_problem(path: Path, sentence: str) -> None:
     _log.warning("%s: %s", path, sentence)
-
-
-def _lower(sentence: str) -> str:
-    return sentence[0].lower() + sentence[1:]
 
 
 WEIGHTS_FILE = "particles.csv"

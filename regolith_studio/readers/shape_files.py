@@ -18,7 +18,7 @@ from regolith_studio.harmonics.sphere_grid import sphere_grid
 from regolith_studio.harmonics.surface import radii
 from regolith_studio.io.atomic import check_listed, listed_hashes
 from regolith_studio.io.json_arrays import arrays_from
-from regolith_studio.readers.error_messages import message_about, printable
+from regolith_studio.readers.error_messages import lower_first, message_about, printable
 from regolith_studio.readers.file_bytes import read_bytes
 from regolith_studio.readers.units import unit_factor
 from regolith_studio.shape_models import io as model_io
@@ -93,7 +93,7 @@ def read_shape_source(text: str) -> ShapeSource:
     except FileError:
         raise
     except InputError as error:
-        raise FileError(message_about(path, f"cannot be used: {_lower(str(error))}")) from None
+        raise FileError(message_about(path, f"cannot be used: {lower_first(str(error))}")) from None
     raise FileError(message_about(path, _NO_SOURCE))
 
 
@@ -129,7 +129,7 @@ def _sample(path: Path, document: Mapping[str, Any], digest: str) -> ShapeSource
     try:
         fits = fit_io.fits_from(document, arrays_from(document["arrays"]))
     except FileError as error:
-        raise FileError(message_about(path, f"is a broken fit: {_lower(str(error))}")) from None
+        raise FileError(message_about(path, f"is a broken fit: {lower_first(str(error))}")) from None
     except (KeyError, TypeError, ValueError):
         reason = "is a broken fit: its arrays are not of the shape or type that a fit has."
         raise FileError(message_about(path, reason)) from None
@@ -151,12 +151,8 @@ def _model(path: Path, document: Mapping[str, Any]) -> FittedModel:
         model = model_io.model_from(document)
         unit_factor(model.unit)
     except InputError as error:
-        raise FileError(message_about(path, f"is a broken model: {_lower(str(error))}")) from None
+        raise FileError(message_about(path, f"is a broken model: {lower_first(str(error))}")) from None
     return model
-
-
-def _lower(sentence: str) -> str:
-    return sentence[0].lower() + sentence[1:]
 
 
 def _in_micrometres(card: MaterialCard) -> MaterialCard:

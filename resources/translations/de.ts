@@ -3116,10 +3116,6 @@
         <translation>Netz</translation>
     </message>
     <message>
-        <source>Mesh files contain no unit. The answer is kept for their folder.</source>
-        <translation>Netzdateien enthalten keine Einheit. Die Antwort wird für ihren Ordner behalten.</translation>
-    </message>
-    <message>
         <source>Message</source>
         <translation>Meldung</translation>
     </message>
@@ -3606,6 +3602,10 @@
     <message>
         <source>One weight for each term of the loss, with presets. A weight of 0 leaves a descriptor out. Reset brings the preset back.</source>
         <translation>Ein Gewicht für jeden Term der Verlustfunktion, mit Vorlagen. Das Gewicht 0 lässt einen Deskriptor weg. Zurücksetzen bringt die Vorlage zurück.</translation>
+    </message>
+    <message>
+        <source>Only 3MF and glTF state their unit. The answer is kept for the folder.</source>
+        <translation>Nur 3MF und glTF nennen ihre Einheit. Die Antwort wird für den Ordner behalten.</translation>
     </message>
     <message>
         <source>Only equivalent radii from … to …</source>

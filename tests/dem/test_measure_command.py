@@ -58,6 +58,24 @@ def test_that_positions_of_other_programs_are_measured(
     assert found == pytest.approx([found[0]] * 3, abs=0.05)
 
 
+def test_that_columns_are_named_and_types_and_velocities_are_no_positions(
+    pile_file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    points = 2.0 * cone(32, 1500, 1)
+    radii = tmp_path / "radii.xyz"
+    rows = [f"{x:.6f} {y:.6f} {z:.6f}" for x, y, z in points]
+    radii.write_text("1500\npile\n" + "\n".join(f"{row} 1.0" for row in rows) + "\n")
+    types = tmp_path / "types.xyz"
+    types.write_text("1500\nAtoms. Timestep: 0\n" + "\n".join(f"1 {row} 0 0 0" for row in rows) + "\n")
+    assert run(["repose", "measure", str(pile_file), "--json"]) == 0
+    angle = json.loads(capsys.readouterr().out)["angle_deg"]
+    assert run([*_measure(radii)]) == 1
+    assert "--columns" in capsys.readouterr().err
+    for arguments in ([*_measure(radii), "--columns", "x y z radius"], [*_measure(types), "--diameter", "2"]):
+        assert run(arguments) == 0
+        assert json.loads(capsys.readouterr().out)["angle_deg"] == pytest.approx(angle, abs=0.05)
+
+
 def test_that_both_sections_of_the_paper_stand_beside_the_angle(
     pile_file: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

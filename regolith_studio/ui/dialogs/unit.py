@@ -77,7 +77,7 @@ class UnitDialog(QDialog):
         layout.addWidget(question)
         layout.addLayout(form)
         layout.addWidget(self.size_note)
-        layout.addWidget(remark(tr("Mesh files contain no unit. The answer is kept for their folder.")))
+        layout.addWidget(remark(tr("Only 3MF and glTF state their unit. The answer is kept for the folder.")))
         layout.addWidget(buttons)
         self.unit.currentIndexChanged.connect(self._show_voxel)
         self.unit.currentIndexChanged.connect(self._show_size)
