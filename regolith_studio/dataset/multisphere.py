@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from weakref import WeakKeyDictionary
 
 import numpy as np
-from scipy.optimize import linprog, lsq_linear, minimize
+from scipy.optimize import lsq_linear, minimize
 from scipy.spatial.distance import cdist
 from scipy.special import expit
 from scipy.stats import qmc
@@ -23,6 +23,7 @@ from scipy.stats import qmc
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import BoolArray, FloatArray
 from regolith_studio.geometry.convex_compound import Polyhedron
+from regolith_studio.geometry.half_spaces import inscribed_ball
 from regolith_studio.geometry.sphere_points import fibonacci_directions
 
 LOWEST = 0.05
@@ -433,9 +434,5 @@ def inner_points(shape: Polyhedron, count: int) -> FloatArray:
 
 def _incentre(shape: Polyhedron) -> FloatArray:
     """Centre of the largest sphere inside a convex part, by linear programming."""
-    best = np.zeros(4)
-    for normals, offsets in shape.part_planes:
-        matrix = np.column_stack([normals, np.ones(len(normals))])
-        answer = linprog([0, 0, 0, -1], A_ub=matrix, b_ub=offsets, bounds=[(None, None)] * 3 + [(0, None)])
-        best = max(best, np.asarray(answer.x), key=lambda found: float(found[3]))
-    return np.asarray(best)[:3]
+    balls = [inscribed_ball(normals, offsets) for normals, offsets in shape.part_planes]
+    return max(balls, key=lambda ball: ball[1])[0]

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy.optimize import linprog
 
 from regolith_studio.errors import GeometryError
 from regolith_studio.geometry.arrays import FloatArray, locked_floats
@@ -94,3 +95,20 @@ class HalfSpaces:
         radius, plane = np.empty(len(rays)), np.empty(len(rays), dtype=np.int64)
         exits(np.array(self.normals), np.array(self.offsets), rays, radius, plane)
         return radius
+
+
+def inscribed_ball(normals: FloatArray, offsets: FloatArray) -> tuple[FloatArray, float]:
+    """Centre (3,) and radius of the largest ball in <n_i, x> <= h_i (Chebyshev centre, HiGHS).
+
+    The radius is negative where the half-spaces have no point in common, and NaN where they are unbounded.
+
+    Parameters
+    ----------
+    normals, offsets
+        Unit vectors (n, 3), and distances (n,) of any sign; sizes near 1, as HiGHS has absolute tolerances.
+    """
+    rows = np.column_stack([normals, np.ones(len(normals))])
+    found = linprog([0, 0, 0, -1], A_ub=rows, b_ub=offsets, bounds=(None, None), method="highs")
+    if found.x is None:
+        return np.full(3, np.nan), float("nan")
+    return np.asarray(found.x[:3]), float(found.x[3])

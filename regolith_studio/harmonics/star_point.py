@@ -13,6 +13,7 @@ from scipy import optimize
 
 from regolith_studio.errors import GeometryError
 from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.geometry.half_spaces import inscribed_ball
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.ray_casting import radial_hits
 from regolith_studio.geometry.sphere_points import fibonacci_directions
@@ -42,13 +43,10 @@ def kernel_centre(mesh: Mesh) -> FloatArray:
     # HiGHS has absolute tolerances of 1e-7: the programme is solved at unit volume about the centroid.
     corners = (mesh.triangles[keep, 0] - mesh.centroid) / size
     offsets = np.einsum("ij,ij->i", normals, corners)
-    rows = np.column_stack([normals, np.ones(len(normals))])
-    found = optimize.linprog(
-        [0, 0, 0, -1], A_ub=rows, b_ub=offsets, bounds=[(None, None)] * 4, method="highs"
-    )
-    if found.x is None or not found.x[3] > 1e-9:
+    centre, distance = inscribed_ball(normals, offsets)
+    if not distance > 1e-9:
         raise GeometryError("No point inside the particle sees its whole surface: its kernel is empty.")
-    return np.asarray(mesh.centroid + found.x[:3] * size)
+    return np.asarray(mesh.centroid + centre * size)
 
 
 def hidden_volume(mesh: Mesh, star_point: FloatArray, n_rays: int = N_SEARCH_RAYS) -> float:

@@ -8,6 +8,7 @@ from scipy.spatial import HalfspaceIntersection
 
 from regolith_studio.errors import GeometryError
 from regolith_studio.geometry import HalfSpaces
+from regolith_studio.geometry.half_spaces import inscribed_ball
 from regolith_studio.geometry.sphere_points import fibonacci_directions
 
 CUBE = np.vstack([np.eye(3), -np.eye(3)])
@@ -69,3 +70,18 @@ def test_that_pickling_keeps_the_locks_and_the_callers_arrays_stay_writeable() -
     assert np.array_equal(again.normals, planes.normals)
     assert not again.normals.flags.writeable
     assert not again.offsets.flags.writeable
+
+
+def test_that_the_largest_ball_of_a_moved_corner_touches_its_four_planes() -> None:
+    """x, y, z >= 0 and x + y + z <= 1: the centre is at r along each axis, with r = 1 / (3 + sqrt(3))."""
+    normals = np.vstack([-np.eye(3), np.full(3, 1 / np.sqrt(3))])
+    shift = np.array([5.0, -2.0, 1.0])
+    offsets = np.array([0.0, 0.0, 0.0, 1 / np.sqrt(3)]) + normals @ shift
+    centre, radius = inscribed_ball(normals, offsets)
+    assert radius == pytest.approx(1 / (3 + np.sqrt(3)), rel=1e-9)
+    np.testing.assert_allclose(centre, shift + radius, atol=1e-9)
+
+
+def test_that_half_spaces_without_a_common_point_have_a_ball_of_negative_radius() -> None:
+    normals = np.vstack([np.eye(3), -np.eye(3)])
+    assert inscribed_ball(normals, np.array([-1.0, 1, 1, -1, 1, 1]))[1] == pytest.approx(-1.0)

@@ -5,7 +5,6 @@ from dataclasses import replace
 
 import numpy as np
 import rapier3d as rapier
-from scipy.optimize import linprog
 from scipy.spatial import ConvexHull, HalfspaceIntersection
 from scipy.spatial.transform import Rotation
 
@@ -25,6 +24,7 @@ from regolith_studio.dem.separation import overlap_depths
 from regolith_studio.dem.snapshot import PHASES, ParticleState
 from regolith_studio.errors import InputError, RegolithError
 from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.geometry.half_spaces import inscribed_ball
 
 N_WALLS = 32
 WALL_THICKNESS = 2.0
@@ -258,19 +258,13 @@ def inner_parallel_body(vertices: FloatArray, distance: float) -> FloatArray:
     """
     planes = np.unique(np.round(ConvexHull(vertices).equations, 9), axis=0)
     planes[:, 3] += distance
-    # the point furthest from all planes, by a linear programme
-    found = linprog(
-        [0, 0, 0, -1.0],
-        np.column_stack([planes[:, :3], np.ones(len(planes))]),
-        -planes[:, 3],
-        bounds=(None, None),
-    )
-    if found.x is None or found.x[3] <= 0.0:
+    centre, left = inscribed_ball(planes[:, :3], -planes[:, 3])
+    if not left > 0.0:
         raise InputError(
             "A shape or a part of one is so thin that nothing is left within Rapier's rounded edges; take"
             " MuJoCo."
         )
-    return np.asarray(HalfspaceIntersection(planes, found.x[:3]).intersections)
+    return np.asarray(HalfspaceIntersection(planes, centre).intersections)
 
 
 def _walls(prepared: PreparedCase, height: float) -> list[rapier.Collider | rapier.ColliderBuilder]:
