@@ -5,7 +5,8 @@ from dataclasses import dataclass
 
 from regolith_studio.dem.case import PreparedCase
 from regolith_studio.dem.engine import Availability, EngineCapabilities, SimulationResult
-from regolith_studio.dem.engines.yade.program import YadeSettings, expected_duration, find_yade
+from regolith_studio.dem.engines.yade.program import YadeSettings, find_yade
+from regolith_studio.dem.lifting_cylinder import expected_duration
 from regolith_studio.dem.snapshot import Snapshot
 from regolith_studio.errors import InputError
 from regolith_studio.messages import N_

@@ -7,10 +7,7 @@ from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
 
-import numpy as np
-
 from regolith_studio.dataset.parameters import check_limits
-from regolith_studio.dem.case import PreparedCase
 from regolith_studio.dem.engine import Availability
 from regolith_studio.messages import N_
 from regolith_studio.resources import resource
@@ -73,16 +70,6 @@ class YadeSettings:
 
     def __post_init__(self) -> None:
         check_limits(self, "YADE setting")
-
-
-FALL, SETTLE, REST = 18.0, 4.0, 12.0
-
-
-def expected_duration(prepared: PreparedCase) -> float:
-    """Of the whole test; the rim must rise above the pile, which is about 0.6 of the filling's height."""
-    speed = prepared.case.test.lift_speed / np.sqrt(prepared.case.test.gravity * prepared.mean_diameter)
-    lift = 0.75 * prepared.fill_height / prepared.mean_diameter / speed
-    return float(FALL + SETTLE + lift + REST)
 
 
 MISSING = N_("YADE is not installed; install the package yade of your Linux distribution.")

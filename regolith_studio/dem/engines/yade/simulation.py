@@ -13,8 +13,9 @@ import numpy as np
 from regolith_studio.dem.case import PreparedCase
 from regolith_studio.dem.engine import RunChecks, SimulationResult
 from regolith_studio.dem.engines.yade.input_files import LENGTH, YadeState, input_document, read_yade_state
-from regolith_studio.dem.engines.yade.program import YadeSettings, command, expected_duration
+from regolith_studio.dem.engines.yade.program import YadeSettings, command
 from regolith_studio.dem.external_program import printed_lines, running_program, written_files
+from regolith_studio.dem.lifting_cylinder import expected_duration
 from regolith_studio.dem.run_checks import check_run, measure_filling
 from regolith_studio.dem.separation import overlap_depths
 from regolith_studio.dem.snapshot import ParticleState, Snapshot, progress_message
