@@ -3088,6 +3088,10 @@
         <translation>Fit wird vermessen</translation>
     </message>
     <message>
+        <source>Measuring the fits</source>
+        <translation>Messe die Anpassungen</translation>
+    </message>
+    <message>
         <source>Measuring the pile</source>
         <translation>Schüttkegel wird vermessen</translation>
     </message>
@@ -7222,6 +7226,10 @@
     <message>
         <source>not below {bound:.3g} {unit} (line)</source>
         <translation>nicht unter {bound:.3g} {unit} (Linie)</translation>
+    </message>
+    <message>
+        <source>not decidable with so few</source>
+        <translation>mit so wenigen nicht entscheidbar</translation>
     </message>
     <message>
         <source>not given</source>
