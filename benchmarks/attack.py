@@ -20,6 +20,7 @@ moments fall into its work and none into imports. SIGINT and SIGHUP go to all pr
 terminal sends them, SIGTERM and SIGKILL to the first alone. `demo` is shortened (:func:`shorten_demo`).
 
 Linux only. Full and read-only disks are small file systems in memory, which needs root.
+Then come inputs that were made to harm (:mod:`benchmarks.attack_inputs`).
 ``--share 0.1 --seed 1`` runs a sample, ``--only NAME ...`` some of :data:`COMMANDS`.
 Ctrl+C ends it with the table of what ran.
 """
@@ -51,6 +52,7 @@ from unittest.mock import patch
 
 import numpy as np
 
+from benchmarks import attack_inputs
 from benchmarks.sample_inputs import write_inputs
 from regolith_studio import __main__ as program
 from regolith_studio.cli import entry
@@ -458,7 +460,14 @@ def main() -> None:
     for name in dict.fromkeys(name for name, _ in rows if name not in printed):
         print("\n".join(lines(rows, name)))
     print(total(rows))
-    if any(each.lost or each.mixed or each.left or each.unclear for each in rows.values()):
+    inputs: dict[str, list[int]] = {}
+    if not options.only:
+        with tempfile.TemporaryDirectory() as folder:
+            inputs = attack_inputs.attack_inputs(Path(folder), options.share, options.seed)
+        print("\n".join(attack_inputs.lines(inputs)))
+    if any(each.lost or each.mixed or each.left or each.unclear for each in rows.values()) or any(
+        unclear or outside for *_, unclear, outside in inputs.values()
+    ):
         raise SystemExit(1)
 
 

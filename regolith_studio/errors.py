@@ -93,7 +93,7 @@ _REASONS = {
     errno.ELOOP: "its links go round in circles",
     errno.EIO: "the disk fails",
     errno.ENOSPC: "the disk is full",
-    errno.EROFS: "the disk cannot be written to",
+    errno.EROFS: "the file system is read-only",
     errno.EMFILE: "too many files are open",
 }
 

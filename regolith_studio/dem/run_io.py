@@ -23,9 +23,10 @@ from regolith_studio.dem.snapshot import ParticleState, particle_state_bytes, re
 from regolith_studio.errors import FileError, RegolithError, os_error_reason
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.io.atomic import exchange, remove_quietly
-from regolith_studio.io.json_text import canonical_json, parse_strict_json
+from regolith_studio.io.json_text import canonical_json
 from regolith_studio.io.natural_order import natural_key
 from regolith_studio.io.output_lock import NEW, hidden_beside, output_lock
+from regolith_studio.io.own_files import read_arrays, read_json
 from regolith_studio.messages import Message, from_json, to_json
 from regolith_studio.version import __version__
 
@@ -190,6 +191,9 @@ def save_result(folder: Path, document: dict[str, Any], final: ParticleState | N
             content = particle_state_bytes(final)
             _write(folder / FINAL, content)
             document = document | {"final_sha256": hashlib.sha256(content).hexdigest()}
+        if (folder / SHAPES).is_file():
+            content = (folder / SHAPES).read_bytes()
+            document = document | {"shapes_sha256": hashlib.sha256(content).hexdigest()}
         _write(folder / TIMES, canonical_json({"seconds": round(seconds, 3)}).encode("utf-8"))
         _write(folder / DOCUMENT, canonical_json(document).encode("utf-8"))
     except OSError as error:
@@ -206,10 +210,8 @@ def read_final_state(path: Path) -> ParticleState:
         If the file is broken, or the final state of another run.
     """
     state = read_particle_state(path)
-    if path.name == FINAL and (path.parent / DOCUMENT).is_file():
-        wanted = read_run(path.parent).document.get("final_sha256")
-        if wanted not in (None, hashlib.sha256(path.read_bytes()).hexdigest()):
-            raise FileError(f"{path} is not the final state of the run that {DOCUMENT} beside it describes.")
+    if path.name == FINAL:
+        _check_of_run(path, "final_sha256", "is not the final state")
     return state
 
 
@@ -224,17 +226,30 @@ def read_shapes(folder: Path) -> tuple[tuple[FloatArray, ...], ...]:
     Raises
     ------
     FileError
-        If the file is missing or broken.
+        If the file is missing or broken, or those of another run.
     """
-    try:
-        with np.load(folder / SHAPES, allow_pickle=False) as content:
-            shapes: dict[str, list[FloatArray]] = {}
-            for name in sorted(content.files):
-                part = np.asarray(content[name], dtype=np.float64)
-                shapes.setdefault(name.partition(".")[0], []).append(part)
-            return tuple(tuple(parts) for parts in shapes.values())
-    except (OSError, ValueError, EOFError) as error:
-        raise FileError(f"{folder / SHAPES} holds no shapes of a run.") from error
+    content = read_arrays(folder / SHAPES, "shapes of a run")
+    _check_of_run(folder / SHAPES, "shapes_sha256", "are not the shapes")
+    shapes: dict[str, list[FloatArray]] = {}
+    for name in sorted(content):
+        if content[name].ndim != 2 or content[name].shape[1] != 3 or content[name].dtype.kind != "f":
+            raise FileError(f"{folder / SHAPES} holds no shapes of a run.")
+        shapes.setdefault(name.partition(".")[0], []).append(content[name].astype(np.float64))
+    return tuple(tuple(parts) for parts in shapes.values())
+
+
+def _check_of_run(path: Path, key: str, problem: str) -> None:
+    """Check that a file is the one whose SHA-256 the document beside it holds.
+
+    Raises
+    ------
+    FileError
+        If it is that of another run.
+    """
+    if (path.parent / DOCUMENT).is_file():
+        expected = read_run(path.parent).document.get(key)
+        if expected not in (None, hashlib.sha256(path.read_bytes()).hexdigest()):
+            raise FileError(f"{path} {problem} of the run that {DOCUMENT} beside it describes.")
 
 
 def read_run(folder: Path) -> RunSummary:
@@ -247,8 +262,8 @@ def read_run(folder: Path) -> RunSummary:
     """
     path = folder / DOCUMENT
     try:
-        document = parse_strict_json(path.read_text("utf-8"), str(path))
-    except (OSError, UnicodeDecodeError, FileError) as error:
+        document = read_json(path)
+    except FileError as error:
         raise FileError(f"{folder} holds no result of a run.") from error
     if not isinstance(document, dict) or document.get("format") != FORMAT:
         raise FileError(f"{path} is no result of a run of this program.")

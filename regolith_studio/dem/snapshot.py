@@ -12,12 +12,11 @@ import numpy as np
 
 from regolith_studio.errors import FileError
 from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats, locked_integers
+from regolith_studio.io.own_files import read_archive, read_arrays
 from regolith_studio.messages import N_, Message, Number
 
 PHASES = (N_("fill"), N_("settle"), N_("lift"), N_("rest"))
 """Of the test, in their order."""
-MAX_UNPACKED_BYTES = 2_000_000_000
-"""Maximum unpacked size of a file in bytes."""
 
 
 def progress_message(phase: str, seconds: float) -> Message:
@@ -128,12 +127,12 @@ def engine_state_bytes(state: EngineState, key: str, number: int) -> bytes:
 def read_engine_state(path: Path, key: str) -> tuple[EngineState, int] | None:
     """State of a run and number of its next snapshot; ``None`` if there is none, or that of another run."""
     try:
-        with zipfile.ZipFile(path) as archive:
-            head = json.loads(archive.read("head.json"))
-            if head["key"] != key:
-                return None
-            return EngineState(head["records"], archive.read("solver.bin")), int(head["number"])
-    except (OSError, zipfile.BadZipFile, KeyError, TypeError, ValueError, EOFError):
+        content = read_archive(path, "state of an engine")
+        head = json.loads(content["head.json"])
+        if head["key"] != key:
+            return None
+        return EngineState(head["records"], content["solver.bin"]), int(head["number"])
+    except (FileError, KeyError, TypeError, ValueError, RecursionError):
         return None
 
 
@@ -161,21 +160,16 @@ def read_particle_state(path: Path) -> ParticleState:
     FileError
         If it is none.
     """
+    content = read_arrays(path, "particles of a simulation")
     try:
-        with zipfile.ZipFile(path) as archive:
-            if sum(entry.file_size for entry in archive.infolist()) > MAX_UNPACKED_BYTES:
-                raise FileError(f"{path.name} would unpack to more than {MAX_UNPACKED_BYTES // 10**9} GB.")
-        with np.load(path, allow_pickle=False) as content:
-            return ParticleState(
-                content["points_m"].astype(np.float64),
-                content["diameters_m"],
-                content["orientations"].astype(np.float64),
-                content["class_index"],
-                float(content["time_s"]),
-                float(content["wall_m"]),
-                str(content["phase"]),
-            )
-    except OSError as error:
-        raise FileError(f"{path} cannot be read: {error.strerror or error}.") from error
-    except (zipfile.BadZipFile, KeyError, ValueError, EOFError) as error:
+        return ParticleState(
+            content["points_m"].astype(np.float64),
+            content["diameters_m"],
+            content["orientations"].astype(np.float64),
+            content["class_index"],
+            float(content["time_s"]),
+            float(content["wall_m"]),
+            str(content["phase"]),
+        )
+    except (KeyError, ValueError, TypeError) as error:
         raise FileError(f"{path.name} holds no particles of a simulation of this program.") from error

@@ -12,6 +12,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from regolith_studio.errors import FileError, format_validation_error
 from regolith_studio.io.atomic import write_files
 from regolith_studio.io.file_names import unique_name
+from regolith_studio.io.json_text import parse_strict_json
 from regolith_studio.readers.file_bytes import read_bytes
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.provenance import (
@@ -214,8 +215,11 @@ def read_project(path: Path) -> Project:
     FileError
         If it cannot be read or is none.
     """
+    content = read_bytes(path, LARGEST)
     try:
-        return Project.model_validate_json(read_bytes(path, LARGEST))
+        project = Project.model_validate_json(content)
+        parse_strict_json(content.decode("utf-8"), str(path))
+        return project
     except ValidationError as error:
         reason = format_validation_error(error.errors(include_url=False))
         raise FileError(f"{path} is not a project of this program: {reason}.") from error

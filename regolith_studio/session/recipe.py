@@ -11,6 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, create_model
 from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.errors import FileError, InputError, format_validation_error
 from regolith_studio.harmonics.fit_options import MAX_TABLE_DEGREE
+from regolith_studio.io.json_text import parse_strict_json
 from regolith_studio.jobs.particle_jobs import FIT_DEGREE
 from regolith_studio.readers.file_bytes import read_bytes
 from regolith_studio.session.choices import LEVEL_LIMITS, Choices, Scalar
@@ -20,6 +21,8 @@ FORMAT: Literal["regolith-studio recipe"] = "regolith-studio recipe"
 VERSION: Literal[2] = 2
 LARGEST = 16_000_000
 """Bytes of a recipe or project that are read: 100,000 inputs by name, and four seconds at the worst."""
+MAX_ENTRIES = 100_000
+"""Of a list of inputs or particles."""
 SAMPLE = "sample:all"
 """Stands among the inputs for the particles that ship with the program."""
 
@@ -61,7 +64,7 @@ class Population(Strict):
         What they are called, and their group where the model has no parts; by default after the first source.
     """
 
-    sources: list[str] = Field(min_length=1)
+    sources: list[str] = Field(min_length=1, max_length=MAX_ENTRIES)
     model: str = ""
     settings: dict[str, Scalar] = Field(default_factory=dict)
     n: int = Field(ge=1, le=1_000_000)
@@ -86,7 +89,7 @@ class FilesEntry(Strict):
         Degree above which coefficients of tables are left out; by default none are.
     """
 
-    files: list[str] = Field(min_length=1)
+    files: list[str] = Field(min_length=1, max_length=MAX_ENTRIES)
     unit: str
     repair: bool = True
     l_max: int | None = Field(default=None, ge=1, le=MAX_TABLE_DEGREE)
@@ -244,10 +247,12 @@ class RecipeInputs(Strict):
 
     format: Literal["regolith-studio recipe"] = FORMAT
     version: Literal[2] = VERSION
-    inputs: list[str | FilesEntry] = Field(default_factory=lambda: list[str | FilesEntry]([SAMPLE]))
-    volumes: list[VolumeEntry] = Field(default_factory=list)
+    inputs: list[str | FilesEntry] = Field(
+        default_factory=lambda: list[str | FilesEntry]([SAMPLE]), max_length=MAX_ENTRIES
+    )
+    volumes: list[VolumeEntry] = Field(default_factory=list, max_length=MAX_ENTRIES)
     population: Population | None = None
-    particles: list[str | NamedParticle] | None = Field(default=None, min_length=1)
+    particles: list[str | NamedParticle] | None = Field(default=None, min_length=1, max_length=MAX_ENTRIES)
 
 
 def _entry(each: DataclassField[Any]) -> tuple[Any, Any]:
@@ -372,8 +377,11 @@ def read_recipe(path: Path) -> Recipe:
     FileError
         If it cannot be read or is no recipe; the sentence names the first entry that is wrong.
     """
+    content = read_bytes(path, LARGEST)
     try:
-        return Recipe.model_validate_json(read_bytes(path, LARGEST))
+        recipe = Recipe.model_validate_json(content)
+        parse_strict_json(content.decode("utf-8"), str(path))
+        return recipe
     except ValidationError as error:
         reason = format_validation_error(error.errors(include_url=False))
         raise FileError(f"{path} is not a recipe of this program: {reason}.") from error

@@ -47,7 +47,7 @@ class ThreeViewPage:
         self._server, self._session = server, session
         self._scene = SideBySide()
         self._shown: dict[str, Any] = {}
-        self._is_due = False
+        self._due: asyncio.TimerHandle | None = None
         self._problem = ""
         self._write_state()
         server.state.change(*CHOICES)(self._choose)
@@ -58,6 +58,8 @@ class ThreeViewPage:
 
     def close(self) -> None:
         """Free the views."""
+        if self._due is not None:
+            self._due.cancel()
         self._scene.close()
 
     def _build(self) -> None:
@@ -102,12 +104,11 @@ class ThreeViewPage:
 
     def _refresh_soon(self) -> None:
         """Refresh the page once for all events of the next moment."""
-        if not self._is_due:
-            self._is_due = True
-            asyncio.get_running_loop().call_later(PICTURE_INTERVAL, self._refresh)
+        if self._due is None:
+            self._due = asyncio.get_running_loop().call_later(PICTURE_INTERVAL, self._refresh)
 
     def _refresh(self) -> None:
-        self._is_due = False
+        self._due = None
         with self._server.state:
             self._write_state()
         if self._draw():

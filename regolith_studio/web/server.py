@@ -89,6 +89,7 @@ class ViewServer:
 
             def report_ready(**_state: Any) -> None:
                 self._port = server.port
+                server.protocol.stopServer = _refuse_to_stop
                 ready()
 
             server.controller.on_server_ready.add(report_ready)
@@ -143,8 +144,14 @@ async def _serve(server: Any, host: str, port: int) -> None:
 
 
 def _is_worth_logging(record: logging.LogRecord) -> bool:
-    """Whether a message is about anything but a page that was closed while something was sent to it."""
-    return not (record.exc_info and isinstance(record.exc_info[1], ConnectionError))
+    """Whether a message is about anything but a page that was closed, or a request that is none."""
+    from aiohttp.http_exceptions import HttpProcessingError
+
+    return not (record.exc_info and isinstance(record.exc_info[1], ConnectionError | HttpProcessingError))
+
+
+def _refuse_to_stop() -> None:
+    """In place of what ``application.exit`` calls: no page may end the server for all the others."""
 
 
 def _ignore_closed_pages(loop: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:

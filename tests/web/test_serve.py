@@ -1,11 +1,14 @@
 """The three views in a real browser, and that nothing is served without the token."""
 
 import asyncio
+import contextlib
 import json
 import os
+import signal
 import socket
 import subprocess
 import sys
+import time
 import urllib.error
 import urllib.request
 from collections.abc import Iterator
@@ -18,8 +21,12 @@ pytest.importorskip("trame_vtk", reason="The three views in a browser need trame
 
 import numpy as np
 from PIL import Image
+from trame.app import get_server
 
 from regolith_studio.cli.entry import run
+from regolith_studio.readers.particles import sample_particles
+from regolith_studio.session.choices import Choices
+from regolith_studio.web.server import ViewServer
 from tests.web.chromium import PROGRAM, Chromium
 
 pytestmark = pytest.mark.slow
@@ -131,3 +138,47 @@ def test_that_a_port_in_use_is_refused(capsys: pytest.CaptureFixture[str]) -> No
         port = taken.getsockname()[1]
         assert run(["serve", "--no-browser", "--port", str(port)]) == 1
     assert capsys.readouterr().err.startswith(f"Cannot listen to 127.0.0.1, port {port} (")
+
+
+async def _exit_by_a_page() -> int:
+    server = ViewServer(sample_particles()[:1], Choices(target="fit", method="quadric"))
+    ready = asyncio.Event()
+    serving = asyncio.ensure_future(server.run(ready.set))
+    await asyncio.wait_for(ready.wait(), 120)
+    get_server(server._token).protocol.exit()  # what application.exit of the web socket calls
+    await asyncio.sleep(1.0)
+    assert not serving.done()
+    found = await asyncio.to_thread(status, server.url)
+    serving.cancel()
+    await asyncio.gather(serving, return_exceptions=True)
+    return found
+
+
+def test_that_a_page_cannot_end_the_server_for_the_others() -> None:
+    assert asyncio.run(_exit_by_a_page()) == 200
+
+
+def test_that_long_headers_leave_no_traceback_and_ctrl_c_ends_in_two_seconds() -> None:
+    command = [sys.executable, "-m", "regolith_studio", "serve", "--no-browser", "--json"]
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
+    with subprocess.Popen(command, text=True, **pipes) as process:
+        assert process.stdout is not None
+        address = json.loads("".join(process.stdout.readline() for _ in range(3)))["url"]
+        request = urllib.request.Request(address, headers={"X-Long": "x" * 100_000})
+        with contextlib.suppress(urllib.error.HTTPError, urllib.error.URLError, ConnectionError):
+            urllib.request.urlopen(request, timeout=30)
+        process.send_signal(signal.SIGINT)
+        _, errors = process.communicate(timeout=20)
+    assert errors.strip() == "Stopped."
+    assert process.returncode == 130
+
+
+@pytest.mark.parametrize("seconds", [1.5, 2.0, 3.0, 4.0])
+def test_that_ctrl_c_around_the_start_is_one_line(seconds: float) -> None:
+    command = [sys.executable, "-m", "regolith_studio", "serve", "--no-browser", "--json"]
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
+    with subprocess.Popen(command, text=True, **pipes) as process:
+        time.sleep(seconds)
+        process.send_signal(signal.SIGINT)
+        _, errors = process.communicate(timeout=20)
+    assert errors.strip() in ("Stopped.", "")

@@ -16,14 +16,16 @@ from typing import Any
 
 import numpy as np
 
-from regolith_studio.errors import InputError
+from regolith_studio.errors import FileError, InputError
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle, Source
 from regolith_studio.imaging.extraction import ExtractedParticle
 from regolith_studio.imaging.sample_volumes import SampleScan, SampleVolume, sample_file
 from regolith_studio.imaging.segmentation.classifier_document import training_document
 from regolith_studio.io.atomic import staged_folder
+from regolith_studio.io.file_names import path_inside
 from regolith_studio.io.json_text import json_bytes
+from regolith_studio.io.own_files import read_arrays, read_json
 from regolith_studio.jobs.events import Steps
 from regolith_studio.jobs.executor import Executor
 from regolith_studio.jobs.extraction_jobs import extract_each, volume_sha256
@@ -137,14 +139,17 @@ def entry_of(volume: VolumeInput, settings: GrainSettings) -> VolumeEntry:
 
 def read_index(folder: Path) -> list[dict[str, Any]]:
     """Entries of the grains of a volume, in order."""
-    extracted: list[dict[str, Any]] = json.loads((folder / INDEX).read_text(encoding="utf-8"))
+    extracted: list[dict[str, Any]] = read_json(folder / INDEX)
     return extracted
 
 
 def read_grain(folder: Path, entry: Mapping[str, Any]) -> Particle:
     """One of the grains of :func:`read_index`, bit for bit as it was extracted."""
-    with np.load(folder / entry["file"], allow_pickle=False) as arrays:
-        mesh = Mesh(arrays["vertices"], arrays["faces"])
+    path = path_inside(folder, entry["file"])
+    arrays = read_arrays(path, "grain")
+    if not {"vertices", "faces"} <= set(arrays):
+        raise FileError(f"{path} holds no grain of this program, or is damaged.")
+    mesh = Mesh(arrays["vertices"], arrays["faces"])
     source, notes = entry["source"], tuple(entry["notes"])
     return Particle(
         entry["name"], mesh, entry["group"], Source(*source) if source else None, notes, entry["weight"]

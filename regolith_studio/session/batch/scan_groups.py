@@ -21,6 +21,7 @@ from regolith_studio.descriptors.distributions import (
 from regolith_studio.errors import FileError, InputError, RegolithError
 from regolith_studio.io.atomic import listed_hashes, staged_folder, write_bytes
 from regolith_studio.io.file_names import file_stem, name_key, path_inside
+from regolith_studio.io.own_files import read_json
 from regolith_studio.io.tables import Column, Table, csv_bytes, csv_text, read_csv
 from regolith_studio.jobs.events import Started, Steps
 from regolith_studio.jobs.executor import Executor
@@ -151,13 +152,13 @@ def _numbered(steps: Steps, name: str, number: int, count: int) -> Steps:
 def _is_extracted(folder: Path, given: VolumeInput, settings: GrainSettings) -> bool:
     """Whether a folder holds all that this scan gives with these settings and versions."""
     try:
-        document = json.loads((folder / RECIPE).read_bytes())
+        document = read_json(folder / RECIPE)
         expected = input_document(
             given, settings, volume_sha256(given.path), settings.region.of(given.opened())
         )
         there = {key: document[key] for key in expected}
         listed = listed_hashes(folder)
-    except (OSError, ValueError, KeyError, TypeError):
+    except (FileError, OSError, ValueError, KeyError, TypeError):
         return False
     expected["volume"]["path"] = there["volume"]["path"]
     same: bool = there == json.loads(json.dumps(expected))
