@@ -13,6 +13,7 @@ from regolith_studio.dataset.build import build_dataset
 from regolith_studio.dataset.export import ExportOptions, write_export
 from regolith_studio.dataset.exporters import EXPORTERS
 from regolith_studio.dataset.folder_io import read_dataset, write_dataset
+from regolith_studio.errors import FileError
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
@@ -174,3 +175,9 @@ def test_that_files_whose_names_are_computed_are_written_at_one_place() -> None:
 def test_that_a_mesh_keeps_the_name_of_its_file(tmp_path: Path) -> None:
     (tmp_path / "<b>&.stl").write_bytes(stl_bytes(GRAIN.triangles, "test"))
     assert read_mesh(tmp_path / "<b>&.stl").name == "<b>&"
+
+
+def test_that_an_input_whose_name_no_file_can_have_is_one_sentence(output: Path) -> None:
+    recipe = recipe_of(**BASE, inputs=["a\0b.stl"], outputs={"dataset": False})
+    with pytest.raises(FileError, match="cannot be the name of a file"):
+        ended(run_recipe(recipe, output.parent, output))

@@ -84,7 +84,7 @@ class FileInput(_NamedInput):
         """Path, size and time of the file, and the degree that its table is cut at."""
         try:
             state = self.file.path.stat()
-        except OSError:
+        except (OSError, ValueError):  # no such file, or no name of one
             return f"{self.file.path} missing"
         return f"{self.file.path} {state.st_size} {state.st_mtime_ns} {self.file.tables}"
 
