@@ -1,7 +1,7 @@
 """The user's choices as one frozen snapshot, and which results depend on which of them."""
 
 import dataclasses
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 from enum import StrEnum
 from typing import Any, Self
@@ -189,18 +189,24 @@ STUDIES = (Kind.LMAX_STUDY, Kind.COARSENING_STUDY)
 """Kinds that are computed on demand."""
 
 _FIT_OPTIONS = tuple(each.name for each in fields(FitOptions))
-_COARSENING = ("selected", "target", "stopping_criterion", "method", "settings", "weights", "seed")
+_PARTICLE = ("selected",)
+"""The choices that say which mesh is fitted, measured and coarsened; one that changes it belongs here."""
+PARTICLE_DESCRIPTORS = (*_PARTICLE, "box_metric")
+"""What the descriptors of the particle itself depend on."""
+_FIT = (*_PARTICLE, *_FIT_OPTIONS)
+_OF_FIT = (*_FIT_OPTIONS, "l_max", "level")
+_SURFACE = (*_PARTICLE, *_OF_FIT)
+_COARSENING = (*_PARTICLE, "target", "stopping_criterion", "method", "settings", "weights", "seed")
 DEPENDS_ON: Mapping[Kind, tuple[str, ...]] = {
-    Kind.FIT: ("selected", *_FIT_OPTIONS),
-    Kind.SURFACE: ("selected", *_FIT_OPTIONS, "l_max", "level"),
-    Kind.DESCRIPTORS: ("selected", *_FIT_OPTIONS, "l_max", "level", "box_metric"),
+    Kind.FIT: _FIT,
+    Kind.SURFACE: _SURFACE,
+    Kind.DESCRIPTORS: (*_SURFACE, "box_metric"),
     Kind.COARSENING: _COARSENING,
     Kind.COMPARISON: (*_COARSENING, "box_metric"),
     Kind.LMAX_STUDY: (*_FIT_OPTIONS, "level"),
     Kind.COARSENING_STUDY: ("target", "facet_count", "method", "settings", "seed"),
 }
 """The choices, and properties of them, that each kind of result depends on."""
-_COARSENING_OF_FIT = (*_FIT_OPTIONS, "l_max", "level")
 
 _UPSTREAM: Mapping[Kind, tuple[Kind, ...]] = {
     Kind.SURFACE: (Kind.FIT,),
@@ -218,22 +224,20 @@ class ComputationRequest:
     needs: tuple[Kind, ...] = ()
 
 
-def plan(
-    before: Choices | None, after: Choices, fitted: Collection[str] = ()
-) -> tuple[ComputationRequest, ...]:
+def plan(before: Choices | None, after: Choices, is_fitted: bool = False) -> tuple[ComputationRequest, ...]:
     """The results to compute after a change from `before` to `after`, in the order of dependence.
 
     Parameters
     ----------
     before
         ``None`` when nothing has been computed yet.
-    fitted
-        Ids of particles whose fit with the options of `after` is cached; they are not fitted again.
+    is_fitted
+        Whether the fit that `after` asks for is cached, and need not be made again.
     """
     if not after.selected:
         return ()
     due = [kind for kind in LIVE if before is None or depends(kind, before, after)]
-    if after.selected in fitted and Kind.FIT in due:
+    if is_fitted and Kind.FIT in due:
         due.remove(Kind.FIT)
     if after.target == "particle" and Kind.COMPARISON in due:  # it is what the coarsening measures
         due.remove(Kind.COMPARISON)
@@ -242,10 +246,19 @@ def plan(
 
 def depends(kind: Kind, before: Choices, after: Choices) -> bool:
     """Whether a result of `kind` for `before` is not the result for `after`."""
-    names = DEPENDS_ON[kind]
-    if kind in (Kind.COARSENING, Kind.COMPARISON, Kind.COARSENING_STUDY) and after.target == "fit":
-        names += _COARSENING_OF_FIT
-    return any(getattr(before, name) != getattr(after, name) for name in names)
+    names = dependencies(kind, after)
+    return inputs(before, names) != inputs(after, names)
+
+
+def dependencies(kind: Kind, choices: Choices) -> tuple[str, ...]:
+    """The choices, and properties of them, that a result of `kind` depends on."""
+    of_fit = kind in (Kind.COARSENING, Kind.COMPARISON, Kind.COARSENING_STUDY) and choices.target == "fit"
+    return DEPENDS_ON[kind] + (_OF_FIT if of_fit else ())
+
+
+def inputs(choices: Choices, names: tuple[str, ...]) -> tuple[Any, ...]:
+    """The values of these choices and properties: what a cached result is found by."""
+    return tuple(getattr(choices, name) for name in names)
 
 
 def needs(kind: Kind, choices: Choices) -> tuple[Kind, ...]:

@@ -4,12 +4,22 @@ import dataclasses
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, Protocol
 
+from regolith_studio.coarsening.coarsen import FACETS_LIMITS
 from regolith_studio.descriptors.comparison import relative_errors
-from regolith_studio.jobs.coarsening_jobs import CoarseningRequest, coarsen_one, compare_with_particle
+from regolith_studio.jobs.coarsening_jobs import coarsen_one, compare_with_particle
 from regolith_studio.jobs.events import Failed, Job
 from regolith_studio.jobs.particle_jobs import FitRequest, describe_meshes, draw_surface, fit_one
 from regolith_studio.messages import N_
-from regolith_studio.session.choices import LIVE, Choices, Kind, needs, plan
+from regolith_studio.session.choices import (
+    LIVE,
+    PARTICLE_DESCRIPTORS,
+    Choices,
+    Kind,
+    dependencies,
+    inputs,
+    needs,
+    plan,
+)
 from regolith_studio.session.results import ParticleEntry, Results
 from regolith_studio.session.tasks import Reactions, TaskBoard
 
@@ -19,7 +29,6 @@ if TYPE_CHECKING:
     from regolith_studio.descriptors.describe import Descriptors
     from regolith_studio.geometry.mesh import Mesh
     from regolith_studio.harmonics.fit import HarmonicFit
-    from regolith_studio.harmonics.fit_options import FitOptions
 
 TITLES = {
     Kind.FIT: N_("Fitting spherical harmonics"),
@@ -66,10 +75,11 @@ class LiveResults:
     def __init__(self, session: SessionState, board: TaskBoard) -> None:
         self._session, self._board = session, board
         self._due: set[Kind] = set()
-        self._fits: dict[tuple[str, FitOptions], HarmonicFit] = {}
-        self._particle_descriptors: dict[tuple[str, str], Descriptors] = {}
+        # keyed by the values of all choices that the result depends on, so that none of them can be forgotten
+        self._fits: dict[tuple[Any, ...], HarmonicFit] = {}
+        self._particle_descriptors: dict[tuple[Any, ...], Descriptors] = {}
         self._losses: list[tuple[int, float]] = []
-        self._tried: dict[tuple[str, CoarseningRequest], dict[int, float]] = {}
+        self._tried: dict[tuple[Any, ...], dict[int, float]] = {}
         self._has_shown = False
 
     def clear_cache(self) -> None:
@@ -80,7 +90,7 @@ class LiveResults:
 
     def follow(self, before: Choices | None, after: Choices) -> None:
         """Start the jobs that a change of choices makes necessary."""
-        requests = plan(before, after, {id for id, way in self._fits if way == after.fit_options})
+        requests = plan(before, after, _key(Kind.FIT, after) in self._fits)
         if before is None or before.selected != after.selected:
             self._clear(*LIVE)
         self._use_cached_fit(after)
@@ -96,7 +106,7 @@ class LiveResults:
         self._advance()
 
     def _use_cached_fit(self, choices: Choices) -> None:
-        fit = self._fits.get((choices.selected, choices.fit_options))
+        fit = self._fits.get(_key(Kind.FIT, choices))
         if fit is None:
             return
         self._board.stop_lane(Kind.FIT)
@@ -159,15 +169,15 @@ class LiveResults:
         return entry
 
     def _fit(self) -> "_JobWithReactions":
-        entry, fit_options = self._entry(), self._session.choices.fit_options
+        entry, choices = self._entry(), self._session.choices
 
         def keep(fit: "HarmonicFit") -> None:
-            self._fits[entry.id, fit_options] = fit
+            self._fits[_key(Kind.FIT, choices)] = fit
             if len(self._fits) > MAX_CACHED_FITS:
                 del self._fits[next(iter(self._fits))]
             self._session.update("fit", fit=fit)
 
-        return Job(fit_one, (entry.particle.mesh, FitRequest(fit_options=fit_options))), keep, _ignore
+        return Job(fit_one, (entry.particle.mesh, FitRequest(fit_options=choices.fit_options))), keep, _ignore
 
     def _surface(self) -> "_JobWithReactions":
         choices = self._session.choices
@@ -179,16 +189,14 @@ class LiveResults:
         return job, keep, _ignore
 
     def _descriptors(self) -> "_JobWithReactions":
-        entry, metric = self._entry(), self._session.choices.box_metric
+        metric, key = self._session.choices.box_metric, inputs(self._session.choices, PARTICLE_DESCRIPTORS)
         meshes = {"fit": self._session.results.surface}
-        if (entry.id, metric) not in self._particle_descriptors:
-            meshes["particle"] = entry.particle.mesh
+        if key not in self._particle_descriptors:
+            meshes["particle"] = self._entry().particle.mesh
 
         def keep(described: "dict[str, Descriptors]") -> None:
             fit = described["fit"]
-            particle = self._particle_descriptors.setdefault(
-                (entry.id, metric), described.get("particle", fit)
-            )
+            particle = self._particle_descriptors.setdefault(key, described.get("particle", fit))
             errors = relative_errors(particle, fit)
             self._session.update(
                 "descriptors", particle_descriptors=particle, fit_descriptors=fit, fit_errors=errors
@@ -231,10 +239,11 @@ class LiveResults:
 
     def _fewer_facets(self, done: "CoarseningResult") -> tuple[int, float] | None:
         """The fewest facets tried with these choices whose loss is no larger, with that loss."""
-        request = self._session.choices.coarsening_request
-        if request.largest_error is not None or self._board.is_running(Kind.SURFACE):
+        choices = self._session.choices
+        if choices.stop_at == "error" or self._board.is_running(Kind.SURFACE):
             return None
-        tried = self._tried.setdefault((self._entry().id, dataclasses.replace(request, n_facets=0)), {})
+        others = dataclasses.replace(choices, stop_at="facets", n_facets=FACETS_LIMITS[0])
+        tried = self._tried.setdefault(_key(Kind.COARSENING, others), {})
         tried[done.n_facets_asked] = done.loss
         return next(
             (
@@ -250,6 +259,11 @@ class LiveResults:
         particle = self._entry().particle.mesh
         job = Job(compare_with_particle, (particle, results.particle_descriptors, results.coarsened, metric))
         return job, lambda found: self._session.update("comparison", against_particle=found), _ignore
+
+
+def _key(kind: Kind, choices: Choices) -> tuple[Any, ...]:
+    """What a result of `kind` for these choices is cached by."""
+    return inputs(choices, dependencies(kind, choices))
 
 
 _JobWithReactions = tuple[Job, Callable[[Any], None], Callable[[Any], None]]

@@ -6,14 +6,14 @@ from typing import Any
 import pytest
 
 from regolith_studio.coarsening.weights import LossWeights
-from regolith_studio.session.choices import LIVE, Choices, Kind, depends, needs, plan
+from regolith_studio.session.choices import LIVE, Choices, Kind, dependencies, depends, inputs, needs, plan
 
 HERE = Choices(selected="a", target="fit")
 FIT, SURFACE, DESCRIPTORS, COARSENING, COMPARISON = LIVE
 
 
-def kinds(before: Choices | None, after: Choices, fitted: tuple[str, ...] = ("a",)) -> list[Kind]:
-    return [request.kind for request in plan(before, after, fitted)]
+def kinds(before: Choices | None, after: Choices, is_fitted: bool = True) -> list[Kind]:
+    return [request.kind for request in plan(before, after, is_fitted)]
 
 
 def test_that_nothing_is_planned_without_a_particle() -> None:
@@ -22,7 +22,7 @@ def test_that_nothing_is_planned_without_a_particle() -> None:
 
 
 def test_that_the_first_particle_makes_everything_necessary() -> None:
-    assert kinds(None, HERE, ()) == list(LIVE)
+    assert kinds(None, HERE, False) == list(LIVE)
 
 
 def test_that_equal_choices_make_nothing_necessary() -> None:
@@ -30,8 +30,8 @@ def test_that_equal_choices_make_nothing_necessary() -> None:
 
 
 def test_that_a_particle_is_not_fitted_twice() -> None:
-    assert kinds(HERE, HERE.replaced(selected="b"), ("a",)) == list(LIVE)
-    assert kinds(HERE, HERE.replaced(selected="b"), ("a", "b")) == [
+    assert kinds(HERE, HERE.replaced(selected="b"), False) == list(LIVE)
+    assert kinds(HERE, HERE.replaced(selected="b"), True) == [
         SURFACE,
         DESCRIPTORS,
         COARSENING,
@@ -61,7 +61,18 @@ def test_that_a_particle_is_not_fitted_twice() -> None:
     ],
 )
 def test_that_a_choice_remakes_what_depends_on_it(changes: dict[str, Any], expected: list[Kind]) -> None:
-    assert kinds(HERE, HERE.replaced(**changes), ()) == expected
+    assert kinds(HERE, HERE.replaced(**changes), False) == expected
+
+
+@pytest.mark.parametrize("kind", LIVE)
+def test_that_a_cached_result_is_found_only_while_all_that_it_depends_on_is_the_same(kind: Kind) -> None:
+    after: dict[str, Any] = {"selected": "b", "l_max": 4, "level": 3, "rule": "outermost", "seed": 7}
+    after |= {"reference": "ellipsoid", "star_point": "kernel_centre", "box_metric": "trimesh"}
+    after |= {"n_facets": 30, "target": "particle", "method": "quadric", "unit": "mm"}
+    for name, value in after.items():
+        other = HERE.replaced(**{name: value})
+        same_key = inputs(HERE, dependencies(kind, HERE)) == inputs(other, dependencies(kind, other))
+        assert same_key != depends(kind, HERE, other), name
 
 
 def test_that_l_max_leaves_the_coarsening_of_the_particle_itself_alone() -> None:
