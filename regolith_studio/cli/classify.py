@@ -124,13 +124,11 @@ def map_scan(
     ],
     contents: VolumeOptions,
     json: Json = False,
-    seed: Seed = 0,
 ) -> None:
     """Write the map of probabilities that a classifier makes of a scan."""
     from regolith_studio.jobs.classifier_jobs import map_probabilities
     from regolith_studio.jobs.extraction_settings import read_classifier
 
-    del seed  # taken by every command; nothing here is random
     with usage_errors():
         given, training = contents.of(scan), read_classifier(classifier)
     run_with_progress(map_probabilities(given, training, output, output.parent))
@@ -159,13 +157,11 @@ def painted_labels(
     ],
     contents: VolumeOptions,
     json: Json = False,
-    seed: Seed = 0,
 ) -> None:
     """Write the painted voxels of a classifier as labels, which ilastik and `classify train` take."""
     from regolith_studio.jobs.classifier_jobs import write_painted
     from regolith_studio.jobs.extraction_settings import read_classifier
 
-    del seed  # taken by every command; nothing here is random
     with usage_errors():
         given, training = contents.of(scan), read_classifier(classifier)
     run_with_progress(write_painted(given, training, output))
@@ -203,7 +199,6 @@ def train_objects(
     contents: VolumeOptions,
     grains: GrainOptions,
     json: Json = False,
-    seed: Seed = 0,
 ) -> None:
     """Train a classifier of segmented objects on a few examples, for `extract --objects`."""
     from regolith_studio.imaging.segmentation.object_classifier import OBJECT_CLASSES
@@ -211,7 +206,6 @@ def train_objects(
     from regolith_studio.jobs.scan_jobs import scratch_folder
     from regolith_studio.readers.object_examples import read_object_examples
 
-    del seed  # taken by every command; nothing here is random
     with usage_errors():
         given, settings = contents.of(scan), grains.recipe
     chosen = read_object_examples(examples, OBJECT_CLASSES)

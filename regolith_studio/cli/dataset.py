@@ -140,13 +140,10 @@ def build(
 def validate(
     folder: DatasetFolder,
     json: Json = False,
-    jobs: Jobs = 1,
-    seed: Seed = 0,
 ) -> None:
     """Validate a dataset folder and print its problems, one per line."""
     from regolith_studio.dataset.validation import validate_dataset
 
-    del jobs, seed  # taken by every command
     problems = [str(problem) for problem in validate_dataset(folder)]
     if json:
         print_json({"folder": str(folder), "valid": not problems, "problems": problems})
@@ -162,14 +159,11 @@ def list_(
         str, typer.Option("--filter", help="List only entries that contain these words.", metavar="WORDS")
     ] = "",
     json: Json = False,
-    jobs: Jobs = 1,
-    seed: Seed = 0,
 ) -> None:
     """List the datasets below a folder, with their exports and simulations."""
     from regolith_studio.dataset.catalog import provenance_tree
     from regolith_studio.jobs.dataset_jobs import list_library
 
-    del jobs, seed  # taken by every command
     tree = provenance_tree(entry for entry in run_with_progress(list_library(root)) if entry.matches(words))
     names = ("kind", "name", "folder", "sha256", "detail", "problem")
     if json:
@@ -204,7 +198,6 @@ def sample(
         ),
     ] = None,
     json: Json = False,
-    jobs: Jobs = 1,
     seed: Seed = 0,
 ) -> None:
     """Draw particles of a dataset: class, equivalent diameter and orientation."""
@@ -213,7 +206,6 @@ def sample(
     from regolith_studio.io.atomic import staged_file
     from regolith_studio.io.machine_memory import check_memory
 
-    del jobs  # taken by every command
     check_memory(count * (ROW_BYTES if json else DRAW_BYTES), f"{count:,} drawn particles")
     dataset = read_dataset(folder)
     drawn = sample_dataset(dataset, count, seed)
@@ -230,11 +222,10 @@ def sample(
 
 
 @app.command("formats")
-def formats(json: Json = False, jobs: Jobs = 1, seed: Seed = 0) -> None:
+def formats(json: Json = False) -> None:
     """List the export formats, with what each keeps and loses."""
     from regolith_studio.dataset.exporters import EXPORTERS
 
-    del jobs, seed  # taken by every command
     if json:
         names = ("key", "label", "units", "carries", "loses", "alters", "convex_only", "load_command")
         print_json([{name: getattr(each, name) for name in names} for each in EXPORTERS.values()])
@@ -298,14 +289,12 @@ def export(
     ] = None,
     lossy: Annotated[bool, typer.Option("--lossy", help="Allow formats that alter the shapes.")] = False,
     json: Json = False,
-    jobs: Jobs = 1,
     seed: Seed = 0,
 ) -> None:
     """Export a dataset for DEM programs, one folder per format, and report what a format loses."""
     from regolith_studio.dataset.export import ExportOptions
     from regolith_studio.jobs.dataset_jobs import chosen_exporters, export_dataset_folder
 
-    del jobs  # taken by every command
     with usage_errors():
         keys = [key.strip() for key in to.split(",") if key.strip()]
         chosen = chosen_exporters(keys)

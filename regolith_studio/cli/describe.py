@@ -7,7 +7,7 @@ import typer
 
 from regolith_studio.cli.dataclass_options import with_dataclass_options
 from regolith_studio.cli.inputs import ReadingOptions, exit_code
-from regolith_studio.cli.options import Jobs, Json, Meshes, Seed, claim_file, output_path
+from regolith_studio.cli.options import Jobs, Json, Meshes, claim_file, output_path
 from regolith_studio.cli.terminal import print_errors, print_json, print_table, run_with_progress
 from regolith_studio.harmonics.fit_options import MAX_TABLE_DEGREE
 
@@ -65,7 +65,6 @@ def describe(
     reading: ReadingOptions,
     json: Json = False,
     jobs: Jobs = 1,
-    seed: Seed = 0,
 ) -> None:
     """Measure particles: volume, area, sphericity, diameters ..., and the health of their meshes."""
     if weighting not in ("number", "volume"):
@@ -77,7 +76,6 @@ def describe(
     from regolith_studio.session.outputs.descriptors import described, short_table
     from regolith_studio.session.results import ParticleEntry
 
-    del seed  # taken by every command; nothing here is random
     loaded = reading.read(meshes, l_max)
     if l_max is not None and all(
         each.source is None or each.source.l_max is None for each in loaded.particles

@@ -9,7 +9,7 @@ import typer
 
 from regolith_studio.cli.dataclass_options import with_dataclass_options
 from regolith_studio.cli.executor_options import Address, Runner, Tls, chosen_executor
-from regolith_studio.cli.options import Jobs, Json, OptionalFolder, Seed, claim_labels, usage_errors
+from regolith_studio.cli.options import Jobs, Json, OptionalFolder, claim_labels, usage_errors
 from regolith_studio.cli.terminal import print_errors, print_json, print_table, run_with_progress
 from regolith_studio.cli.volume_options import MAX_H, GrainOptions, VolumeOptions
 
@@ -152,7 +152,6 @@ def extract(
     runner: Runner = "processes",
     address: Address = "",
     tls: Tls = None,
-    seed: Seed = 0,
 ) -> None:
     """Turn the grains of a CT volume into particle meshes (section 2.1).
 
@@ -166,7 +165,6 @@ def extract(
     from regolith_studio.session.batch.scan_groups import find_scans
     from regolith_studio.session.outputs.particles import ExtractionFolder
 
-    del seed  # taken by every command; nothing here is random
     with usage_errors():
         given = contents.of(volumes[0])
         chosen = _settings(grains, recipe)

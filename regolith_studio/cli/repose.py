@@ -91,9 +91,8 @@ app.command("calibrate")(calibrate)
 
 
 @app.command("engines")
-def engines(json: Json = False, jobs: Jobs = 1, seed: Seed = 0) -> None:
+def engines(json: Json = False) -> None:
     """List the DEM engines: what each represents of the contact model, and its version if available."""
-    del jobs, seed  # taken by every command
     from regolith_studio.dem.engines import CAPABILITY_LABELS, engine_rows
 
     rows = engine_rows()
@@ -121,13 +120,10 @@ def export(
         ),
     ] = 1,
     json: Json = False,
-    jobs: Jobs = 1,
-    seed: Seed = 0,
 ) -> None:
     """Export a run as a series for ParaView and for OVITO, and its last moment as GLB."""
     from regolith_studio.scene.repose_export import repose_export_steps
 
-    del jobs, seed  # taken by every command
     done = run_with_progress(repose_export_steps(run, output, every))
     if json:
         print_json({"folder": str(done.folder), "n_particles": done.n_particles, "times_s": done.times})
@@ -149,13 +145,10 @@ def measure(
     columns: Columns = "",
     base: Base = None,
     json: Json = False,
-    jobs: Jobs = 1,
-    seed: Seed = 0,
 ) -> None:
     """Measure the angle of repose of a pile: both sections and both models of the paper."""
     from regolith_studio.dem.angle_of_repose import measure_repose, measurement_document
 
-    del jobs, seed  # taken by every command
     settings = evaluation_settings(set_)
     points, diameters = positions_in(file, unit, diameter, columns)
     metres = 1.0 if file.suffix.lower() == ".npz" else metres_in(unit)

@@ -1,6 +1,5 @@
 """Make the main window with its session; bring events of worker threads and uncaught errors into it."""
 
-import linecache
 import sys
 import traceback
 from collections.abc import Callable, Sequence
@@ -75,14 +74,10 @@ def _compile_in_background(runner: ThreadRunner) -> None:
 
 
 def _release_memory(window: MainWindow) -> None:
-    """Let hidden pages drop closed particles, and linecache the sources (40 MB) that PySide has read.
-
-    PySide looks for its names in the source of every module that is imported after it.
-    """
+    """Let hidden pages drop closed particles when nothing runs, so that their meshes are freed."""
     timer, latest = QTimer(window, singleShot=True, interval=IDLE), QTimer(window, interval=BUSY)
     for each in (timer, latest):
         each.timeout.connect(window.pages.refresh_hidden)
-        each.timeout.connect(linecache.clearcache)
     latest.start()
     window.bindings.listen("tasks", lambda *_: timer.stop() if window.session.tasks else timer.start())
 

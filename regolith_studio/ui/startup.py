@@ -1,9 +1,7 @@
 """Start the window: check the display, make the application object, show a splash while the rest loads."""
 
-import ctypes
 import gc
 import os
-import platform
 import signal
 import socket
 import sys
@@ -28,8 +26,6 @@ SWITCH_INTERVAL = 0.001
 
 Qt releases the interpreter at each call, so that the window waits for it often; Python's default is 5 ms.
 """
-M_MMAP_THRESHOLD = -3
-"""Number of this parameter in glibc's ``malloc.h``."""
 _WITHOUT_DISPLAY = ("offscreen", "minimal", "vnc", "linuxfb", "eglfs")
 _WIDTH, _HEIGHT, _MARK = 420, 170, 92
 _GROUND, _LETTERS, _QUIET = "#1d2126", "#e4e7eb", "#9aa4b0"
@@ -106,7 +102,6 @@ def make_application(arguments: Sequence[str]) -> QApplication:
     until a language is installed that writes them otherwise.
     """
     sys.setswitchinterval(SWITCH_INTERVAL)
-    map_large_blocks()
     QCoreApplication.setAttribute(Qt.ApplicationAttribute.AA_ShareOpenGLContexts)
     QCoreApplication.setAttribute(Qt.ApplicationAttribute.AA_UseStyleSheetPropagationInWidgetStyles)
     QSurfaceFormat.setDefaultFormat(surface_format())
@@ -134,17 +129,6 @@ def close_on_interrupt(app: QApplication) -> None:
     notifier = QSocketNotifier(reading.fileno(), QSocketNotifier.Type.Read, app)
     notifier.activated.connect(lambda *_, ends=(reading, writing): ends[0].recv(1))
     signal.signal(signal.SIGINT, lambda *_: QTimer.singleShot(0, app.quit))
-
-
-def map_large_blocks() -> None:
-    """Let glibc take blocks of 256 KiB and more from the system and return them when they are freed.
-
-    By default it raises that threshold to 32 MiB as soon as blocks of that size are freed. Arrays and
-    pictures of a few megabytes then leave holes in the heaps of all threads: after 17,000 random acts with
-    live views 1.6 GB were resident instead of 1.2.
-    """
-    if platform.libc_ver()[0] == "glibc":
-        ctypes.CDLL(None).mallopt(M_MMAP_THRESHOLD, 2**18)
 
 
 def exit_timer(seconds: float = EXIT_TIMEOUT) -> threading.Timer:

@@ -1,7 +1,6 @@
 """The program as it is started: splash, window, end."""
 
 import os
-import platform
 import subprocess
 import sys
 
@@ -38,27 +37,6 @@ def test_that_the_program_starts_with_a_light_import_and_ends_with_its_window(tm
     assert ended.returncode == 0, ended.stderr
     assert "Traceback" not in ended.stderr
     assert (tmp_path / "preferences.json").exists()
-
-
-HOLES = """
-import numpy, psutil, sys
-from regolith_studio.ui.startup import map_large_blocks
-if sys.argv[1] == "mapped":
-    map_large_blocks()
-numpy.ones(3_000_000)  # 24 MB, which are freed: glibc raises its threshold
-large, small = zip(*((numpy.ones(125_000), numpy.ones(12_500)) for _ in range(200)), strict=True)
-filled = psutil.Process().memory_info().rss
-del large
-print((filled - psutil.Process().memory_info().rss) / 1e6)
-"""
-
-
-@pytest.mark.skipif(platform.libc_ver()[0] != "glibc", reason="the setting is one of glibc")
-def test_that_freed_arrays_of_a_megabyte_go_back_to_the_system_from_between_smaller_ones():
-    given_back = [
-        float(subprocess.check_output([sys.executable, "-c", HOLES, how])) for how in ("as it is", "mapped")
-    ]
-    assert given_back[0] < 20 < 180 < given_back[1]
 
 
 STUCK = """
