@@ -18,6 +18,9 @@ from regolith_studio.messages import N_
 __all__ = ["CATALOGUE", "DEFAULT_KEYS", "LOSS_KEYS", "Descriptor", "ShapeCache"]
 
 
+_RAISED = str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+
 @dataclass(frozen=True)
 class Descriptor:
     """One row of the catalogue.
@@ -50,6 +53,27 @@ class Descriptor:
     compute: Callable[[ShapeCache], float]
     in_loss: bool = False
     costly: bool = False
+
+    @property
+    def unit(self) -> str:
+        """In files: ``um``, ``um^2`` ...; empty for a pure number."""
+        power = f"^{self.dimension}" if self.dimension > 1 else ""
+        return f"um{power}" if self.dimension else ""
+
+    @property
+    def unit_symbol(self) -> str:
+        """On screen and paper: µm, µm² ...; empty for a pure number."""
+        return f"µm{powers(self.dimension)}" if self.dimension else ""
+
+    @property
+    def unit_suffix(self) -> str:
+        """Behind a label: " [µm²]"; empty for a pure number."""
+        return f" [{self.unit_symbol}]" if self.dimension else ""
+
+
+def powers(exponent: int) -> str:
+    """A positive exponent as raised digits; empty for 1."""
+    return "" if exponent == 1 else str(exponent).translate(_RAISED)
 
 
 def volume(facts: ShapeCache) -> float:

@@ -13,7 +13,7 @@ from regolith_studio.imaging.extraction import is_remark
 from regolith_studio.io.tables import Column, Table
 from regolith_studio.jobs.particle_jobs import MeasuredParticle
 from regolith_studio.messages import N_
-from regolith_studio.session.outputs.descriptors import UNITS, descriptor_table
+from regolith_studio.session.outputs.descriptors import descriptor_table
 from regolith_studio.session.results import ParticleEntry
 
 QUANTILES = (0.1, 0.5, 0.9)
@@ -101,7 +101,7 @@ def statistics_table(
     ]
     if len(groups) != 1:
         named.append((EVERYTHING, measured))
-    unit = UNITS[CATALOGUE[key].dimension]
+    unit = CATALOGUE[key].unit
     columns = (
         Column("group"),
         Column("count"),
@@ -126,9 +126,7 @@ def statistics_of_keys(
     first = next(iter(tables.values()))
     columns = (Column("descriptor"), *(Column(column.name) for column in first.columns))
     rows = tuple(
-        (Column(key, UNITS[CATALOGUE[key].dimension]).header, *row)
-        for key, table in tables.items()
-        for row in table.rows
+        (Column(key, CATALOGUE[key].unit).header, *row) for key, table in tables.items() for row in table.rows
     )
     return Table(f"Statistics, each particle weighing by {weighting}", columns, rows)
 

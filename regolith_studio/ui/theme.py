@@ -1,6 +1,6 @@
 """The theme of the window: light or dark as the system, one palette and one style sheet."""
 
-from collections.abc import Container
+from collections.abc import Callable, Container
 from dataclasses import dataclass
 
 from PySide6.QtCore import QObject, Qt
@@ -137,6 +137,17 @@ def apply_theme(app: QApplication, theme: Theme, window: QWidget, later: Contain
         restyle(window, later)
     else:
         window.setStyleSheet(sheet)
+
+
+def pass_theme(widget: QWidget, theme: Theme) -> None:
+    """Call ``set_theme`` of the widgets within `widget` that have one; such a widget cares for its parts."""
+    for part in widget.children():
+        if isinstance(part, QWidget):
+            set_theme: Callable[[Theme], None] | None = getattr(part, "set_theme", None)
+            if set_theme is not None:
+                set_theme(theme)
+            else:
+                pass_theme(part, theme)
 
 
 def restyle(widget: QWidget, later: Container[QObject] = ()) -> None:

@@ -20,7 +20,6 @@ from regolith_studio.session.session import Session
 from regolith_studio.session.verdict import polyhedron_verdict
 from regolith_studio.web.style import STYLE
 
-UNITS = {0: "", 1: "µm", 2: "µm²", 3: "µm³", 5: "µm⁵"}
 """Of a descriptor, by its dimension as a length."""
 EVENTS = ("particles", "choices", "fit", "surface", "descriptors", "coarsening", "comparison", "tasks")
 PICTURE_INTERVAL = 0.05
@@ -160,10 +159,10 @@ class ThreeViewPage:
         results = self._session.results
         achieved = results.coarsened.achieved if results.coarsened else None
         bodies = (results.particle_descriptors, results.fit_descriptors, achieved)
-        shown = {key: row for key, row in CATALOGUE.items() if not row.costly and row.dimension in UNITS}
+        shown = {key: row for key, row in CATALOGUE.items() if not row.costly}
         return [
             [
-                f"{row.symbol.replace('_', '')} {UNITS[row.dimension]}".strip(),
+                f"{row.symbol.replace('_', '')} {row.unit_symbol}".strip(),
                 *(f"{body[key]:.4g}" if body and key in body else "–" for body in bodies),
             ]
             for key, row in shown.items()

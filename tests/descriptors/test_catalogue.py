@@ -99,3 +99,18 @@ def test_that_every_row_can_be_shown() -> None:
         assert all([row.symbol, row.label, row.formula])
         assert row.label[0].isupper()
     assert [key for key in CATALOGUE if key not in DEFAULT_KEYS] == ["min_feret_diameter"]
+
+
+@pytest.mark.parametrize(
+    ("key", "unit", "symbol"),
+    [
+        ("sphericity", "", ""),
+        ("equivalent_radius", "um", "µm"),
+        ("volume", "um^3", "µm³"),
+        ("principal_moment_max", "um^5", "µm⁵"),
+    ],
+)
+def test_that_a_descriptor_states_the_power_of_its_length(key, unit, symbol):
+    row = CATALOGUE[key]
+    assert (row.unit, row.unit_symbol) == (unit, symbol)
+    assert row.unit_suffix == (f" [{symbol}]" if symbol else "")

@@ -30,7 +30,6 @@ from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput
 from regolith_studio.jobs.unfinished_maps import unfinished_file
 from regolith_studio.messages import N_, Message
 from regolith_studio.readers.volumes.files import volume_files
-from regolith_studio.session.outputs.descriptors import UNITS
 from regolith_studio.session.outputs.particles import LISTED, RECIPE, TABLE, ExtractionFolder, input_document
 
 COMPARISON = "groups.csv"
@@ -210,7 +209,7 @@ def compare_groups(tables: Mapping[str, _Rows]) -> Table:
                 else (None, None)
             )
             quantiles = map(float, own.quantile(QUANTILES))
-            unit = UNITS[row.dimension]
+            unit = row.unit
             rows.append(
                 (key, unit, name, len(own.values), own.mean, own.standard_deviation, *quantiles, *distances)
             )

@@ -13,8 +13,6 @@ SHARES = ("hidden_surface_share", "unrepresentable_volume_share")
 :class:`~regolith_studio.harmonics.visibility.StarPointVisibility`."""
 NO_VISIBILITY = dict.fromkeys((*SHARES, "star_point", "star_point_rule"))
 """In place of ``StarPointVisibility.as_dict`` where a mesh has no inside."""
-UNITS = {0: "", 1: "um", 2: "um^2", 3: "um^3", 5: "um^5"}
-"""Of a descriptor, by its dimension as a length."""
 
 
 def described(particle: Particle, facts: MeasuredParticle) -> dict[str, Any]:
@@ -55,7 +53,7 @@ def _repair_document(particle: Particle, facts: MeasuredParticle) -> dict[str, A
 def short_table(particles: Sequence[Particle], facts: Sequence[MeasuredParticle]) -> Table:
     """The descriptors of section 2.2 by their symbols, narrow enough for a terminal."""
     keys = ("volume", "equivalent_radius", "surface_area", *(key for key in LOSS_KEYS if key != "volume"))
-    columns = [Column(CATALOGUE[key].symbol, UNITS[CATALOGUE[key].dimension]) for key in keys]
+    columns = [Column(CATALOGUE[key].symbol, CATALOGUE[key].unit) for key in keys]
     rows = [
         (particle.name, *[_value(each, key) for key in keys], _soundness(particle, each))
         for particle, each in zip(particles, facts, strict=True)
@@ -101,7 +99,7 @@ def descriptor_table(particles: Sequence[TableItem], facts: Sequence[MeasuredPar
 
 def table_columns(keys: Sequence[str]) -> tuple[Column, ...]:
     """The columns of :func:`descriptor_table` where the descriptors `keys` are known."""
-    named = [Column(key, UNITS[CATALOGUE[key].dimension]) for key in keys]
+    named = [Column(key, CATALOGUE[key].unit) for key in keys]
     shares = [Column(key) for key in SHARES]
     words = [Column(word) for word in ("sound", "problems", "repairs")]
     return Column("name"), Column("group"), *named, *shares, *words

@@ -25,7 +25,6 @@ th:first-child, td:first-child, .text { text-align: left }
 img { max-width: 100% } figure { margin: 1rem 0 2rem } figcaption { color: #555 }
 """
 _SHOWN = ("equivalent_radius", "surface_area", "sphericity", "min_diameter", "max_diameter", "aspect_ratio")
-_LENGTH = {0: "", 1: "µm", 2: "µm²", 3: "µm³"}
 
 
 SHOWN_ROWS = 200
@@ -182,7 +181,7 @@ def _particles(summary: Summary) -> str:
     if not summary.described:
         return ""
     header = ["particle", "group"]
-    header += [f"{CATALOGUE[key].symbol} {_LENGTH[CATALOGUE[key].dimension]}".strip() for key in _SHOWN]
+    header += [f"{CATALOGUE[key].symbol} {CATALOGUE[key].unit_symbol}".strip() for key in _SHOWN]
     header.append("sound")
     rows = [
         [

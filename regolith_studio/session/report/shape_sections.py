@@ -13,7 +13,6 @@ from regolith_studio.jobs.model_jobs import sample_of_meshes
 from regolith_studio.jobs.particle_jobs import FIT_DEGREE, FitRequest, fit_sample
 from regolith_studio.jobs.representatives_jobs import MeasuredPopulation, measure_population
 from regolith_studio.jobs.study_jobs import study_lmax, study_population
-from regolith_studio.session.outputs.descriptors import UNITS
 from regolith_studio.session.outputs.studies import STUDIES
 from regolith_studio.session.report.draft import ReportDraft, SectionSteps
 from regolith_studio.session.report.sections import (
@@ -77,7 +76,7 @@ def descriptor_means(population: MeasuredPopulation, seed: int) -> Table:
         (
             CATALOGUE[key].label,
             CATALOGUE[key].symbol,
-            UNITS[CATALOGUE[key].dimension],
+            CATALOGUE[key].unit,
             *(x[k] for x in numbers),
         )
         for k, key in enumerate(DESCRIPTORS)

@@ -34,9 +34,6 @@ and ``page.py``::
         def commands(self):
             return {"count": self.count}
 
-        def set_theme(self, theme):
-            self.plot.set_theme(theme)
-
         def count(self):
             particles = [entry.particle for entry in self._context.session.particles]
             self._context.start("Counting grains", Job(count_grains, (particles,)), self._show_counts)

@@ -22,7 +22,6 @@ from regolith_studio.ui.widgets.definitions import definition
 from regolith_studio.ui.widgets.labels import plain_symbol, short_number
 from regolith_studio.ui.widgets.table import FontRowHeight
 
-_UNITS = {0: "", 1: " [µm]", 2: " [µm²]", 3: " [µm³]", 5: " [µm⁵]"}
 COLUMNS = (N_("Particle"), N_("Fit"), N_("Polyhedron"))
 NARROW_COLUMNS = (N_("Particle"), N_("Fit"), N_("Solid"))
 _MIN_LABEL_WIDTH = 490
@@ -39,7 +38,7 @@ class DescriptorTablePanel(QWidget):
     def __init__(self) -> None:
         super().__init__()
         self.setObjectName("descriptor_table")
-        self._keys = [key for key, row in CATALOGUE.items() if not row.costly and row.dimension in _UNITS]
+        self._keys = [key for key, row in CATALOGUE.items() if not row.costly]
         self.table = QTableWidget(len(self._keys), len(COLUMNS))
         self.table.setAccessibleName(tr("Descriptors"))
         self.table.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
@@ -87,7 +86,7 @@ class DescriptorTablePanel(QWidget):
             self.table.setHorizontalHeaderItem(column, head)
         for number, key in enumerate(self._keys):
             row = CATALOGUE[key]
-            short = plain_symbol(row.symbol) + _UNITS[row.dimension]
+            short = plain_symbol(row.symbol) + row.unit_suffix
             item = QTableWidgetItem(f"{tr(row.label)} {short}" if self.width() > _MIN_LABEL_WIDTH else short)
             item.setToolTip(definition(key))
             self.table.setVerticalHeaderItem(number, item)

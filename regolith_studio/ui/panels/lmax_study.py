@@ -8,7 +8,6 @@ from PySide6.QtWidgets import QHBoxLayout, QLabel, QVBoxLayout, QWidget
 from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.messages import N_
 from regolith_studio.scene.palette import DESCRIPTOR_COLOURS
-from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import tr, tr_count
 from regolith_studio.ui.widgets.definitions import definition
 from regolith_studio.ui.widgets.labels import rich_symbol
@@ -63,10 +62,6 @@ class LmaxStudyPanel(QWidget):
     def show_l_max(self, l_max: int) -> None:
         """Mark the chosen degree."""
         self.plot.set_marker(float(l_max))
-
-    def set_theme(self, theme: Theme) -> None:
-        """Take the colours of a theme."""
-        self.plot.set_theme(theme)
 
     def _asked(self) -> QWidget:
         """The row with the tolerance and the smallest sufficient l_max."""

@@ -52,7 +52,6 @@ from regolith_studio.ui.pages.dataset.view_data import (
     dataset_title,
     shapes,
 )
-from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import tr, tr_count
 from regolith_studio.ui.translation.plain_text import inert
 from regolith_studio.ui.widgets.headline import Headline
@@ -101,10 +100,6 @@ class DatasetPage(PageWidget):
         self._enable_build()
 
     # --- the page of the window ----------------------------------------------------------------
-
-    def set_theme(self, theme: Theme) -> None:
-        for part in (self.quality, self.distribution, self.gallery, self.library):
-            part.set_theme(theme)
 
     def commands(self) -> Mapping[str, Callable[..., object]]:
         return {

@@ -23,7 +23,6 @@ from regolith_studio.ui.panels.fit import FitPanel
 from regolith_studio.ui.panels.loss import LossPanel
 from regolith_studio.ui.panels.particle_list import ParticleListPanel
 from regolith_studio.ui.panels.verdict import VerdictPanel
-from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.views.three_views import ThreeViews
 
@@ -60,11 +59,6 @@ class ExplorePage(PageWidget):
         self.facet_search = FacetSearch(context, self.coarsening, self)
         self._place()
         self._wire(context)
-
-    def set_theme(self, theme: Theme) -> None:
-        for part in (self.particles, self.coarsening, self.three_views):
-            part.set_theme(theme)
-        self.plots.set_theme(theme)
 
     def _measure_distances(
         self, job: Job, show: Callable[[FloatArray], None], refuse: Callable[[str], None]

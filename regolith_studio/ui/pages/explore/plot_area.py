@@ -12,7 +12,6 @@ from regolith_studio.ui.panels.descriptor_table import DescriptorTablePanel
 from regolith_studio.ui.panels.error_bars import ErrorBarsPanel
 from regolith_studio.ui.panels.loss_curve import LossCurvePanel
 from regolith_studio.ui.panels.spectrum import SpectrumPanel
-from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.views.three_views import ThreeViews
 
@@ -72,11 +71,6 @@ class PlotArea(QSplitter):
         for now, panel in zip((self.left, self.right), shown, strict=True):
             if now.indexOf(panel) >= 0:
                 now.setCurrentWidget(panel)
-
-    def set_theme(self, theme: Theme) -> None:
-        """Take the colours of a theme."""
-        for panel in (self.error_bars, self.loss_curve, self.spectrum, self.section):
-            panel.set_theme(theme)
 
     def show_section(self, shown: bool) -> None:
         """Show the tab of the cross-section, or the previous one."""

@@ -20,7 +20,6 @@ WEIGHTINGS = {
 }
 WAITING = N_("Draw particles: their distributions appear here, over those of the measured ones.")
 SHARE = N_("Share at or below [%]")
-_UNITS = {0: "", 1: "µm", 2: "µm²", 3: "µm³"}
 
 
 class DistributionsPanel(QWidget):
@@ -67,8 +66,8 @@ class DistributionsPanel(QWidget):
 
     def _show(self) -> None:
         row = CATALOGUE[self.key.value()]
-        symbol, unit = rich_symbol(row.symbol), _UNITS.get(row.dimension, "")
-        self.plot.set_labels(f"{tr(row.label)} {symbol}{f' [{unit}]' if unit else ''}", tr(SHARE))
+        symbol = rich_symbol(row.symbol)
+        self.plot.set_labels(f"{tr(row.label)} {symbol}{row.unit_suffix}", tr(SHARE))
         if self._compared is None:
             self.plot.set_curves([])
             self.words.setText("")
@@ -80,7 +79,7 @@ class DistributionsPanel(QWidget):
             label = tr("{count:,} measured", count=len(measured.values))
             curves.insert(0, _step_curve(label, theme.particle, measured))
         self.plot.set_curves(curves)
-        self.words.setText(distance_text(measured, drawn, unit))
+        self.words.setText(distance_text(measured, drawn, row.unit_symbol))
 
 
 def distance_text(measured: Distribution | None, drawn: Distribution, unit: str = "") -> str:

@@ -28,7 +28,6 @@ from regolith_studio.studies.population_tables import distance_table, pair_table
 from regolith_studio.ui.layout import scrolled, tabs
 from regolith_studio.ui.pages.model.population_plots import PanelGrid
 from regolith_studio.ui.pages.model.table_view import StudyTableView
-from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import tr, translate
 from regolith_studio.ui.translation.numbers import localized, number_text
 from regolith_studio.ui.widgets.headline import Headline
@@ -128,11 +127,6 @@ class EvaluationPanel(QWidget):
         """Show the progress of a study, that it is being stopped, or that none is running."""
         self.frame.show_task(task)
         self._show_stopping(task is not None and task.id == self._stopped)
-
-    def set_theme(self, theme: Theme) -> None:
-        """Take the colours of a theme."""
-        for grid in self.figures.values():
-            grid.set_theme(theme)
 
     def _stop(self, number: int) -> None:
         """Show the request at once, as starting processes take seconds to end."""

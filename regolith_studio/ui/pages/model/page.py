@@ -35,7 +35,7 @@ from regolith_studio.ui.pages.model.evaluation_panel import EvaluationPanel
 from regolith_studio.ui.pages.model.files import save_card, save_model
 from regolith_studio.ui.pages.model.source_box import OPEN_PARTICLES, SourceBox, usual_sizes
 from regolith_studio.ui.pages.model.views import LiveShape, ShapeGallery
-from regolith_studio.ui.theme import Theme, current_theme
+from regolith_studio.ui.theme import current_theme
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.views.factory import make_view
 from regolith_studio.ui.widgets.labels import rich_symbol
@@ -82,10 +82,6 @@ class ModelPage(PageWidget):
         bindings.refresh("tasks", self._show_tasks, slow=True)
 
     # --- the page of the window ----------------------------------------------------------------
-
-    def set_theme(self, theme: Theme) -> None:
-        for part in (self.live, self.gallery, self.distributions, self.evaluation):
-            part.set_theme(theme)
 
     def commands(self) -> Mapping[str, Callable[..., object]]:
         return {

@@ -6,7 +6,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QGridLayout, QLabel, QSizePolicy, QVBoxLayout, QWidget
 
-from regolith_studio.descriptors.catalogue import CATALOGUE
+from regolith_studio.descriptors.catalogue import CATALOGUE, powers
 from regolith_studio.messages import N_
 from regolith_studio.scene.palette import DESCRIPTOR_COLOURS
 from regolith_studio.shape_models.models import MODELS
@@ -19,7 +19,6 @@ from regolith_studio.ui.widgets.plots.curves import CurvePlot, PlotCurve
 
 MIN_WIDTH, MIN_HEIGHT = 190, 180
 """Pixels of one plot; where a row has no room for all, there are more rows."""
-UNITS = {1: "", 2: "²", 3: "³", 5: "⁵"}
 AXES = {
     "number": ("", N_("Density by number")),
     "volume": ("", N_("Density by volume")),
@@ -139,5 +138,5 @@ def _axis(key: str, study: PopulationStudy) -> str:
         return ""
     row = CATALOGUE[key]
     unit = "µm" if study.unit == "um" else study.unit
-    suffix = f" [{unit}{UNITS[row.dimension]}]" if row.dimension else ""
+    suffix = f" [{unit}{powers(row.dimension)}]" if row.dimension else ""
     return f"{tr(row.label)} {plain_symbol(row.symbol)}{suffix}"

@@ -48,7 +48,6 @@ from regolith_studio.ui.pages.repose.section_plot import SectionPlot
 from regolith_studio.ui.pages.repose.setup import EnginePanel, SetupPanel
 from regolith_studio.ui.pages.repose.study import StudyPanel
 from regolith_studio.ui.pages.repose.study_controller import ReposeStudyController
-from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import tr, translate
 from regolith_studio.ui.translation.numbers import localized
 from regolith_studio.ui.widgets.headline import Headline
@@ -95,10 +94,6 @@ class ReposePage(PageWidget):
         self._list_runs()
 
     # --- the page of the window ----------------------------------------------------------------
-
-    def set_theme(self, theme: Theme) -> None:
-        for part in (self.player, self.x_z, self.y_z, self.runs, self.study, self.calibration):
-            part.set_theme(theme)
 
     def commands(self) -> Mapping[str, Callable[..., object]]:
         return {

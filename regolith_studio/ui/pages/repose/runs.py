@@ -19,7 +19,6 @@ from PySide6.QtWidgets import (
 from regolith_studio.dem.angle_of_repose import ReposeMeasurement
 from regolith_studio.dem.run_io import RunSummary
 from regolith_studio.messages import N_
-from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import tr, translate
 from regolith_studio.ui.translation.numbers import localized, number_text
 from regolith_studio.ui.widgets.plots.curves import CurvePlot, PlotCurve
@@ -92,10 +91,6 @@ class RunsPanel(QWidget):
         row.addWidget(right, 2)
         self.table.itemSelectionChanged.connect(self._announce)
         self.against.currentIndexChanged.connect(lambda *_: self._compare())
-
-    def set_theme(self, theme: Theme) -> None:
-        """Take the colours of a theme."""
-        self.plot.set_theme(theme)
 
     def set_runs(self, runs: Sequence[RunSummary], chosen: Path | None = None) -> None:
         """List other runs and select one, without emitting a signal."""

@@ -26,7 +26,6 @@ from regolith_studio.ui.widgets.wrapping_row import WrappingRow
 
 ZINGG = ("flatness", "elongation")
 SYMBOLS = ("o", "s", "t", "d", "star", "p", "h", "+")
-_UNITS = {0: "", 1: " [µm]", 2: " [µm²]", 3: " [µm³]", 5: " [µm⁵]"}
 _CORNERS = ((N_("blade"), 0, 0), (N_("rod"), 1, 0), (N_("disc"), 0, 1), (N_("equant"), 1, 1))
 """Zingg's form classes, and whether flatness and elongation exceed the threshold."""
 
@@ -185,7 +184,7 @@ def _descriptor_box(name: str, accessible: str) -> QComboBox:
     box.setAccessibleName(accessible)
     box.setMinimumContentsLength(max(len(tr(CATALOGUE[key].label)) for key in ZINGG))
     for key, row in CATALOGUE.items():
-        if not row.costly and row.dimension in _UNITS:
+        if not row.costly:
             box.addItem(tr(row.label), key)
             box.setItemData(box.count() - 1, definition(key), Qt.ItemDataRole.ToolTipRole)
     return box
@@ -193,4 +192,4 @@ def _descriptor_box(name: str, accessible: str) -> QComboBox:
 
 def _axis_label(key: str) -> str:
     row = CATALOGUE[key]
-    return f"{tr(row.label)} {rich_symbol(row.symbol)}{_UNITS[row.dimension]}"
+    return f"{tr(row.label)} {rich_symbol(row.symbol)}{row.unit_suffix}"

@@ -19,7 +19,6 @@ from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.descriptors.distributions import WEIGHTINGS
 from regolith_studio.io.tables import Column, Table
 from regolith_studio.messages import N_
-from regolith_studio.session.outputs.descriptors import UNITS
 from regolith_studio.session.results import ParticleEntry
 from regolith_studio.session.sample_table import has_weights, statistics_table
 from regolith_studio.ui.translation import tr
@@ -51,7 +50,7 @@ class StatisticsPanel(QWidget):
         self.key.setObjectName("statistics_key")
         self.key.setAccessibleName(tr("Descriptor of the statistics"))
         for key, row in CATALOGUE.items():
-            if not row.costly and row.dimension in UNITS:
+            if not row.costly:
                 self.key.addItem(tr(row.label), key)
                 self.key.setItemData(self.key.count() - 1, definition(key), Qt.ItemDataRole.ToolTipRole)
         self.weighting = QComboBox()

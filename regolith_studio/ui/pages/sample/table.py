@@ -26,7 +26,6 @@ from regolith_studio.ui.widgets.particle_table_model import (
 )
 from regolith_studio.ui.widgets.table import ListTable
 
-_UNITS = {0: "", 1: " [µm]", 2: " [µm²]", 3: " [µm³]", 5: " [µm⁵]"}
 HEALTH, FORM = "health", "form"
 WEIGHT = "weight"
 HEALTH_WORDS = (*(N_("sound"), N_("coarse"), N_("repaired"), N_("doubtful"), N_("unsound"), N_("unknown")),)
@@ -59,13 +58,13 @@ def columns() -> tuple[SampleColumn, ...]:
         ("group", tr("Group"), tr("Sample or size fraction"), lambda entry: entry.particle.group),
         (FORM, tr("Form"), tr("Zingg's class: equant, disc, rod or blade"), form_of),
     )
-    numbers = [row for row in CATALOGUE.values() if not row.costly and row.dimension in _UNITS]
+    numbers = [row for row in CATALOGUE.values() if not row.costly]
     return (
         *(SampleColumn(key, title, tip, text, text) for key, title, tip, text in words),
         *(
             SampleColumn(
                 row.key,
-                plain_symbol(row.symbol) + _UNITS[row.dimension],
+                plain_symbol(row.symbol) + row.unit_suffix,
                 definition(row.key),
                 _Number(row.key),
                 _Formatted(row.key),

@@ -1,7 +1,5 @@
 """Histogram of grey values with the threshold as a draggable line."""
 
-from collections.abc import Sequence
-
 import numpy as np
 import pyqtgraph as pg
 from PySide6.QtCore import QPointF, Signal
@@ -11,6 +9,7 @@ from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.translation.numbers import number_text
 from regolith_studio.ui.widgets.plots.base import Numbers, Plot
+from regolith_studio.ui.widgets.plots.curves import plain_decades
 
 MIN_PERCENTAGE = 1e-4
 """Height of empty bins on the logarithmic axis."""
@@ -35,7 +34,7 @@ class HistogramPlot(Plot):
             tr("Open a volume of grey values to see its histogram."),
         )
         self.canvas.setLogMode(x=False, y=True)
-        self.canvas.getAxis("left").logTickStrings = _plain_powers
+        self.canvas.getAxis("left").logTickStrings = plain_decades
         self.canvas.addItem(self.line, ignoreBounds=True)
         self.canvas.setAccessibleName(tr("Histogram of grey values with the threshold"))
         self.line.sigPositionChanged.connect(
@@ -116,11 +115,6 @@ class HistogramPlot(Plot):
             (self._denoised, self.theme.fit, tr("without noise")),
         ]
         return [(seen, colour, label) for seen, colour, label in known if seen is not None]
-
-
-def _plain_powers(values: Sequence[float], scale: float, spacing: float) -> list[str]:  # noqa: ARG001
-    """Ticks of the logarithmic axis as plain numbers."""
-    return [f"{10.0**value:g}" for value in values]
 
 
 def _bin_text(seen: Histogram, place: int) -> str:

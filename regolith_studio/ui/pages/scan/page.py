@@ -31,7 +31,6 @@ from regolith_studio.ui.pages.scan.preview import FramePreview
 from regolith_studio.ui.pages.scan.settings_files import SettingsFiles
 from regolith_studio.ui.pages.scan.slices_view import SlicesView
 from regolith_studio.ui.pages.scan.workflow_panel import WorkflowPanel
-from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import tr
 
 BOX = Brush(ERASER, 1.0, "box")
@@ -74,9 +73,6 @@ class ScanPage(PageWidget):
     def grains(self) -> Segmentation | None:
         """The grains of the whole volume, corrected, or ``None``."""
         return self.corrections.grains
-
-    def set_theme(self, theme: Theme) -> None:
-        self.slices.set_theme(theme)
 
     def commands(self) -> Mapping[str, Callable[..., object]]:
         return {

@@ -33,7 +33,6 @@ from regolith_studio.ui.pages.studies.loss_selector import LossSelector
 from regolith_studio.ui.pages.studies.sweep_panel import SweepPanel
 from regolith_studio.ui.panels.coarsening_study import CoarseningStudyPanel
 from regolith_studio.ui.panels.lmax_study import LmaxStudyPanel
-from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import tr, tr_count, translate
 from regolith_studio.ui.widgets.labels import heading
 
@@ -75,13 +74,6 @@ class StudiesPage(PageWidget):
         bindings.refresh("tasks", self._show_gallery_task, slow=True)
         bindings.refresh("particles", self._name_gallery_button)
         bindings.refresh("choices", self._show_l_max, ("l_max",), slow=True)
-
-    def set_theme(self, theme: Theme) -> None:
-        for part in (self.lmax_study, self.coarsening_study):
-            part.set_theme(theme)
-        for panel in self.variations.values():
-            panel.set_theme(theme)
-        self.gallery.set_theme(theme)
 
     def commands(self) -> Mapping[str, Callable[..., object]]:
         return {"run_all": self.run_all, "save": self.save}

@@ -14,7 +14,6 @@ from regolith_studio.studies.coarsening import COLUMNS, MIN_PLOTTED, CoarseningS
 from regolith_studio.studies.sweeps import GAIN, SWEEPS, descriptor_error, pareto_front, sufficient_facets
 from regolith_studio.ui.pages.studies.band_plot import BandPlot, Series
 from regolith_studio.ui.pages.studies.sensitivity_table import SensitivityTable
-from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import tr, tr_count, translate
 from regolith_studio.ui.widgets.definitions import definition
 from regolith_studio.ui.widgets.labels import plain_symbol, remark, rich_symbol
@@ -32,7 +31,6 @@ class StudyView(Protocol):
     """A widget that shows the results of a sweep."""
 
     def show_study(self, study: CoarseningStudy | None) -> None: ...
-    def set_theme(self, theme: Theme) -> None: ...
 
 
 class FacetsPlot(BandPlot):
@@ -170,11 +168,6 @@ class SweepPanel(QWidget):
         shown.show_study(study)
         self._show_answer(study)
         self.frame.set_remark("" if study is None else summary_text(study, outdated))
-
-    def set_theme(self, theme: Theme) -> None:
-        """Take the colours of a theme."""
-        shown: StudyView = self.part  # type: ignore[assignment]  # every part of PARTS is one
-        shown.set_theme(theme)
 
     def _make_answer(self) -> QWidget:
         """The row with the number of facets from which on nothing is gained, and a button that takes it."""

@@ -110,7 +110,7 @@ class PlotCurve:
     line: bool = True
 
 
-def _plain_decades(values: Sequence[float], _scale: float, _spacing: float) -> list[str]:
+def plain_decades(values: Sequence[float], _scale: float, _spacing: float) -> list[str]:
     """Tick labels of a logarithmic axis as plain numbers."""
     return [f"{10.0**value:.3g}" for value in values]
 
@@ -132,7 +132,7 @@ class CurvePlot(Plot):
         self._log_y = log_y
         super().__init__(x, y, placeholder)
         self.canvas.setLogMode(x=False, y=log_y)
-        self.canvas.getAxis("left").logTickStrings = _plain_decades
+        self.canvas.getAxis("left").logTickStrings = plain_decades
 
     @property
     def curves(self) -> tuple[PlotCurve, ...]:
