@@ -35,6 +35,8 @@ def resampled_counts(n: int, seed: int) -> FloatArray:
 
 def band_of(resampled: FloatArray, confidence: float) -> FloatArray:
     """Ends of the central band along the first axis, shape (2, ...); NaN where no sample has a value."""
+    if not resampled.size:  # numpy.nanpercentile drops an axis of arrays without values
+        return np.full((2, *resampled.shape[1:]), np.nan)
     tail = 50.0 * (1.0 - confidence)
     empty = np.isnan(resampled).all(axis=0)
     # numpy warns of columns that are nothing but NaN, and warnings are errors in our tests
