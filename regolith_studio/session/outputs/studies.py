@@ -3,8 +3,8 @@
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
-from importlib import import_module
 from pathlib import Path
+from pkgutil import resolve_name
 from typing import Any
 
 from regolith_studio.io.tables import Table
@@ -13,6 +13,8 @@ from regolith_studio.studies.lmax import rmsre_table as lmax_table
 from regolith_studio.studies.polyhedron_gallery import gallery_table
 from regolith_studio.studies.population_tables import ranking_table
 from regolith_studio.studies.sweeps import SWEEPS
+
+FIGURES = "regolith_studio.studies.figures"
 
 
 @dataclass(frozen=True)
@@ -38,11 +40,8 @@ class StudyKind:
 
 
 def _write(name: str, *given: Any) -> tuple[Path, ...]:
-    """Call ``module.function`` of ``studies.figures``, which imports matplotlib."""
-    module, _, function = name.partition(".")
-    written: tuple[Path, ...] = getattr(import_module(f"regolith_studio.studies.figures.{module}"), function)(
-        *given
-    )
+    """Call ``module:function`` of ``studies.figures``, which imports matplotlib."""
+    written: tuple[Path, ...] = resolve_name(f"{FIGURES}.{name}")(*given)
     return written
 
 
@@ -50,30 +49,30 @@ STUDIES: Mapping[str, StudyKind] = {
     "lmax_study": StudyKind(
         "RMSRE of the descriptors against l_max (Fig. 3)",
         "lmax_rmsre.png",
-        partial(_write, "lmax.write_lmax_study"),
+        partial(_write, "degrees:write_lmax_study"),
         lmax_table,
     ),
     "coarsening_study": StudyKind(
         "RMSRE of the descriptors for each set of loss weights (Fig. 8)",
         "coarsening_rmsre.png",
-        partial(_write, "coarsening.write_coarsening_study"),
+        partial(_write, "coarsening:write_coarsening_study"),
         coarsening_table,
     ),
     "population_study": StudyKind(
         "Drawn against measured particles (Figs. 4 to 6)",
         "population_number.png",
-        partial(_write, "population.write_population_study"),
+        partial(_write, "population:write_population_study"),
         ranking_table,
     ),
     "solids_study": StudyKind(
         "Polyhedra of some particles by loss (Fig. 7)",
         "solids.png",
-        partial(_write, "polyhedron_gallery.write_gallery"),
+        partial(_write, "degrees:write_gallery"),
         gallery_table,
     ),
     **{
         f"{key}_study": StudyKind(
-            each.title, f"{key}.png", partial(_write, "sweeps.write_sweep", key), each.table
+            each.title, f"{key}.png", partial(_write, "coarsening:write_sweep", key), each.table
         )
         for key, each in SWEEPS.items()
     },
