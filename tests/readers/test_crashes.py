@@ -61,8 +61,8 @@ def test_that_volumes_that_once_broke_a_parser_are_refused_in_words(name: str) -
 
 
 UNBELIEVABLE = {
-    "thinner-than-an-atom.nii": "The file states voxels of 0.5 × 9.313e-10 × 2 and, by its matrix, of 0.5 × 1 × 2; "
-    "give the size of a voxel.",
+    "thinner-than-an-atom.nii": "The file states voxels of 0.5 × 9.313e-10 × 2 and, by its matrix, of "
+    "0.5 × 1 × 2; give the size of a voxel.",
     "pixels-of-fourteen-metres.tif": "The file states a voxel of 1 × 1.45e+07 × 1 um, which is implausible; "
     "give the size of a voxel.",
 }
