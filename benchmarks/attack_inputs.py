@@ -14,6 +14,7 @@ outside
 import hashlib
 import json
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -27,6 +28,8 @@ import numpy as np
 from regolith_studio.resources import resource
 
 PATIENCE = 60.0
+PROGRESS = re.compile(r"[\d,]+ of [\d,]+: ")
+"""A line of progress that long work prints where there is no terminal."""
 NAMES = (
     *("../../escaped", "/tmp/regolith-escaped", "..", "a\\..\\..\\b", "C:\\x", "CON", "", "n\nl", "x" * 5000),
     *("\u0000", "=1+1", "<img src='file:///x'>", "\ud800"),
@@ -139,7 +142,7 @@ def _run(words: Sequence[str]) -> str:
         ended = subprocess.run(command, capture_output=True, text=True, timeout=PATIENCE, check=False)
     except subprocess.TimeoutExpired:
         return "unclear"
-    said = ended.stderr.strip()
+    said = "\n".join(line for line in ended.stderr.strip().splitlines() if not PROGRESS.match(line))
     if not ended.returncode:
         return "done"
     is_sentence = "\n" not in said and "made a mistake" not in said and ended.returncode in (1, 2)
