@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from benchmarks.independent import measured
 from benchmarks.result_files import add_result
 from regolith_studio.coarsening.coarsen import coarsen
-from regolith_studio.coarsening.exact.constraint_selection import EXACT
+from regolith_studio.coarsening.reasons import EXACT
 from regolith_studio.coarsening.result import CoarseningResult
 from regolith_studio.coarsening.target import Target
 from regolith_studio.errors import RegolithError

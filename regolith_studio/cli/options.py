@@ -157,7 +157,7 @@ Level = Annotated[
     ),
 ]
 Facets = Annotated[
-    int, typer.Option("--facets", min=5, max=200, help="Number of facets of each polyhedron.", metavar="N")
+    int, typer.Option("--facets", min=5, max=500, help="Number of facets of each polyhedron.", metavar="N")
 ]
 Triangles = Annotated[
     int | None,

@@ -11,10 +11,10 @@ import numpy as np
 from regolith_studio.coarsening.compound.line_overlap import compound_distance
 from regolith_studio.coarsening.loss import loss
 from regolith_studio.coarsening.lower_bounds import attainable_errors
-from regolith_studio.coarsening.methods import METHODS, CoarseningMethod, GrowingMethod
+from regolith_studio.coarsening.methods import METHODS, CoarseningMethod
 from regolith_studio.coarsening.polyhedra import polyhedron_of
 from regolith_studio.coarsening.progress import CoarseningProgress, MethodStep
-from regolith_studio.coarsening.result import CoarseningResult, MethodResult, SphericityFree
+from regolith_studio.coarsening.result import CoarseningResult, MethodResult
 from regolith_studio.coarsening.target import Target
 from regolith_studio.coarsening.weights import JACCARD, WEIGHT_KEYS, LossWeights
 from regolith_studio.descriptors.catalogue import CATALOGUE
@@ -31,7 +31,7 @@ from regolith_studio.settings import is_whole
 
 DEFAULT_METHOD = "exact"
 DEFAULT_PRESET = "all"
-FACETS_LIMITS = (5, 200)
+FACETS_LIMITS = (5, 500)
 """Section 2.4 asks for n > 4."""
 
 
@@ -51,7 +51,7 @@ def coarsen(
     particle
         Or its closed surface in any unit, or a :class:`Target` that was made from one.
     n_facets
-        Facets of the polyhedron, 5 to 200.
+        Facets of the polyhedron, 5 to 500.
     method
         Key of :data:`regolith_studio.coarsening.methods.METHODS`.
     weights
@@ -120,11 +120,8 @@ def _prepare(
     _check(chosen, weights, seed)
     target = particle if isinstance(particle, Target) else Target.of(solid_of(particle))
     random, chosen_settings = np.random.SeedSequence(seed), settings_of(method, settings)
-    if fewer is not None and isinstance(chosen, GrowingMethod):
-        few = target.in_unit_frame(fewer)
-        run = chosen.run_from_fewer(target, few, n_facets, weights, random, chosen_settings)
-    else:
-        run = chosen.run(target, n_facets, weights, random, chosen_settings)
+    few = None if fewer is None else target.in_unit_frame(fewer)
+    run = chosen.run(target, n_facets, weights, random, chosen_settings, few)
     return target, _run_and_measure(run, target, method, n_facets, weights)
 
 
@@ -225,7 +222,7 @@ def _measured(
         reason=result.reason,
         steps=result.steps,
         variants=result.variants,
-        sphericity_free=_sphericity_free(target, result.without_sphericity),
+        free_jaccard_distance=result.free_distance,
         genus=_genus(target.mesh, solid.mesh) if isinstance(solid, ConvexCompound) else None,
     )
 
@@ -234,14 +231,6 @@ def _genus(particle: Mesh, union: Mesh) -> tuple[int, int] | None:
     """Tunnels of both; ``None`` where the particle has none."""
     found = genus(particle.faces, len(particle.vertices))
     return (found, genus(union.faces, len(union.vertices))) if found else None
-
-
-def _sphericity_free(target: Target, half_spaces: HalfSpaces | None) -> SphericityFree | None:
-    if half_spaces is None:
-        return None
-    found = describe(ConvexPolyhedron.from_half_spaces(half_spaces), ("sphericity",))
-    error = relative_errors(target.descriptors, found, ("sphericity",))["sphericity"]
-    return SphericityFree(target.jaccard_distance(half_spaces), error)
 
 
 def in_unit(descriptors: Descriptors, scale: float) -> Descriptors:

@@ -13,7 +13,7 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.messages import N_, Message, Number
 
 COSTLY_OVERLAP = 1.5
-"""Above so many times the Jaccard distance with the sphericity free, a result has a warning."""
+"""Above so many times the Jaccard distance that the overlap alone leads to, a result has a warning."""
 
 
 @dataclass(frozen=True)
@@ -36,8 +36,8 @@ class MethodResult:
         By :meth:`ConvexPolyhedron.from_half_spaces`, where the method has made it already.
     achieved
         Of the solid by :func:`regolith_studio.descriptors.describe.describe`, where it has measured it.
-    without_sphericity
-        A polyhedron that keeps all that is asked for but the sphericity, where keeping that may cost overlap.
+    free_distance
+        The Jaccard distance that a descent on the overlap alone leads to, where there was one.
     makes_compounds
         Whether the method makes unions too: then a convex solid is not bound to miss V or CH.
     """
@@ -49,24 +49,8 @@ class MethodResult:
     variants: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     polyhedron: ConvexPolyhedron | None = None
     achieved: Descriptors | None = None
-    without_sphericity: HalfSpaces | None = None
+    free_distance: float | None = None
     makes_compounds: bool = False
-
-
-@dataclass(frozen=True)
-class SphericityFree:
-    """The same request with the sphericity left free.
-
-    Parameters
-    ----------
-    jaccard_distance
-        Eq. 7, with 16,000 rays.
-    sphericity_error
-        Relative error of the sphericity (Eq. 8).
-    """
-
-    jaccard_distance: float
-    sphericity_error: float
 
 
 @dataclass(frozen=True)
@@ -101,8 +85,8 @@ class CoarseningResult:
         Numbers about the run: iterations, restarts, refused proposals ...
     variants
         Relative errors of other readings of the result (the quadric baseline has three).
-    sphericity_free
-        What leaving the sphericity free would give, where keeping it may cost overlap; else ``None``.
+    free_jaccard_distance
+        Eq. 7 where the overlap alone counts, with 2,000 rays; ``None`` where the method did not look.
     genus
         Tunnels of the particle and of the union that stands for it, of a compound whose particle has any.
     """
@@ -121,12 +105,12 @@ class CoarseningResult:
     reason: str | None = None
     steps: Mapping[str, float] = field(default_factory=dict)
     variants: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
-    sphericity_free: SphericityFree | None = None
+    free_jaccard_distance: float | None = None
     genus: tuple[int, int] | None = None
 
     @property
     def warning(self) -> str | None:
-        """That tunnels are lost, or what an exact sphericity costs where that is much overlap; a sentence."""
+        """That tunnels are lost, or what keeping descriptors costs where that is much overlap; a sentence."""
         if self.genus is not None and self.genus[1] < self.genus[0]:
             return Message(
                 N_(
@@ -136,18 +120,16 @@ class CoarseningResult:
                 particle=self.genus[0],
                 union=self.genus[1],
             )
-        free = self.sphericity_free
-        if free is None or self.jaccard_distance <= COSTLY_OVERLAP * free.jaccard_distance:
+        free = self.free_jaccard_distance
+        if free is None or self.jaccard_distance <= COSTLY_OVERLAP * free:
             return None
         return Message(
             N_(
-                "Keeping the sphericity costs overlap: the Jaccard distance is {kept}; with the sphericity"
-                " free it is {free}, and the sphericity is off by {error} %. The preset Shape first leaves it"
-                " free."
+                "Keeping the descriptors costs overlap: the Jaccard distance is {kept}; with the overlap"
+                " alone it would be {free}. The preset Shape first leaves the sphericity free."
             ),
             kept=Number(self.jaccard_distance, ".3f"),
-            free=Number(free.jaccard_distance, ".3f"),
-            error=Number(100 * free.sphericity_error, ".2g"),
+            free=Number(free, ".3f"),
         )
 
     @property

@@ -80,7 +80,7 @@ def fewest_facets(
 
     Doubles the number of facets from 5 until the limit is met, then halves the interval; each trial has one
     more start, from the result with the next smaller number tried. Yields the steps of each coarsening,
-    counted through, and each :class:`Trial`. Where not even 200 facets meet the limit, the
+    counted through, and each :class:`Trial`. Where not even 500 facets meet the limit, the
     trial with the least error is the result, and its `reason` says so.
 
     Parameters

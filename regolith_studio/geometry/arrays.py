@@ -45,15 +45,6 @@ def locked_integers(values: ArrayLike, shape: tuple[int | None, ...], name: str)
     return array
 
 
-def used_vertices(vertices: FloatArray, faces: IntArray) -> tuple[FloatArray, IntArray]:
-    """The vertices that a face uses, in their order, and the faces by these; the same arrays if all are."""
-    used = np.zeros(len(vertices), dtype=np.bool_)
-    used[faces] = True
-    if used.all():
-        return vertices, faces
-    return vertices[used], (np.cumsum(used) - 1)[faces]
-
-
 def _own(values: ArrayLike, kind: type[np.float64] | type[np.int64]) -> NDArray[Any]:
     """A copy, unless nobody can change `values`: a locked array that owns its memory, as all of ours are."""
     if isinstance(values, np.ndarray) and values.dtype == kind:

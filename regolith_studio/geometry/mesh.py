@@ -22,11 +22,11 @@ from regolith_studio.geometry.arrays import (
     IntArray,
     locked_floats,
     locked_integers,
-    used_vertices,
 )
 from regolith_studio.geometry.kernels import kernel
 from regolith_studio.geometry.mass_properties import volume_moments
 from regolith_studio.geometry.vectors import cross, dot, mixed, row
+from regolith_studio.io.triangles import used_vertices
 
 T = TypeVar("T")
 

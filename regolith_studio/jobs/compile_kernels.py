@@ -22,7 +22,7 @@ from regolith_studio.jobs.progress_rate import ProgressRate, format_duration
 from regolith_studio.messages import N_, Message
 
 if TYPE_CHECKING:
-    from regolith_studio.geometry.mesh import Mesh
+    pass
 
 TASKS = {"read": 10, "fit": 27, "describe": 33, "quadric": 18, "annealing": 12, "exact": 86, "compound": 21}
 TASKS |= {"degrees": 3, "model": 7, "scan": 10, "representatives": 3}
@@ -119,23 +119,6 @@ def run_task(name: str) -> None:
         coarsen(waist, 12, name, settings={"parts": 2})
     else:
         coarsen(mesh, 12, name)
-        if name == "exact":
-            _insert_and_enlarge_facet(mesh)
-
-
-def _insert_and_enlarge_facet(mesh: "Mesh") -> None:
-    """Put a half-space that bounds no facet of a cube back to work and enlarge it; few particles need it."""
-    from regolith_studio.coarsening.core.facet_insertion import insert_lost_facets
-    from regolith_studio.coarsening.core.polyhedron_measures import measure_polyhedron
-    from regolith_studio.coarsening.exact.sliver_removal import add_area_charges
-    from regolith_studio.coarsening.target import Target
-
-    rays = Target.of(mesh).rays
-    normals = np.vstack([np.eye(3), -np.eye(3), np.full((1, 3), 1 / np.sqrt(3))])
-    offsets = np.array([0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 2.0])
-    _, *planes = insert_lost_facets(normals, offsets, rays.directions, rays.first, rays.distance, 0.3)
-    cut = measure_polyhedron(*planes)
-    add_area_charges(cut.normals, cut.vertices, cut.edges, cut.centroids, np.ones(7), np.zeros((7, 4)))
 
 
 def _draw_particles() -> None:

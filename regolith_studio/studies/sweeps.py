@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from regolith_studio.coarsening.exact.constraint_selection import EXACT
+from regolith_studio.coarsening.reasons import EXACT
 from regolith_studio.coarsening.weights import JACCARD
 from regolith_studio.descriptors.catalogue import LOSS_KEYS
 from regolith_studio.errors import InputError

@@ -2688,8 +2688,8 @@
         <translation>Körner nach ihrer Klasse behalten, teilen oder verwerfen</translation>
     </message>
     <message>
-        <source>Keeping the sphericity costs overlap: the Jaccard distance is {kept}; with the sphericity free it is {free}, and the sphericity is off by {error} %. The preset Shape first leaves it free.</source>
-        <translation>Die Sphärizität einzuhalten kostet Überdeckung: Die Jaccard-Distanz ist {kept}; mit freier Sphärizität ist sie {free}, und die Sphärizität weicht um {error} % ab. Die Vorlage „Form zuerst“ lässt sie frei.</translation>
+        <source>Keeping the descriptors costs overlap: the Jaccard distance is {kept}; with the overlap alone it would be {free}. The preset Shape first leaves the sphericity free.</source>
+        <translation>Die Deskriptoren einzuhalten kostet Überdeckung: Die Jaccard-Distanz ist {kept}; mit der Überdeckung allein wäre sie {free}. Die Vorlage „Form zuerst“ lässt die Sphärizität frei.</translation>
     </message>
     <message>
         <source>Kept the largest of {count} bodies, with {share} of their volume.</source>
@@ -5812,8 +5812,8 @@
         <translation>Das Ergebnis hat {real} statt {faces} Facetten: Es fand sich kein Ort, wo die übrigen Halbräume eine Facette begrenzen und alle Deskriptoren getroffen sind.</translation>
     </message>
     <message>
-        <source>The result has {real} facets instead of {faces}: the particle is convex and has {facets} facets itself, and no other polyhedron was found that meets all descriptors.</source>
-        <translation>Das Ergebnis hat {real} statt {faces} Facetten: Das Partikel ist konvex und hat selbst {facets} Facetten, und es fand sich kein anderes Polyeder, das alle Deskriptoren trifft.</translation>
+        <source>The result has {real} facets instead of {faces}: the particle is a convex polyhedron with {real} facets itself.</source>
+        <translation>Das Ergebnis hat {real} statt {faces} Facetten: Das Partikel ist selbst ein konvexes Polyeder mit {real} Facetten.</translation>
     </message>
     <message>
         <source>The results do not depend on the number of processes, and a stopped run can be resumed.</source>
@@ -6398,6 +6398,10 @@
     <message>
         <source>With fewer than {count} particles the cut at the toe changes the angle by some degrees; the interval contains that.</source>
         <translation>Mit weniger als {count} Partikeln verändert die Grenze am Fuß den Winkel um einige Grad; der Bereich enthält das.</translation>
+    </message>
+    <message>
+        <source>With the overlap alone the Jaccard distance would be {free}.</source>
+        <translation>Mit der Überdeckung allein wäre die Jaccard-Distanz {free}.</translation>
     </message>
     <message>
         <source>Working on particles</source>

@@ -37,7 +37,7 @@ def waist(tmp_path_factory: pytest.TempPathFactory) -> Path:
         (("--set", "joint=1"), "joint of the method compound must be a word, got 1."),
         (("--set", "level=slow"), "The level must be one of fast, best, got 'slow'."),
         (("--facets", "4"), "greater than or equal to 5"),
-        (("--facets", "201"), "less than or equal to 200"),
+        (("--facets", "501"), "less than or equal to 500"),
     ],
 )
 def test_that_a_number_of_parts_or_facets_out_of_range_is_one_sentence(

@@ -5,11 +5,8 @@ import pytest
 from scipy.spatial import ConvexHull, HalfspaceIntersection
 
 from regolith_studio.coarsening.coarsen import coarsen
-from regolith_studio.coarsening.exact.facet_growth import (
-    more_surface_than_hull,
-    numbers_to_grow_from,
-    with_waiting,
-)
+from regolith_studio.coarsening.optimiser.search import first_sizes, more_surface_than_hull
+from regolith_studio.coarsening.optimiser.starts import with_waiting
 from regolith_studio.coarsening.result import CoarseningResult
 from regolith_studio.coarsening.target import Target
 from regolith_studio.geometry.half_spaces import HalfSpaces
@@ -82,20 +79,20 @@ def test_that_the_number_asked_for_is_always_among_those_to_start_with() -> None
     rough, round_ball = Target.of(bumpy(2, roughness=0.3)), Target.of(icosphere(3))
     for n_facets in (5, 20, 24, 26, 50, 63, 200):
         for keeps_sphericity in (False, True):
-            numbers = numbers_to_grow_from(rough, n_facets, keeps_sphericity)
+            numbers = first_sizes(rough, n_facets, keeps_sphericity)
             assert n_facets in numbers
             assert len(set(numbers)) == len(numbers)
             assert max(numbers) == n_facets
-    assert numbers_to_grow_from(rough, 20, True)[0] == 20
-    assert numbers_to_grow_from(rough, 15, True) == (15,)
-    assert numbers_to_grow_from(rough, 100, True)[0] < 100
-    assert numbers_to_grow_from(rough, 100, False)[0] == 100
-    assert numbers_to_grow_from(round_ball, 100, True) == (100,)
+    assert first_sizes(rough, 20, True)[0] == 20
+    assert first_sizes(rough, 15, True) == (15,)
+    assert first_sizes(rough, 100, True)[0] < 100
+    assert first_sizes(rough, 100, False)[0] == 100
+    assert first_sizes(round_ball, 100, True) == (100,)
 
 
 def test_that_waiting_half_spaces_leave_a_cube_a_cube() -> None:
     normals = np.vstack([np.eye(3), -np.eye(3)])
-    planes = HalfSpaces(*with_waiting(normals, np.ones(6), 40))
+    planes = with_waiting(HalfSpaces(normals, np.ones(6)), 40)
     assert len(planes) == 40
     corners = HalfspaceIntersection(planes.equations, np.zeros(3)).intersections
     assert ConvexHull(corners).volume == pytest.approx(8.0, rel=1e-12)

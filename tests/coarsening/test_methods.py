@@ -8,7 +8,6 @@ import pytest
 from scipy.spatial import ConvexHull, HalfspaceIntersection
 
 from regolith_studio.coarsening.coarsen import coarsen, coarsening_steps, settings_of
-from regolith_studio.coarsening.exact.sliver_removal import COST
 from regolith_studio.coarsening.methods import METHODS
 from regolith_studio.coarsening.methods.annealing import AnnealingSettings
 from regolith_studio.coarsening.methods.compound import CompoundSettings
@@ -37,7 +36,7 @@ def test_that_more_effort_never_leads_to_less_overlap(roughness: float) -> None:
         fast, best = (coarsen(target, 20, "exact", settings={"level": level}) for level in ("fast", "best"))
         assert best.reason is None or fast.reason is not None
         if fast.reason is None:
-            assert best.jaccard_distance <= fast.jaccard_distance + COST
+            assert best.jaccard_distance <= fast.jaccard_distance + 1e-4
 
 
 def test_that_the_methods_announce_themselves() -> None:
@@ -181,11 +180,11 @@ def test_that_the_measured_errors_are_those_of_the_target(exact: CoarseningResul
 @pytest.mark.parametrize(
     ("options", "sentence"),
     [
-        ({"n_facets": 4}, "number of facets must be a whole number from 5 to 200, got 4"),
-        ({"n_facets": 201}, "got 201"),
-        ({"n_facets": 12.5}, "whole number from 5 to 200, got 12.5"),
-        ({"n_facets": "12"}, "whole number from 5 to 200, got 12"),
-        ({"n_facets": float("nan")}, "whole number from 5 to 200, got nan"),
+        ({"n_facets": 4}, "number of facets must be a whole number from 5 to 500, got 4"),
+        ({"n_facets": 501}, "got 501"),
+        ({"n_facets": 12.5}, "whole number from 5 to 500, got 12.5"),
+        ({"n_facets": "12"}, "whole number from 5 to 500, got 12"),
+        ({"n_facets": float("nan")}, "whole number from 5 to 500, got nan"),
         ({"settings": {"retries": 2.5}}, "retries of the method exact must be a whole number, got 2.5"),
         ({"settings": {"retries": None}}, "retries of the method exact must be a whole number, got None"),
         ({"method": "compound", "settings": {"parts": True}}, "parts .* must be a whole number, got True"),

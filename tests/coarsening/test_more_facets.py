@@ -8,7 +8,7 @@ import pytest
 
 from regolith_studio.coarsening.coarsen import coarsen
 from regolith_studio.coarsening.core.facet_insertion import insert_lost_facets
-from regolith_studio.coarsening.exact.facet_growth import with_waiting
+from regolith_studio.coarsening.optimiser.starts import with_waiting
 from regolith_studio.coarsening.polyhedra import facet_areas, polyhedron_of
 from regolith_studio.coarsening.result import CoarseningResult
 from regolith_studio.coarsening.stopping_criteria import Trial, fewest_facets
@@ -93,9 +93,9 @@ def test_that_corners_are_cut_where_there_is_room() -> None:
     target = Target.of(polyhedron_of(HalfSpaces(cube, np.full(6, 0.5))).mesh)
     rays = target.rays
     for n_facets in (14, 30):  # each corner of the cube once, and then some
-        normals, offsets = with_waiting(cube, np.full(6, 0.5), n_facets)
+        waiting = with_waiting(HalfSpaces(cube, np.full(6, 0.5)), n_facets)
         cuts, normals, offsets = insert_lost_facets(
-            normals, offsets, rays.directions, rays.first, rays.distance, 0.3
+            waiting.normals, waiting.offsets, rays.directions, rays.first, rays.distance, 0.3
         )
         areas = facet_areas(HalfSpaces(normals, offsets))
         assert cuts == n_facets - 6

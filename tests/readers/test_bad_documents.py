@@ -165,7 +165,7 @@ def special(key: str, good: bytes) -> Iterator[Bad]:
     document = json.loads(good)
     if key in ("fit", "model"):
         yield "future", changed(document, "version", 2), "version must be 1, not 2"
-        yield "unit", changed(document, "unit", "inch"), "there is no unit “inch”; the units are um, mm"
+        yield "unit", changed(document, "unit", "furlong"), "there is no unit “furlong”; the units are um, mm"
         yield (
             "other convention",
             changed(document, "convention", "Schmidt"),
@@ -205,7 +205,7 @@ def special(key: str, good: bytes) -> Iterator[Bad]:
         yield "extra", changed(document, "colour", "grey"), "colour is not known here"
         odd = json.dumps({**document, "co\nlour": 1}).encode()
         yield "unprintable", odd, r"co\?lour is not known here"
-        yield "inch", changed(document, "unit", "inch"), "there is no unit “inch”"
+        yield "furlong", changed(document, "unit", "furlong"), "there is no unit “furlong”"
     if key == "dataset":
         odd = changed(document, "representatives[1].sizes.type", "log-norm{al")
         yield "sizes", odd, r"representatives\[1\]\.sizes must have a 'type' that is one of 'discrete', "

@@ -17,7 +17,7 @@ from regolith_studio.session.choices import Choices
         ({"l_max": -1}, "from 0 to 30, got -1"),
         ({"l_max": 3.5}, "whole number"),
         ({"l_max": True}, "whole number"),
-        ({"n_facets": 4}, "from 5 to 200, got 4"),
+        ({"n_facets": 4}, "from 5 to 500, got 4"),
         ({"n_triangles": 7}, "7 triangles are too few"),
         ({"n_triangles": 70.5}, "whole number"),
         ({"largest_error": 0.0}, "above 0 per cent"),
@@ -58,7 +58,7 @@ def test_that_a_preset_brings_its_weights_and_a_moved_weight_marks_it_modified()
     [
         ("facets", 12, None, 12, "12 facets"),
         ("triangles", 17, None, 17, "17 facets"),  # 17 facets have up to 56 triangles, 18 have 60
-        ("error", 12, 0.025, 200, "the fewest facets whose errors are all below 2.5 %"),
+        ("error", 12, 0.025, 500, "the fewest facets whose errors are all below 2.5 %"),
     ],
 )
 def test_that_one_of_three_numbers_says_how_fine_a_polyhedron_is(

@@ -177,7 +177,7 @@ def test_that_undo_and_redo_bring_the_results_back(opened: Session) -> None:
 
 def test_that_a_refused_choice_changes_nothing(opened: Session) -> None:
     before = opened.choices
-    with pytest.raises(InputError, match="from 5 to 200"):
+    with pytest.raises(InputError, match="from 5 to 500"):
         opened.choose(n_facets=1)
     with pytest.raises(InputError, match="grain-9"):
         opened.select("grain-9")

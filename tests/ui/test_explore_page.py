@@ -7,7 +7,6 @@ import pytest
 from PIL import Image
 from PySide6.QtWidgets import QApplication
 
-from regolith_studio.coarsening.result import SphericityFree
 from regolith_studio.geometry.oriented_box import minimum_volume_box
 from regolith_studio.scene import overlays
 from regolith_studio.scene.comparison import OTHER
@@ -56,19 +55,15 @@ def test_that_box_star_point_and_overlay_come_and_go(window):
         assert not any(seen(window, view, each) for each in (overlays.BOX, overlays.STAR_POINT, VEIL))
 
 
-def test_that_the_price_of_an_exact_sphericity_is_told_beside_the_choices(window, settled):
+def test_that_the_overlap_that_descriptors_cost_is_told_beside_the_choices(window, settled):
     coarse = window.session.results.coarsened
-    window.session.update("coarsening", coarsened=replace(coarse, sphericity_free=None))
+    window.session.update("coarsening", coarsened=replace(coarse, free_jaccard_distance=None))
     settled(window)
     assert not window.page.coarsening.outcome.isVisible()
-    free = SphericityFree(coarse.jaccard_distance / 2, 0.18)
-    window.session.update("coarsening", coarsened=replace(coarse, sphericity_free=free))
+    free = coarse.jaccard_distance / 2
+    window.session.update("coarsening", coarsened=replace(coarse, free_jaccard_distance=free))
     settled(window)
-    said = window.page.coarsening.outcome.text()
-    assert (
-        f"with the sphericity free it is {free.jaccard_distance:.3f}, and the sphericity is off by 18 %"
-        in said
-    )
+    assert f"with the overlap alone it would be {free:.3f}" in window.page.coarsening.outcome.text()
 
 
 @pytest.mark.slow

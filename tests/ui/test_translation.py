@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from regolith_studio.coarsening.exact.constraint_selection import MISSED, MISSED_BY, NAMES
 from regolith_studio.coarsening.lower_bounds import max_sphericity, sphericity_reason
+from regolith_studio.coarsening.reasons import MISSED, MISSED_BY, NAMES
 from regolith_studio.imaging.extraction import Extraction
 from regolith_studio.imaging.segmentation.segment import Segmentation
 from regolith_studio.imaging.segmentation.thresholding import Histogram

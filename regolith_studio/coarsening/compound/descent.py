@@ -15,8 +15,7 @@ from regolith_studio.coarsening.compound.conditions import (
 )
 from regolith_studio.coarsening.compound.line_overlap import shared_with_lines
 from regolith_studio.coarsening.core.overlap import jaccard
-from regolith_studio.coarsening.exact.constraint_projection import solve_nearly_singular
-from regolith_studio.coarsening.exact.projected_bfgs import bfgs_update
+from regolith_studio.coarsening.optimiser.multipliers import solve_in_place
 from regolith_studio.geometry.arrays import BoolArray, FloatArray
 
 TOLERANCE, LOOSE = 2e-8, 1e-6
@@ -186,3 +185,20 @@ def _lagrangian(point: CompoundPoint, gradient: FloatArray) -> FloatArray:
     """Gradient of the Lagrangian: what is left of the gradient across the conditions."""
     rows = point.rows
     return np.asarray(gradient - rows.T @ solve_nearly_singular(rows @ rows.T, rows @ gradient))
+
+
+def solve_nearly_singular(matrix: FloatArray, right: FloatArray) -> FloatArray:
+    """Solution of a symmetric positive semidefinite system (m, m); NaN where it is none."""
+    system = np.column_stack([matrix, right])
+    return system[:, -1].copy() if solve_in_place(system) else np.full(len(right), np.nan)
+
+
+def bfgs_update(metric: FloatArray, step: FloatArray, change: FloatArray) -> FloatArray:
+    """BFGS update of the inverse second derivative; skipped where the curvature is not positive."""
+    product = step @ change
+    if product <= 1e-3 * np.sqrt((step @ step) * (change @ change)):
+        return metric
+    turned = metric @ change
+    scale = (1.0 + change @ turned / product) / product
+    mixed = np.outer(turned / product, step)
+    return np.asarray(metric + scale * np.outer(step, step) - mixed - mixed.T)

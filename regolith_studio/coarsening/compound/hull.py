@@ -12,8 +12,8 @@ from regolith_studio.geometry.arrays import FloatArray, IntArray
 from regolith_studio.geometry.kernels import kernel_noalloc
 from regolith_studio.geometry.vectors import cross, dot, mixed, row
 
-MAX_CORNERS = 400
-"""Of parts that have 200 facets in all, in general position."""
+MAX_CORNERS = 1000
+"""Of parts that have 500 facets in all, in general position."""
 JOGGLE = 1.0 + 1e-11 * np.random.default_rng(0).uniform(size=MAX_CORNERS)
 """By what distances of corners are divided to find the triangles, so that no four corners lie in a plane."""
 

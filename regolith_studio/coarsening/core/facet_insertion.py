@@ -14,11 +14,10 @@ DEEPEST = 0.3
 """Share of the way to the nearest neighbouring corner that a cut of this least depth may take."""
 ROOMY = 0.6
 """Corners with less than this share of the largest room are left alone: cuts there would be slivers."""
-MIN_FACET = 1e-6
-"""Facets of less area, at unit volume, count as lost."""
 TOUCHING = 1e-6
 """Corners as near as this to a side of a box touch it."""
-NO_AXES = np.empty((0, 3))
+MIN_FACET = 1e-6
+"""Facets of less area, at unit volume, count as lost."""
 
 
 def insert_lost_facets(
@@ -28,7 +27,8 @@ def insert_lost_facets(
     first: IntArray,
     distance: FloatArray,
     depth: float,
-    axes: FloatArray = NO_AXES,
+    most: int | None = None,
+    axes: FloatArray | None = None,
 ) -> tuple[int, FloatArray, FloatArray]:
     """Replace each half-space without a facet by a cut across the corner that hangs out farthest.
 
@@ -39,9 +39,11 @@ def insert_lost_facets(
     ----------
     directions, first, distance
         Rays, and the particle's crossings as from :func:`regolith_studio.coarsening.core.rays.cast`.
+    most
+        At most so many half-spaces are replaced; all that bound no facet where not given.
     axes
-        Of boxes, shape (k, 3): corners that touch these boxes are left alone, where there are others, since
-        a cut there would change the boxes to first order.
+        Of the polyhedron's box, shape (3, 3): corners that touch it are left alone, where there are others,
+        since a cut there would change the box to first order.
 
     Returns
     -------
@@ -51,7 +53,7 @@ def insert_lost_facets(
         With the cuts, copies.
     """
     normals, offsets, n_cuts = np.array(normals), np.array(offsets), 0
-    for _ in range(len(offsets)):
+    for _ in range(len(offsets) if most is None else most):
         polyhedron = measure_polyhedron(normals, offsets)
         if polyhedron.status != FINE:
             return -1, normals, offsets
@@ -63,18 +65,22 @@ def insert_lost_facets(
         free = _not_touching(vertices, axes)
         at = _best_corner(normals, vertices, triples, directions, first, distance, depth, free, rooms)
         cut = normals[triples[at]].sum(axis=0)
-        cut /= np.linalg.norm(cut)
+        cut /= np.sqrt((cut * cut).sum())
         below = max(depth * rooms[at], min(MIN_CUT, DEEPEST * rooms[at]))
-        normals[lost[0]], offsets[lost[0]] = cut, cut @ vertices[at] - below
+        normals[lost[0]], offsets[lost[0]] = cut, (cut * vertices[at]).sum() - below
         n_cuts += 1
     return n_cuts, normals, offsets
 
 
-def _not_touching(vertices: FloatArray, axes: FloatArray) -> BoolArray:
-    """Which corners touch no side of the boxes; all where every one does."""
-    heights = vertices @ np.vstack([axes, -axes]).T
-    free = np.all(heights < heights.max(axis=0) - TOUCHING, axis=1)
-    return free if free.any() else np.ones(len(vertices), dtype=bool)
+def _not_touching(vertices: FloatArray, axes: FloatArray | None) -> BoolArray:
+    """Which corners touch no side of the box; all where every one does."""
+    everywhere = np.ones(len(vertices), dtype=np.bool_)
+    if axes is None:
+        return everywhere
+    for axis in axes:
+        heights = vertices[:, 0] * axis[0] + vertices[:, 1] * axis[1] + vertices[:, 2] * axis[2]
+        everywhere &= (heights < heights.max() - TOUCHING) & (heights > heights.min() + TOUCHING)
+    return everywhere if everywhere.any() else np.ones(len(vertices), dtype=np.bool_)
 
 
 @kernel_noalloc

@@ -42,12 +42,12 @@ def moved_planes(
     The tangents are carried over without twist.
     """
     turned, shifted, carried = np.empty_like(normals), np.empty_like(offsets), np.empty_like(tangents)
-    _fill_moved(normals, pivots, offsets, tangents, scales, step, turned, shifted, carried)
+    fill_moved(normals, pivots, offsets, tangents, scales, step, turned, shifted, carried)
     return turned, shifted, carried
 
 
 @kernel_noalloc
-def _fill_moved(
+def fill_moved(
     normals: FloatArray,
     pivots: FloatArray,
     offsets: FloatArray,

@@ -60,9 +60,9 @@ def measure_polyhedron(normals: FloatArray, offsets: FloatArray) -> MeasuredPoly
     """Intersect half-spaces in general position and measure the result."""
     n = len(offsets)
     vertices, triples = np.empty((2 * n, 3)), np.empty((2 * n, 3), dtype=np.int64)
-    edges, areas, centroids = np.empty((3 * n, 4), dtype=np.int64), np.zeros(n), np.zeros((n, 3))
+    edges, areas, centroids = np.empty((3 * n, 4), dtype=np.int64), np.empty(n), np.empty((n, 3))
     work = workspace_for(n)
-    status, count, volume, surface = _measure(
+    status, count, volume, surface = fill_measures(
         normals, offsets, work, vertices, triples, edges, areas, centroids
     )
     vertices, triples, edges = vertices[:count], triples[:count], edges[: 3 * count // 2]
@@ -72,7 +72,7 @@ def measure_polyhedron(normals: FloatArray, offsets: FloatArray) -> MeasuredPoly
 
 
 @kernel_noalloc
-def _measure(
+def fill_measures(
     normals: FloatArray,
     offsets: FloatArray,
     work: IntersectionWorkspace,
@@ -82,10 +82,11 @@ def _measure(
     areas: FloatArray,
     centroids: FloatArray,
 ) -> tuple[int, int, float, float]:
-    """Status, number of vertices, volume and surface area; fills the arrays, the last two of zeros before."""
+    """Status, number of vertices, volume and surface area; fills the arrays."""
     n, largest = len(offsets), 0.0
     for i in range(n):
         largest = max(largest, offsets[i])
+        areas[i] = centroids[i, 0] = centroids[i, 1] = centroids[i, 2] = 0.0
     status, count = fill_vertices(normals, offsets, REACH * largest, work, vertices, triples)
     if status != FINE:
         return status, 0, 0.0, 0.0

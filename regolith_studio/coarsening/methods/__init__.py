@@ -1,7 +1,7 @@
 """The coarsening methods; each module of this folder that defines ``METHOD`` is one."""
 
 from collections.abc import Generator
-from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
+from typing import TYPE_CHECKING, Any, Protocol
 
 from regolith_studio.registry import Registry
 
@@ -29,25 +29,12 @@ class CoarseningMethod(Protocol):
         weights: "LossWeights",
         seed: "np.random.SeedSequence",
         settings: Any,
+        fewer: "HalfSpaces | None" = None,
     ) -> "Generator[MethodStep, None, MethodResult]":
-        """Yield steps, the first one at once and with a polyhedron; return the result."""
-        ...
+        """Yield steps, the first one at once and with a polyhedron; return the result.
 
-
-@runtime_checkable
-class GrowingMethod(Protocol):
-    """A method that can begin with a result with fewer facets, besides its own starts."""
-
-    def run_from_fewer(
-        self,
-        target: "Target",
-        fewer: "HalfSpaces | None",
-        n_facets: int,
-        weights: "LossWeights",
-        seed: "np.random.SeedSequence",
-        settings: Any,
-    ) -> "Generator[MethodStep, None, MethodResult]":
-        """As :meth:`CoarseningMethod.run`; `fewer` is at unit volume."""
+        `fewer` is a result with fewer facets at unit volume, from which a method may make one more start.
+        """
         ...
 
 

@@ -112,6 +112,7 @@ class AnnealingMethod:
         weights: LossWeights,
         seed: np.random.SeedSequence,
         settings: AnnealingSettings,
+        fewer: HalfSpaces | None = None,  # noqa: ARG002
     ) -> Generator[MethodStep, None, MethodResult]:
         """One step an iteration, and step 0 for the start."""
         rng = np.random.default_rng(seed)

@@ -9,16 +9,18 @@ import numpy as np
 from regolith_studio.coarsening.compound.conditions import KEYS
 from regolith_studio.coarsening.compound.search import CompoundCandidate, Effort, compound_of, search_compound
 from regolith_studio.coarsening.compound.start import MIN_FACETS
-from regolith_studio.coarsening.exact.constraint_selection import EXACT, MISSED_BY, NAMES
-from regolith_studio.coarsening.exact.multi_start import LEVELS, Search
 from regolith_studio.coarsening.loss import loss
+from regolith_studio.coarsening.optimiser.search import EFFORTS as CONVEX_EFFORTS
+from regolith_studio.coarsening.optimiser.search import Search
 from regolith_studio.coarsening.progress import MethodStep
+from regolith_studio.coarsening.reasons import missed_terms, named_errors
 from regolith_studio.coarsening.result import MethodResult
 from regolith_studio.coarsening.target import Target
 from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.descriptors.comparison import relative_errors
 from regolith_studio.descriptors.describe import Descriptors, describe
 from regolith_studio.errors import InputError
+from regolith_studio.geometry.half_spaces import HalfSpaces
 from regolith_studio.messages import N_, Message, join_messages
 from regolith_studio.settings import is_whole
 
@@ -91,13 +93,14 @@ class CompoundMethod:
         weights: LossWeights,
         seed: np.random.SeedSequence,
         settings: CompoundSettings,
+        fewer: HalfSpaces | None = None,  # noqa: ARG002
     ) -> Generator[MethodStep, None, MethodResult]:
         """A step for each start and each better compound of the last descents."""
         parts = min(settings.parts, n_facets // MIN_FACETS)
         if target.solidity > 1.0 - CONVEX or parts < PARTS_LIMITS[0]:
-            search = Search(target, weights, n_facets, [LEVELS[settings.level]], RETRIES, seed)
-            yield from search.steps()
-            result = yield from search.finish()
+            convex = CONVEX_EFFORTS[settings.level]
+            search = Search(target, weights, weights.kept, n_facets, convex, RETRIES, seed)
+            result = yield from search.steps()
             return replace(result, makes_compounds=True, reason=_reason_of_one(target, weights, result))
         effort, touching = EFFORTS[settings.level], settings.joint == "touch"
         run = search_compound(target, weights, parts, n_facets, effort, seed, touching)
@@ -179,15 +182,8 @@ def _reason_of_one(target: Target, weights: LossWeights, result: MethodResult) -
 
 def _missed(target: Target, weights: LossWeights, achieved: Descriptors) -> str:
     """The weighted descriptors that are missed and by how much, the largest error first; may be empty."""
-    errors = relative_errors(target.descriptors, achieved)
-    missed = [key for key in KEYS if weights[key] > 0 and errors[key] > EXACT]
-    return join_messages(
-        (
-            Message(MISSED_BY, name=Message(NAMES[key]), error=f"{100 * errors[key]:.2g}")
-            for key in sorted(missed, key=lambda key: -errors[key])
-        ),
-        ", ",
-    )
+    missed = missed_terms(target.descriptors, achieved, [key for key in KEYS if weights[key] > 0])
+    return named_errors(missed) if missed else ""
 
 
 METHOD = CompoundMethod()

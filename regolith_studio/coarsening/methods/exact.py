@@ -1,11 +1,11 @@
-"""Descriptors as conditions: met to 1e-6, or a reason given; the rest of the freedom goes into overlap."""
+"""Descriptors kept to 1e-6, or a reason given; the rest of the freedom goes into the loss."""
 
 from collections.abc import Generator
 from dataclasses import dataclass, field
 
 import numpy as np
 
-from regolith_studio.coarsening.exact.multi_start import LEVELS, Search
+from regolith_studio.coarsening.optimiser.search import EFFORTS, Search
 from regolith_studio.coarsening.progress import MethodStep
 from regolith_studio.coarsening.result import MethodResult
 from regolith_studio.coarsening.target import Target
@@ -22,9 +22,9 @@ class ExactSettings:
     Parameters
     ----------
     level
-        ``fast`` (one start) or ``best`` (that start, then six more, the best continued: better overlap).
+        ``fast`` (two starts) or ``best`` (these and six more, the best continued: better overlap).
     retries
-        Further starts where no polyhedron meets all conditions.
+        Further starts where none keeps what is to be kept.
 
     Raises
     ------
@@ -32,23 +32,23 @@ class ExactSettings:
         If a value is out of its range.
     """
 
-    level: str = field(default="fast", metadata={"label": N_("Level"), "choices": tuple(LEVELS)})
+    level: str = field(default="fast", metadata={"label": N_("Level"), "choices": tuple(EFFORTS)})
     retries: int = field(default=8, metadata={"label": N_("Retries"), "minimum": 0, "maximum": 100})
 
     def __post_init__(self) -> None:
-        if self.level not in LEVELS:
-            raise InputError(f"The level must be one of {', '.join(LEVELS)}, got {self.level!r}.")
+        if self.level not in EFFORTS:
+            raise InputError(f"The level must be one of {', '.join(EFFORTS)}, got {self.level!r}.")
         if not 0 <= self.retries <= 100:
             raise InputError(f"The retries must lie between 0 and 100, got {self.retries}.")
 
 
 class ExactMethod:
-    """Constrained optimisation of the half-spaces.
+    """Sequential quadratic programming of Eq. 9, an exact penalty.
 
-    Weights above 0 make constraints: volume (or, if the weights of Eq. 9 prefer it, convex hull volume),
-    sphericity, shortest and longest edge of the exact minimum-volume box, aspect ratio. On the surface where
-    all hold, the Jaccard distance goes down; it is the tie-break even where its own weight is 0, since
-    shapes that only meet descriptors drift away from the particle.
+    Terms that are to be kept are met to 1e-6: volume, sphericity, shortest and longest edge of the exact
+    minimum-volume box and aspect ratio by default. The others have their weight as a price, the Jaccard
+    distance a small one even where its weight is 0: shapes that only meet descriptors drift away from the
+    particle.
     """
 
     key = "exact"
@@ -62,24 +62,15 @@ class ExactMethod:
         weights: LossWeights,
         seed: np.random.SeedSequence,
         settings: ExactSettings,
+        fewer: HalfSpaces | None = None,
     ) -> Generator[MethodStep, None, MethodResult]:
-        """A step for each better polyhedron; the first is the start, the last what is reported."""
-        return (yield from self.run_from_fewer(target, None, n_facets, weights, seed, settings))
+        """A step for each better polyhedron; the first is the start, the last what is reported.
 
-    def run_from_fewer(
-        self,
-        target: Target,
-        fewer: HalfSpaces | None,
-        n_facets: int,
-        weights: LossWeights,
-        seed: np.random.SeedSequence,
-        settings: ExactSettings,
-    ) -> Generator[MethodStep, None, MethodResult]:
-        """As :meth:`run`, with one more start: facets are cut out of `fewer`, at unit volume."""
-        levels = [LEVELS["fast"]] + [LEVELS["best"]] * (settings.level == "best")
-        search = Search(target, weights, n_facets, levels, settings.retries, seed, fewer)
-        yield from search.steps()
-        return (yield from search.finish())
+        Facets are cut out of `fewer`, at unit volume, for one more start.
+        """
+        effort = EFFORTS[settings.level]
+        search = Search(target, weights, weights.kept, n_facets, effort, settings.retries, seed, fewer)
+        return (yield from search.steps())
 
 
 METHOD = ExactMethod()

@@ -67,6 +67,7 @@ class QuadricMethod:
         weights: LossWeights,
         seed: np.random.SeedSequence,  # noqa: ARG002
         settings: QuadricSettings,
+        fewer: HalfSpaces | None = None,  # noqa: ARG002
     ) -> Generator[MethodStep, None, MethodResult]:
         """One step; the loss is that of the half-spaces."""
         half_spaces = quadric_half_spaces(target, n_facets)

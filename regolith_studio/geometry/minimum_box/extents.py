@@ -54,12 +54,12 @@ def between(points: FloatArray, one: int, two: int) -> Vector:
 def extreme_vertices_of_each(points: FloatArray, directions: FloatArray) -> IntArray:
     """:func:`extreme_vertices` for all directions, shape (3, m): shape (2, m), top and bottom."""
     ends = np.empty((2, directions.shape[1]), dtype=np.int64)
-    _fill_extreme_vertices(points, directions, np.empty((4, BLOCK)), ends)
+    fill_extreme_vertices(points, directions, np.empty((4, BLOCK)), ends)
     return ends
 
 
 @kernel_noalloc
-def _fill_extreme_vertices(
+def fill_extreme_vertices(
     points: FloatArray, directions: FloatArray, block: FloatArray, ends: IntArray
 ) -> None:
     """Fill `ends` (2, m); `block` (4, BLOCK) is scratch."""
@@ -83,13 +83,18 @@ def _fill_extreme_vertices(
 
 def span_table(points: FloatArray) -> SpanTable:
     """Look along the middle of every cell; points of shape (3, n)."""
-    cells = min(MAX_CELLS, max(MIN_CELLS, int(np.sqrt(points.shape[1]))))
-    top, bottom = extreme_vertices_of_each(points, _cell_directions(cells))
+    cells = n_cells(points.shape[1])
+    top, bottom = extreme_vertices_of_each(points, cell_directions(cells))
     return SpanTable(np.ascontiguousarray((points[:, top] - points[:, bottom]).T), cells)
 
 
+def n_cells(n_points: int) -> int:
+    """Cells along the edge of the cube for so many vertices."""
+    return min(MAX_CELLS, max(MIN_CELLS, int(np.sqrt(n_points))))
+
+
 @lru_cache(maxsize=8)
-def _cell_directions(cells: int) -> FloatArray:
+def cell_directions(cells: int) -> FloatArray:
     """Directions to the middles of all cells (k, i, j), number (k cells + i) cells + j; (3, 3 cells^2)."""
     middles = (2.0 * np.arange(cells) + 1.0) / cells - 1.0
     directions = np.empty((3, 3, cells, cells))

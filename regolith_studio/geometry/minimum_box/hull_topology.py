@@ -183,12 +183,12 @@ def edges_that_may_bound(facets: Facets, arcs: FloatArray, table: SpanTable, lim
     """Which edges some box below the limit could be flush with, shape (e,)."""
     angles = np.linspace(0.0, np.pi / 2.0, QUARTER_TURNS, endpoint=False)
     may_bound = np.zeros(len(facets.edges), dtype=np.bool_)
-    _fill_edges_that_may_bound(facets, arcs, table, limit, np.cos(angles), np.sin(angles), may_bound)
+    fill_edges_that_may_bound(facets, arcs, table, limit, np.cos(angles), np.sin(angles), may_bound)
     return may_bound
 
 
 @kernel_noalloc
-def _fill_edges_that_may_bound(
+def fill_edges_that_may_bound(
     facets: Facets,
     arcs: FloatArray,
     table: SpanTable,

@@ -161,7 +161,7 @@ def minimum_box(facets: Facets, max_turn: float = np.inf) -> FloatArray:
     work = Work(np.empty((2, n)), np.empty(n, np.int64), np.empty((2, 2, 2)))
     wanted = np.full(n, True)
     if n > MANY_FACETS:
-        _search_facets(facets, arcs, table, work, wanted, n // FIRST_FACETS, margin, best)
+        search_facets(facets, arcs, table, work, wanted, n // FIRST_FACETS, margin, best)
         kept = edges_that_may_bound(facets, arcs, table, best.record[0] * (1.0 + margin))
         slack = MIN_SLACK
         while kept.sum() > MANY_EDGES and slack < MAX_SLACK:
@@ -172,16 +172,16 @@ def minimum_box(facets: Facets, max_turn: float = np.inf) -> FloatArray:
             raise TooManyCurvesError
         wanted = facets_with_all_edges(facets, kept)
         facets, arcs = Facets(points, normals, edges[kept]), arcs[kept]
-    _search_facets(facets, arcs, table, work, wanted, 1, margin, best)
+    search_facets(facets, arcs, table, work, wanted, 1, margin, best)
     if n > MANY_FACETS:
         kept = edges_that_may_bound(facets, arcs, table, best.record[0] * (1.0 + margin))
         facets, arcs = Facets(points, normals, facets.edges[kept]), arcs[kept]
-    _search_pairs(facets, arcs, table, work, margin, best)
+    search_pairs(facets, arcs, table, work, margin, best)
     return best.axes
 
 
 @kernel_noalloc
-def _search_facets(
+def search_facets(
     facets: Facets,
     arcs: FloatArray,
     table: SpanTable,
@@ -223,7 +223,7 @@ def _search_facets(
 
 
 @kernel_noalloc
-def _search_pairs(
+def search_pairs(
     facets: Facets, arcs: FloatArray, table: SpanTable, work: Work, margin: float, best: BestBox
 ) -> None:
     """Boxes flush with any two edges."""

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from regolith_studio.errors import FileError
-from regolith_studio.geometry.arrays import used_vertices
+from regolith_studio.io.triangles import used_vertices
 from regolith_studio.readers.error_messages import message_about, plural, printable
 from regolith_studio.readers.formats import MESH_FORMATS, MeshFormat, ParsedMesh, mesh_suffixes
 from regolith_studio.readers.number_rows import number_rows

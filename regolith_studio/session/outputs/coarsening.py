@@ -5,8 +5,8 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from regolith_studio.coarsening.exact.constraint_selection import EXACT
 from regolith_studio.coarsening.lower_bounds import bounds_in_force
+from regolith_studio.coarsening.reasons import EXACT
 from regolith_studio.coarsening.result import CoarseningResult
 from regolith_studio.coarsening.weights import JACCARD
 from regolith_studio.descriptors.catalogue import CATALOGUE, LOSS_KEYS
@@ -76,7 +76,7 @@ def error_table(done: Sequence[CoarsenedParticle]) -> Table:
     symbols = [Column(CATALOGUE[key].symbol, "%") for key in LOSS_KEYS]
     columns = (Column("name"), Column("facets"), Column("vertices"), Column("triangles"), *symbols)
     results = [each.coarsened for each in done if each.coarsened]
-    free = any(coarse.sphericity_free for coarse in results)
+    free = any(coarse.free_jaccard_distance is not None for coarse in results)
     rows: list[tuple[Cell, ...]] = [
         (
             each.name,
@@ -91,14 +91,14 @@ def error_table(done: Sequence[CoarsenedParticle]) -> Table:
         if (coarse := each.coarsened)
         for bounds in (bounds_in_force(coarse.bounds, coarse.errors),)
     ]
-    last = [Column("Jaccard", "%"), *([Column("Jaccard, S free", "%")] if free else [])]
+    last = [Column("Jaccard", "%"), *([Column("Jaccard, overlap alone", "%")] if free else [])]
     return Table("", (*columns, *last), tuple(rows))
 
 
 def _when_free(coarse: CoarseningResult) -> str:
-    """The Jaccard distance with the sphericity free, where keeping it may cost overlap."""
-    free = coarse.sphericity_free
-    return "" if free is None else f"{100 * free.jaccard_distance:.2g}"
+    """The Jaccard distance where the overlap alone counts."""
+    free = coarse.free_jaccard_distance
+    return "" if free is None else f"{100 * free:.2g}"
 
 
 def _per_cent(error: float, bound: float) -> str:
@@ -123,7 +123,7 @@ def coarsening_entry(each: CoarsenedParticle, coarse: CoarseningResult) -> dict[
         "bounds": dict(coarse.bounds),
         "reason": coarse.reason,
         "warning": coarse.warning,
-        "sphericity_free": None if coarse.sphericity_free is None else asdict(coarse.sphericity_free),
+        "free_jaccard_distance": coarse.free_jaccard_distance,
         "target": dict(coarse.target),
         "achieved": dict(coarse.achieved),
         "centre": coarse.centre.tolist(),

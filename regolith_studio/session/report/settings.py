@@ -33,7 +33,7 @@ class ReportSettings:
         N_("Facets"),
         N_("Number of facets of each polyhedron."),
         minimum=5,
-        maximum=200,
+        maximum=500,
     )
     method: str = setting("exact", N_("Coarsening method"), N_("Method of coarsening."))
     preset: str = setting(

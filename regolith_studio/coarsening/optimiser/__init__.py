@@ -1,0 +1,1 @@
+"""The optimiser of Eq. 9: half-spaces measured with derivatives, multipliers, descent, starts and search."""

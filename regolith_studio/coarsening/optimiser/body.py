@@ -1,0 +1,404 @@
+"""A polyhedron with all that a step of the optimiser needs: measures, boxes, residuals and derivatives.
+
+Terms stand in the order V, S, D_min, D_max, AR. A residual is a relative error, value / wanted - 1; the
+derivatives of all are with the coordinates (shift and two tilts) of every plane. D_min, D_max and AR have a
+kink where two edges of the box are equal; four further rows say what the middle edge must not pass there.
+Nothing here calls a library for more than a square root, so that every processor finds the same bits.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from regolith_studio.coarsening.core.box_contacts import (
+    MAX_TURN,
+    ROW,
+    fill_points,
+    pose_of,
+    touched,
+    walk_to_minimum,
+)
+from regolith_studio.coarsening.core.box_gradient import extent_forces
+from regolith_studio.coarsening.core.intersection import FINE, IntersectionWorkspace, workspace_for
+from regolith_studio.coarsening.core.plane_coordinates import fill_gradient, fill_tilt_scales
+from regolith_studio.coarsening.core.polyhedron_measures import (
+    add_surface_charges,
+    add_vertex_charges,
+    fill_measures,
+)
+from regolith_studio.coarsening.core.tracked_boxes import ALIKE, update_vertex_ids
+from regolith_studio.geometry.arrays import FloatArray, IntArray
+from regolith_studio.geometry.kernels import kernel_noalloc
+from regolith_studio.geometry.vectors import along, row
+
+VOLUME, SPHERICITY, SHORTEST, LONGEST, RATIO = 0, 1, 2, 3, 4
+N_TERMS, N_FIXED = 5, 9
+MIDDLE_LONGEST, MIDDLE_SHORTEST, MIDDLE_SHORT, LONG_MIDDLE = 5, 6, 7, 8
+"""Rows of the middle edge: it is at most D_max, at least D_min, and neither makes AR larger."""
+MAX_BOXES = 8
+"""Boxes followed at a time: the one that is measured, and rivals that came below it on the way."""
+GONE = 1.0
+"""Slack of a rival that is no local minimum any more."""
+SAME_VOLUME, SAME_FRAME = 1e-6, 1.0 - 1e-9
+"""Boxes that differ by less, as shares and by the cosine of the angle between their axes, are one."""
+STATUS, N_VERTICES, N_BOXES = 0, 1, 2
+BODY_VOLUME, SURFACE, JACCARD = 0, 1, 2
+
+
+class Prices(NamedTuple):
+    """What the loss pays for each term.
+
+    Parameters
+    ----------
+    wanted
+        Values of V, S, D_min, D_max, AR, shape (5,).
+    low, high
+        Derivatives of the loss below and above a residual of 0, shape (5,): low <= 0 <= high.
+    overlap
+        Price of the Jaccard distance, above 0.
+    """
+
+    wanted: FloatArray
+    low: FloatArray
+    high: FloatArray
+    overlap: float
+
+
+class Body(NamedTuple):
+    """Memory of one polyhedron with n half-spaces.
+
+    Parameters
+    ----------
+    normals, offsets, tangents, scales
+        Of the planes, as in :mod:`regolith_studio.coarsening.core.plane_coordinates`.
+    vertices, triples, edges, areas, centroids
+        As in :class:`regolith_studio.coarsening.core.polyhedron_measures.MeasuredPolyhedron`, the first three
+        with room to spare.
+    counts
+        Status, number of vertices, number of boxes.
+    numbers
+        Volume, surface area, Jaccard distance.
+    frames, contacts, planes, extents
+        Of the boxes, the measured one first; shapes (b, 3, 3), (b, 13), (b, 9, 3) and (b, 3).
+    residuals, rows
+        Of the terms and of the middle edge, shapes (9,) and (9, 3 n).
+    slack, rival_rows
+        volume / volume of the measured box - 1 of the boxes, and the derivatives; the first is 0.
+    """
+
+    normals: FloatArray
+    offsets: FloatArray
+    tangents: FloatArray
+    scales: FloatArray
+    vertices: FloatArray
+    triples: IntArray
+    edges: IntArray
+    areas: FloatArray
+    centroids: FloatArray
+    counts: IntArray
+    numbers: FloatArray
+    frames: FloatArray
+    contacts: IntArray
+    planes: IntArray
+    extents: FloatArray
+    residuals: FloatArray
+    rows: FloatArray
+    slack: FloatArray
+    rival_rows: FloatArray
+
+
+class BodyScratch(NamedTuple):
+    """Memory that the measurement of any body uses.
+
+    Parameters
+    ----------
+    points, forces, charges, gradients
+        Nine vertices of a box (9, 3), forces on them (3, 9, 3), charges of the planes (n, 4), derivatives of
+        the logarithms of a box's edges (3, 3 n).
+    owner
+        Vertex that owns two planes, (n, n).
+    start, ties
+        Axes, (3, 3).
+    """
+
+    intersection: IntersectionWorkspace
+    points: FloatArray
+    forces: FloatArray
+    charges: FloatArray
+    gradients: FloatArray
+    owner: IntArray
+    start: FloatArray
+    ties: FloatArray
+
+
+def empty_body(n: int) -> Body:
+    """Room for n half-spaces."""
+    return Body(
+        np.empty((n, 3)),
+        np.empty(n),
+        np.empty((n, 2, 3)),
+        np.empty(n),
+        np.empty((2 * n, 3)),
+        np.empty((2 * n, 3), np.int64),
+        np.empty((3 * n, 4), np.int64),
+        np.empty(n),
+        np.empty((n, 3)),
+        np.zeros(3, np.int64),
+        np.zeros(3),
+        np.empty((MAX_BOXES, 3, 3)),
+        np.empty((MAX_BOXES, ROW), np.int64),
+        np.empty((MAX_BOXES, 9, 3), np.int64),
+        np.empty((MAX_BOXES, 3)),
+        np.zeros(N_FIXED),
+        np.zeros((N_FIXED, 3 * n)),
+        np.zeros(MAX_BOXES),
+        np.zeros((MAX_BOXES, 3 * n)),
+    )
+
+
+def body_scratch(n: int) -> BodyScratch:
+    """Memory for n half-spaces."""
+    return BodyScratch(
+        workspace_for(n),
+        np.empty((9, 3)),
+        np.empty((3, 9, 3)),
+        np.empty((n, 4)),
+        np.empty((3, 3 * n)),
+        np.empty((n, n), np.int64),
+        np.empty((3, 3)),
+        np.empty((3, 3)),
+    )
+
+
+@kernel_noalloc
+def fill_body(body: Body, wanted: FloatArray, needs_box: bool, scratch: BodyScratch) -> bool:
+    """Measure the half-spaces of a body; its boxes are followed. False where they bound no polyhedron.
+
+    Parameters
+    ----------
+    wanted
+        Values of the terms, shape (5,).
+    needs_box
+        Whether the terms of the box are to be measured.
+    """
+    status, count, volume, surface = fill_measures(
+        body.normals,
+        body.offsets,
+        scratch.intersection,
+        body.vertices,
+        body.triples,
+        body.edges,
+        body.areas,
+        body.centroids,
+    )
+    body.counts[STATUS], body.counts[N_VERTICES] = status, count
+    if status != FINE:
+        return False
+    body.numbers[BODY_VOLUME], body.numbers[SURFACE] = volume, surface
+    fill_tilt_scales(body.areas, body.scales)
+    _fill_volume_and_sphericity(body, wanted, scratch)
+    if needs_box and body.counts[N_BOXES] > 0:
+        _follow_boxes(body, scratch)
+        fill_box_terms(body, wanted, scratch)
+    return True
+
+
+@kernel_noalloc
+def cube_root_near_one(x: float) -> float:
+    """Cube root by Newton's method, for 1e-3 < x < 1e3."""
+    y = 1.0 if x < 8.0 else 4.0
+    for _ in range(60):
+        step = (y - x / (y * y)) / 3.0
+        y -= step
+        if abs(step) <= 1e-16 * y:
+            break
+    return y
+
+
+@kernel_noalloc
+def _fill_volume_and_sphericity(body: Body, wanted: FloatArray, scratch: BodyScratch) -> None:
+    """Residuals and rows of V and S."""
+    n, volume, surface = len(body.offsets), body.numbers[BODY_VOLUME], body.numbers[SURFACE]
+    charges, rows = scratch.charges, body.rows
+    charges[:] = 0.0
+    n_edges = 3 * body.counts[N_VERTICES] // 2
+    add_surface_charges(
+        body.normals, body.vertices, body.edges[:n_edges], body.centroids, 1.0 / surface, charges
+    )
+    fill_gradient(charges, body.tangents, body.scales, rows[SPHERICITY])
+    # S^3 = 36 pi V^2 / A^3, so that one cube root remains
+    sphericity = cube_root_near_one(36.0 * np.pi * volume * volume / (surface * surface * surface))
+    body.residuals[VOLUME] = volume / wanted[VOLUME] - 1.0
+    body.residuals[SPHERICITY] = sphericity / wanted[SPHERICITY] - 1.0
+    share = sphericity / wanted[SPHERICITY]
+    for i in range(n):
+        rows[VOLUME, 3 * i] = body.areas[i] / wanted[VOLUME]
+        rows[VOLUME, 3 * i + 1] = rows[VOLUME, 3 * i + 2] = 0.0
+    for j in range(3 * n):
+        growth = rows[VOLUME, j] * wanted[VOLUME] / volume
+        rows[SPHERICITY, j] = share * (2.0 / 3.0 * growth - rows[SPHERICITY, j])
+
+
+@kernel_noalloc
+def _follow_boxes(body: Body, scratch: BodyScratch) -> None:
+    """Bring every box to the local minimum near by; what is lost, or falls together, gets slack GONE."""
+    vertices, owner, points = body.vertices[: body.counts[N_VERTICES]], scratch.owner, scratch.points
+    triples = body.triples[: body.counts[N_VERTICES]]
+    owner[:] = -1
+    for v in range(len(triples)):
+        for k in range(3):
+            owner[triples[v, k], triples[v, (k + 1) % 3]] = v
+    for b in range(body.counts[N_BOXES]):
+        contact, frame = body.contacts[b], body.frames[b]
+        update_vertex_ids(vertices, contact, frame, body.planes[b], owner, triples)
+        found = walk_to_minimum(vertices, contact, frame, points, scratch.start, MAX_TURN)
+        for axis in range(3):
+            found = found and along(frame, axis, row(scratch.start, axis)) >= ALIKE
+        if not found:
+            for axis in range(3):
+                for c in range(3):
+                    frame[axis, c] = scratch.start[axis, c]
+            found = settle_box(body, b, scratch)
+        set_box(body, b, scratch)
+        body.slack[b] = 0.0 if found or b == 0 else GONE
+        for other in range(b):
+            if body.slack[other] != GONE and is_same_box(body, other, b):
+                body.slack[b] = GONE
+
+
+@kernel_noalloc
+def settle_box(body: Body, b: int, scratch: BodyScratch) -> bool:
+    """Bring box `b`, of which only the axes are known, to the local minimum near by.
+
+    False where there is none: then it has no ties, and its extents change as if it could not turn.
+    """
+    vertices, contact, frame = body.vertices[: body.counts[N_VERTICES]], body.contacts[b], body.frames[b]
+    touched(vertices, frame, contact, scratch.ties)
+    if contact[0] < 2:
+        contact[0] = 0
+        return False
+    kept = scratch.ties  # touched has no more use for it
+    for axis in range(3):
+        for c in range(3):
+            kept[axis, c] = frame[axis, c]
+    if walk_to_minimum(vertices, contact, frame, scratch.points, scratch.start, MAX_TURN):
+        return True
+    for axis in range(3):
+        for c in range(3):
+            frame[axis, c] = kept[axis, c]
+    touched(vertices, frame, contact, scratch.start)
+    contact[0] = 0
+    return False
+
+
+@kernel_noalloc
+def set_box(body: Body, b: int, scratch: BodyScratch) -> None:
+    """Extents of a box, and the planes of the vertices that it touches."""
+    contact, points = body.contacts[b], scratch.points
+    fill_points(body.vertices, contact, points)
+    pose = pose_of(points, contact, body.frames[b])
+    body.extents[b, 0], body.extents[b, 1], body.extents[b, 2] = pose.extents
+    for i in range(6 + contact[0]):
+        v = contact[1 + i] if i < 6 else contact[8 + 2 * (i - 6)]
+        for k in range(3):
+            body.planes[b, i, k] = body.triples[v, k]
+
+
+@kernel_noalloc
+def box_volume(body: Body, b: int) -> float:
+    """Of box `b`."""
+    return body.extents[b, 0] * body.extents[b, 1] * body.extents[b, 2]  # type: ignore[no-any-return]
+
+
+@kernel_noalloc
+def fill_box_terms(body: Body, wanted: FloatArray, scratch: BodyScratch) -> None:
+    """Residuals and rows of the measured box; slack and rows of the others."""
+    rows, rivals, changes = body.rows, body.rival_rows, scratch.gradients
+    size = 3 * len(body.offsets)
+    for b in range(body.counts[N_BOXES]):
+        if b > 0:
+            if body.slack[b] == GONE:
+                rivals[b] = 0.0
+                continue
+            body.slack[b] = box_volume(body, b) / box_volume(body, 0) - 1.0
+        fill_extent_gradients(body, b, scratch)
+        low, high = 0, 0
+        for k in range(1, 3):
+            low = k if body.extents[b, k] < body.extents[b, low] else low
+            high = k if body.extents[b, k] > body.extents[b, high] else high
+        mid = 3 - low - high if low != high else 0
+        short, middle, long = body.extents[b, low], body.extents[b, mid], body.extents[b, high]
+        for j in range(size):
+            total = changes[0, j] + changes[1, j] + changes[2, j]
+            if b == 0:
+                rivals[0, j] = total
+                rows[SHORTEST, j] = changes[low, j] * short / wanted[SHORTEST]
+                rows[LONGEST, j] = changes[high, j] * long / wanted[LONGEST]
+                rows[RATIO, j] = (changes[high, j] - changes[low, j]) * long / short / wanted[RATIO]
+                rows[MIDDLE_LONGEST, j] = changes[mid, j] * middle / wanted[LONGEST]
+                rows[MIDDLE_SHORTEST, j] = -changes[mid, j] * middle / wanted[SHORTEST]
+                rows[MIDDLE_SHORT, j] = (changes[mid, j] - changes[low, j]) * middle / short / wanted[RATIO]
+                rows[LONG_MIDDLE, j] = (changes[high, j] - changes[mid, j]) * long / middle / wanted[RATIO]
+            else:
+                rivals[b, j] = (total - rivals[0, j]) * (1.0 + body.slack[b])
+        if b == 0:
+            body.residuals[SHORTEST] = short / wanted[SHORTEST] - 1.0
+            body.residuals[LONGEST] = long / wanted[LONGEST] - 1.0
+            body.residuals[RATIO] = long / short / wanted[RATIO] - 1.0
+            body.residuals[MIDDLE_LONGEST] = middle / wanted[LONGEST] - 1.0
+            body.residuals[MIDDLE_SHORTEST] = 1.0 - middle / wanted[SHORTEST]
+            body.residuals[MIDDLE_SHORT] = middle / short / wanted[RATIO] - 1.0
+            body.residuals[LONG_MIDDLE] = long / middle / wanted[RATIO] - 1.0
+
+
+@kernel_noalloc
+def fill_extent_gradients(body: Body, b: int, scratch: BodyScratch) -> None:
+    """Fill the derivatives (3, 3 n) of the logarithms of a box's edges with the planes, in `scratch`."""
+    points, forces = scratch.points, scratch.forces
+    charges, gradients = scratch.charges, scratch.gradients
+    contact, frame = body.contacts[b], body.frames[b]
+    fill_points(body.vertices, contact, points)
+    extent_forces(points, contact, frame, forces)
+    for k in range(3):
+        charges[:] = 0.0
+        for i in range(6 + contact[0]):
+            v = contact[1 + i] if i < 6 else contact[8 + 2 * (i - 6)]
+            add_vertex_charges(
+                body.normals, body.triples, body.vertices, v, row(forces[k], i), body.centroids, charges
+            )
+        fill_gradient(charges, body.tangents, body.scales, gradients[k])
+
+
+@kernel_noalloc
+def copy_boxes(source: Body, to: Body) -> None:
+    """Let one body begin with the boxes of another."""
+    to.counts[N_BOXES] = source.counts[N_BOXES]
+    for b in range(source.counts[N_BOXES]):
+        to.slack[b] = source.slack[b]
+        for axis in range(3):
+            for c in range(3):
+                to.frames[b, axis, c] = source.frames[b, axis, c]
+        for c in range(source.contacts.shape[1]):
+            to.contacts[b, c] = source.contacts[b, c]
+        for i in range(9):
+            for c in range(3):
+                to.planes[b, i, c] = source.planes[b, i, c]
+
+
+@kernel_noalloc
+def is_same_box(body: Body, one: int, two: int) -> bool:
+    """Whether two boxes have the same volume and axes."""
+    same = abs(box_volume(body, one) - box_volume(body, two)) < SAME_VOLUME * box_volume(body, one)
+    return same and likeness_of(body.frames[one], body.frames[two]) > SAME_FRAME
+
+
+@kernel_noalloc
+def likeness_of(one: FloatArray, two: FloatArray) -> float:
+    """Cosine of the largest angle between the axes of two frames (3, 3), in any order and direction."""
+    least = 1.0
+    for a in range(3):
+        most = 0.0
+        for b in range(3):
+            most = max(most, abs(one[a, 0] * two[b, 0] + one[a, 1] * two[b, 1] + one[a, 2] * two[b, 2]))
+        least = min(least, most)
+    return float(least)

@@ -1,0 +1,590 @@
+"""The one descent of Eq. 9: sequential quadratic programming of an exact penalty, compiled as a whole.
+
+Each step minimises a quadratic model of the overlap with the other terms as kinks (Fletcher 1987, section
+14.3): its multipliers are bounded by what the loss pays (:mod:`multipliers`), so that each term is either met
+or given up, without a rule. Terms with a multiplier inside its bounds are then brought to zero by
+Gauss-Newton steps, and the loss decides. A term that is to be kept exactly has the price LOCK.
+
+Boxes are followed from step to step; the proven search looks for a smaller one every few steps, which is a
+rival from then on: a condition that keeps it above the measured box.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from regolith_studio.coarsening.core.overlap import add_shared_charges, shared_volume
+from regolith_studio.coarsening.core.plane_coordinates import fill_gradient, fill_moved
+from regolith_studio.coarsening.core.polyhedron_measures import add_volume_charges
+from regolith_studio.coarsening.optimiser.body import (
+    BODY_VOLUME,
+    GONE,
+    JACCARD,
+    LONGEST,
+    MAX_BOXES,
+    MIDDLE_LONGEST,
+    MIDDLE_SHORTEST,
+    N_BOXES,
+    N_FIXED,
+    N_TERMS,
+    RATIO,
+    SHORTEST,
+    SURFACE,
+    Body,
+    BodyScratch,
+    Prices,
+    body_scratch,
+    copy_boxes,
+    empty_body,
+    fill_body,
+)
+from regolith_studio.coarsening.optimiser.box_check import BoxMemory, box_memory
+from regolith_studio.coarsening.optimiser.followed_boxes import check_boxes
+from regolith_studio.coarsening.optimiser.multipliers import fill_multipliers, solve_in_place
+from regolith_studio.geometry.arrays import FloatArray, IntArray
+from regolith_studio.geometry.exits import exits
+from regolith_studio.geometry.kernels import kernel, kernel_noalloc
+
+LOCK = 100.0
+"""Price of a term that is kept exactly, in units of the Jaccard distance: multipliers of terms that can be
+met stay below 10."""
+KEPT = 20.0
+"""Terms with a higher price, in units of that of the Jaccard distance, are to be kept."""
+CLEARANCE = 2e-4
+"""Rivals are kept above the measured box by this share of its volume."""
+CHECK_EVERY = 8
+"""Accepted steps between two searches for smaller boxes."""
+MET = 1e-9
+"""Residuals of terms at a kink after the corrections of a step."""
+CORRECTIONS = 5
+CURVATURE = 0.03
+MAX_RADIUS, RESTART_RADIUS, MIN_RADIUS = 0.25, 0.02, 2e-4
+SHRINK, GOOD = 0.35, 0.5
+MIN_GAIN = 1e-7
+"""The descent ends where a step brings less of the Jaccard distance."""
+NEAR_KINK = -0.1
+"""Rows of the middle edge with a larger residual take part in the steps."""
+N_ROWS = N_FIXED + MAX_BOXES
+STEPS, CHECKS, EVALUATIONS = 0, 1, 2
+
+
+class Rays(NamedTuple):
+    """Crossings of rays with the particle, as :class:`regolith_studio.coarsening.target.RayTable`."""
+
+    directions: FloatArray
+    first: IntArray
+    distance: FloatArray
+    sign: FloatArray
+    weight: float
+
+
+class Steps(NamedTuple):
+    """Memory of the steps, for n half-spaces and k rays.
+
+    Parameters
+    ----------
+    metric
+        Approximate inverse of the Lagrangian's second derivative, shape (3 n, 3 n).
+    gradient, trial_gradient, step, total, change
+        Shape (3 n,): of the overlap at both bodies, the step, with its corrections, and of the Lagrangian.
+    rows, across
+        Rows and their products with the metric, shapes (17, 3 n) and (18, 3 n), the gradient's last.
+    residuals, low, high, multipliers, slopes
+        Of the rows, shape (17,).
+    products, factor
+        Shapes (17, 17) and (17, 18).
+    diagonal
+        Of the metric that a descent begins with, (3 n,).
+    radius, plane
+        Where each ray leaves the polyhedron, shape (k,).
+    charges
+        Shape (n, 4).
+    """
+
+    metric: FloatArray
+    gradient: FloatArray
+    trial_gradient: FloatArray
+    step: FloatArray
+    total: FloatArray
+    change: FloatArray
+    rows: FloatArray
+    across: FloatArray
+    residuals: FloatArray
+    low: FloatArray
+    high: FloatArray
+    multipliers: FloatArray
+    slopes: FloatArray
+    products: FloatArray
+    factor: FloatArray
+    diagonal: FloatArray
+    radius: FloatArray
+    plane: IntArray
+    charges: FloatArray
+
+
+class Memory(NamedTuple):
+    """All memory of descents with n half-spaces."""
+
+    one: Body
+    two: Body
+    scratch: BodyScratch
+    boxes: BoxMemory
+    steps: Steps
+    counts: IntArray
+
+
+def memory_for(n: int, n_rays: int) -> Memory:
+    """Memory for n half-spaces and so many rays."""
+    size = 3 * n
+    steps = Steps(
+        np.empty((size, size)),
+        np.zeros(size),
+        np.zeros(size),
+        np.zeros(size),
+        np.zeros(size),
+        np.zeros(size),
+        np.zeros((N_ROWS, size)),
+        np.zeros((N_ROWS + 1, size)),
+        np.zeros(N_ROWS),
+        np.zeros(N_ROWS),
+        np.zeros(N_ROWS),
+        np.zeros(N_ROWS),
+        np.zeros(N_ROWS),
+        np.zeros((N_ROWS, N_ROWS)),
+        np.zeros((N_ROWS, N_ROWS + 1)),
+        np.zeros(size),
+        np.empty(n_rays),
+        np.empty(n_rays, np.int64),
+        np.empty((n, 4)),
+    )
+    return Memory(empty_body(n), empty_body(n), body_scratch(n), box_memory(n), steps, np.zeros(3, np.int64))
+
+
+@kernel
+def descend(
+    rays: Rays,
+    prices: Prices,
+    start_axes: FloatArray,
+    max_steps: int,
+    radius: float,
+    held: int,
+    steady: bool,
+    restoring: bool,
+    normals: FloatArray,
+    offsets: FloatArray,
+    tangents: FloatArray,
+    memory: Memory,
+) -> tuple[bool, float, float, float]:
+    """Descend from half-spaces, which are replaced by those of the end.
+
+    Parameters
+    ----------
+    start_axes
+        Of the particle's box, one a row: the box of the polyhedron that lies like it is measured, where it is
+        nearly the least; shape (3, 3).
+    max_steps, radius
+        Of the descent; the radius is the longest move of a plane in a step, at first.
+    held
+        So many of the half-spaces, the first ones, do not move.
+    steady
+        Whether small facets hold still, so that none is lost.
+    restoring
+        Whether the overlap does not count: what is kept is restored, no more.
+    normals, offsets, tangents
+        In place, shapes (n, 3), (n,) and (n, 2, 3).
+
+    memory
+        ``memory.scratch.start`` takes the axes of the measured box, if there is one.
+
+    Returns
+    -------
+    sound
+        False where the half-spaces bound no polyhedron, or one without a box.
+    merit
+        The loss with its rivals.
+    worst
+        Largest residual of a term with the price LOCK.
+    jaccard_distance
+        By the rays.
+    """
+    here, there, scratch, boxes, work, counts = memory
+    here.normals[:], here.offsets[:], here.tangents[:] = normals, offsets, tangents
+    here.counts[N_BOXES] = 0
+    needs_box = False
+    for r in range(SHORTEST, N_TERMS):
+        needs_box = needs_box or prices.low[r] < prices.high[r]
+    if not fill_body(here, prices.wanted, needs_box, scratch):
+        return False, np.inf, np.inf, 1.0
+    if needs_box:
+        check_boxes(here, prices, start_axes, boxes, scratch)
+    fill_overlap(here, rays, work)
+    pull = 0.0 if restoring else prices.overlap
+    fill_overlap_gradient(here, rays, pull, work, work.gradient)
+    fill_first_metric(here, prices.overlap, held, steady, work)
+    merit = merit_of(here, prices)
+    unchecked, failures, small = 0, 0, 0
+    for _ in range(max_steps):
+        counts[STEPS] += 1
+        gain, length = _step(here, there, rays, prices, pull, needs_box, radius, merit, scratch, work)
+        if gain > 0.0:
+            here, there = there, here
+            for j in range(len(work.gradient)):
+                work.gradient[j] = work.trial_gradient[j]
+            merit = merit_of(here, prices)
+            radius = min(MAX_RADIUS, max(radius, 2.0 * length)) if work.slopes[0] > GOOD else radius
+            failures, unchecked = 0, unchecked + 1
+            small = small + 1 if gain < MIN_GAIN * prices.overlap else 0
+        else:
+            radius, failures = SHRINK * min(radius, length if length > 0.0 else radius), failures + 1
+            if radius < MIN_RADIUS:
+                fill_first_metric(here, prices.overlap, held, steady, work)
+                radius, failures, small = RESTART_RADIUS, failures + 2, small + (failures > 3)
+        done = small >= 2 or failures > 8
+        if needs_box and (unchecked >= CHECK_EVERY or (done and unchecked > 0)):
+            unchecked, counts[CHECKS] = 0, counts[CHECKS] + 1
+            if check_boxes(here, prices, start_axes, boxes, scratch):
+                merit, done, small, failures = merit_of(here, prices), False, 0, 0
+                radius = max(radius, RESTART_RADIUS)
+        if done:
+            break
+    if needs_box and unchecked > 0 and check_boxes(here, prices, start_axes, boxes, scratch):
+        merit = merit_of(here, prices)
+    normals[:], offsets[:], tangents[:] = here.normals, here.offsets, here.tangents
+    if needs_box:
+        scratch.start[:] = here.frames[0]
+    worst = 0.0
+    for r in range(N_TERMS):
+        if prices.high[r] > KEPT * prices.overlap:
+            worst = max(worst, abs(here.residuals[r]))
+    for b in range(1, here.counts[N_BOXES]):
+        worst = max(worst, -here.slack[b])
+    return True, merit, worst, here.numbers[JACCARD]
+
+
+@kernel
+def fill_overlap(body: Body, rays: Rays, work: Steps) -> None:
+    """Jaccard distance to the particle of unit volume; the rays' exits stay in `work`."""
+    exits(body.normals, body.offsets, rays.directions, work.radius, work.plane)
+    shared = shared_volume(rays.first, rays.distance, rays.sign, rays.weight, work.radius)
+    body.numbers[JACCARD] = 1.0 - shared / (1.0 + body.numbers[BODY_VOLUME] - shared)
+
+
+@kernel_noalloc
+def fill_overlap_gradient(body: Body, rays: Rays, price: float, work: Steps, gradient: FloatArray) -> None:
+    """Fill `price` times the derivative of the Jaccard distance, shape (3 n,)."""
+    union = (1.0 + body.numbers[BODY_VOLUME]) / (2.0 - body.numbers[JACCARD])
+    shared = 1.0 + body.numbers[BODY_VOLUME] - union
+    work.charges[:] = 0.0
+    add_volume_charges(body.areas, price * shared / (union * union), work.charges)
+    add_shared_charges(
+        rays.directions,
+        rays.first,
+        rays.distance,
+        rays.sign,
+        rays.weight,
+        body.offsets,
+        work.radius,
+        work.plane,
+        body.centroids,
+        -price * (union + shared) / (union * union),
+        work.charges,
+    )
+    fill_gradient(work.charges, body.tangents, body.scales, gradient)
+
+
+@kernel_noalloc
+def merit_of(body: Body, prices: Prices) -> float:
+    """The loss as the descent sees it."""
+    total = prices.overlap * body.numbers[JACCARD]
+    for r in range(N_TERMS):
+        total += max(prices.low[r] * body.residuals[r], prices.high[r] * body.residuals[r])
+    for b in range(1, body.counts[N_BOXES]):
+        total += LOCK * max(0.0, CLEARANCE - body.slack[b])
+    return float(total)
+
+
+@kernel_noalloc
+def fill_first_metric(body: Body, price: float, held: int, steady: bool, work: Steps) -> None:
+    """A diagonal guess of the inverse second derivative: large facets resist, held ones do not move."""
+    n = len(body.offsets)
+    floor = max(0.3 * body.numbers[SURFACE] / n, 1e-12)
+    work.metric[:, :] = 0.0
+    for i in range(n):
+        shift = CURVATURE / max(body.areas[i], floor) / price if i >= held else 0.0
+        if steady:
+            shift *= min(1.0, body.areas[i] / floor)
+        for c in range(3):
+            j = 3 * i + c
+            work.diagonal[j] = work.metric[j, j] = shift if c == 0 else 3.0 * shift
+
+
+@kernel
+def _step(
+    here: Body,
+    there: Body,
+    rays: Rays,
+    prices: Prices,
+    pull: float,
+    needs_box: bool,
+    radius: float,
+    merit: float,
+    scratch: BodyScratch,
+    work: Steps,
+) -> tuple[float, float]:
+    """Try a step: what it gains, 0 or less where it is refused, and how long it is.
+
+    The overlap pulls with its derivative times `pull`. ``work.slopes[0]`` takes the gain over what the model
+    predicts.
+    """
+    m = gather_rows(here, prices, work)
+    fill_products(m, work)
+    predicted, length = solve_step(m, radius, work)
+    if not predicted > 0.0:
+        return 0.0, 0.0
+    if not move(here, there, work.step, prices, needs_box, scratch):
+        return 0.0, length
+    for j in range(len(work.step)):
+        work.total[j] = work.step[j]
+    if not correct(there, prices, needs_box, scratch, work):
+        return 0.0, length
+    fill_overlap(there, rays, work)
+    gain = merit - merit_of(there, prices)
+    if gain > 1e-3 * predicted:
+        fill_overlap_gradient(there, rays, pull, work, work.trial_gradient)
+        if pull > 0.0:
+            update_metric(here, there, m, work)
+        work.slopes[0] = gain / predicted
+        return gain, length
+    return min(gain, 0.0), length
+
+
+@kernel_noalloc
+def gather_rows(body: Body, prices: Prices, work: Steps) -> int:
+    """Rows of the terms, then those of the rivals: how many. What is not asked for has bounds of 0."""
+    m, size = N_FIXED, work.rows.shape[1]
+    for r in range(N_FIXED):
+        work.low[r], work.high[r] = bounds_of(r, body, prices)
+        asked = work.low[r] < work.high[r]
+        work.residuals[r] = body.residuals[r] if asked else 0.0
+        for j in range(size):
+            work.rows[r, j] = body.rows[r, j] if asked else 0.0
+    for b in range(1, body.counts[N_BOXES]):
+        work.low[m], work.high[m], work.residuals[m] = 0.0, LOCK, CLEARANCE - body.slack[b]
+        for j in range(size):
+            work.rows[m, j] = -body.rival_rows[b, j]
+        m += 1
+    return m
+
+
+@kernel_noalloc
+def bounds_of(r: int, body: Body, prices: Prices) -> tuple[float, float]:
+    """What the multiplier of a row may be; (0, 0) for one that takes no part."""
+    if r < N_TERMS:
+        return prices.low[r], prices.high[r]
+    if body.counts[N_BOXES] == 0 or body.residuals[r] < NEAR_KINK:
+        return 0.0, 0.0
+    term = LONGEST if r == MIDDLE_LONGEST else (SHORTEST if r == MIDDLE_SHORTEST else RATIO)
+    return 0.0, -prices.low[term] if term == SHORTEST else prices.high[term]
+
+
+@kernel_noalloc
+def fill_products(m: int, work: Steps) -> None:
+    """Products of the metric with rows and gradient, and of these with the rows.
+
+    Sums run along the rows of the metric, element by element, so that vectors of any width give the same.
+    """
+    size = len(work.gradient)
+    for r in range(m + 1):
+        for j in range(size):
+            work.across[r, j] = 0.0
+    for i in range(size):
+        for r in range(m + 1):
+            factor = work.gradient[i] if r == m else work.rows[r, i]
+            if factor != 0.0:
+                for j in range(size):
+                    work.across[r, j] += factor * work.metric[i, j]
+    for r in range(m):
+        for s in range(m):
+            work.products[r, s] = 0.0
+            for j in range(size):
+                work.products[r, s] += work.rows[r, j] * work.across[s, j]
+        work.slopes[r] = 0.0
+        for j in range(size):
+            work.slopes[r] += work.rows[r, j] * work.across[m, j]
+
+
+@kernel_noalloc
+def solve_step(m: int, radius: float, work: Steps) -> tuple[float, float]:
+    """Fill the step, at most as long as `radius`: the decrease that the model predicts, and the length."""
+    size, share, length = len(work.gradient), 1.0, 0.0
+    for _ in range(12):
+        fill_multipliers(
+            work.products[:m, :m],
+            work.slopes[:m],
+            work.residuals[:m],
+            work.low[:m],
+            work.high[:m],
+            share,
+            work.factor[:m, : m + 1],
+            work.multipliers[:m],
+        )
+        length = 0.0
+        for j in range(size):
+            value = work.across[m, j]
+            for r in range(m):
+                value += work.multipliers[r] * work.across[r, j]
+            work.step[j] = -share * value
+            length = max(length, abs(work.step[j]))
+        if not length > radius:
+            break
+        share *= max(0.1, 0.95 * radius / length)
+    predicted = 0.0
+    for j in range(size):
+        predicted -= 0.5 * work.gradient[j] * work.step[j]
+    # g d + d H d / 2 with H d = -t (g + R' l): half of g d less half of the multipliers' share
+    for r in range(m):
+        after, turn = work.residuals[r], 0.0
+        for j in range(size):
+            turn += work.rows[r, j] * work.step[j]
+        after += turn
+        before = max(work.low[r] * work.residuals[r], work.high[r] * work.residuals[r])
+        predicted += 0.5 * work.multipliers[r] * turn
+        predicted += before - max(work.low[r] * after, work.high[r] * after)
+    return (predicted, length) if length < np.inf else (0.0, 0.0)
+
+
+@kernel_noalloc
+def move(
+    here: Body, there: Body, step: FloatArray, prices: Prices, needs_box: bool, scratch: BodyScratch
+) -> bool:
+    """Fill `there` with the polyhedron after a step; False where that is none."""
+    fill_moved(
+        here.normals,
+        here.centroids,
+        here.offsets,
+        here.tangents,
+        here.scales,
+        step,
+        there.normals,
+        there.offsets,
+        there.tangents,
+    )
+    for i in range(len(there.offsets)):
+        if not there.offsets[i] > 0.0:
+            return False
+    copy_boxes(here, there)
+    return fill_body(there, prices.wanted, needs_box, scratch)
+
+
+@kernel_noalloc
+def correct(
+    there: Body,
+    prices: Prices,
+    needs_box: bool,
+    scratch: BodyScratch,
+    work: Steps,
+) -> bool:
+    """Bring the terms whose multipliers are inside their bounds to zero; False where that leads nowhere.
+
+    Gauss-Newton steps, least in the diagonal metric; a rival counts where it is below its clearance.
+    """
+    size, before = len(work.step), np.inf
+    for _ in range(CORRECTIONS):
+        count, worst = _gather_kinks(there, prices, work)
+        if worst < MET:
+            return True
+        if worst > before or not worst < 0.5:
+            return worst <= 2.0 * before and worst < 1e-6
+        before = worst
+        for r in range(count):
+            for s in range(count + 1):
+                total = 0.0
+                if s < count:
+                    for j in range(size):
+                        total += work.diagonal[j] * work.across[r, j] * work.across[s, j]
+                else:
+                    total = work.slopes[r]
+                work.factor[r, s] = total
+        if not solve_in_place(work.factor[:count, : count + 1]):
+            return False
+        for j in range(size):
+            value = 0.0
+            for r in range(count):
+                value += work.factor[r, count] * work.across[r, j]
+            work.step[j] = -work.diagonal[j] * value
+            work.total[j] += work.step[j]
+        if not move(there, there, work.step, prices, needs_box, scratch):
+            return False
+    _, worst = _gather_kinks(there, prices, work)
+    return worst < 1e-6
+
+
+@kernel_noalloc
+def _gather_kinks(body: Body, prices: Prices, work: Steps) -> tuple[int, float]:
+    """Rows of the terms at a kink, in `work.across`, their residuals in `work.slopes`: number and largest."""
+    count, worst = 0, 0.0
+    for r in range(N_FIXED):
+        low, high = bounds_of(r, body, prices)
+        passed = r >= N_TERMS and high > 0.0 and body.residuals[r] > 0.0
+        if low < work.multipliers[r] < high or (passed and work.multipliers[r] < high):
+            for j in range(work.across.shape[1]):
+                work.across[count, j] = body.rows[r, j]
+            work.slopes[count] = body.residuals[r]
+            worst = max(worst, abs(body.residuals[r]))
+            count += 1
+    for b in range(1, body.counts[N_BOXES]):
+        held = 0.0 < work.multipliers[N_FIXED + b - 1] < LOCK
+        # above a quarter of its clearance a rival that does not press need not be moved
+        if (held or body.slack[b] < 0.25 * CLEARANCE) and body.slack[b] != GONE:
+            for j in range(work.across.shape[1]):
+                work.across[count, j] = -body.rival_rows[b, j]
+            work.slopes[count] = CLEARANCE - body.slack[b]
+            worst = max(worst, abs(work.slopes[count]))
+            count += 1
+    return count, worst
+
+
+@kernel_noalloc
+def update_metric(here: Body, there: Body, m: int, work: Steps) -> None:
+    """BFGS update of the inverse second derivative of the Lagrangian, where its curvature is positive."""
+    size = len(work.gradient)
+    for j in range(size):
+        work.change[j] = work.trial_gradient[j] - work.gradient[j]
+    _add_row_changes(here, there, m, work)
+    product, squares, changes = 0.0, 0.0, 0.0
+    for j in range(size):
+        product += work.total[j] * work.change[j]
+        squares += work.total[j] * work.total[j]
+        changes += work.change[j] * work.change[j]
+    if product <= 1e-3 * np.sqrt(squares * changes):
+        return
+    turned, bend = work.step, 0.0  # the step has done its work
+    for j in range(size):
+        turned[j] = 0.0
+    for i in range(size):
+        factor = work.change[i]
+        for j in range(size):
+            turned[j] += factor * work.metric[i, j]
+    for j in range(size):
+        bend += work.change[j] * turned[j]
+    scale = (1.0 + bend / product) / product
+    for i in range(size):
+        one, two = work.total[i], turned[i] / product
+        for j in range(size):
+            work.metric[i, j] += scale * one * work.total[j] - two * work.total[j] - one * turned[j] / product
+
+
+@kernel_noalloc
+def _add_row_changes(here: Body, there: Body, m: int, work: Steps) -> None:
+    """Add the multipliers' share of the change of the Lagrangian's gradient."""
+    size = len(work.change)
+    for r in range(m):
+        factor, b = work.multipliers[r], r - N_FIXED + 1
+        if factor == 0.0:
+            continue
+        if r < N_FIXED:
+            for j in range(size):
+                work.change[j] += factor * (there.rows[r, j] - here.rows[r, j])
+        elif there.slack[b] != GONE and here.slack[b] != GONE:
+            for j in range(size):
+                work.change[j] -= factor * (there.rival_rows[b, j] - here.rival_rows[b, j])

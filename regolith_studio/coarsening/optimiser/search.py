@@ -1,0 +1,500 @@
+"""Starts of the descent, one after the other, and the best of what they lead to."""
+
+from collections.abc import Generator, Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from regolith_studio.coarsening.core.facet_insertion import MIN_FACET
+from regolith_studio.coarsening.core.plane_coordinates import tangents_of
+from regolith_studio.coarsening.core.polyhedron_measures import measure_polyhedron
+from regolith_studio.coarsening.loss import LossFunction
+from regolith_studio.coarsening.lower_bounds import (
+    max_sphericity,
+    sphericity_reason,
+    volume_is_preferred,
+)
+from regolith_studio.coarsening.optimiser.body import Prices
+from regolith_studio.coarsening.optimiser.descent import (
+    LOCK,
+    MAX_RADIUS,
+    Memory,
+    Rays,
+    descend,
+    memory_for,
+)
+from regolith_studio.coarsening.optimiser.starts import (
+    N_SIDES,
+    box_start,
+    grouped_start,
+    hull_triangles,
+    own_planes,
+    round_start,
+    with_cuts,
+    with_waiting,
+)
+from regolith_studio.coarsening.progress import MethodStep
+from regolith_studio.coarsening.reasons import EXACT, missed_terms, own_reason, reason_for
+from regolith_studio.coarsening.result import MethodResult
+from regolith_studio.coarsening.target import Target
+from regolith_studio.coarsening.weights import JACCARD, LossWeights
+from regolith_studio.descriptors.catalogue import LOSS_KEYS
+from regolith_studio.descriptors.comparison import relative_errors
+from regolith_studio.descriptors.describe import Descriptors, describe
+from regolith_studio.errors import GeometryError
+from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
+from regolith_studio.geometry.half_spaces import HalfSpaces
+
+TERMS = ("volume", "sphericity", "min_diameter", "max_diameter", "aspect_ratio")
+"""Rows of the descent."""
+VOLUME_SHARE, SPHERICITY_SHARE = 3.0, 0.3
+"""Of the price of the box's edges: where not all can be kept, the sphericity gives way, and the volume, which
+any polyhedron can have, never does."""
+TIE_BREAK_PRICE = 1e-2
+"""Price of the overlap where it has none: shapes that only meet descriptors drift away from the particle."""
+FREE_STEPS, STEPS, FURTHER_STEPS, LAST_STEPS = 25, 60, 30, 120
+"""On the overlap alone, on the whole loss, after half-spaces became cuts, and of the best at the end."""
+GROWTH_STEPS = 25
+"""After each stage of cuts on the way from few half-spaces to many."""
+FEW_FACETS = (
+    (0.15, (20, 12, 30, 50)),
+    (0.085, (20, 30, 50, 12)),
+    (0.055, (30, 20, 50, 12)),
+    (-np.inf, (50, 30, 20, 12)),
+)
+"""Half-spaces to grow from, best first, by how much more surface a particle has than its hull (logarithm)."""
+ALIKE, FACTOR = 1.25, 2.5
+"""Where less than the first times as many are asked for, all begin at once; half-spaces after and before each
+stage of cuts."""
+ROUNDS = 3
+"""At most so many times half-spaces without a facet become cuts."""
+FREE_RADIUS, FIRST_RADIUS, FURTHER_RADIUS = 0.1, 0.2, 0.05
+"""Longest moves at first; all but the first shrink with the square root of the number of facets."""
+CUT_COST = 4e-3
+"""By how much the loss may rise for facets that are put back."""
+CUT_DEPTHS = (0.06, 0.02, 0.2)
+"""Depths of cuts that only give half-spaces a facet, as shares of the way to the next corner; the later ones
+where a single cut fails."""
+CUT_ROUNDS, CUT_STEPS, CUT_RADIUS = 24, 8, 0.05
+"""Attempts to put facets back, steps of each, and their longest moves at first."""
+FURTHER_STARTS = 3
+"""Where all is kept, but a half-space bounds no facet."""
+ROUND_EVERY = 3
+"""Of further starts every third has the sides of the box, for particles that nearly fill it, and every third
+is evenly tiled, for those that are rounder than what others lead to."""
+CONFIRMED = 4
+"""At most so many candidates are measured by the public descriptors."""
+SAME_LOSS = 1e-6
+WORD_LENGTH = 2.0**-40
+"""Wanted values are rounded to this share, far above the rounding of how they were measured."""
+
+
+@dataclass(frozen=True)
+class SearchEffort:
+    """Starts, and how many of the best of them descend until they come to rest."""
+
+    starts: int
+    finalists: int
+
+
+EFFORTS = {"fast": SearchEffort(3, 1), "best": SearchEffort(10, 3)}
+
+
+@dataclass(frozen=True, eq=False)
+class Candidate:
+    """Where a descent ended.
+
+    Parameters
+    ----------
+    half_spaces
+        At unit volume.
+    merit
+        The loss as the descent sees it.
+    worst
+        Largest residual of what is to be kept.
+    n_facets
+        Half-spaces that bound a facet.
+    axes
+        Of its box; ``None`` where no term is about the box.
+    """
+
+    half_spaces: HalfSpaces
+    merit: float
+    worst: float
+    n_facets: int
+    axes: FloatArray | None
+
+    @property
+    def met(self) -> bool:
+        """Whether all that is to be kept is met."""
+        return self.worst <= EXACT / 2
+
+    def rank(self, n_facets: int) -> tuple[bool, bool, float]:
+        """Sorting key, the best first: all is met, all facets are there, the loss."""
+        return not self.met, self.n_facets < n_facets, self.merit
+
+
+def prices_of(target: Target, weights: LossWeights, keep: frozenset[str]) -> Prices:
+    """What the descent pays: LOCK for a term that is to be kept, its weight for another.
+
+    V and CH of a convex polyhedron are one number. Where neither is to be kept, the loss is least where the
+    one is met for which more is paid; beyond it the other pays back (section 2 of the guide's method page).
+    """
+    wanted = np.array([round(target.descriptors[key] / WORD_LENGTH) * WORD_LENGTH for key in TERMS])
+    overlap = weights[JACCARD] or TIE_BREAK_PRICE
+    high = np.array([LOCK * overlap if key in keep else weights[key] for key in TERMS])
+    if "sphericity" in keep:
+        high[1] *= SPHERICITY_SHARE
+    if "volume" in keep:
+        high[0] *= VOLUME_SHARE
+    low = -high
+    if {"min_diameter", "max_diameter", "aspect_ratio"} <= keep:
+        low[4] = high[4] = 0.0  # it follows from the two
+    if "volume" not in keep:
+        hull = target.descriptors["convex_hull_volume"]
+        if "convex_hull_volume" in keep:
+            wanted[0], high[0], low[0] = hull, LOCK * overlap, -LOCK * overlap
+        elif weights["volume"] or weights["convex_hull_volume"]:
+            at_volume = volume_is_preferred(weights, target.descriptors)
+            size = wanted[0] if at_volume else hull
+            for_volume = weights["volume"] * size / wanted[0]
+            for_hull = weights["convex_hull_volume"] * size / hull
+            high[0] = for_volume - for_hull if at_volume else for_volume + for_hull
+            low[0] = -(for_volume + for_hull) if at_volume else for_volume - for_hull
+            wanted[0] = size
+        elif keep:
+            # nothing else gives the polyhedron its size: less surface would shrink it
+            high[0], low[0] = LOCK * overlap, -LOCK * overlap
+    return Prices(wanted, low, high, overlap)
+
+
+Planes = tuple[FloatArray, FloatArray, FloatArray]
+"""Normals, offsets and tangents."""
+
+
+class Search:
+    """Starts one after the other, and the best of what they lead to.
+
+    Parameters
+    ----------
+    keep
+        Terms that are kept exactly.
+    efforts
+        One after the other, so that more effort contains less.
+    retries
+        Further starts where none keeps what is to be kept.
+    fewer
+        Half-spaces of a result with fewer facets at unit volume, from which one more start is made.
+    """
+
+    def __init__(
+        self,
+        target: Target,
+        weights: LossWeights,
+        keep: frozenset[str],
+        n_facets: int,
+        effort: SearchEffort,
+        retries: int,
+        seed: np.random.SeedSequence,
+        fewer: HalfSpaces | None = None,
+    ) -> None:
+        self._target, self._keep, self._n_facets = target, keep, n_facets
+        self._effort, self._fewer = effort, fewer
+        self._rng = np.random.default_rng(seed)
+        self._prices = prices_of(target, weights, keep)
+        nothing = np.zeros(len(TERMS))
+        self._free_prices = self._prices._replace(low=nothing, high=nothing)
+        rays = target.rays
+        self._rays = Rays(rays.directions, rays.first, rays.distance, rays.sign, rays.weight)
+        self._sizes = first_sizes(target, n_facets, "sphericity" in keep)
+        self._triangles = hull_triangles(target)
+        self._judge = LossFunction(target, weights, everything=True)
+        hopeless = "sphericity" in keep and sphericity_reason(target.descriptors["sphericity"], n_facets)
+        self._most = effort.starts + (0 if hopeless else retries)
+        self._memory: dict[int, Memory] = {}
+        self._found: list[Candidate] = []
+        self._history: list[float] = []
+        self._free_distance = np.inf
+
+    def steps(self) -> Generator[MethodStep, None, MethodResult]:
+        """A step for each better polyhedron, and the result; the first is the first start itself.
+
+        Raises
+        ------
+        GeometryError
+            If no start bounds a polyhedron.
+        """
+        own = self._itself
+        if own is not None:
+            yield self._step(0, own.half_spaces)
+            return self._result(own, own_reason(own.n_facets, self._n_facets), 0)
+        tried, few = 0, list[Candidate]()
+        for tried, (start, held) in enumerate(self._starts(), 1):
+            if tried == 1:
+                yield self._step(0, start)
+            found = self._from_start(start, held)
+            if found is not None and len(found.half_spaces.offsets) == self._n_facets:
+                yield from self._record(tried, found)
+            elif found is not None:
+                few.append(found)
+            if self._good_enough(tried, (*few, *self._found)):
+                break
+        for found in sorted(few, key=lambda each: each.rank(0))[: self._effort.finalists]:
+            yield from self._record(tried, self._grown(found))
+        if self._fewer is not None:
+            yield from self._record(tried, self._more(self._fewer, self._n_facets, STEPS))
+        if not self._found:
+            raise GeometryError("No start of the exact method bounds a polyhedron.")
+        for candidate in sorted(self._found, key=self._rank)[: self._effort.finalists]:
+            last = self._descended(candidate.half_spaces, LAST_STEPS, FURTHER_RADIUS) or candidate
+            yield from self._record(tried, last)
+            whole = self._with_facets(last)
+            yield from self._record(tried, whole)
+            even = self._descended(whole.half_spaces, FURTHER_STEPS, FURTHER_RADIUS, steady=True)
+            yield from self._record(tried, even)
+        yield from self._made_whole(tried, few)
+        solid, achieved = self._confirmed()
+        value = self._judge.value(solid.half_spaces.normals, solid.half_spaces.offsets)
+        if not self._history or abs(value - self._history[-1]) > SAME_LOSS:
+            yield self._step(tried, solid.half_spaces)
+        descriptors, free = self._target.descriptors, self._free_distance
+        reason = reason_for(descriptors, achieved, self._keep, self._n_facets, solid.n_facets, free)
+        return self._result(solid, reason, tried, achieved)
+
+    def _made_whole(self, tried: int, few: Sequence[Candidate]) -> Iterator[MethodStep]:
+        """A step for a polyhedron with all facets, from any that keeps all, where the best have lost some."""
+        n_facets = self._n_facets
+        if any(each.met and each.n_facets == n_facets for each in self._found):
+            return
+        for found in sorted([*few, *self._found], key=lambda each: each.merit):
+            if not found.met:
+                continue
+            begun = self._descended(with_waiting(found.half_spaces, n_facets), 0, FURTHER_RADIUS)
+            whole = None if begun is None else self._with_facets(begun)
+            if whole is not None and whole.met and whole.n_facets == n_facets:
+                yield from self._record(tried, whole)
+                even = self._descended(whole.half_spaces, FURTHER_STEPS, FURTHER_RADIUS, steady=True)
+                yield from self._record(tried, even)
+                return
+
+    def _good_enough(self, tried: int, found: Sequence[Candidate]) -> bool:
+        """Whether all is kept, with all facets or after further starts for them."""
+        met = [each for each in found if each.met]
+        whole = any(each.n_facets == len(each.half_spaces.offsets) for each in met)
+        return bool(met) and tried >= self._effort.starts + (0 if whole else FURTHER_STARTS)
+
+    def _starts(self) -> Iterator[tuple[HalfSpaces, int]]:
+        """As many as the effort and the retries allow, some with few half-spaces to grow from.
+
+        With each comes how many of its half-spaces do not move.
+        """
+        for number in range(self._most):
+            further = number - self._effort.starts
+            size, rest = self._sizes[number % len(self._sizes)], further % ROUND_EVERY
+            boxed = None
+            if further >= 0 and rest == 0:
+                boxed = box_start(self._target, self._triangles, size, self._rng)
+            if boxed is not None:
+                yield boxed, N_SIDES
+            elif further >= 0 and rest == ROUND_EVERY - 1:
+                yield round_start(self._target, size, self._rng), 0
+            else:
+                yield grouped_start(self._target, self._triangles, size, self._rng), 0
+
+    def _from_start(self, start: HalfSpaces, held: int) -> Candidate | None:
+        """On the overlap alone, then on the whole loss."""
+        planes = _planes_of(start)
+        sound, _, _, distance = self._descend(self._free_prices, planes, FREE_STEPS, FREE_RADIUS, held=held)
+        if sound:
+            self._free_distance = min(self._free_distance, distance)
+            start = HalfSpaces(planes[0], planes[1])
+        return self._settled(self._descended(start, STEPS, FIRST_RADIUS, held=held), held)
+
+    def _grown(self, few: Candidate) -> Candidate | None:
+        """With further half-spaces in stages, as cuts across the corners that hang out farthest."""
+        found: Candidate | None = few
+        while found is not None and len(found.half_spaces.offsets) < self._n_facets:
+            size = min(self._n_facets, round(FACTOR * len(found.half_spaces.offsets)))
+            found = self._more(found.half_spaces, size, GROWTH_STEPS)
+        return found
+
+    def _more(self, few: HalfSpaces, size: int, steps: int) -> Candidate | None:
+        """A polyhedron with further facets, up to `size`, that is not worse where that can be."""
+        begun = self._descended(with_waiting(few, size), 0, FURTHER_RADIUS)
+        if begun is None:
+            return None
+        begun = self._with_facets(begun)
+        if size == self._n_facets:
+            # the free descent may lose facets that cannot be put back
+            even = self._descended(begun.half_spaces, steps, FURTHER_RADIUS, steady=True)
+            self._found += [begun] if even is None else [begun, even]
+        found = self._settled(self._descended(begun.half_spaces, steps, FURTHER_RADIUS))
+        return begun if found is None or begun.rank(0) < found.rank(0) else found
+
+    def _settled(self, found: Candidate | None, held: int = 0) -> Candidate | None:
+        """Half-spaces without a facet become cuts as long as the loss falls by them."""
+        for _ in range(ROUNDS):
+            if found is None or found.n_facets == len(found.half_spaces.offsets):
+                break
+            cut = with_cuts(self._target, found.half_spaces)
+            further = self._descended(cut, FURTHER_STEPS, FURTHER_RADIUS, held=held)
+            if further is None or further.rank(0) >= found.rank(0):
+                break
+            found = further
+        return found
+
+    def _with_facets(self, found: Candidate) -> Candidate:
+        """With all half-spaces bounding a facet, where that costs little of the loss.
+
+        Cuts are brought to what is kept by a few short steps; where so many at once cannot be, half of them.
+        """
+        best, most = found, found.merit + CUT_COST * self._prices.overlap
+        size, failures = len(found.half_spaces.offsets), 0
+        cuts = size - best.n_facets
+        for _ in range(CUT_ROUNDS):
+            if cuts == 0 or failures == len(CUT_DEPTHS):
+                break
+            cut = with_cuts(self._target, best.half_spaces, cuts, CUT_DEPTHS[failures], best.axes)
+            more = self._descended(cut, CUT_STEPS, CUT_RADIUS, steady=True, restoring=True)
+            worse = more is None or more.merit > most or (found.met and not more.met)
+            if more is None or worse or more.n_facets <= best.n_facets:
+                failures += cuts == 1
+                cuts = max(1, cuts // 2)
+            else:
+                best, cuts, failures = more, size - more.n_facets, 0
+        return best
+
+    def _descended(
+        self,
+        start: HalfSpaces,
+        steps: int,
+        radius: float,
+        held: int = 0,
+        steady: bool = False,
+        restoring: bool = False,
+    ) -> Candidate | None:
+        planes = _planes_of(start)
+        radius /= np.sqrt(len(start.offsets))
+        sound, merit, worst, _ = self._descend(self._prices, planes, steps, radius, held, steady, restoring)
+        if not sound:
+            return None
+        n_real = int(np.count_nonzero(measure_polyhedron(planes[0], planes[1]).areas >= MIN_FACET))
+        needs_box = bool((self._prices.low[2:] < self._prices.high[2:]).any())
+        axes = self._memory[len(start.offsets)].scratch.start.copy() if needs_box else None
+        return Candidate(HalfSpaces(planes[0], planes[1]), merit, worst, n_real, axes)
+
+    def _descend(
+        self,
+        prices: Prices,
+        planes: Planes,
+        steps: int,
+        radius: float,
+        held: int = 0,
+        steady: bool = False,
+        restoring: bool = False,
+    ) -> tuple[bool, float, float, float]:
+        normals, offsets, tangents = planes
+        size = len(offsets)
+        if size not in self._memory:
+            self._memory[size] = memory_for(size, len(self._rays.directions))
+        axes, memory = self._target.box.axes, self._memory[size]
+        return descend(
+            self._rays,
+            prices,
+            axes,
+            steps,
+            min(radius, MAX_RADIUS),
+            held,
+            steady,
+            restoring,
+            normals,
+            offsets,
+            tangents,
+            memory,
+        )
+
+    def _record(self, tried: int, found: Candidate | None) -> Iterator[MethodStep]:
+        """Keep what a start led to; a step where it is the best so far."""
+        if found is None:
+            return
+        best = min((self._rank(each) for each in self._found), default=None)
+        self._found.append(found)
+        if best is None or self._rank(found) < best:
+            yield self._step(tried, found.half_spaces)
+
+    def _step(self, number: int, half_spaces: HalfSpaces) -> MethodStep:
+        value = self._judge.value(half_spaces.normals, half_spaces.offsets)
+        if number > 0:
+            self._history.append(value)
+        return MethodStep(number, self._most, value, half_spaces)
+
+    def _rank(self, candidate: Candidate) -> tuple[bool, bool, float]:
+        return candidate.rank(self._n_facets)
+
+    @cached_property
+    def _itself(self) -> ConvexPolyhedron | None:
+        """The particle, where it is a convex polyhedron with as many facets or fewer."""
+        planes = own_planes(self._target, self._n_facets)
+        if planes is None:
+            return None
+        solid = ConvexPolyhedron.from_half_spaces(planes)
+        errors = relative_errors(self._target.descriptors, describe(solid, LOSS_KEYS))
+        return solid if max(errors.values()) <= EXACT else None
+
+    def _confirmed(self) -> tuple[ConvexPolyhedron, Descriptors]:
+        """The best of which the public descriptors say that all is kept, else that which misses least."""
+        checked: list[tuple[float, ConvexPolyhedron, Descriptors]] = []
+        for candidate in sorted(self._found, key=self._rank)[:CONFIRMED]:
+            solid = ConvexPolyhedron.from_half_spaces(candidate.half_spaces)
+            achieved = describe(solid)
+            missed = missed_terms(self._target.descriptors, achieved, self._keep)
+            checked.append((max(missed.values(), default=0.0), solid, achieved))
+            if not missed or candidate.worst > EXACT:
+                break
+        return min(checked, key=lambda each: each[0])[1:]
+
+    def _result(
+        self, solid: ConvexPolyhedron, reason: str | None, tried: int, achieved: Descriptors | None = None
+    ) -> MethodResult:
+        achieved = achieved or describe(solid)
+        missed = missed_terms(self._target.descriptors, achieved, self._keep)
+        return MethodResult(
+            solid.half_spaces,
+            tuple(self._history),
+            reason,
+            {"starts": float(tried), "exact": float(not missed)},
+            polyhedron=solid,
+            achieved=achieved,
+            free_distance=self._free_distance if tried else None,
+        )
+
+
+def first_sizes(target: Target, n_facets: int, keeps_sphericity: bool) -> tuple[int, ...]:
+    """Half-spaces of the starts, one after the other; `n_facets` is among them.
+
+    A particle has more surface than its convex hull as a rule. A convex polyhedron that is to have as much
+    must be edgy, which few facets are by themselves; begun with many, facets are lost on the way to it.
+    Numbers whose Goldberg bound is below the particle's sphericity are left out.
+    """
+    surplus = more_surface_than_hull(target) if keeps_sphericity else -np.inf
+    few = next(sizes for least, sizes in FEW_FACETS if surplus >= least)
+    wanted = target.descriptors["sphericity"] if keeps_sphericity else 0.0
+    sizes = [size if ALIKE * size < n_facets else n_facets for size in few if max_sphericity(size) > wanted]
+    if not keeps_sphericity:
+        sizes.insert(0, n_facets)
+    return tuple(dict.fromkeys([*sizes, n_facets]))
+
+
+def more_surface_than_hull(target: Target) -> float:
+    """Logarithm of the particle's surface over that of its convex hull, at the same volume."""
+    hull = target.mesh.hull
+    of_hull = np.cbrt(36.0 * np.pi * hull.volume**2) / hull.surface_area
+    return float(np.log(of_hull / target.descriptors["sphericity"]))
+
+
+def _planes_of(start: HalfSpaces) -> Planes:
+    """Normals, offsets and tangents of half-spaces, to be changed in place."""
+    normals = np.array(start.normals)
+    return normals, np.array(start.offsets), np.ascontiguousarray(tangents_of(normals))
