@@ -129,7 +129,7 @@ def _bounds(groups: tuple[str | None, ...], text: str) -> tuple[_Bound, _Bound]:
     bounds = []
     for number, unit in ((first, first_unit or stop_unit), (stop, stop_unit or first_unit)):
         key = unit_named(unit or "") or ""
-        if unit and not key:
+        if unit and key not in UNITS:
             units = ", ".join(each for each in UNITS if each != "voxel")
             raise InputError(f"There is no unit “{unit}” for a crop; the units are {units}.")
         if number and not key and not number.isdigit():
