@@ -169,6 +169,16 @@ Triangles = Annotated[
         metavar="N",
     ),
 ]
+Vertices = Annotated[
+    int | None,
+    typer.Option(
+        "--vertices",
+        min=6,
+        max=1_000_000,
+        help="Maximum number of vertices of each polyhedron, instead of --facets.",
+        metavar="N",
+    ),
+]
 MaxError = Annotated[
     float | None,
     typer.Option(
@@ -212,9 +222,19 @@ Weights = Annotated[
     list[str] | None,
     typer.Option(
         "--weight",
-        help="Weight of one term of the loss (Eq. 9); may be repeated. Without --preset all other "
-        "weights are 0, with it the named ones replace those of the preset.",
+        help="Weight of one term of the loss (Eq. 9); may be repeated. With --preset, or where all named "
+        "weights are 0 (volume=0), the others are those of the preset, else 0.",
         metavar="KEY=VALUE",
+    ),
+]
+Keep = Annotated[
+    str,
+    typer.Option(
+        "--keep",
+        help="Terms of the loss that are kept exactly, such as volume,sphericity, or nothing; the weights of "
+        "the others are prices. Without it volume, sphericity, min_diameter, max_diameter and aspect_ratio "
+        "are kept where their weight is above 0.",
+        metavar="KEY,KEY",
     ),
 ]
 Settings = Annotated[
@@ -282,28 +302,33 @@ def _simplest(text: str) -> bool | int | float | str:
     return text
 
 
+NOTHING = "nothing"
+"""Keep no term exactly."""
 FACETS = 20
 """Default of ``--facets``."""
 
 
 @dataclass(frozen=True)
 class StoppingOptions:
-    """When the coarsening stops: number of facets or triangles, or largest error."""
+    """When the coarsening stops: number of facets, triangles or vertices, or largest error."""
 
     facets: Facets = FACETS
     triangles: Triangles = None
+    vertices: Vertices = None
     max_error: MaxError = None
 
     @property
     def changes(self) -> dict[str, object]:
         """Changes of the choices; more than one of the options is a usage error."""
-        named = (self.facets != FACETS) + (self.triangles is not None) + (self.max_error is not None)
-        if named > 1:
+        others = (self.triangles, self.vertices, self.max_error)
+        if (self.facets != FACETS) + sum(each is not None for each in others) > 1:
             raise typer.BadParameter(
-                "Only one of --facets, --triangles and --max-error can say how fine to be."
+                "Only one of --facets, --triangles, --vertices and --max-error can say how fine to be."
             )
         if self.triangles is not None:
             return {"stop_at": "triangles", "n_triangles": self.triangles}
+        if self.vertices is not None:
+            return {"stop_at": "vertices", "n_vertices": self.vertices}
         if self.max_error is not None:
             return {"stop_at": "error", "largest_error": round(self.max_error / 100.0, 12)}
         return {"n_facets": self.facets}
@@ -315,6 +340,7 @@ class CoarseningOptions:
 
     method: Method = ""
     weight: Weights = None
+    keep: Keep = ""
     set_: Settings = None
     target: Target = "particle"
     l_max: LMax = 10
@@ -348,7 +374,7 @@ class CoarseningOptions:
             if (weights := self._weights(preset)) is not None:
                 changes["weights"] = weights
             choices = Choices().replaced(**changes)
-            if choices.weights.all_zero and choices.method != "quadric":
+            if choices.weights.all_zero and not choices.weights.keep and choices.method != "quadric":
                 raise InputError("All weights of the loss are 0, so there is nothing to optimise; raise one.")
             return choices
 
@@ -357,8 +383,11 @@ class CoarseningOptions:
         from regolith_studio.coarsening.weights import LossWeights
 
         named = numbers(self.weight, "weight")
-        if not named:
+        if not named and not self.keep:
             return None
+        weights = LossWeights.of(**named)
         if preset or not any(named.values()):
-            return LossWeights.from_preset(preset or DEFAULT_PRESET).replaced(**named)
-        return LossWeights.of(**named)
+            weights = LossWeights.from_preset(preset or DEFAULT_PRESET).replaced(**named)
+        if not self.keep:
+            return weights
+        return weights.keeping(each.strip() for each in self.keep.split(",") if each.strip() != NOTHING)

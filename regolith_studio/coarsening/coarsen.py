@@ -35,6 +35,43 @@ FACETS_LIMITS = (5, 500)
 """Section 2.4 asks for n > 4."""
 
 
+def facets_for_triangles(n_triangles: int) -> int:
+    """Most facets whose polyhedron has at most `n_triangles` triangles: 4 n - 12 in general position.
+
+    For solvers that count triangles.
+
+    Raises
+    ------
+    InputError
+        If the budget is no whole number or does not reach for 5 facets.
+    """
+    return _facets_within(n_triangles, "triangles", 4, 12)
+
+
+def facets_for_vertices(n_vertices: int) -> int:
+    """Most facets whose polyhedron has at most `n_vertices` vertices: 2 n - 4 in general position.
+
+    For solvers that limit them (64 in PhysX, 128 in Box3D, 8 in exaDEM).
+
+    Raises
+    ------
+    InputError
+        If the budget is no whole number or does not reach for 5 facets.
+    """
+    return _facets_within(n_vertices, "vertices", 2, 4)
+
+
+def _facets_within(budget: int, what: str, factor: int, less: int) -> int:
+    """Most facets n with factor n - less <= budget."""
+    if not is_whole(budget):
+        raise InputError(f"The number of {what} must be a whole number, got {budget}.")
+    low, high = FACETS_LIMITS
+    n_facets = (int(budget) + less) // factor
+    if n_facets < low:
+        raise InputError(f"{budget} {what} are too few: {low} facets have up to {factor * low - less}.")
+    return min(n_facets, high)
+
+
 def coarsen(
     particle: Particle | Mesh | Target,
     n_facets: int = 20,
@@ -43,6 +80,7 @@ def coarsen(
     seed: int = 0,
     settings: Any = None,
     fewer: HalfSpaces | None = None,
+    max_vertices: int | None = None,
 ) -> CoarseningResult:
     """The polyhedron with `n_facets` facets for `particle` (section 2.4), convex but for `compound`.
 
@@ -63,6 +101,8 @@ def coarsen(
     fewer
         ``half_spaces`` of a result for the same particle with fewer facets. A method that can grow facets
         makes one more start from it, so that in a sweep more facets are never worse; others ignore it.
+    max_vertices
+        The polyhedron has at most so many vertices, in place of `n_facets`.
 
     Raises
     ------
@@ -71,6 +111,8 @@ def coarsen(
     GeometryError
         If the mesh is open, flat or encloses no volume.
     """
+    if max_vertices is not None:
+        n_facets = facets_for_vertices(max_vertices)
     _, run = _prepare(particle, n_facets, method, weights, seed, settings, fewer)
     while True:
         try:
@@ -169,6 +211,19 @@ def _wrong_kind(value: Any, default: Any) -> str:
     return "" if isinstance(value, numbers.Real) and math.isfinite(value) else "a number"
 
 
+def check_kept(method: str, weights: LossWeights) -> None:
+    """Check that a method can keep what is to be kept exactly.
+
+    Raises
+    ------
+    InputError
+        If terms are named for a method that knows weights only.
+    """
+    if weights.keep and not _method(method).keeps_terms:
+        able = ", ".join(key for key, each in METHODS.items() if each.keeps_terms)
+        raise InputError(f"The method {method} knows weights only and keeps no term exactly; use {able}.")
+
+
 def _method(key: str) -> CoarseningMethod:
     if key not in METHODS:
         raise InputError(f"There is no coarsening method {key!r}; there are {', '.join(METHODS)}.")
@@ -182,11 +237,15 @@ def _checked_facets(n_facets: int) -> int:
     return int(n_facets)
 
 
-def _check(method: CoarseningMethod, weights: LossWeights, seed: int) -> None:
-    if weights.all_zero and method.key != "quadric":
+def _check(method: CoarseningMethod, weights: Any, seed: Any) -> None:
+    if not isinstance(weights, LossWeights):
+        kind = type(weights).__name__
+        raise InputError(f"The weights must be LossWeights, such as LossWeights.of(volume=1), got {kind}.")
+    check_kept(method.key, weights)
+    if weights.all_zero and not weights.keep and method.key != "quadric":
         raise InputError("All weights of the loss are 0, so there is nothing to optimise; raise one of them.")
-    if seed < 0:
-        raise InputError(f"The seed must not be negative, got {seed}.")
+    if not is_whole(seed) or seed < 0:
+        raise InputError(f"The seed must be a whole number, 0 or above, got {seed!r}.")
 
 
 def _measured(

@@ -1,4 +1,4 @@
-"""Other criteria for the number of facets: a number of triangles, or the largest error."""
+"""The fewest facets whose largest error is small enough."""
 
 import math
 from collections.abc import Generator, Sequence
@@ -18,7 +18,6 @@ from regolith_studio.coarsening.weights import JACCARD, LossWeights
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.messages import N_, Message, Number
-from regolith_studio.settings import is_whole
 
 
 @dataclass(frozen=True)
@@ -28,25 +27,6 @@ class Trial:
     n_facets: int
     largest_error: float
     result: CoarseningResult
-
-
-def facets_for_triangles(n_triangles: int) -> int:
-    """Most facets whose polyhedron has at most `n_triangles` triangles: 4 n - 12 in general position.
-
-    For solvers that count triangles.
-
-    Raises
-    ------
-    InputError
-        If the budget is no whole number or does not reach for 5 facets.
-    """
-    if not is_whole(n_triangles):
-        raise InputError(f"The number of triangles must be a whole number, got {n_triangles}.")
-    n_facets = (int(n_triangles) + 12) // 4
-    low, high = FACETS_LIMITS
-    if n_facets < low:
-        raise InputError(f"{n_triangles} triangles are too few: {low} facets have up to {4 * low - 12}.")
-    return min(n_facets, high)
 
 
 def largest_error(

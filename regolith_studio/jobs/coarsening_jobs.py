@@ -9,6 +9,7 @@ from typing import Any
 
 from regolith_studio.coarsening.coarsen import DEFAULT_METHOD, FACETS_LIMITS, coarsening_steps
 from regolith_studio.coarsening.compound.line_overlap import compound_distance
+from regolith_studio.coarsening.methods import METHODS
 from regolith_studio.coarsening.progress import CoarseningProgress
 from regolith_studio.coarsening.result import CoarseningResult
 from regolith_studio.coarsening.stopping_criteria import Trial, fewest_facets
@@ -80,6 +81,11 @@ class CoarseningRequest:
     def max_facets(self) -> int:
         """Facets that no polyhedron exceeds."""
         return self.n_facets if self.largest_error is None else FACETS_LIMITS[1]
+
+    @property
+    def kept(self) -> frozenset[str]:
+        """Terms of the loss that the method keeps exactly."""
+        return self.weights.kept if METHODS[self.method].keeps_terms else frozenset()
 
     @property
     def stopping_criterion(self) -> str:

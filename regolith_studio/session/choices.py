@@ -6,8 +6,16 @@ from dataclasses import dataclass, field, fields
 from enum import StrEnum
 from typing import Any, Self
 
-from regolith_studio.coarsening.coarsen import DEFAULT_METHOD, DEFAULT_PRESET, FACETS_LIMITS, settings_of
-from regolith_studio.coarsening.stopping_criteria import check_limit, facets_for_triangles
+from regolith_studio.coarsening.coarsen import (
+    DEFAULT_METHOD,
+    DEFAULT_PRESET,
+    FACETS_LIMITS,
+    check_kept,
+    facets_for_triangles,
+    facets_for_vertices,
+    settings_of,
+)
+from regolith_studio.coarsening.stopping_criteria import check_limit
 from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.descriptors.shape_cache import BOX_METRICS
 from regolith_studio.errors import InputError
@@ -24,6 +32,7 @@ TARGETS = {"fit": "surface of the spherical-harmonics fit", "particle": "particl
 STOPS = {
     "facets": "a number of facets",
     "triangles": "a number of triangles",
+    "vertices": "a number of vertices",
     "error": "the fewest facets whose errors are all small enough",
 }
 """What says how fine a polyhedron is."""
@@ -78,7 +87,7 @@ class Choices(FitOptions):
     stop_at: str = setting(
         "facets",
         "Stop at",
-        "Whether n_facets, n_triangles or largest_error says how fine polyhedra are; the others are kept.",
+        "Which of n_facets, n_triangles, n_vertices and largest_error says how fine polyhedra are.",
         choices=STOPS,
     )
     n_facets: int = setting(
@@ -89,6 +98,7 @@ class Choices(FitOptions):
         maximum=FACETS_LIMITS[1],
     )
     n_triangles: int = setting(68, "Triangles", "Most triangles that a polyhedron may have.", minimum=4)
+    n_vertices: int = setting(64, "Vertices", "Most vertices that a polyhedron may have.", minimum=4)
     largest_error: float = setting(
         0.01,
         "Largest error",
@@ -107,13 +117,16 @@ class Choices(FitOptions):
     def __post_init__(self) -> None:
         super().__post_init__()
         facets_for_triangles(self.n_triangles)
+        facets_for_vertices(self.n_vertices)
         check_limit(self.largest_error)
         unit_factor(self.unit)
         settings_of(self.method, dict(self.settings))
+        check_kept(self.method, self.weights)
         object.__setattr__(self, "settings", tuple(sorted(dict(self.settings).items())))
 
     def replaced(self, **changes: Any) -> Self:
-        """A copy with `changes`; a preset brings its weights, another method drops the old settings.
+        """A copy with `changes`; a preset brings its weights, another method drops the old settings and
+        what was to be kept.
 
         Raises
         ------
@@ -125,8 +138,9 @@ class Choices(FitOptions):
             raise InputError(f"There is no choice called {unknown[0]}; there are {', '.join(sorted(known))}.")
         if "preset" in changes and "weights" not in changes:
             changes["weights"] = LossWeights.from_preset(changes["preset"])
-        if changes.get("method", self.method) != self.method and "settings" not in changes:
-            changes["settings"] = ()
+        if changes.get("method", self.method) != self.method:
+            changes.setdefault("settings", ())
+            changes.setdefault("weights", self.weights.keeping(None))
         return dataclasses.replace(self, **changes)
 
     def changed_from(self, before: Self) -> frozenset[str]:
@@ -142,7 +156,12 @@ class Choices(FitOptions):
     @property
     def facet_count(self) -> int:
         """Maximum number of facets; studies use it also where the largest error is the criterion."""
-        return facets_for_triangles(self.n_triangles) if self.stop_at == "triangles" else self.n_facets
+        match self.stop_at:
+            case "triangles":
+                return facets_for_triangles(self.n_triangles)
+            case "vertices":
+                return facets_for_vertices(self.n_vertices)
+        return self.n_facets
 
     @property
     def stopping_criterion(self) -> tuple[int, float | None]:

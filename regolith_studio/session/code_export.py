@@ -20,6 +20,8 @@ def as_command(choices: Choices, inputs: list[str]) -> str:
     words += ["--preset", choices.preset]
     if choices.preset_modified:
         words += [word for key, value in choices.weights.items() for word in ("--weight", f"{key}={value:g}")]
+    if choices.weights.keep is not None:
+        words += ["--keep", ",".join(sorted(choices.weights.keep)) or "nothing"]
     words += [word for name, value in choices.settings for word in ("--set", f"{name}={value}")]
     words += ["--unit", choices.unit]
     words += [] if choices.repair else ["--no-repair"]
@@ -57,7 +59,7 @@ def as_python(choices: Choices, source: str) -> str:
         f"particle = {reading}",
         f"fit = {_fit_call(choices)}",
         f"target = {body}",
-        f"weights = LossWeights.of(**{dict(choices.weights)!r})",
+        f"weights = LossWeights.of(**{dict(choices.weights)!r}){_keeping(choices)}",
         f"settings = settings_of({choices.method!r}, {dict(choices.settings)!r})",
         *_coarsening_call(choices),
         "print(done.n_facets, done.errors, done.jaccard_distance)",
@@ -65,17 +67,24 @@ def as_python(choices: Choices, source: str) -> str:
     return "\n".join(lines) + "\n"
 
 
+def _keeping(choices: Choices) -> str:
+    keep = choices.weights.keep
+    return "" if keep is None else f".keeping({sorted(keep)!r})"
+
+
 def _stopping_options(choices: Choices) -> list[str]:
     match choices.stop_at:
         case "triangles":
             return ["--triangles", str(choices.n_triangles)]
+        case "vertices":
+            return ["--vertices", str(choices.n_vertices)]
         case "error":
             return ["--max-error", f"{100 * choices.largest_error:.12g}"]
     return ["--facets", str(choices.n_facets)]
 
 
 def _coarsening_call(choices: Choices) -> list[str]:
-    """The call that coarsens; of a budget of triangles the number of facets that it allows."""
+    """The call that coarsens; of a budget of triangles or vertices the number of facets that it allows."""
     function, criterion = "coarsen", f"n_facets={choices.facet_count}"
     if choices.stop_at == "error":
         function, criterion = "coarsen_below", f"limit={choices.largest_error!r}"

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, create_model, model_validator
 
 from regolith_studio.coarsening.weights import LossWeights
+from regolith_studio.descriptors.catalogue import LOSS_KEYS
 from regolith_studio.errors import FileError, InputError, format_validation_error
 from regolith_studio.harmonics.fit_options import MAX_TABLE_DEGREE
 from regolith_studio.io.json_text import parse_strict_json
@@ -284,6 +285,8 @@ class Recipe(_ChoiceEntries):
         Settings of the method that differ from its defaults.
     weights
         Of the loss, in place of the preset's.
+    keep
+        Terms of the loss that are kept exactly; left to the weights where left out.
     representatives
         Which of the particles the dataset holds, and their sizes; all as they are where left out.
     exports
@@ -292,6 +295,7 @@ class Recipe(_ChoiceEntries):
 
     settings: dict[str, Scalar] = Field(default_factory=dict)
     weights: dict[str, float] | None = None
+    keep: list[str] | None = Field(default=None, max_length=len(LOSS_KEYS))
     representatives: Representatives | None = None
     exports: Exports | None = None
     outputs: Outputs = Field(default_factory=Outputs)
@@ -348,6 +352,7 @@ class Recipe(_ChoiceEntries):
         chosen: dict[str, Any] = {name: getattr(choices, name) for name in _ENTRIES}
         chosen["settings"] = dict(choices.settings)
         chosen["weights"] = dict(choices.weights) if choices.preset_modified else None
+        chosen["keep"] = None if choices.weights.keep is None else sorted(choices.weights.keep)
         return cls(inputs=list(inputs), outputs=outputs or Outputs(), **(chosen | others))
 
     def choices(self) -> Choices:
@@ -360,8 +365,10 @@ class Recipe(_ChoiceEntries):
         """
         changes: dict[str, Any] = {name: getattr(self, name) for name in _ENTRIES}
         changes["settings"] = tuple(self.settings.items())
-        if self.weights is not None:
-            changes["weights"] = LossWeights.of(**self.weights)
+        if self.weights is not None or self.keep is not None:
+            named = self.weights
+            weights = LossWeights.from_preset(self.preset) if named is None else LossWeights.of(**named)
+            changes["weights"] = weights.keeping(self.keep)
         return Choices().replaced(**changes)
 
     def to_json(self) -> str:

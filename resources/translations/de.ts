@@ -3028,6 +3028,10 @@
         <translation>Höchstzahl der Dreiecke</translation>
     </message>
     <message>
+        <source>Maximum number of vertices</source>
+        <translation>Höchstzahl der Ecken</translation>
+    </message>
+    <message>
         <source>Mean Jaccard distance [%]</source>
         <translation>Mittlere Jaccard-Distanz [%]</translation>
     </message>
@@ -5732,6 +5736,10 @@
         <translation>Der Hüllquader kleinsten Volumens</translation>
     </message>
     <message>
+        <source>The number of facets follows from it: n facets have at most 2n−4 vertices.</source>
+        <translation>Die Anzahl der Facetten folgt daraus: n Facetten haben höchstens 2n−4 Ecken.</translation>
+    </message>
+    <message>
         <source>The number of facets follows from it: n facets have at most 4n−12 triangles.</source>
         <translation>Die Anzahl der Facetten folgt daraus: n Facetten haben höchstens 4n−12 Dreiecke.</translation>
     </message>
@@ -6238,6 +6246,10 @@
     <message>
         <source>Vertical axis</source>
         <translation>Senkrechte Achse</translation>
+    </message>
+    <message>
+        <source>Vertices</source>
+        <translation>Ecken</translation>
     </message>
     <message>
         <source>Virtual particles</source>

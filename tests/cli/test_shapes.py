@@ -109,6 +109,12 @@ def test_that_the_number_of_processes_changes_no_byte(command, grains: Path, tmp
         ("--max-error", "nan"),
         ("--facets", 30, "--triangles", 100),
         ("--triangles", 100, "--max-error", 1),
+        ("--vertices", 4),
+        ("--vertices", 30, "--triangles", 100),
+        ("--keep", "beauty"),
+        ("--keep", "jaccard_distance"),
+        ("--keep", "volume", "--method", "annealing"),
+        ("--keep", "volume", "--method", "quadric"),
         ("--method", "magic"),
         ("--preset", "favourites"),
         ("--weight", "volume"),
@@ -147,6 +153,17 @@ def test_that_a_weight_of_zero_alone_is_taken_out_of_the_usual_ones(
     common = ("coarsen", grains / "grain-b.stl", "--method", "quadric", "-o", tmp_path, "--json")
     weights = command(*common, "--weight", "sphericity=0").json["order"]["weights"]
     assert {key for key, value in weights.items() if not value} == {"sphericity"}
+
+
+def test_that_only_the_terms_named_are_kept_exactly(command, grains: Path, tmp_path: Path) -> None:
+    common = ("coarsen", grains / "grain-b.stl", "-o", tmp_path, "--json", "--facets", 12)
+    document = command(*common, "--keep", "volume,max_diameter").json
+    (entry,) = document["particles"]
+    assert document["order"]["keep"] == ["max_diameter", "volume"]
+    assert document["order"]["weights"]["sphericity"] == 1.0
+    assert max(entry["errors"]["volume"], entry["errors"]["max_diameter"]) <= 1e-6
+    nothing = command(*common, "--keep", "nothing").json["order"]
+    assert nothing["keep"] == []
 
 
 def test_that_a_budget_of_triangles_is_kept(command, grains: Path, tmp_path: Path) -> None:

@@ -20,6 +20,7 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.sphere_points import icosphere
 from tests.coarsening.conftest import bumpy
 
+KEEP_VOLUME = LossWeights.from_preset("all").keeping(["volume"])
 EXACT = ("volume", "sphericity", "min_diameter", "max_diameter", "aspect_ratio")
 
 
@@ -194,7 +195,18 @@ def test_that_the_measured_errors_are_those_of_the_target(exact: CoarseningResul
         ({"weights": LossWeights.of()}, "All weights"),
         ({"settings": {"speed": 1}}, "no setting 'speed'"),
         ({"settings": {"level": "perfect"}}, "level must be one of"),
-        ({"seed": -1}, "seed must not be negative"),
+        ({"seed": -1}, "seed must be a whole number, 0 or above, got -1"),
+        ({"seed": 1.5}, "seed must be a whole number, 0 or above, got 1.5"),
+        (
+            {"weights": {"volume": 1}},
+            "weights must be LossWeights, such as .* got dict",
+        ),
+        ({"max_vertices": 5}, "5 vertices are too few"),
+        (
+            {"method": "annealing", "weights": KEEP_VOLUME},
+            "annealing knows .* use compound, exact",
+        ),
+        ({"method": "quadric", "weights": KEEP_VOLUME}, "quadric knows weights only"),
         ({"method": "annealing", "settings": {"cooling": 2.0}}, "cooling must lie between"),
     ],
 )

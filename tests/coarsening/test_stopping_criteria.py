@@ -2,13 +2,8 @@
 
 import pytest
 
-from regolith_studio.coarsening.coarsen import coarsen
-from regolith_studio.coarsening.stopping_criteria import (
-    Trial,
-    coarsen_below,
-    facets_for_triangles,
-    fewest_facets,
-)
+from regolith_studio.coarsening.coarsen import coarsen, facets_for_triangles, facets_for_vertices
+from regolith_studio.coarsening.stopping_criteria import Trial, coarsen_below, fewest_facets
 from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.mesh import Mesh
@@ -20,9 +15,24 @@ def test_that_a_budget_of_triangles_is_never_exceeded(triangles: int, facets: in
     assert min(4 * facets - 12, 788) <= triangles
 
 
+@pytest.mark.parametrize(("vertices", "facets"), [(6, 5), (8, 6), (64, 34), (128, 66), (10_000, 500)])
+def test_that_a_budget_of_vertices_allows_the_facets_of_a_simple_polyhedron(
+    vertices: int, facets: int
+) -> None:
+    assert facets_for_vertices(vertices) == facets
+
+
+@pytest.mark.parametrize("vertices", [8, 19])
+def test_that_a_budget_of_vertices_is_never_exceeded(particle: Mesh, vertices: int) -> None:
+    done = coarsen(particle, max_vertices=vertices)
+    assert vertices - 1 <= done.n_vertices <= vertices
+
+
 def test_that_too_few_triangles_are_refused() -> None:
     with pytest.raises(InputError, match="7 triangles are too few"):
         facets_for_triangles(7)
+    with pytest.raises(InputError, match="5 vertices are too few: 5 facets have up to 6"):
+        facets_for_vertices(5)
 
 
 @pytest.mark.parametrize("triangles", [8.5, True])

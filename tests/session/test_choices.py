@@ -57,14 +57,16 @@ def test_that_a_preset_brings_its_weights_and_a_moved_weight_marks_it_modified()
     ("stop", "facets", "error", "most", "words"),
     [
         ("facets", 12, None, 12, "12 facets"),
+        ("vertices", 21, None, 21, "21 facets"),  # 21 facets have up to 38 vertices, 22 have 40
         ("triangles", 17, None, 17, "17 facets"),  # 17 facets have up to 56 triangles, 18 have 60
         ("error", 12, 0.025, 500, "the fewest facets whose errors are all below 2.5 %"),
     ],
 )
-def test_that_one_of_three_numbers_says_how_fine_a_polyhedron_is(
+def test_that_one_of_four_numbers_says_how_fine_a_polyhedron_is(
     stop: str, facets: int, error: float | None, most: int, words: str
 ) -> None:
-    request = Choices(stop_at=stop, n_facets=12, n_triangles=59, largest_error=0.025).coarsening_request
+    choices = Choices(stop_at=stop, n_facets=12, n_triangles=59, n_vertices=39, largest_error=0.025)
+    request = choices.coarsening_request
     assert (request.n_facets, request.largest_error, request.max_facets, request.stopping_criterion) == (
         *(facets, error, most),
         words,

@@ -68,13 +68,18 @@ def test_that_the_copied_command_is_understood_and_coarsens(
 
 
 @pytest.mark.parametrize(
-    "criterion", [{"stop_at": "triangles", "n_triangles": 59}, {"stop_at": "error", "largest_error": 0.035}]
+    "criterion",
+    [
+        {"stop_at": "triangles", "n_triangles": 59},
+        {"stop_at": "vertices", "n_vertices": 31},
+        {"stop_at": "error", "largest_error": 0.035},
+    ],
 )
 @pytest.mark.slow
 def test_that_what_is_copied_stops_where_the_window_does(
     session: Session, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, criterion: dict[str, object]
 ) -> None:
-    weights = LossWeights.of(volume=1.0, max_diameter=1.0)
+    weights = LossWeights.of(volume=1.0, max_diameter=1.0).keeping(["volume"])
     session.choose(method="exact", weights=weights, target="particle", **criterion)
     shown = session.results.coarsened
     assert shown is not None

@@ -52,6 +52,8 @@ def test_that_a_particle_is_not_fitted_twice() -> None:
         ({"n_triangles": 30}, []),
         ({"stop_at": "triangles", "n_triangles": 71}, []),  # 20 facets, as before
         ({"stop_at": "triangles", "n_triangles": 72}, [COARSENING, COMPARISON]),
+        ({"stop_at": "vertices", "n_vertices": 37}, []),
+        ({"stop_at": "vertices", "n_vertices": 38}, [COARSENING, COMPARISON]),
         ({"stop_at": "error"}, [COARSENING, COMPARISON]),
         ({"largest_error": 0.5}, []),
         ({"seed": 7}, [COARSENING, COMPARISON]),

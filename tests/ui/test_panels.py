@@ -43,6 +43,7 @@ VALUES = {
         "stop_at": "error",
         "n_facets": 33,
         "n_triangles": 77,
+        "n_vertices": 39,
         "largest_error": 0.0035,
         "target": "particle",
         "method": "annealing",
@@ -143,6 +144,7 @@ def test_that_another_method_drops_the_settings_of_the_first(shown):
     [
         ("facets", "n_facets", 12, 12),
         ("triangles", "n_triangles", 44, 44),
+        ("vertices", "n_vertices", 24, 24),
         ("error", "largest_error", 2.5, 0.025),
     ],
 )
@@ -152,7 +154,7 @@ def test_that_the_number_of_what_is_stopped_at_is_the_one_that_can_be_set(shown,
     panel.valueChanged.connect(said.append)
     panel.stop_at.setCurrentIndex(panel.stop_at.findData(stop))
     panel.stop_at.activated.emit(panel.stop_at.currentIndex())
-    names = ("n_facets", "n_triangles", "largest_error")
+    names = ("n_facets", "n_triangles", "n_vertices", "largest_error")
     assert [name for name in names if getattr(panel, name).isVisible()] == [field]
     getattr(panel, field).field.setValue(typed)
     assert said == [{"stop_at": stop}, {field: told}]

@@ -16,10 +16,14 @@ if TYPE_CHECKING:
 
 
 class CoarseningMethod(Protocol):
-    """A way to coarsen; `Settings` is a frozen dataclass whose fields carry label and range."""
+    """A way to coarsen; `Settings` is a frozen dataclass whose fields carry label and range.
+
+    `keeps_terms` says whether it can keep terms of the loss exactly, or knows their weights only.
+    """
 
     key: str
     label: str
+    keeps_terms: bool
     Settings: type[Any]
 
     def run(

@@ -103,6 +103,7 @@ class AnnealingMethod:
 
     key = "annealing"
     label = N_("Simulated annealing")
+    keeps_terms = False
     Settings = AnnealingSettings
 
     def run(

@@ -84,6 +84,7 @@ class CompoundMethod:
 
     key = "compound"
     label = N_("Compound of convex parts")
+    keeps_terms = True
     Settings = CompoundSettings
 
     def run(

@@ -53,6 +53,7 @@ class ExactMethod:
 
     key = "exact"
     label = N_("Exact descriptors")
+    keeps_terms = True
     Settings = ExactSettings
 
     def run(

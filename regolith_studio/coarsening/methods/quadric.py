@@ -58,6 +58,7 @@ class QuadricMethod:
 
     key = "quadric"
     label = N_("Quadric decimation")
+    keeps_terms = False
     Settings = QuadricSettings
 
     def run(

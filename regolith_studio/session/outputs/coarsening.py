@@ -58,7 +58,11 @@ def document_head(request: CoarseningRequest) -> dict[str, Any]:
 
 def request_document(request: CoarseningRequest) -> dict[str, Any]:
     """A request as plain JSON values; the largest error only if it is the stopping criterion."""
-    values = asdict(request) | {"weights": dict(request.weights), "settings": dict(request.settings)}
+    values = asdict(request) | {
+        "weights": dict(request.weights),
+        "keep": sorted(request.kept),
+        "settings": dict(request.settings),
+    }
     if request.largest_error is None:
         del values["largest_error"]
     return values

@@ -28,7 +28,12 @@ from regolith_studio.ui.widgets.forms import SettingsForm
 from regolith_studio.ui.widgets.labels import heading, remark
 from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec
 
-STOPS = {"facets": N_("Facets n"), "triangles": N_("Triangles"), "error": N_("Error ≤")}
+STOPS = {
+    "facets": N_("Facets n"),
+    "triangles": N_("Triangles"),
+    "vertices": N_("Vertices"),
+    "error": N_("Error ≤"),
+}
 FACETS = NumberSpec(
     "",
     N_("Number of facets"),
@@ -44,6 +49,14 @@ TRIANGLES = NumberSpec(
     228,
     limit=4 * FACETS_LIMITS[1] - 12,
     tip=N_("The number of facets follows from it: n facets have at most 4n−12 triangles."),
+)
+VERTICES = NumberSpec(
+    "",
+    N_("Maximum number of vertices"),
+    2 * FACETS_LIMITS[0] - 4,
+    128,
+    limit=2 * FACETS_LIMITS[1] - 4,
+    tip=N_("The number of facets follows from it: n facets have at most 2n−4 vertices."),
 )
 ERROR = NumberSpec(
     "",
@@ -66,7 +79,7 @@ class CoarseningPanel(QWidget):
     """Edits the choices of the coarsening, apart from the weights of its loss."""
 
     FIELDS = (
-        *("stop_at", "n_facets", "n_triangles", "largest_error"),
+        *("stop_at", "n_facets", "n_triangles", "n_vertices", "largest_error"),
         *("target", "method", "settings", "seed"),
     )
     valueChanged = Signal(dict)  # noqa: N815
@@ -85,7 +98,13 @@ class CoarseningPanel(QWidget):
         self.n_facets = _amount(FACETS, "n_facets")
         self.n_triangles = _amount(TRIANGLES, "n_triangles")
         self.largest_error = _amount(ERROR, "largest_error")
-        self._amounts = {"facets": self.n_facets, "triangles": self.n_triangles, "error": self.largest_error}
+        self.n_vertices = _amount(VERTICES, "n_vertices")
+        self._amounts = {
+            "facets": self.n_facets,
+            "triangles": self.n_triangles,
+            "vertices": self.n_vertices,
+            "error": self.largest_error,
+        }
         self.target = ChoiceBox("target", tr("Target of the coarsening"), TARGET_LABELS)
         self.method = ChoiceBox("method", tr("Coarsening method"), {k: m.label for k, m in METHODS.items()})
         self.seed = _seed_field()
@@ -116,6 +135,7 @@ class CoarseningPanel(QWidget):
             "stop_at": self.stop_at.value(),
             "n_facets": int(self.n_facets.value()),
             "n_triangles": int(self.n_triangles.value()),
+            "n_vertices": int(self.n_vertices.value()),
             "largest_error": _share(self.largest_error.value()),
             "target": self.target.value(),
             "method": self.method.value(),
@@ -128,6 +148,7 @@ class CoarseningPanel(QWidget):
         self.stop_at.setValue(value["stop_at"])
         self.n_facets.setValue(value["n_facets"])
         self.n_triangles.setValue(value["n_triangles"])
+        self.n_vertices.setValue(value["n_vertices"])
         self.largest_error.setValue(100.0 * value["largest_error"])
         self._show_amount()
         self.target.setValue(value["target"])
@@ -217,6 +238,7 @@ class CoarseningPanel(QWidget):
     def _connect(self) -> None:
         self.n_facets.valueChanged.connect(lambda n: self.valueChanged.emit({"n_facets": int(n)}))
         self.n_triangles.valueChanged.connect(lambda n: self.valueChanged.emit({"n_triangles": int(n)}))
+        self.n_vertices.valueChanged.connect(lambda n: self.valueChanged.emit({"n_vertices": int(n)}))
         self.largest_error.valueChanged.connect(
             lambda percent: self.valueChanged.emit({"largest_error": _share(percent)})
         )

@@ -53,6 +53,7 @@ class LossPanel(QWidget):
         self._own = UserPresets("weights")
         self._preset = self._chosen = next(iter(presets()))
         self._known: dict[str, Preset] = {}
+        self._keep: frozenset[str] | None = None
         self.bar = PresetBar("preset", tr("Preset of weights"), heading(tr("Weights of the loss (Eq. 9)")))
         self.preset, self.reset = self.bar.box, self.bar.reset
         self.reset.setObjectName("reset_weights")
@@ -66,12 +67,13 @@ class LossPanel(QWidget):
     def value(self) -> dict[str, Any]:
         """Weights and preset."""
         weights = LossWeights.of(**{key: float(each.value()) for key, each in self.sliders.items()})
-        return {"weights": weights, "preset": self._preset}
+        return {"weights": weights.keeping(self._keep), "preset": self._preset}
 
     def setValue(self, value: Mapping[str, Any]) -> None:
         """Show other weights without emitting a signal."""
         for key, slider in self.sliders.items():
             slider.setValue(value["weights"][key])
+        self._keep = value["weights"].keep
         self._preset = value["preset"]
         self._chosen = self._source(value["weights"])
         self._show_mark()

@@ -67,7 +67,7 @@ def dataset_title(dataset: Dataset) -> str:
     )
 
 
-SHAPE_FIELDS = ("method", "stop_at", "n_facets", "n_triangles", "largest_error")
+SHAPE_FIELDS = ("method", "stop_at", "n_facets", "n_triangles", "n_vertices", "largest_error")
 """Choices that :func:`coarsening_text` names."""
 
 
