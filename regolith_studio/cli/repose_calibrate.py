@@ -120,7 +120,8 @@ def _ranges(entries: list[str] | None) -> dict[str, tuple[float, float]]:
 def calibration_in_words(document: dict[str, Any]) -> str:
     """The result of a calibration."""
     lines = []
-    for each in document["parameters"]:
+    known = document["n_usable_runs"] > 0
+    for each in document["parameters"] if known else ():
         if "choices" in each:
             chances = ", ".join(f"{name} {100 * p:.0f} %" for name, p in each["probabilities"].items())
             lines.append(f"{each['name']:20} {each['best']} (probabilities: {chances})")
@@ -130,7 +131,7 @@ def calibration_in_words(document: dict[str, Any]) -> str:
             f"{each['name']:20} {each['best']:.4g} ({low:.4g} to {high:.4g}, "
             f"{100 * document['confidence']:g} % interval; before {each['low']:g} to {each['high']:g})"
         )
-    for each in document["targets"]:
+    for each in document["targets"] if known else ():
         lines.append(
             f"{each['name'].replace('_', ' '):20} {each['predicted']:.4g} ± "
             f"{each['predicted_standard_error']:.2g} {each['unit']} predicted, {each['value']:g} ± "

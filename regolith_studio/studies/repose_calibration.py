@@ -100,13 +100,22 @@ class ReposeCalibration:
         return tuple(four_digits(value) for value in self.posterior.next_values)
 
     @property
+    def usable_runs(self) -> tuple[CalibrationRun, ...]:
+        """Runs with at least one of the wanted results; without any the posterior is the prior."""
+        names = [each.name for each in self.targets]
+        return tuple(run for run in self.runs if not np.isnan([run.result(name) for name in names]).all())
+
+    @property
     def warnings(self) -> tuple[str, ...]:
         """Sentences on what the calibration could not find."""
         sentences: list[str] = []
         if failed := sum(bool(np.isnan(run.result(ANGLE))) for run in self.runs):
-            template = N_("{count} of {total} runs formed no pile with an angle.")
+            template = N_("{count} of {total} runs formed a heap without a measurable angle.")
             sentences.append(Message(template, count=failed, total=len(self.runs)))
-        if self.posterior.misfit > MAX_MISFIT:
+        if self.runs and not self.usable_runs:
+            template = N_("No run can be used, so that there is no value: take 1,000 particles or more.")
+            sentences.append(Message(template))
+        elif self.posterior.misfit > MAX_MISFIT:
             template = N_(
                 "No values in the range give the wanted results: the nearest prediction is {count} "
                 "standard deviations away. Take a wider range, other parameters or other particles."
@@ -174,6 +183,7 @@ def calibration_document(calibration: ReposeCalibration) -> dict[str, Any]:
         "software": {"regolith-studio": __version__},
         "confidence": CONFIDENCE,
         "n_runs": len(calibration.runs),
+        "n_usable_runs": len(calibration.usable_runs),
         "targets": [_target(calibration, k) for k in range(len(calibration.targets))],
         "parameters": [_parameter(calibration, k) for k in range(len(calibration.parameters))],
         "misfit": posterior.misfit,
@@ -185,24 +195,26 @@ def calibration_document(calibration: ReposeCalibration) -> dict[str, Any]:
 
 def _target(calibration: ReposeCalibration, k: int) -> dict[str, Any]:
     target, posterior = calibration.targets[k], calibration.posterior
+    known, best = bool(calibration.usable_runs), posterior.best_index
     return {
         "name": target.name,
         "unit": UNITS[target.name],
         "value": target.value,
         "standard_error": target.error,
-        "predicted": float(posterior.predicted[posterior.best_index, k]),
-        "predicted_standard_error": float(posterior.deviations[posterior.best_index, k]),
+        "predicted": float(posterior.predicted[best, k]) if known else None,
+        "predicted_standard_error": float(posterior.deviations[best, k]) if known else None,
     }
 
 
 def _parameter(calibration: ReposeCalibration, k: int) -> dict[str, Any]:
     parameter, posterior = calibration.parameters[k], calibration.posterior
+    known = bool(calibration.usable_runs)
     if parameter.choices:
         probabilities = [probabilities_of(each, parameter, k) for each in calibration.posteriors]
         return {
             "name": parameter.name,
             "choices": list(parameter.choices),
-            "best": parameter.choices[int(posterior.best[k])],
+            "best": parameter.choices[int(posterior.best[k])] if known else None,
             "probabilities": probabilities[-1],
             "probabilities_after_each_run": probabilities,
         }
@@ -211,8 +223,8 @@ def _parameter(calibration: ReposeCalibration, k: int) -> dict[str, Any]:
         "name": parameter.name,
         "low": parameter.low,
         "high": parameter.high,
-        "best": float(posterior.best[k]),
-        "interval": posterior.intervals[k].tolist(),
+        "best": float(posterior.best[k]) if known else None,
+        "interval": posterior.intervals[k].tolist() if known else None,
         "density": {"values": values.tolist(), "relative_to_prior": density.tolist()},
         "intervals_after_each_run": [each.intervals[k].tolist() for each in calibration.posteriors],
     }

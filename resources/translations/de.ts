@@ -3320,6 +3320,10 @@
         <translation>Weiter</translation>
     </message>
     <message>
+        <source>Next run at {next:.3g}.</source>
+        <translation>Nächster Lauf bei {next:.3g}.</translation>
+    </message>
+    <message>
         <source>Next seed</source>
         <translation>Nächster Startwert</translation>
     </message>
@@ -3398,6 +3402,10 @@
     <message>
         <source>No polyhedron with {faces} facets was found that meets all descriptors; this one misses {missed}. A weight of 0 frees a descriptor.</source>
         <translation>Es fand sich kein Polyeder mit {faces} Facetten, das alle Deskriptoren trifft; dieses verfehlt {missed}. Ein Gewicht von 0 gibt einen Deskriptor frei.</translation>
+    </message>
+    <message>
+        <source>No run can be used, so that there is no value: take 1,000 particles or more.</source>
+        <translation>Kein Lauf ist verwendbar, also gibt es keinen Wert: 1.000 Partikel oder mehr nehmen.</translation>
     </message>
     <message>
         <source>No values in the range give the wanted results: the nearest prediction is {count} standard deviations away. Take a wider range, other parameters or other particles.</source>
@@ -4064,8 +4072,8 @@
         <translation>Stets positiv; Größe und Spektrum werden getrennt modelliert, sodass es extrapoliert.</translation>
     </message>
     <message>
-        <source>Posterior over prior density</source>
-        <translation>A-posteriori- durch A-priori-Dichte</translation>
+        <source>Posterior / prior</source>
+        <translation>A-posteriori / A-priori</translation>
     </message>
     <message>
         <source>Predicting</source>
@@ -5804,8 +5812,8 @@
         <translation>Das Polyeder ist noch nicht fertig.</translation>
     </message>
     <message>
-        <source>The probability density of the parameter appears after the first run.</source>
-        <translation>Die Wahrscheinlichkeitsdichte des Parameters erscheint nach dem ersten Lauf.</translation>
+        <source>The probability density of the parameter appears after the first usable run.</source>
+        <translation>Die Wahrscheinlichkeitsdichte des Parameters erscheint nach dem ersten verwendbaren Lauf.</translation>
     </message>
     <message>
         <source>The proposal, T(k) and the decision with their numbers</source>
@@ -7928,8 +7936,8 @@
         <translation>{count} davon haben weniger als {least} Voxel und entfallen.</translation>
     </message>
     <message>
-        <source>{count} of {total} runs formed no pile with an angle.</source>
-        <translation>{count} von {total} Läufen ergaben keinen Schüttkegel mit einem Winkel.</translation>
+        <source>{count} of {total} runs formed a heap without a measurable angle.</source>
+        <translation>{count} von {total} Läufen ergaben eine Schüttung ohne messbaren Winkel.</translation>
     </message>
     <message>
         <source>{count} pairs of faces cross each other.</source>

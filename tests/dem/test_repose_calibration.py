@@ -120,6 +120,27 @@ def test_that_runs_of_another_case_are_no_data(
     assert "another dataset, engine, case or seed (run_01); choose another folder" in capsys.readouterr().err
 
 
+def test_that_runs_without_an_angle_give_no_value(
+    calibrated: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A layer has no angle: the middle of the range is no result."""
+
+    def layer_engine(*arguments: Any) -> Generator[Snapshot, None, SimulationResult]:
+        run = yield from cone_engine(*arguments)
+        flat = run.particles.points * (1.0, 1.0, 0.05)
+        return replace(run, particles=replace(run.particles, points=flat))
+
+    monkeypatch.setattr(repose_jobs, "run_engine", layer_engine)
+    assert calibrated("--angle", "30", "--runs", "2") == 0
+    found = result(tmp_path / "found")
+    assert (found["n_runs"], found["n_usable_runs"]) == (2, 0)
+    assert found["parameters"][0]["best"] is None
+    assert found["parameters"][0]["interval"] is None
+    printed = capsys.readouterr()
+    assert "No run can be used" in printed.err
+    assert "% interval" not in printed.out
+
+
 @pytest.mark.slow
 def test_that_an_angle_out_of_reach_is_said(calibrated: Command, capsys: pytest.CaptureFixture[str]) -> None:
     assert calibrated("--angle", "60", "--runs", "4") == 0

@@ -504,6 +504,21 @@ def test_that_a_calibration_shows_runs_density_and_the_next_run(page):
     assert "after 4 runs; next run at" in page.calibration.status.text()
 
 
+def test_that_a_calibration_without_a_usable_run_shows_no_value(page):
+    """Without a result the posterior is the prior, whose middle is no measurement of the friction."""
+    calibration = ReposeCalibration.begin(
+        [CalibrationParameter("static_friction", 0.3, 0.9)], [angle_target(30.0, 1.0)]
+    )
+    for friction in (0.6, 0.4):
+        document = {"state": "finished", "measurement": {"status": "no flanks"}}
+        calibration = calibration.with_run(CalibrationRun("run", (friction,), document))
+    page.calibration.show_calibration(calibration)
+    text = page.calibration.status.text()
+    assert "2 of 2 runs formed a heap without a measurable angle" in text
+    assert "interval" not in text
+    assert page.calibration.posterior.curves == ()
+
+
 @pytest.mark.parametrize(
     ("name", "job"), [("study", "run_repose_study"), ("calibration", "locked_calibration")]
 )

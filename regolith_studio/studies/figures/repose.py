@@ -120,7 +120,8 @@ def _draw_density(axis: Axes, calibration: ReposeCalibration, k: int) -> None:
         _name_choices(axis, parameter.choices)
     else:
         axis.fill_between(where, density, step="mid", color=POSTERIOR, alpha=0.4)
-        axis.axvline(float(posterior.best[k]), color=POSTERIOR, label="best")
+        if calibration.usable_runs:
+            axis.axvline(float(posterior.best[k]), color=POSTERIOR, label="best")
         axis.axvline(calibration.next_values[k], color="0.3", linestyle=":", label="next run")
     axis.axhline(1.0, color="0.5", linewidth=0.8, linestyle="--", label="before the first run")
     axis.set_xlabel(_label(calibration, k))
@@ -146,7 +147,8 @@ def _draw_intervals(axis: Axes, calibration: ReposeCalibration, k: int) -> None:
     numbers = np.arange(len(intervals))
     axis.fill_between(numbers, *intervals.T, color=POSTERIOR, alpha=0.4)
     best = [float(each.best[k]) for each in calibration.posteriors]
-    axis.plot(numbers[1:], best[1:], "o-", color=POSTERIOR)
+    if calibration.usable_runs:
+        axis.plot(numbers[1:], best[1:], "o-", color=POSTERIOR)
     axis.set_title(f"best and {100 * CONFIDENCE:g} % interval", fontsize="medium")
     axis.set_xlabel("runs")
     axis.xaxis.set_major_locator(MaxNLocator(integer=True))

@@ -81,8 +81,8 @@ class CalibrationPanel(QWidget):
         self.prediction = CurvePlot(tr("Static friction"), tr("Angle [°]"), tr("Each run adds a point."))
         self.posterior = CurvePlot(
             tr("Static friction"),
-            tr("Posterior over prior density"),
-            tr("The probability density of the parameter appears after the first run."),
+            tr("Posterior / prior"),
+            tr("The probability density of the parameter appears after the first usable run."),
         )
         self.status = remark()
         self.status.setObjectName("repose_calibration_status")
@@ -162,14 +162,14 @@ class CalibrationPanel(QWidget):
 
     def _draw(self) -> None:
         calibration = self._calibration
-        if calibration is None or not calibration.runs:
+        if calibration is None or not calibration.usable_runs:
             self.prediction.set_curves([])
             self.posterior.set_curves([])
             self.posterior.set_marker(None)
             return
         label = tr(PARAMETERS[calibration.parameters[0].name][0])
         self.prediction.set_labels(label, tr("Angle [°]"))
-        self.posterior.set_labels(label, tr("Posterior over prior density"))
+        self.posterior.set_labels(label, tr("Posterior / prior"))
         self.prediction.set_curves(_prediction_curves(calibration, self.prediction.theme))
         self.posterior.set_curves(_posterior_curves(calibration, self.posterior.theme))
         self.posterior.set_marker(calibration.next_values[0])
@@ -215,23 +215,23 @@ def _number(name: str, accessible: str, low: float, high: float, value: float, u
 
 def _in_words(calibration: ReposeCalibration) -> str:
     """What is known of the parameter, the next run, and warnings."""
+    warnings = list(map(translate, calibration.warnings))
+    if not calibration.usable_runs:
+        return "\n".join([*warnings, tr("Next run at {next:.3g}.", next=calibration.next_values[0])])
     posterior, parameter = calibration.posterior, calibration.parameters[0]
     low, high = posterior.intervals[0]
-    sentences = [
-        tr(
-            "{name}: {best:.3g} ({low:.3g} to {high:.3g}, {share:.0%} interval) after {count} runs; next run "
-            "at {next:.3g}.",
-            name=tr(PARAMETERS[parameter.name][0]),
-            best=float(posterior.best[0]),
-            low=float(low),
-            high=float(high),
-            share=CONFIDENCE,
-            count=len(calibration.runs),
-            next=calibration.next_values[0],
-        ),
-        *map(translate, calibration.warnings),
-    ]
-    return "\n".join(sentences)
+    found = tr(
+        "{name}: {best:.3g} ({low:.3g} to {high:.3g}, {share:.0%} interval) after {count} runs; next run "
+        "at {next:.3g}.",
+        name=tr(PARAMETERS[parameter.name][0]),
+        best=float(posterior.best[0]),
+        low=float(low),
+        high=float(high),
+        share=CONFIDENCE,
+        count=len(calibration.usable_runs),
+        next=calibration.next_values[0],
+    )
+    return "\n".join([found, *warnings])
 
 
 def _prediction_curves(calibration: ReposeCalibration, theme: Theme) -> list[PlotCurve]:
