@@ -119,6 +119,8 @@ class Exporter:
     convex_only
         Why the format cannot hold compounds, in one sentence; empty if it can. A dataset with compounds is
         refused before anything is written.
+    fills_mass
+        Whether its script makes as many particles as have the mass of the test; others list `n_particles`.
     """
 
     key: str
@@ -130,6 +132,7 @@ class Exporter:
     files: Callable[[Dataset, ExportOptions], dict[str, bytes]]
     alters: str = ""
     convex_only: str = N_("Its particles are convex polyhedra.")
+    fills_mass: bool = False
 
 
 NOTES = "NOTES"

@@ -3,12 +3,15 @@
 SI units.
 """
 
-from dataclasses import replace
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from regolith_studio.dataset.dataset import Dataset
+from regolith_studio.dataset.export import ExportOptions
 from regolith_studio.dataset.parameters import LiftingCylinderTest
+from regolith_studio.dataset.size_distributions import SizeDistribution
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.half_spaces import HalfSpaces
@@ -48,6 +51,67 @@ def particle_count(
 ) -> float:
     """Particles in `total_mass` (kg); with the paper's sizes, density and factor 378,000 in 15 g."""
     return total_mass / mean_particle_mass(dataset, density, coarse_graining_factor)
+
+
+MANY_PARTICLES = 500_000
+"""Above the number that the paper simulates (378,000); more take a solver weeks."""
+
+QUANTILES = 65
+"""Of each class that represent it in the median size; odd, so that the median of one class is exact."""
+
+
+@dataclass(frozen=True)
+class CylinderFilling:
+    """The particles that fill the mass of a lifting-cylinder test.
+
+    Parameters
+    ----------
+    n_particles
+        Expected number.
+    mass
+        Of all particles, in kg.
+    median_diameter
+        By mass, after coarse graining, in micrometres.
+    sufficient_factor
+        Coarse-graining factor, of two digits, at which there are at most :data:`MANY_PARTICLES`.
+    """
+
+    n_particles: float
+    mass: float
+    median_diameter: float
+    sufficient_factor: float
+
+
+def cylinder_filling(
+    number_weights: Sequence[float], sizes: Sequence[SizeDistribution], options: ExportOptions
+) -> CylinderFilling:
+    """Number and median size of the particles of a script that fills the test's mass.
+
+    Parameters
+    ----------
+    number_weights
+        Share of each class of the particles counted by number; divided by their sum.
+    sizes
+        Of each class, in micrometres.
+    """
+    weights = np.asarray(number_weights) / np.sum(number_weights)
+    cubes = np.array([each.mean_cube() for each in sizes])
+    factor, mass = options.coarse_graining_factor, options.test.mass
+    one = options.contact.density * np.pi / 6 * (factor * MICROMETRE) ** 3 * float(weights @ cubes)
+    count = mass / one
+    shares = weights * cubes / (weights @ cubes)
+    probabilities = (np.arange(QUANTILES) + 0.5) / QUANTILES
+    diameters = np.concatenate([each.weighted("volume").quantile(probabilities) for each in sizes])
+    order = np.argsort(diameters)
+    below = np.cumsum(np.repeat(shares / QUANTILES, QUANTILES)[order])
+    median = float(diameters[order][np.searchsorted(below, 0.5)])
+    sufficient = _two_digits_up(factor * np.cbrt(count / MANY_PARTICLES))
+    return CylinderFilling(count, mass, factor * median, sufficient)
+
+
+def _two_digits_up(value: float) -> float:
+    step = 10.0 ** (np.floor(np.log10(value)) - 1)
+    return float(f"{np.ceil(value / step - 1e-9) * step:.2g}")
 
 
 def tube_mesh(diameter: float, height: float, sides: int = 96, thickness: float = 0.05) -> Mesh:

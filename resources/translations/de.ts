@@ -840,6 +840,10 @@
         <translation>Datensatz wird gebaut</translation>
     </message>
     <message>
+        <source>Built with other settings than those shown.</source>
+        <translation>Mit anderen Einstellungen als den gezeigten erstellt.</translation>
+    </message>
+    <message>
         <source>Bulk density</source>
         <translation>Schüttdichte</translation>
     </message>
@@ -1094,6 +1098,10 @@
     <message>
         <source>Coarse-graining factor</source>
         <translation>Coarse-Graining-Faktor</translation>
+    </message>
+    <message>
+        <source>Coarse-graining factor {factor}</source>
+        <translation>Vergröberungsfaktor {factor}</translation>
     </message>
     <message>
         <source>Coarsen the open particles first</source>
@@ -3220,6 +3228,10 @@
         <translation>Mehr Facetten helfen hier nicht: {count} Facetten hatten einen Verlust von {loss}.</translation>
     </message>
     <message>
+        <source>More than {limit} are too many:</source>
+        <translation>Mehr als {limit} sind zu viele:</translation>
+    </message>
+    <message>
         <source>Mouse in the views</source>
         <translation>Maus in den Ansichten</translation>
     </message>
@@ -3336,8 +3348,8 @@
         <translation>Es wurde kein Verbund von {parts} Teilen mit {faces} Facetten gefunden, der alle Deskriptoren trifft; dieser verfehlt {missed}. Mehr Teile oder Facetten oder ein Gewicht von 0 für einen Deskriptor können helfen.</translation>
     </message>
     <message>
-        <source>No dataset has been written yet.</source>
-        <translation>Noch wurde kein Datensatz geschrieben.</translation>
+        <source>No dataset of these particles has been written yet.</source>
+        <translation>Von diesen Partikeln wurde noch kein Datensatz geschrieben.</translation>
     </message>
     <message>
         <source>No dataset yet</source>
@@ -3830,6 +3842,10 @@
     <message>
         <source>Other</source>
         <translation>Andere</translation>
+    </message>
+    <message>
+        <source>Other formats: {count} particles drawn.</source>
+        <translation>Andere Formate: {count} gezogene Partikel.</translation>
     </message>
     <message>
         <source>Otherwise each connected body is one grain.</source>
@@ -8054,6 +8070,10 @@
     <message>
         <source>{label} cannot hold the compounds of this dataset: {why}</source>
         <translation>{label} kann die Verbünde dieses Datensatzes nicht aufnehmen: {why}</translation>
+    </message>
+    <message>
+        <source>{label}: {count} particles, {mass} g, d50 {size} µm.</source>
+        <translation>{label}: {count} Partikel, {mass} g, d50 {size} µm.</translation>
     </message>
     <message>
         <source>{label}: {share:.3g} % of voxels</source>

@@ -250,6 +250,45 @@ def test_that_a_dataset_can_be_opened_without_any_particle(page, chosen, tmp_pat
     page.validate()
 
 
+def test_that_the_dataset_of_other_particles_is_neither_shown_nor_exported(chosen, tmp_path, wait) -> None:
+    chosen.build_in(tmp_path / "set")
+    wait(lambda: chosen.targets.export.isEnabled())
+    chosen.export_to(tmp_path / "out")
+    wait(lambda: len(chosen.exports.exports) == 2)
+    chosen.sizes.set_text("log-normal:50,0.4")
+    assert not chosen.result.figures[0].isEnabled(), "the dataset on the disk has other sizes"
+    assert "other settings" in chosen.result.sentence.text()
+    chosen.sizes.set_text("measured")
+    assert chosen.result.figures[0].isEnabled()
+    chosen.session.adopt(grains(5, first=30))
+    wait(lambda: not chosen.gallery.shown)
+    assert [each.text() for each in chosen.result.figures] == ["–", "–"]
+    assert not chosen.targets.export.isEnabled()
+    assert chosen.exports.exports == ()
+    chosen.export()
+    assert "no dataset to export" in chosen.toast.sentence.text()
+
+
+def test_that_the_number_of_simulated_particles_is_stated_before_the_export(page, tmp_path, wait) -> None:
+    """15 g of spheres of 22 um and 3.1 g/cm3 are 868 million; a factor of 13 leaves 395,000."""
+    sphere = icosphere(3)
+    radius = 11.0 / (sphere.volume / (4 / 3 * np.pi)) ** (1 / 3)
+    page.session.adopt([Particle(f"ball-{k}", sphere.moved(scale=radius)) for k in range(3)])
+    wait(lambda: page.representatives.start.isEnabled())
+    page.representatives.count.setValue(1)
+    page.build_in(tmp_path / "set")
+    wait(lambda: page.targets.export.isEnabled())
+    density = page.targets.options().contact.density
+    count = 0.015 / (density * np.pi / 6 * 22e-6**3)
+    stated = int(page.targets.preview.text().split(": ")[1].split(" ")[0].replace(",", ""))
+    assert stated == pytest.approx(count, rel=1e-6)
+    assert "d50 22 µm" in page.targets.preview.text()
+    page.targets.enlarge.click()
+    assert page.targets.options().coarse_graining_factor == 13
+    assert "too many" not in page.targets.preview.text()
+    assert page.targets.enlarge.isHidden()
+
+
 @pytest.mark.slow
 def test_that_other_particles_forget_the_choice(chosen, wait) -> None:
     chosen.session.adopt(grains(5, first=30))

@@ -112,4 +112,5 @@ EXPORTER = Exporter(
     load_command="python {shell}/rocky_case.py",
     files=_files,
     convex_only="",
+    fills_mass=True,
 )

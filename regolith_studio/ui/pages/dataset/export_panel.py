@@ -1,6 +1,6 @@
 """Export to DEM programs: formats and settings, what formats lose, and the list of written exports."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from typing import Any
 
@@ -20,11 +20,13 @@ from PySide6.QtWidgets import (
 
 from regolith_studio.dataset.export import PARTS, ExportOptions, ExportResult
 from regolith_studio.dataset.exporters import EXPORTERS
+from regolith_studio.dataset.lifting_cylinder import MANY_PARTICLES, CylinderFilling
 from regolith_studio.dataset.parameters import NOT_GIVEN, ContactParameters, LiftingCylinderTest, ScriptTimes
 from regolith_studio.errors import InputError
 from regolith_studio.messages import N_
 from regolith_studio.session.recipe import Exports
 from regolith_studio.ui.translation import tr
+from regolith_studio.ui.translation.numbers import number_text
 from regolith_studio.ui.translation.plain_text import Markup, inert, rich
 from regolith_studio.ui.widgets.collapsible import Collapsible
 from regolith_studio.ui.widgets.forms import ParameterForm
@@ -86,8 +88,16 @@ class ExportPanel(QWidget):
         )
         self.foot = QWidget()
         """Belongs below the scrolled column: the button stays in sight however many formats there are."""
+        self.preview = remark()
+        self.preview.setObjectName("dataset_preview")
+        self.enlarge = QPushButton()
+        self.enlarge.setObjectName("dataset_enlarge")
+        self.enlarge.hide()
+        self._fill: Callable[[ExportOptions], CylinderFilling] | None = None
         last = QVBoxLayout(self.foot)
         last.setContentsMargins(4, 6, 12, 10)
+        last.addWidget(self.preview)
+        last.addWidget(self.enlarge)
         last.addWidget(self.lossy)
         last.addWidget(self.export)
         self.coarse_graining.setValue(1)
@@ -98,8 +108,37 @@ class ExportPanel(QWidget):
             getattr(self, part).valueChanged.connect(self.optionsChanged)
         self.lossy.toggled.connect(lambda _: self._show())
         self.export.clicked.connect(self.exportRequested)
+        self.enlarge.clicked.connect(self._take_sufficient_factor)
+        self.optionsChanged.connect(self._show_preview)
         self._ready = self._compounds = False
         self.setValue({"targets": FIRST})
+
+    def show_filling(self, fill: Callable[[ExportOptions], CylinderFilling] | None) -> None:
+        """State how many particles a script will simulate, by a function of the options."""
+        self._fill = fill
+        self._show_preview()
+
+    def _show_preview(self) -> None:
+        filling = [key for key in self.chosen() if EXPORTERS[key].fills_mass]
+        lines, too_many = [], False
+        if filling and self._fill is not None:
+            found = self._fill(self.options())
+            too_many = found.n_particles > MANY_PARTICLES
+            lines.append(_filling_text(tr(EXPORTERS[filling[0]].label), found))
+            self.enlarge.setText(
+                tr("Coarse-graining factor {factor}", factor=number_text(found.sufficient_factor, "g"))
+            )
+            self._sufficient = found.sufficient_factor
+        if len(filling) < len(self.chosen()) and self._fill is not None:
+            count = number_text(int(self.particles.value()), ",")
+            lines.append(tr("Other formats: {count} particles drawn.", count=count))
+        self.preview.setText("\n".join(lines))
+        self.preview.setVisible(bool(lines))
+        self.enlarge.setVisible(too_many)
+
+    def _take_sufficient_factor(self) -> None:
+        self.coarse_graining.setValue(self._sufficient)
+        self.optionsChanged.emit()
 
     def chosen(self) -> tuple[str, ...]:
         """Keys of the selected formats."""
@@ -202,12 +241,28 @@ class ExportPanel(QWidget):
             problem = f"{tr(EXPORTERS[altering[0]].label)}: {tr(EXPORTERS[altering[0]].alters)}"
         self.export.setEnabled(getattr(self, "_ready", False) and bool(self.chosen()) and not problem)
         self.export.setToolTip(inert(problem))
+        if hasattr(self, "_fill"):
+            self._show_preview()
         self.chosenChanged.emit()
 
     def refusing(self) -> list[str]:
         """Keys of the selected formats that cannot hold the dataset's compounds."""
         compounds = getattr(self, "_compounds", False)
         return [key for key in self.chosen() if compounds and EXPORTERS[key].convex_only]
+
+
+def _filling_text(label: str, found: CylinderFilling) -> str:
+    """Number, mass and size of the particles that a script simulates, and what to do about too many."""
+    text = tr(
+        "{label}: {count} particles, {mass} g, d50 {size} µm.",
+        label=label,
+        count=number_text(round(found.n_particles), ","),
+        mass=number_text(1e3 * found.mass, ".3g"),
+        size=number_text(found.median_diameter, ".3g"),
+    )
+    if found.n_particles <= MANY_PARTICLES:
+        return text
+    return text + " " + tr("More than {limit} are too many:", limit=number_text(MANY_PARTICLES, ","))
 
 
 def _column(parts: Sequence[QWidget]) -> QWidget:

@@ -11,7 +11,8 @@ from PySide6.QtWidgets import QFileDialog, QHBoxLayout, QMessageBox, QPushButton
 
 from regolith_studio.dataset.build import ShapeClass, singleton_class
 from regolith_studio.dataset.dataset import Dataset
-from regolith_studio.dataset.export import ExportResult
+from regolith_studio.dataset.export import ExportOptions, ExportResult
+from regolith_studio.dataset.lifting_cylinder import CylinderFilling, cylinder_filling
 from regolith_studio.dataset.quality import QualityPoint
 from regolith_studio.errors import RegolithError
 from regolith_studio.geometry.particle import Particle
@@ -57,6 +58,8 @@ from regolith_studio.ui.translation.plain_text import inert
 from regolith_studio.ui.widgets.headline import Headline
 
 FIND, BUILD, EXPORT = "find", "build", "export"
+SETTINGS = (*SHAPE_FIELDS, *("weights", "settings", "seed", "target", "l_max", "level", "fit_options"))
+"""Choices that the shapes of a dataset depend on."""
 MAX_MEASURED = 200
 """Number of particles up to which measured sizes are drawn: volumes are computed in the GUI thread."""
 
@@ -75,6 +78,7 @@ class DatasetPage(PageWidget):
         self._dataset: Dataset | None = None
         self._folder: Path | None = None
         self._exports: list[ExportResult] = []
+        self._made_with: tuple[Any, ...] | None = None
         self._opened: DatasetRequest | None = None
         self._to_build: tuple[Path, bool] | None = None
 
@@ -82,7 +86,6 @@ class DatasetPage(PageWidget):
         self.representatives, self.sizes = RepresentativesPanel(), SizesPanel()
         self.folder, self.targets = FolderPanel(), ExportPanel()
         self.result = Headline("dataset_result", (tr("Representatives"), tr("Formats written")))
-        self.result.show_values(("–", "–"), tr("No dataset has been written yet."))
         self.open_written = QPushButton(tr("Open the folder"))
         self.open_written.setObjectName("dataset_open_written")
         self.open_written.setEnabled(False)
@@ -94,9 +97,10 @@ class DatasetPage(PageWidget):
         self._place()
         self._connect()
         self._context.bindings.refresh("particles", self._show_particles, keeps_particles=True)
-        self._context.bindings.refresh("choices", self._show_choices, SHAPE_FIELDS, slow=True)
+        self._context.bindings.refresh("choices", self._show_choices, SETTINGS, slow=True)
         self._context.bindings.refresh("opened_request", self._take_opened)
         self._show_losses()
+        self._forget_dataset()
         self._enable_build()
 
     # --- the page of the window ----------------------------------------------------------------
@@ -303,8 +307,19 @@ class DatasetPage(PageWidget):
         if to_build is not None:
             self.build_in(*to_build)
 
+    def _forget_dataset(self) -> None:
+        """Show no dataset and no export of other particles or of another number of representatives."""
+        self._dataset = self._folder = self._made_with = None
+        self._exports = []
+        self.exports.show_exports(())
+        self.folder.show_dataset("")
+        self.result.show_values(("–", "–"), tr("No dataset of these particles has been written yet."))
+        self.open_written.setEnabled(False)
+        self.targets.show_filling(None)
+        self.targets.set_ready(False)
+
     def _show_chosen(self) -> None:
-        self._dataset = None
+        self._forget_dataset()
         shown = chosen_particles(self._particles, self._chosen) if self._chosen is not None else []
         title = tr_count(N_("1 representative"), N_("{count} representatives"), len(shown))
         self.gallery.show_shapes(title if shown else tr("Representatives"), shown)
@@ -321,6 +336,7 @@ class DatasetPage(PageWidget):
             made = []
         self.distribution.show_classes(made)
         self._enable_build()
+        self._show_result()
 
     def _enable_build(self) -> None:
         """Let the dataset be built, or say at the button why it cannot."""
@@ -341,6 +357,8 @@ class DatasetPage(PageWidget):
 
     def _take_built(self, built: DatasetBuildResult) -> None:
         self._take_dataset(built.folder, built.dataset)
+        self._made_with = self._settings()
+        self._show_result()
         self._context.toast.note(
             tr("{count} shapes in {folder}.", count=len(built.dataset), folder=built.folder)
         )
@@ -359,10 +377,23 @@ class DatasetPage(PageWidget):
         title = dataset_title(dataset)
         self.gallery.show_shapes(title, shapes(dataset))
         self.folder.show_dataset(f"{title}\n{folder}")
-        self._exports = []
+        self._exports, self._made_with = [], None
+        self.exports.show_exports(())
         self._show_result()
         self.distribution.show_classes(self._classes())
         self.targets.set_ready(True, bool(dataset.compounds))
+        self.targets.show_filling(self._filling)
+
+    def _filling(self, options: ExportOptions) -> CylinderFilling:
+        """The particles of a script that fills a cylinder with the dataset."""
+        assert self._dataset is not None, "it is asked of a dataset"
+        sizes = [one.sizes for one in self._dataset.representatives]
+        return cylinder_filling(self._dataset.class_weights("number").tolist(), sizes, options)
+
+    def _settings(self) -> tuple[Any, ...]:
+        """What a dataset that is built now depends on, besides the particles and their number."""
+        weighting = self.representatives.weighting.currentData()
+        return self.sizes.text(), weighting, self._context.session.choices.coarsening_request
 
     def _show_result(self) -> None:
         """What has been written, and where."""
@@ -372,7 +403,10 @@ class DatasetPage(PageWidget):
         if self._exports:
             place = self._exports[0].folder.parent
             written += " " + tr("The exports are in {folder}.", folder=place)
-        self.result.show_values((str(len(self._dataset)), str(len(self._exports))), written)
+        current = self._made_with in (None, self._settings())
+        if not current:
+            written = tr("Built with other settings than those shown.") + " " + written
+        self.result.show_values((str(len(self._dataset)), str(len(self._exports))), written, fresh=current)
         self.open_written.setEnabled(True)
 
     def _open_written(self) -> None:
@@ -406,6 +440,7 @@ class DatasetPage(PageWidget):
 
     def _show_choices(self) -> None:
         self.folder.shapes.setText(coarsening_text(self._context.session.choices))
+        self._show_result()
 
     def _take_opened(self) -> None:
         """Show the values of an opened recipe, once."""
