@@ -29,7 +29,8 @@ from regolith_studio.imaging.grain_surface import (
     grey_mesh,
     mask_mesh,
 )
-from regolith_studio.imaging.label_table import contact_areas, grain_crop, label_table
+from regolith_studio.imaging.label_table import contact_areas, find_padding, grain_crop, label_table
+from regolith_studio.imaging.scan_circle import ScanCircle
 from regolith_studio.imaging.volume import Origin, Volume
 from regolith_studio.imaging.volume_slabs import BATCH_VOXELS, ParallelMap, SharedArray, in_batches
 from regolith_studio.messages import N_, count_message
@@ -253,6 +254,8 @@ class LabelSelection:
         Of the labels of several pieces, the number of these, and of voxels outside of the largest.
     border, small
         Labels that are left out, as in an :class:`Extraction`.
+    circle
+        What the scanner saw of the slices, where that is not all.
     """
 
     boxes: Mapping[int, Box]
@@ -260,6 +263,7 @@ class LabelSelection:
     border: tuple[int, ...]
     small: tuple[int, ...]
     strays: Mapping[int, tuple[int, int]] = field(default_factory=dict)
+    circle: ScanCircle | None = None
 
     @property
     def wanted(self) -> dict[int, Box]:
@@ -301,11 +305,17 @@ def select_labels(
         if n_pieces > 1:
             strays[label] = n_pieces, sizes[label] - size
             boxes[label], sizes[label] = box, size
-    border = [k for k, box in boxes.items() if settings.exclude_border and touches(box, volume.shape)]
+    beside, columns = find_padding(volume, run) if settings.exclude_border else (set(), None)
+    border = [
+        k
+        for k, box in boxes.items()
+        if settings.exclude_border and (k in beside or touches(box, volume.shape))
+    ]
     if segmented and border:
         border += pieces_of_cut_grains(contact_areas(volume, run), sizes, border)
     small = [k for k in set(boxes).difference(border) if sizes[k] < settings.min_voxels]
-    return LabelSelection(boxes, sizes, tuple(border), tuple(sorted(small)), strays)
+    circle = None if columns is None or not columns.any() else ScanCircle.of(~columns)
+    return LabelSelection(boxes, sizes, tuple(border), tuple(sorted(small)), strays, circle)
 
 
 def _largest_piece(labels: SharedArray, row: tuple[int, Box]) -> tuple[Box, int, int]:
@@ -395,9 +405,14 @@ def border_weight(box: Box, shape: tuple[int, int, int]) -> float:
     all grains whose first voxel lies in the scan, each side keeps a share of (N - b - 1) / N (Miles
     1974, Lantuejoul 1980).
     """
+    return float(1.0 / np.prod(_shares_inside(box, shape)))
+
+
+def _shares_inside(box: Box, shape: tuple[int, int, int]) -> FloatArray:
+    """Along each axis, the share of the places of a box where it keeps clear of both borders."""
     lengths = np.array([side.stop - side.start for side in box], dtype=np.float64)
     size = np.array(shape, dtype=np.float64)
-    return float(1.0 / np.prod(np.maximum(1.0 - (lengths + 1.0) / size, 1.0 / size)))
+    return np.maximum(1.0 - (lengths + 1.0) / size, 1.0 / size)
 
 
 @dataclass(frozen=True, eq=False)
@@ -456,7 +471,7 @@ def _cuts(
             label,
             chosen.name_of(label),
             chosen.sizes[label],
-            border_weight(box, volume.shape) if settings.exclude_border else 1.0,
+            _weight(volume, label, box, chosen.circle) if settings.exclude_border else 1.0,
             box,
             grown(box, MARGIN if grey else 0, whole),
             volume.voxel_size,
@@ -466,6 +481,14 @@ def _cuts(
         )
         for label, box in chosen.wanted.items()
     ]
+
+
+def _weight(volume: Volume, label: int, box: Box, circle: ScanCircle | None) -> float:
+    """Border weight of a grain in the volume, or in the scanner's circle."""
+    if circle is None:
+        return border_weight(box, volume.shape)
+    shadow = (volume.array[box] == label).any(axis=2)
+    return float(1.0 / (circle.share_inside(shadow) * _shares_inside(box, volume.shape)[2]))
 
 
 def _particle_of(

@@ -58,7 +58,7 @@ class GrainCrop:
     others
         Voxels of other grains, same shape.
     values
-        Grey values, same shape.
+        Grey values, same shape; the median of the background where a label below 0 says that there are none.
     """
 
     own: BoolArray
@@ -69,8 +69,10 @@ class GrainCrop:
 def grain_crop(labels: SharedArray, grey: SharedArray, label: int, box: Box) -> GrainCrop:
     """What lies in a box about one grain."""
     here = np.asarray(labels.array[box])
-    own = here == label
-    return GrainCrop(own, (here > 0) & ~own, np.ascontiguousarray(grey.array[box]))
+    own, values = here == label, np.ascontiguousarray(grey.array[box])
+    if (here < 0).any() and (here == 0).any():
+        values = np.where(here < 0, np.median(values[here == 0]).astype(values.dtype), values)
+    return GrainCrop(own, (here > 0) & ~own, values)
 
 
 def label_table(source: Volume, run: ParallelMap = map) -> LabelTable:
@@ -102,6 +104,34 @@ def label_table(source: Volume, run: ParallelMap = map) -> LabelTable:
         high[part.labels] = np.maximum(high[part.labels], part.high)
     present = np.flatnonzero(counts)
     return LabelTable(present, counts[present], low[present], high[present])
+
+
+def find_padding(source: Volume, run: ParallelMap = map) -> tuple[set[int], BoolArray]:
+    """Labels that touch voxels of a label below 0, and columns of voxels along z most of which have one.
+
+    Such a label marks what lies outside of a scanner's circle.
+    """
+    beside: set[int] = set()
+    counts = np.zeros(source.shape[:2], dtype=np.int64)
+    if source.dtype.kind == "i":
+        find = partial(_padding_in_slab, SharedArray(source.array))
+        for labels, found in run(find, slab_ranges(source.shape)):
+            beside |= labels
+            counts += found
+    return beside, 2 * counts > source.shape[2]
+
+
+def _padding_in_slab(labels: SharedArray, part: tuple[int, int]) -> tuple[set[int], IntArray]:
+    first, stop = part
+    slab = labels.slices(first, stop + 1)
+    counts = (slab[:, :, : stop - first] < 0).sum(axis=2)
+    beside: set[int] = set()
+    if (slab < 0).any():
+        for axis in range(3):
+            low, high = (slab.take(range(k, slab.shape[axis] - 1 + k), axis=axis) for k in (0, 1))
+            for one, other in ((low, high), (high, low)):
+                beside.update(np.unique(one[(one > 0) & (other < 0)]).tolist())
+    return beside, counts
 
 
 def contact_areas(source: Volume, run: ParallelMap = map) -> dict[tuple[int, int], float]:

@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,18 +25,22 @@ from regolith_studio.imaging.segmentation.pixel_classifier import (
     train,
 )
 from regolith_studio.imaging.segmentation.pixel_features import FeatureSettings, features_at, features_in
+from regolith_studio.imaging.segmentation.scan_outside import background_filled, find_outside
 from regolith_studio.imaging.segmentation.strokes import ERASER, Stroke, painted_rows
+from regolith_studio.imaging.segmentation.thresholding import ThresholdSettings
 from regolith_studio.imaging.volume import Volume
-from regolith_studio.imaging.volume_slabs import SliceSource
+from regolith_studio.imaging.volume_slabs import ScratchArrays, SliceSource
 from regolith_studio.io.atomic import write_bytes
 from regolith_studio.io.json_text import canonical_json
 from regolith_studio.jobs.events import Partial, Progress, Started, Steps
 from regolith_studio.jobs.extraction_jobs import volume_sha256
 from regolith_studio.jobs.extraction_settings import VolumeInput
-from regolith_studio.jobs.scan_jobs import read_all, scratch_arrays
+from regolith_studio.jobs.scan_jobs import read_all, scratch_arrays, scratch_folder
 from regolith_studio.jobs.unfinished_maps import finished_slabs, unfinished_file
 from regolith_studio.messages import N_, Message
 from regolith_studio.readers.volumes.region import RegionSettings
+
+S = TypeVar("S", bound=SliceSource)
 
 
 def train_on_labels(
@@ -62,9 +67,17 @@ def train_on_labels(
     if source.kind != "grey":
         raise InputError(f"{scan.path.name} holds labels; a classifier is trained on grey values.")
     yield Started(N_("Training the classifier"))
-    training = paint_from_labels(source, labels, classes, settings, volume_sha256(scan.path))
+    with scratch_arrays(source, scratch_folder()) as arrays:
+        inside = _background_outside(source, arrays)
+        training = paint_from_labels(inside, labels, classes, settings, volume_sha256(scan.path))
     train(training)
     return training
+
+
+def _background_outside(source: S, arrays: ScratchArrays) -> S | Volume:
+    """A scan with background outside of the scanner's circle, if there is such."""
+    outside = find_outside(source)
+    return source if outside is None else background_filled(source, outside, ThresholdSettings(), arrays)
 
 
 def map_probabilities(scan: VolumeInput, training: TrainingSet, path: Path, scratch: Path) -> Steps:
@@ -95,7 +108,7 @@ def map_probabilities(scan: VolumeInput, training: TrainingSet, path: Path, scra
             finished_slabs(place, scan, RegionSettings(), whole, training)
         )
         volume: Volume = yield from read_all(source, arrays)
-        steps = probability_map(train(training), volume, arrays)
+        steps = probability_map(train(training), _background_outside(volume, arrays), arrays)
         yield Started(N_("Predicting grains"))
         while True:
             try:

@@ -19,7 +19,7 @@ from regolith_studio.imaging.extraction import (
     ExtractionSettings,
     extraction_steps,
 )
-from regolith_studio.imaging.scan_outside import ScanOutside, background_filled, find_outside
+from regolith_studio.imaging.segmentation.scan_outside import find_outside
 from regolith_studio.imaging.segmentation.segment import Segmentation
 from regolith_studio.imaging.segmentation.thresholding import ThresholdSettings, hidden_class
 from regolith_studio.imaging.volume import Volume, VolumeKind
@@ -211,12 +211,11 @@ def _extract(
         facts: SegmentationSummary | None = None
         labels, grey = volume, None
         if volume.kind == "grey":
-            threshold = recipe.segmentation.threshold
-            outside = None if threshold.method == "probability" else find_outside(volume)
-            if outside is not None:
-                volume = background_filled(volume, outside, threshold, scratch)
-            segmentation: Segmentation = yield from segment_volume(volume, recipe.segmentation, scratch, run)
-            facts = _summary_of(segmentation, threshold, outside)
+            outside = find_outside(volume, recipe.region.outside)
+            segmentation: Segmentation = yield from segment_volume(
+                volume, recipe.segmentation, scratch, run, outside
+            )
+            facts = _summary_of(segmentation, recipe.segmentation.threshold)
             labels, grey = segmentation.labels, volume
             del segmentation
         if labels_file is not None:
@@ -262,16 +261,8 @@ def _handed_over(
         yield Progress(step.done, step.total, step.name)
 
 
-def _summary_of(
-    segmentation: Segmentation, threshold: ThresholdSettings, outside: ScanOutside | None
-) -> SegmentationSummary:
-    remarks = []
-    if outside is not None:
-        value = "no number (NaN)" if np.isnan(outside.value) else f"the value {outside.value:g}"
-        remarks.append(
-            f"{100 * outside.share:.1f} % of the voxels, outside of the scanner's circle, have {value} and "
-            "are taken as what lies between grains."
-        )
+def _summary_of(segmentation: Segmentation, threshold: ThresholdSettings) -> SegmentationSummary:
+    remarks = [] if segmentation.outside is None else [segmentation.outside.remark]
     hidden = hidden_class(segmentation.seen, segmentation.level, threshold)
     if hidden is not None:
         first, second, gap = hidden

@@ -18,6 +18,7 @@ from regolith_studio.imaging.segmentation.object_classifier import (
     describe_objects,
     train_on_examples,
 )
+from regolith_studio.imaging.segmentation.scan_outside import find_outside
 from regolith_studio.imaging.segmentation.segment import (
     Segmentation,
     SegmentationSettings,
@@ -95,7 +96,12 @@ def train_on_objects(given: VolumeInput, settings: GrainSettings, examples: Exam
         )
     with scratch_arrays(source, scratch) as arrays:
         volume: Volume = yield from read_all(source, arrays)
-        found: Segmentation = yield from segment_volume(volume, settings.segmentation.uncorrected, arrays)
+        found: Segmentation = yield from segment_volume(
+            volume,
+            settings.segmentation.uncorrected,
+            arrays,
+            outside=find_outside(volume, settings.region.outside),
+        )
         table: ObjectTable = yield from describe_grains(volume, found)
         training = train_on_examples(table, found.labels, examples, scan=volume_sha256(given.path))
     return ClassifiedObjects(training, classify_objects(training, table.vectors))

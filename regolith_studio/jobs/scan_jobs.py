@@ -4,7 +4,7 @@ import math
 import os
 import tempfile
 from collections.abc import Generator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -16,6 +16,12 @@ from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.imaging.bounding_boxes import Box
 from regolith_studio.imaging.label_surface import label_surface
 from regolith_studio.imaging.sample_volumes import SampleVolume, sample_volume
+from regolith_studio.imaging.segmentation.scan_outside import (
+    AUTO,
+    ScanOutside,
+    background_filled,
+    find_outside,
+)
 from regolith_studio.imaging.segmentation.segment import (
     Segmentation,
     SegmentationProgress,
@@ -25,7 +31,12 @@ from regolith_studio.imaging.segmentation.segment import (
     preview,
     segmentation_steps,
 )
-from regolith_studio.imaging.segmentation.thresholding import Histogram, histogram, level_of
+from regolith_studio.imaging.segmentation.thresholding import (
+    Histogram,
+    ThresholdSettings,
+    histogram,
+    level_of,
+)
 from regolith_studio.imaging.slice_images import SliceImages, coarse_copy
 from regolith_studio.imaging.sparse_slices import sparse_slices
 from regolith_studio.imaging.volume import Volume, VolumeKind
@@ -71,13 +82,19 @@ class Scan:
         Pictures of its slices.
     scratch
         Holds the temporary files that it is mapped from, if there are any.
+    outside
+        What lies outside of the scanner's circle, which neither histogram nor contrast count.
+    filled
+        The volume with background there, as classifiers see it.
     """
 
     volume: Volume
     histogram: Histogram | None
     contrast: tuple[float, float]
     sections: SliceImages
-    scratch: ScratchArrays = field(default_factory=ScratchArrays)
+    scratch: ScratchArrays
+    outside: ScanOutside | None
+    filled: Volume
 
     def level(self, settings: SegmentationSettings) -> float | None:
         """Where the threshold lies by the volume as it was scanned; none where there is no answer."""
@@ -99,16 +116,34 @@ class GrainSegmentation:
 
 
 def scan_of(
-    volume: Volume, sections: SliceImages | None = None, scratch: ScratchArrays | None = None
+    volume: Volume,
+    sections: SliceImages | None = None,
+    scratch: ScratchArrays | None = None,
+    outside: str = AUTO,
 ) -> Scan:
-    """Histogram and contrast of a volume."""
+    """Histogram and contrast of a volume; `outside` as in :func:`find_outside`."""
     sections, scratch = sections or SliceImages(volume.array), scratch or ScratchArrays()
     if volume.kind == "labels":
-        return Scan(volume, None, (0.0, 1.0), sections, scratch)
-    distribution = histogram(_subsample(sections.sample))
+        return Scan(volume, None, (0.0, 1.0), sections, scratch, None, volume)
+    padding = find_outside(volume, outside)
+    distribution = histogram(_values_inside(sections, padding))
     share = np.cumsum(distribution.counts) / distribution.counts.sum()
     low, high = (float(distribution.centres[np.searchsorted(share, at)]) for at in _CONTRAST)
-    return Scan(volume, distribution, (low, high if high > low else low + 1.0), sections, scratch)
+    contrast = low, high if high > low else low + 1.0
+    filled = volume
+    if padding is not None:
+        filled = background_filled(volume, padding, ThresholdSettings(), scratch)
+    return Scan(volume, distribution, contrast, sections, scratch, padding, filled)
+
+
+def _values_inside(sections: SliceImages, outside: ScanOutside | None) -> NDArray[Any]:
+    """Some of the grey values of a scan, those outside of the scanner's circle left out."""
+    sample = _subsample(sections.sample)
+    if outside is None:
+        return sample
+    step = sections.step * _subsample_step(sections.sample)
+    columns = outside.columns[::step, ::step][: sample.shape[0], : sample.shape[1]]
+    return np.asarray(sample[~replace(outside, columns=columns).of(sample)])
 
 
 def read_header(given: VolumeInput) -> Steps:
@@ -157,14 +192,15 @@ def read_scan(given: VolumeInput, region: RegionSettings | None = None) -> Steps
     volume beyond :data:`LOOK_BYTES` a :class:`FirstLook` comes first.
     """
     yield Started(Message(N_("Reading {name}"), name=given.path.name))
-    source = (region or RegionSettings()).of(given.opened())
+    region = region or RegionSettings()
+    source, outside = region.of(given.opened()), region.outside
     if _n_bytes(source) > LOOK_BYTES:
         yield Partial(first_look(source))
     if _n_bytes(source) > IN_MEMORY:
-        return (yield from _map_volume(source))
+        return (yield from _map_volume(source, outside))
     array = source.read(0, source.shape[2])
     yield Progress(1, 2, N_("Counting grey values"))
-    return scan_of(_volume_of(source, array))
+    return scan_of(_volume_of(source, array), outside=outside)
 
 
 def read_all(
@@ -185,7 +221,7 @@ def find_grains(scan: Scan, settings: SegmentationSettings) -> Steps:
     yield from compile_first("scan")
     scratch = scratch_arrays(scan.volume, scratch_folder())
     try:
-        found: Segmentation = yield from segment_volume(scan.volume, settings, scratch)
+        found: Segmentation = yield from segment_volume(scan.volume, settings, scratch, outside=scan.outside)
         if scratch.folder is None:
             return GrainSegmentation(found, SliceImages(found.labels.array), scratch)
         yield Started(N_("Preparing the view"))
@@ -219,31 +255,40 @@ def scratch_arrays(volume: SliceSource, folder: Path | None) -> ScratchArrays:
 def read_sample_scan(kind: SampleVolume = "grey", region: RegionSettings | None = None) -> Steps:
     """Read a region of the shipped synthetic scan; returns a :class:`Scan`."""
     yield Started(N_("Reading the sample scan"))
-    source = (region or RegionSettings()).of(sample_volume(kind))
-    return scan_of(_volume_of(source, source.read(0, source.shape[2])))
+    region = region or RegionSettings()
+    source = region.of(sample_volume(kind))
+    return scan_of(_volume_of(source, source.read(0, source.shape[2])), outside=region.outside)
 
 
-def preview_part(volume: Volume, box: Box, settings: SegmentationSettings, level: float | None) -> Steps:
+def preview_part(scan: Scan, box: Box, settings: SegmentationSettings) -> Steps:
     """Segment a small part; returns a ``Segmentation``, or ``None`` where no grain is in it."""
     yield from compile_first("scan")
     yield Started(N_("Preview"))
+    volume, outside = _seen_by(scan, settings)
     try:
-        found: Segmentation = preview(volume, box, settings, level)
+        found: Segmentation = preview(volume, box, settings, scan.level(settings), outside)
     except RegolithError:
         return None
     return found
 
 
+def _seen_by(scan: Scan, settings: SegmentationSettings) -> tuple[Volume, ScanOutside | None]:
+    """What a preview is made of, and what lies outside there: nothing for a classifier."""
+    return (scan.volume, scan.outside) if settings.classifier is None else (scan.filled, None)
+
+
 def preview_heights(
-    volume: Volume, box: Box, settings: SegmentationSettings, level: float | None, heights: Sequence[float]
+    scan: Scan, box: Box, settings: SegmentationSettings, level: float | None, heights: Sequence[float]
 ) -> Steps:
     """Grains of a small part with each h of `heights`; returns a tuple of ``GrainsAtHeight``.
 
-    `level` takes the place of an automatic threshold, as in :func:`preview_part`.
+    `level` takes the place of an automatic threshold.
     """
     yield from compile_first("scan")
+    volume, outside = _seen_by(scan, settings)
     part, chosen = part_of(volume, box, settings, level)
-    return (yield from reported(grains_over_heights(part, heights, chosen)))
+    padding = None if outside is None else outside.within(box)
+    return (yield from reported(grains_over_heights(part, heights, chosen, outside=padding)))
 
 
 def count_over_heights(
@@ -264,14 +309,17 @@ def count_over_heights(
             f"{given.path.name} holds labels, which are grains already; there is no h to choose."
         )
     with scratch_arrays(volume, scratch) as arrays:
-        return (yield from reported(grains_over_heights(volume, heights, settings.segmentation, arrays)))
+        whole: Volume = yield from read_all(volume, arrays)
+        outside = find_outside(whole, settings.region.outside)
+        steps = grains_over_heights(whole, heights, settings.segmentation, arrays, outside)
+        return (yield from reported(steps))
 
 
 def _volume_of(source: SliceSource, array: NDArray[Any]) -> Volume:
     return Volume(array, np.array(source.voxel_size), source.kind, source.name, source.origin)
 
 
-def _map_volume(source: SliceSource) -> Generator[Step, None, Scan]:
+def _map_volume(source: SliceSource, outside: str) -> Generator[Step, None, Scan]:
     array, scratch = source.mapped() if isinstance(source, VolumeFile) else None, ScratchArrays()
     try:
         if array is None:
@@ -282,7 +330,9 @@ def _map_volume(source: SliceSource) -> Generator[Step, None, Scan]:
                 array[:, :, first:stop] = source.read(first, stop)
                 yield Progress(done, len(ranges), N_("Unpacking into a temporary file"))
         volume = _volume_of(source, array)
-        return scan_of(volume, (yield from slice_images(volume)), scratch)
+        if scratch.folder is None:  # for a copy without what lies outside of the scanner's circle
+            scratch = ScratchArrays(scratch_folder())
+        return scan_of(volume, (yield from slice_images(volume)), scratch, outside)
     except BaseException:
         scratch.close()
         raise
@@ -309,8 +359,12 @@ def _n_voxels(source: SliceSource) -> int:
 
 def _subsample(array: NDArray[Any]) -> NDArray[Any]:
     """Every n-th voxel of each axis, so that not many more than `_SAMPLED` remain."""
-    step = max(1, int(np.ceil((array.size / _SAMPLED) ** (1 / 3))))
+    step = _subsample_step(array)
     return array[::step, ::step, ::step]
+
+
+def _subsample_step(array: NDArray[Any]) -> int:
+    return max(1, int(np.ceil((array.size / _SAMPLED) ** (1 / 3))))
 
 
 def segment_volume(
@@ -318,9 +372,10 @@ def segment_volume(
     settings: SegmentationSettings,
     scratch: ScratchArrays | None = None,
     run: ParallelMap = map,
+    outside: ScanOutside | None = None,
 ) -> Steps:
-    """Find the grains in grey values; returns a ``Segmentation``. `run` as in :func:`segmentation_steps`."""
-    return (yield from reported(segmentation_steps(source, settings, scratch, run)))
+    """Find the grains in grey values; returns a ``Segmentation``. As :func:`segmentation_steps`."""
+    return (yield from reported(segmentation_steps(source, settings, scratch, run, outside)))
 
 
 def reported(steps: Generator[SegmentationProgress, None, _Result]) -> Generator[Step, None, _Result]:

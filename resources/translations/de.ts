@@ -2404,6 +2404,10 @@
         <translation>Grauwert</translation>
     </message>
     <message>
+        <source>Grey value outside of the scanner&apos;s circle, which is left out: a number, nan, none, or auto to look for it.</source>
+        <translation>Grauwert außerhalb des Kreises, den der Scanner sieht; er wird ausgelassen: eine Zahl, nan, none (keiner) oder auto, um ihn zu suchen.</translation>
+    </message>
+    <message>
         <source>Grey value {value:g}</source>
         <translation>Grauwert {value:g}</translation>
     </message>
@@ -3854,6 +3858,10 @@
     <message>
         <source>Otsu</source>
         <translation>Otsu</translation>
+    </message>
+    <message>
+        <source>Outside</source>
+        <translation>Außerhalb</translation>
     </message>
     <message>
         <source>Overlap</source>
@@ -8282,6 +8290,14 @@
     <message>
         <source>{share} % of the contacts are deeper than {depth} % of the mean diameter.</source>
         <translation>{share} % der Kontakte sind tiefer als {depth} % des mittleren Durchmessers.</translation>
+    </message>
+    <message>
+        <source>{share} % of the voxels lie outside of the scanner&apos;s circle (no number) and are left out.</source>
+        <translation>{share} % der Voxel liegen außerhalb des Kreises des Scanners (keine Zahl) und werden ausgelassen.</translation>
+    </message>
+    <message>
+        <source>{share} % of the voxels lie outside of the scanner&apos;s circle (value {value}) and are left out.</source>
+        <translation>{share} % der Voxel liegen außerhalb des Kreises des Scanners (Wert {value}) und werden ausgelassen.</translation>
     </message>
     <message>
         <source>{share} quant.</source>

@@ -98,7 +98,7 @@ def test_that_a_cropped_scan_gives_its_grains_in_their_places_and_the_recipe_too
     files = [{each.name: each.read_bytes() for each in (tmp_path / name).iterdir()} for name in "ab"]
     assert files[0] == files[1]
     recipe = json.loads(files[0]["extraction.json"])
-    assert recipe["region"] == {"crop": "50:120um,:,:", "bin": 1}
+    assert recipe["region"] == {"crop": "50:120um,:,:", "bin": 1, "outside": "auto"}
     assert recipe["volume"]["shape_xyz"] == [35, 44, 40]
     (row,), (larger, _) = rows_of(tmp_path / "a"), rows_of(tmp_path / "whole")
     files = (tmp_path / "a" / f"{row['name']}.stl", tmp_path / "whole" / f"{larger['name']}.stl")

@@ -18,7 +18,7 @@ from regolith_studio.jobs.events import Progress, Started, Step, Steps
 from regolith_studio.jobs.extraction_jobs import extract_file, extract_labels, extract_measured, volume_sha256
 from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput, read_grain_settings
 from regolith_studio.jobs.particle_jobs import MeasuredParticle
-from regolith_studio.jobs.scan_jobs import preview_heights, preview_part, segment_volume
+from regolith_studio.jobs.scan_jobs import preview_heights, preview_part, scan_of, segment_volume
 from regolith_studio.readers.file_bytes import sha256_of
 from regolith_studio.resources import resource
 from tests.jobs.small_jobs import name_and_numbers
@@ -42,9 +42,10 @@ def played(steps: Steps) -> tuple[list[Step], Any]:
 
 
 def test_that_the_heights_of_a_part_give_the_grains_of_its_preview() -> None:
-    scan, level = sample_volume("grey"), 100.0
+    scan = scan_of(sample_volume("grey"))
+    level = scan.level(QUICK.segmentation)
     received, found = played(preview_heights(scan, PART, QUICK.segmentation, level, (0.8, 30.0)))
-    _, part = played(preview_part(scan, PART, QUICK.segmentation, level))
+    _, part = played(preview_part(scan, PART, QUICK.segmentation))
     assert found[0].n_grains == part.n_grains > found[1].n_grains
     assert isinstance(received[0], Started)
 

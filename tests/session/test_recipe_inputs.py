@@ -119,7 +119,7 @@ def test_that_a_region_in_a_recipe_gives_its_whole_grains(tmp_path: Path, scan: 
     wanted = next(each for each in extracted(scan) if each.name == row["name"] == "particle_0002")
     assert row["volume"] == pytest.approx(wanted.mesh.volume, rel=1e-12)
     document = json.loads((tmp_path / "out" / "volumes" / "labels.json").read_text())
-    assert document["region"] == {"crop": "60:120um,0:30,:", "bin": 1}
+    assert document["region"] == {"crop": "60:120um,0:30,:", "bin": 1, "outside": "auto"}
 
 
 @pytest.mark.slow

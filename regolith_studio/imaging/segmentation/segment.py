@@ -22,7 +22,8 @@ from regolith_studio.imaging.connected_components import (
     SlabComponents,
     components_of_slab,
 )
-from regolith_studio.imaging.segmentation.denoising import DenoiseSettings, denoised, noise_of
+from regolith_studio.imaging.segmentation.denoised_volume import denoised_volume
+from regolith_studio.imaging.segmentation.denoising import DenoiseSettings
 from regolith_studio.imaging.segmentation.label_edits import LabelEdit, apply_edits
 from regolith_studio.imaging.segmentation.morphology import CleaningSettings, cleaned
 from regolith_studio.imaging.segmentation.object_classifier import (
@@ -39,16 +40,13 @@ from regolith_studio.imaging.segmentation.pixel_classifier import (
     probability_volume,
     train,
 )
+from regolith_studio.imaging.segmentation.scan_outside import OUTSIDE, Padding, ScanOutside, background_filled
 from regolith_studio.imaging.segmentation.splitting import GrainSplitter, SplittingSettings, TileSettings
 from regolith_studio.imaging.segmentation.thresholding import (
     Histogram,
     ThresholdSettings,
-    bins_between,
-    finite,
     grain_voxels,
-    histogram,
     level_of,
-    span,
     threshold_words,
     weak_level,
 )
@@ -133,6 +131,8 @@ class Segmentation:
         Voxels without a finite number (NaN, infinities), which are in no grain.
     probability
         At which grains begin, where the values are probabilities; else none.
+    outside
+        What lies outside of the scanner's circle, where the labels are -1.
     """
 
     labels: Volume
@@ -143,6 +143,7 @@ class Segmentation:
     n_small: int
     n_not_finite: int = 0
     probability: float | None = None
+    outside: ScanOutside | None = None
 
     @property
     def n_grains(self) -> int:
@@ -182,9 +183,11 @@ class Segmentation:
 Steps = Generator[SegmentationProgress, None, Segmentation]
 
 
-def segment(volume: Volume, settings: SegmentationSettings | None = None) -> Segmentation:
+def segment(
+    volume: Volume, settings: SegmentationSettings | None = None, outside: ScanOutside | None = None
+) -> Segmentation:
     """Run :func:`segmentation_steps` on a volume in memory to its end."""
-    steps = segmentation_steps(volume, settings)
+    steps = segmentation_steps(volume, settings, outside=outside)
     while True:
         try:
             next(steps)
@@ -198,6 +201,7 @@ def segmentation_steps(
     settings: SegmentationSettings | None = None,
     scratch: ScratchArrays | None = None,
     run: ParallelMap = map,
+    outside: ScanOutside | None = None,
 ) -> Steps:
     """Find the grains in grey values, telling after each step how far it is.
 
@@ -210,6 +214,8 @@ def segmentation_steps(
     run
         Applies what is done to slabs and to bodies; the result does not depend on it. Other processes than
         this one need `source` and `scratch` in files.
+    outside
+        What lies outside of the scanner's circle: in no grain, and of no effect on the level.
 
     Raises
     ------
@@ -218,7 +224,7 @@ def segmentation_steps(
     """
     settings, scratch = settings or SegmentationSettings(), scratch or ScratchArrays()
     volume: Volume = yield from _staged(N_("Reading the slices"), unpacked(source, scratch, run))
-    found = yield from _found_bodies(volume, settings, scratch, run)
+    found = yield from _found_bodies(volume, settings, scratch, run, outside)
     numbers: NDArray[np.int32] = scratch.zeros(volume.shape, np.int32)
     sizes, n_parts = yield from _parted(numbers, found, settings, scratch, run)
     scratch.drop(found.numbers.array)
@@ -234,11 +240,12 @@ def segmentation_steps(
     labels = Volume(numbers, found.edges, "labels", f"{source.name}, labels", source.origin)
     n_bodies = int((found.bodies.sizes >= least).sum())
     result = Segmentation(
-        labels, sizes, found.level, found.seen, n_bodies, small, found.n_not_finite, probability
+        labels, sizes, found.level, found.seen, n_bodies, small, found.n_not_finite, probability, outside
     )
+    _mark_outside(numbers, volume, outside)
     if settings.objects is None and not settings.edits:
         return result
-    sizes = yield from _correct(numbers, volume, settings)
+    sizes = yield from _correct(numbers, volume, settings, outside)
     return replace(result, sizes=sizes)
 
 
@@ -267,7 +274,7 @@ def correction_steps(
     """
     numbers: NDArray[np.int32] = (scratch or ScratchArrays()).zeros(found.labels.shape, np.int32)
     np.copyto(numbers, found.labels.array)
-    sizes = yield from _correct(numbers, grey, settings, objects)
+    sizes = yield from _correct(numbers, grey, settings, found.outside, objects)
     return replace(found, labels=replace(found.labels, array=numbers), sizes=sizes)
 
 
@@ -275,6 +282,7 @@ def _correct(
     numbers: NDArray[np.int32],
     grey: Volume,
     settings: SegmentationSettings,
+    outside: ScanOutside | None,
     objects: ObjectTable | None = None,
 ) -> Generator[SegmentationProgress, None, IntArray]:
     """Object step and edits, in place; voxels of each grain that is left."""
@@ -287,9 +295,11 @@ def _correct(
         sorting = sort_objects(numbers, objects, edges, settings.objects, settings.splitting, least)
         yield from _staged(N_("Classifying objects"), sorting)
     yield from _staged(N_("Correcting labels"), apply_edits(numbers, settings.edits, edges))
+    _mark_outside(numbers, grey, outside)
     counts = np.zeros(int(numbers.max()) + 1, dtype=np.int64)
     for first, stop in slab_ranges(SharedArray(numbers).shape):
-        counts += np.bincount(numbers[:, :, first:stop].ravel(order="K"), minlength=len(counts))
+        slab = np.maximum(numbers[:, :, first:stop], 0)
+        counts += np.bincount(slab.ravel(order="K"), minlength=len(counts))
     sizes = counts[1:][counts[1:] > 0]
     if not len(sizes):
         raise InputError(
@@ -297,6 +307,13 @@ def _correct(
             "or fewer deletions."
         )
     return sizes
+
+
+def _mark_outside(numbers: NDArray[np.int32], grey: Volume, outside: ScanOutside | None) -> None:
+    """Label what lies outside of the scanner's circle, so that grains beside it are known to be cut."""
+    if outside is not None:
+        for first, stop in slab_ranges(grey.shape):
+            numbers[:, :, first:stop][outside.of(grey.read(first, stop))] = OUTSIDE
 
 
 def _staged(stage: str, steps: Iterable[tuple[int, int]]) -> Generator[SegmentationProgress, None, Any]:
@@ -336,6 +353,7 @@ def grains_over_heights(
     heights: Sequence[float],
     settings: SegmentationSettings | None = None,
     scratch: ScratchArrays | None = None,
+    outside: ScanOutside | None = None,
 ) -> Generator[SegmentationProgress, None, tuple[GrainsAtHeight, ...]]:
     """The grains that :func:`segmentation_steps` finds with each h; what comes before is done once.
 
@@ -352,7 +370,7 @@ def grains_over_heights(
     settings, scratch = settings or SegmentationSettings(), scratch or ScratchArrays()
     tried = [replace(settings, splitting=replace(settings.splitting, h_maxima=h)) for h in heights]
     volume: Volume = yield from _staged(N_("Reading the slices"), unpacked(source, scratch))
-    found = yield from _found_bodies(volume, settings, scratch)
+    found = yield from _found_bodies(volume, settings, scratch, outside=outside)
     numbers: NDArray[np.int32] = scratch.zeros(source.shape, np.int32)
     rows = []
     for each in tried:
@@ -385,21 +403,40 @@ class _FoundBodies:
 
 
 def _found_bodies(
-    source: Volume, settings: SegmentationSettings, scratch: ScratchArrays, run: ParallelMap = map
+    source: Volume,
+    settings: SegmentationSettings,
+    scratch: ScratchArrays,
+    run: ParallelMap = map,
+    outside: ScanOutside | None = None,
 ) -> Generator[SegmentationProgress, None, _FoundBodies]:
     """Connected bodies before they are parted."""
-    values = source
+    filled, padding = source, None
+    if outside is not None:
+        padding = Padding(SharedArray(source.array), outside)
+        filled = background_filled(source, outside, _threshold_of_grey(settings), scratch)
+    values = filled
     if settings.classifier is not None:
-        values = yield from _predicted(source, settings.classifier, scratch, run)
-    smooth, seen, n_not_finite = yield from _denoised(values, settings, scratch, run)
+        values = yield from _predicted(filled, settings.classifier, scratch, run)
+    smooth, seen, n_not_finite = yield from _staged(
+        N_("Denoising"),
+        denoised_volume(
+            values, settings.denoise, settings.threshold.method == "probability", scratch, run, padding
+        ),
+    )
     level = level_of(seen, settings.threshold, values.dtype)
     numbers = SharedArray(scratch.zeros(source.shape, np.int32))
-    bodies = yield from _numbered(smooth, level, settings, numbers, scratch, run)
-    for array in {id(each): each for each in (smooth.array, values.array)}.values():
+    bodies = yield from _numbered(smooth, level, settings, numbers, scratch, run, padding)
+    for array in {id(each): each for each in (smooth.array, values.array, filled.array)}.values():
         if array is not source.array:
             scratch.drop(array)
     edges = np.asarray(source.voxel_size, dtype=np.float64)
     return _FoundBodies(numbers, bodies, edges, level, seen, n_not_finite)
+
+
+def _threshold_of_grey(settings: SegmentationSettings) -> ThresholdSettings:
+    """The threshold, but an automatic one where that is of a classifier's probabilities."""
+    how = settings.threshold
+    return how if settings.classifier is None else ThresholdSettings(dark=how.dark)
 
 
 def _predicted(
@@ -461,7 +498,11 @@ def _relabel_slab(numbers: SharedArray, table: SharedArray, part: tuple[int, int
 
 
 def preview(
-    volume: Volume, box: Box, settings: SegmentationSettings | None = None, level: float | None = None
+    volume: Volume,
+    box: Box,
+    settings: SegmentationSettings | None = None,
+    level: float | None = None,
+    outside: ScanOutside | None = None,
 ) -> Segmentation:
     """The segmentation of a small part of a volume, as if there were nothing else.
 
@@ -469,8 +510,11 @@ def preview(
     ----------
     level
         Taken instead of the one that an automatic threshold would find in this part.
+    outside
+        What lies outside of the scanner's circle in the whole volume.
     """
-    return segment(*part_of(volume, box, settings, level))
+    part, chosen = part_of(volume, box, settings, level)
+    return segment(part, chosen, None if outside is None else outside.within(box))
 
 
 def part_of(
@@ -493,64 +537,6 @@ def part_of(
     return Volume(np.array(volume.array[box]), volume.voxel_size, volume.kind, volume.name), settings
 
 
-_Values = Generator[SegmentationProgress, None, tuple[Volume, Histogram, int]]
-
-
-def _denoised(
-    source: Volume, settings: SegmentationSettings, scratch: ScratchArrays, run: ParallelMap
-) -> _Values:
-    """Grey values without noise (probabilities as they are), their histogram, and how many are not finite."""
-    how, given = settings.denoise, SharedArray(source.array)
-    ranges = slab_ranges(source.shape)
-    edges, n_not_finite = _bins(given, run)
-    middle = source.shape[2] // 2
-    noise = noise_of(given.slices(middle, middle + 1)) if how.method == "non-local-means" else 0.0
-    values = None
-    if how.method != "none" and settings.threshold.method != "probability":
-        values = SharedArray(scratch.zeros(source.shape, source.dtype))
-    smooth = partial(_smooth_slab, given, values, how, noise, edges)
-    seen = Histogram(np.zeros(len(edges) - 1, dtype=np.int64), edges)
-    for done, counts in enumerate(run(smooth, ranges), start=1):
-        seen = seen + counts
-        yield SegmentationProgress(N_("Denoising"), done, len(ranges))
-    found = source if values is None else replace(source, array=values.array)
-    return found, seen, n_not_finite
-
-
-def _smooth_slab(
-    given: SharedArray,
-    values: SharedArray | None,
-    how: DenoiseSettings,
-    noise: float,
-    edges: FloatArray,
-    part: tuple[int, int],
-) -> Histogram:
-    """Write a slab without noise into `values`, if there are any; returns its histogram."""
-    if values is None:
-        return histogram(given.slices(*part), edges)
-    slab = given.thick(*part, how.margin)
-    smooth = denoised(slab.values, how, noise)[:, :, slab.inner]
-    values.write(slab.first, smooth)
-    return histogram(smooth, edges)
-
-
-def _bins(given: SharedArray, run: ParallelMap) -> tuple[FloatArray, int]:
-    """Edges of the histogram's bins, and the number of voxels that are not finite."""
-    spans, n_not_finite = [], 0
-    for known, count in run(partial(_span_of_slab, given), slab_ranges(given.shape)):
-        spans += known
-        n_not_finite += count
-    lowest, highest = span(np.array(spans))
-    return bins_between(lowest, highest, given.array.dtype), n_not_finite
-
-
-def _span_of_slab(given: SharedArray, part: tuple[int, int]) -> tuple[list[tuple[float, float]], int]:
-    """Lowest and highest finite value of a slab, if there is one, and how many are not finite."""
-    slab = given.slices(*part)
-    known = finite(slab)
-    return [span(known)] if known.size else [], slab.size - known.size
-
-
 def _numbered(
     values: Volume,
     level: float,
@@ -558,10 +544,11 @@ def _numbered(
     numbers: SharedArray,
     scratch: ScratchArrays,
     run: ParallelMap,
+    padding: Padding | None,
 ) -> Generator[SegmentationProgress, None, ConnectedComponents]:
     """Write the number of the body of each voxel into `numbers`, which hold zeros."""
     joiner, ranges = ComponentJoiner(), slab_ranges(values.shape)
-    number = partial(_number_slab, SharedArray(values.array), numbers, level, settings)
+    number = partial(_number_slab, SharedArray(values.array), numbers, level, settings, padding)
     shifts = []
     for done, (part, slab) in enumerate(zip(ranges, run(number, ranges), strict=True), start=1):
         first = part[0]
@@ -582,6 +569,7 @@ def _number_slab(
     numbers: SharedArray,
     level: float,
     settings: SegmentationSettings,
+    padding: Padding | None,
     part: tuple[int, int],
 ) -> SlabComponents:
     """Write -k for each voxel of a slab's component k; returns what is known of them."""
@@ -590,6 +578,8 @@ def _number_slab(
     mask = cleaned(grain_voxels(slab.values, weak_level(level, how), how), settings.cleaning)[
         :, :, slab.inner
     ]
+    if padding is not None:
+        mask &= ~padding.of(part)
     core = mask & grain_voxels(slab.values[:, :, slab.inner], level, how) if how.low else None
     found, components = components_of_slab(mask, slab.first, core)
     numbers.write(slab.first, -found)

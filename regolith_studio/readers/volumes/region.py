@@ -1,5 +1,6 @@
 """Which part of a volume is worked on, and how finely: the settings of a region of interest."""
 
+import math
 import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -29,11 +30,14 @@ class RegionSettings:
         Empty for the whole volume.
     bin
         Edge in voxels of the cubes whose mean becomes one voxel.
+    outside
+        Grey value outside of the scanner's circle: a number, ``nan``, ``none`` if the scan fills its slices,
+        or ``auto`` to look for one.
 
     Raises
     ------
     InputError
-        If the ranges cannot be understood.
+        If the ranges or the value cannot be understood.
     """
 
     crop: str = setting(
@@ -52,10 +56,24 @@ class RegionSettings:
         minimum=1,
         maximum=64,
     )
+    outside: str = setting(
+        "auto",
+        N_("Outside"),
+        N_(
+            "Grey value outside of the scanner's circle, which is left out: a number, nan, none, "
+            "or auto to look for it."
+        ),
+        metavar="VALUE",
+    )
 
     def __post_init__(self) -> None:
         check_settings(self)
         _ranges(self.crop)
+        if self.outside not in ("auto", "none", "nan") and not _is_number(self.outside):
+            raise InputError(
+                "The value outside of the scanner's circle is a number, nan, none or auto, got "
+                f"{self.outside!r}."
+            )
 
     @property
     def is_whole(self) -> bool:
@@ -110,6 +128,13 @@ def crop_of_rectangle(
         start = round(origin[each] * region.bin - (region.bin - 1) / 2)
         parts[each] = f"{start + first * region.bin}:{start + stop * region.bin}"
     return ",".join(part.strip() for part in parts)
+
+
+def _is_number(text: str) -> bool:
+    try:
+        return math.isfinite(float(text))
+    except ValueError:
+        return False
 
 
 def _ranges(text: str) -> tuple[tuple[_Bound, _Bound], ...]:

@@ -44,7 +44,7 @@ def test_that_a_region_is_read_again_and_a_wrong_one_is_explained(page, part, wa
     wait(lambda: page.scan.volume.shape == (30, 40, 15), SECONDS)
     assert page.scan.volume.origin == (5.25, 0.25, 20.25)
     assert page.scan.volume.voxel_size.tolist() == [4.6, 4.6, 4.6]
-    assert page.state()["region"] == {"crop": "10:70,:,92:161um", "bin": 2}
+    assert page.state()["region"] == {"crop": "10:70,:,92:161um", "bin": 2, "outside": "auto"}
     entries = []
     monkeypatch.setattr(page.making, "_adopt", lambda _made, entry: entries.append(entry))
     page.find_grains()
@@ -54,7 +54,7 @@ def test_that_a_region_is_read_again_and_a_wrong_one_is_explained(page, part, wa
         edge.setValue(1)
         page.make_particles()
         wait(lambda: bool(entries), SECONDS)
-    assert entries[0].region == {"crop": "10:70,:,92:161um", "bin": 2}
+    assert entries[0].region == {"crop": "10:70,:,92:161um", "bin": 2, "outside": "auto"}
     edge.setValue(2)
     crop.setText("10-70")
     crop.editingFinished.emit()

@@ -159,7 +159,7 @@ class ScanPage(PageWidget):
             return
         self.slices.set_scan(self.scan)
         self.painting.stop()
-        self.painting.set_volume(self.scan.volume)
+        self.painting.set_volume(self.scan.filled)
         self.controls.set_kind(self.scan.volume.kind)
         self._show_level()
         self._schedule_preview()

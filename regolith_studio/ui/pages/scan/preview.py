@@ -61,7 +61,7 @@ class FramePreview(QObject):
         if self._scan is None:
             return
         scan, settings, box = self._scan, self._controls.value().segmentation, self._slices.box
-        job = Job(preview_part, (scan.volume, box, settings, scan.level(settings)))
+        job = Job(preview_part, (scan, box, settings))
         self._stop_jobs()
         self._context.start(
             tr("Preview"),
@@ -87,7 +87,7 @@ class FramePreview(QObject):
         self.changed.emit()
         if found is not None and settings.splitting.enabled:
             arguments = (
-                scan.volume,
+                scan,
                 box,
                 settings,
                 found.level,

@@ -89,7 +89,10 @@ class WorkflowPanel(QWidget):
         self.save.setEnabled(grains is not None)
         self.convert.setEnabled(grains is not None or (scan is not None and not is_grey))
         self.show_them.hide()
-        self.volume.setText(_about(scan.volume.name, scan.volume) if scan else tr("No volume is open."))
+        outside = "" if scan is None or scan.outside is None else translate(scan.outside.remark)
+        self.volume.setText(
+            _sentences(_about(scan.volume.name, scan.volume), outside) if scan else tr("No volume is open.")
+        )
         self.made.setText("")
         if scan is None:
             self.found.setText("")
