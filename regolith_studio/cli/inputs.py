@@ -35,7 +35,6 @@ class ReadingOptions:
         """
         from regolith_studio.jobs.particle_jobs import load_particles
         from regolith_studio.readers.coefficient_tables import TableReading, table_convention
-        from regolith_studio.readers.particles import left_out
         from regolith_studio.readers.units import unit_factor
 
         with usage_errors():
@@ -43,7 +42,7 @@ class ReadingOptions:
             tables = TableReading(l_max, table_convention(self.convention))
         reading = load_particles(tuple(paths), self.unit, self.repair, tables)
         loaded: LoadedParticles = run_with_progress(reading)
-        print_errors(left_out(paths))
+        print_errors(loaded.left_out)
         print_errors(problem.with_path for problem in loaded.problems)
         return loaded
 

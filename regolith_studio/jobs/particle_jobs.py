@@ -1,7 +1,7 @@
 """Jobs for particles: read files, measure descriptors and mesh health, fit spherical harmonics."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -21,12 +21,13 @@ from regolith_studio.jobs.compile_kernels import compile_first
 from regolith_studio.jobs.events import Failed, Job, Partial, Progress, Started, Steps
 from regolith_studio.jobs.executor import Executor, open_executor, value_of
 from regolith_studio.messages import N_
-from regolith_studio.readers.coefficient_tables import DEFAULT_TABLE_READING, TableReading
+from regolith_studio.readers.coefficient_tables import DEFAULT_TABLE_READING, TableConvention, TableReading
 from regolith_studio.readers.particles import (
     FileProblem,
     LoadedParticles,
     collect_particles,
     find_files,
+    left_out,
     read_each,
     sample_particles,
 )
@@ -58,17 +59,17 @@ def load_particles(
     for done, (file, result) in enumerate(read_each(files, unit, repair), start=1):
         results.append(result)
         yield Progress(done, len(files), file.path.name)
-    return collect_particles(results, problems)
+    return replace(collect_particles(results, problems), left_out=tuple(left_out(paths)))
 
 
-def measure_first(paths: Sequence[Path]) -> Steps:
+def measure_first(paths: Sequence[Path], convention: TableConvention = "auto") -> Steps:
     """Name and longest side of the first mesh, as its file gives it.
 
     Where it cannot be read: why, as a sentence, if there is no other file, else ``None``.
     """
     yield Started(N_("Reading particles"))
     problems: list[FileProblem] = []
-    files = find_files(paths, problems)
+    files = find_files(paths, problems, TableReading(None, convention))
     for file, result in read_each(files[:1], "um", False):
         if not isinstance(result, FileProblem):
             return file.path.stem, float(np.ptp(result.mesh.bounds, axis=0).max())

@@ -19,6 +19,7 @@ from regolith_studio.io.atomic import check_listed, listed_hashes
 from regolith_studio.io.file_names import file_stem, name_key, unique_name
 from regolith_studio.io.natural_order import natural_key
 from regolith_studio.io.tables import read_csv
+from regolith_studio.messages import N_, count_message
 from regolith_studio.readers.coefficient_tables import (
     DEFAULT_TABLE_READING,
     TABLE_SUFFIXES,
@@ -35,7 +36,7 @@ from regolith_studio.readers.error_messages import (
     printable,
 )
 from regolith_studio.readers.file_bytes import sha256_of
-from regolith_studio.readers.formats import mesh_suffixes
+from regolith_studio.readers.formats import MESH_FORMATS, mesh_suffixes
 from regolith_studio.readers.sandbox.parent import Sandbox, shared_sandbox
 from regolith_studio.readers.units import unit_factor
 from regolith_studio.resources import resource
@@ -85,10 +86,11 @@ class FileProblem:
 
 @dataclass(frozen=True)
 class LoadedParticles:
-    """Particles with unique names, and the files that could not be read."""
+    """Particles with unique names, files that could not be read, and sentences about others in folders."""
 
     particles: tuple[Particle, ...]
     problems: tuple[FileProblem, ...] = ()
+    left_out: tuple[str, ...] = ()
 
 
 def read_mesh(
@@ -326,12 +328,30 @@ def mesh_files(paths: Sequence[str | Path], tables: TableReading = DEFAULT_TABLE
     ]
 
 
+def has_tables(paths: Sequence[Path]) -> bool:
+    """Whether there are files among them that may be tables of coefficients."""
+    suffixes = {*TABLE_SUFFIXES, *TEXT_SUFFIXES}
+    return any(file.path.suffix.lower() in suffixes for file in _all_files(paths))
+
+
+def all_state_unit(paths: Sequence[Path]) -> bool:
+    """Whether there are files, all of formats in which a file states the unit of its lengths."""
+    suffixes = {suffix for row in MESH_FORMATS.values() if row.states_unit for suffix in row.suffixes}
+    stated = [file.path.suffix.lower() in suffixes for file in _all_files(paths)]
+    return bool(stated) and all(stated)
+
+
+def _all_files(paths: Sequence[Path]) -> Iterator[MeshFile]:
+    for path in paths:
+        yield from _in_folder(path, False) if path.is_dir() else (MeshFile(path),)
+
+
 def left_out(paths: Sequence[str | Path]) -> list[str]:
     """For each folder a sentence about the files in it that are no meshes by their names; none without such.
 
     Documents, pictures and tables that lie beside meshes are not mentioned.
     """
-    sentences = []
+    sentences: list[str] = []
     for folder in (Path(path) for path in paths if Path(path).is_dir()):
         read = {file.path for file in _in_folder(folder, False)}
         names = [
@@ -343,9 +363,14 @@ def left_out(paths: Sequence[str | Path]) -> list[str]:
         ]
         if names and read:
             shown = ", ".join(names[:3]) + (", …" if len(names) > 3 else "")
-            count = plural(len(names), "file")
             sentences.append(
-                f"{display_name(folder)}: left out {count} that no reader of meshes takes: {shown}."
+                count_message(
+                    N_("{folder}: left out 1 file that no reader of meshes takes: {names}."),
+                    N_("{folder}: left out {count} files that no reader of meshes takes: {names}."),
+                    len(names),
+                    folder=display_name(folder),
+                    names=shown,
+                )
             )
     return sentences
 

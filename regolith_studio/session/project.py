@@ -121,8 +121,15 @@ def _inputs(origins: Sequence[ParticleSource]) -> list[str | FilesEntry]:
     files = [each for each in origins if isinstance(each, FileSource)]
     named: list[str | FilesEntry] = [SAMPLE] if not origins or SampleSource() in origins else []
     for number, each in enumerate(files):
-        entry = FilesEntry(files=list(each.paths), unit=each.unit, repair=each.repair, l_max=each.l_max)
-        named += [entry] if number or each.l_max is not None else each.paths
+        entry = FilesEntry(
+            files=list(each.paths),
+            unit=each.unit,
+            repair=each.repair,
+            l_max=each.l_max,
+            convention=each.convention,
+        )
+        plain = each.l_max is None and each.convention == "auto"
+        named += each.paths if plain and not number else [entry]
     return named
 
 

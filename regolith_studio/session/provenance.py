@@ -10,7 +10,7 @@ from regolith_studio.errors import FileError, InputError, RegolithError
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.jobs.events import Progress, Started, Steps
 from regolith_studio.messages import N_
-from regolith_studio.readers.coefficient_tables import TABLE_SUFFIXES, TEXT_SUFFIXES
+from regolith_studio.readers.coefficient_tables import TABLE_SUFFIXES, TEXT_SUFFIXES, TableConvention
 from regolith_studio.readers.formats import mesh_suffixes
 from regolith_studio.readers.particles import FileProblem, LoadedParticles, find_files, sample_particles
 from regolith_studio.session.recipe import Population, Recipe, VolumeEntry
@@ -49,12 +49,15 @@ class FileSource:
         Whether meshes were repaired.
     l_max
         Degree above which coefficients of tables were left out.
+    convention
+        Of tables of coefficients: normalisation and phase.
     """
 
     paths: tuple[str, ...]
     unit: str
     repair: bool = True
     l_max: int | None = None
+    convention: TableConvention = "auto"
 
     def members(self) -> tuple[Member, ...]:
         """All files that are there now, in order; also those that cannot be read."""
@@ -237,7 +240,13 @@ class _References:
         from regolith_studio.session.batch.preprocessing import read_index, resolved
 
         named = (
-            FileSource(tuple(str(base / file) for file in each.files), each.unit, each.repair, each.l_max)
+            FileSource(
+                tuple(str(base / file) for file in each.files),
+                each.unit,
+                each.repair,
+                each.l_max,
+                each.convention,
+            )
             for each in recipe.openings
         )
         self._files = {key: each for each in named for key, _, _ in each.members()}

@@ -14,6 +14,7 @@ from regolith_studio.errors import FileError, InputError, format_validation_erro
 from regolith_studio.harmonics.fit_options import MAX_TABLE_DEGREE
 from regolith_studio.io.json_text import parse_strict_json
 from regolith_studio.jobs.particle_jobs import FIT_DEGREE
+from regolith_studio.readers.coefficient_tables import TableConvention
 from regolith_studio.readers.file_bytes import read_bytes
 from regolith_studio.session.choices import LEVEL_LIMITS, Choices, Scalar
 from regolith_studio.settings import settings_of_kind
@@ -88,12 +89,15 @@ class FilesEntry(Strict):
     ----------
     l_max
         Degree above which coefficients of tables are left out; by default none are.
+    convention
+        Of tables of coefficients: normalisation and phase.
     """
 
     files: list[str] = Field(min_length=1, max_length=MAX_ENTRIES)
     unit: str
     repair: bool = True
     l_max: int | None = Field(default=None, ge=1, le=MAX_TABLE_DEGREE)
+    convention: TableConvention = "auto"
 
 
 class NamedParticle(Strict):

@@ -133,5 +133,7 @@ class SessionEvents:
     failed = Signal(Failure)
     problems = Signal(tuple)
     """Files that were refused at opening, or particles that an export left out, as ``FileProblem``."""
+    left_out = Signal(tuple)
+    """Sentences about files in folders that no reader takes."""
     exported = Signal(object)
     """Path of the folder that was written."""

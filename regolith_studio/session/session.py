@@ -17,6 +17,7 @@ from regolith_studio.jobs.particle_jobs import (
 )
 from regolith_studio.jobs.runners import Runner
 from regolith_studio.messages import N_
+from regolith_studio.readers.coefficient_tables import TableConvention, TableReading
 from regolith_studio.readers.particles import FileProblem, LoadedParticles, unique_names
 from regolith_studio.session.choices import STUDIES, Choices, Kind, depends
 from regolith_studio.session.history import History
@@ -129,6 +130,7 @@ class Session:
         unit: str | None = None,
         add: bool = False,
         repair: bool | None = None,
+        convention: TableConvention = "auto",
     ) -> int:
         """Read files and folders of meshes in the background; returns the task's id.
 
@@ -140,12 +142,15 @@ class Session:
             Keep the particles that are open already.
         repair
             Whether meshes are repaired; as chosen if left out.
+        convention
+            Of tables of coefficients: normalisation and phase.
         """
         unit = unit or self.choices.unit
         repair = self.choices.repair if repair is None else repair
         named = tuple(Path(path).absolute() for path in paths)
-        origin = FileSource(tuple(map(str, named)), unit, repair)
-        return self._load(N_("Reading particles"), Job(load_particles, (named, unit, repair)), origin, add)
+        origin = FileSource(tuple(map(str, named)), unit, repair, convention=convention)
+        job = Job(load_particles, (named, unit, repair, TableReading(None, convention)))
+        return self._load(N_("Reading particles"), job, origin, add)
 
     def open_sample(self) -> int:
         """Load the particles that ship with the program; returns the task's id."""
@@ -168,7 +173,8 @@ class Session:
         if recipe.only_files and len(recipe.openings) == 1 and SAMPLE not in recipe.inputs:
             (entry,) = recipe.openings
             if entry.l_max is None:
-                return self.open([base / file for file in entry.files], entry.unit, repair=entry.repair)
+                files = [base / file for file in entry.files]
+                return self.open(files, entry.unit, repair=entry.repair, convention=entry.convention)
 
         return self._restore(recipe, base)
 
@@ -405,6 +411,8 @@ class Session:
     ) -> None:
         if loaded.problems:
             self.events.problems.emit(loaded.problems)
+        elif loaded.left_out:
+            self.events.left_out.emit(loaded.left_out)
         kept = self.particles if add else ()
         fresh = unique_names(loaded.particles, [entry.id for entry in kept])
         found_refs = refs or [ref_by_source(particle) for particle in loaded.particles]

@@ -18,6 +18,8 @@ from regolith_studio.io.atomic import write_files
 from regolith_studio.jobs.events import Job
 from regolith_studio.jobs.particle_jobs import measure_first
 from regolith_studio.messages import N_
+from regolith_studio.readers.coefficient_tables import TableConvention
+from regolith_studio.readers.particles import all_state_unit, has_tables
 from regolith_studio.session.choices import Choices, Kind
 from regolith_studio.session.code_export import as_command, as_python
 from regolith_studio.session.file_kinds import FileKind, kind_of_all
@@ -96,6 +98,7 @@ class Commands(QObject):
         self._models: Path | None = None
         self._before: Recipe | None = None
         self._after: Recipe | None = None
+        session.events.left_out.connect(toast.notes)
 
     def open(self) -> None:
         """Ask for files and open them."""
@@ -123,9 +126,11 @@ class Commands(QObject):
             self._try(lambda: opener(paths[0]))
             self._preferences.add_recent(paths[0], unit or self._session.choices.unit)
             return
-        unit = unit or self._ask_unit(list(paths))
-        if unit is None:
+        reading: tuple[str, TableConvention] | None = (unit, "auto") if unit else None
+        reading = reading or self._ask_reading(list(paths))
+        if reading is None:
             return
+        unit, convention = reading
         answer = self._add_or_replace(SampleSource)
         if not answer:
             return
@@ -133,7 +138,7 @@ class Commands(QObject):
             self._preferences.add_recent(path, unit)
         self._preferences.save()
         self._remember_open()
-        self._try(lambda: self._session.open(paths, unit, add=answer == ADD))
+        self._try(lambda: self._session.open(paths, unit, add=answer == ADD, convention=convention))
 
     def adopt(self, particles: Sequence[Particle], origin: ParticleSource) -> bool:
         """Open particles that a page has made; whether the user has agreed.
@@ -162,10 +167,11 @@ class Commands(QObject):
             self._toast.problem(tr("{name} was not read from a file whose unit could be changed.", name=id))
             return
         paths = [Path(path) for path in origin.paths]
-        unit = self._unit_of_user(paths, origin.unit)
-        if unit is None or unit == origin.unit:
+        reading = self._reading_of_user(paths, origin.unit, origin.convention)
+        if reading is None or reading == (origin.unit, origin.convention):
             return
-        changed = dataclasses.replace(origin, unit=unit)
+        unit, convention = reading
+        changed = dataclasses.replace(origin, unit=unit, convention=convention)
         refs = [
             ParticleRef(changed, each.ref.key) if each.ref and each.ref.origin == origin else each.ref
             for each in entries
@@ -332,27 +338,39 @@ class Commands(QObject):
             self._export.deleteLater()
         self._export, self._export_task = None, 0
 
-    def _ask_unit(self, paths: list[Path]) -> str | None:
+    def _ask_reading(self, paths: list[Path]) -> tuple[str, TableConvention] | None:
+        """Unit of files without one, and convention of tables; asked where they are not known."""
+        if all_state_unit(paths):
+            return "um", "auto"
         known = {self._preferences.unit_for(path) for path in paths}
-        if len(known) == 1 and (unit := known.pop()):
-            return unit
-        return self._unit_of_user(paths, self._session.choices.unit)
+        unit = known.pop() if len(known) == 1 else None
+        if unit and not has_tables(paths):
+            return unit, "auto"
+        return self._reading_of_user(paths, unit or self._session.choices.unit)
 
-    def _unit_of_user(self, paths: list[Path], suggestion: str) -> str | None:
+    def _reading_of_user(
+        self, paths: list[Path], suggestion: str, convention: TableConvention = "auto"
+    ) -> tuple[str, TableConvention] | None:
         dialog = UnitDialog(paths, suggestion, self._window)
-        self._session.run(
-            LOOK,
-            N_("Reading particles"),
-            Job(measure_first, (paths,)),
-            dialog.set_first,
-            failed=lambda _: None,  # it is reported when the file is opened
-            repeats=True,
-        )
+        dialog.convention.setCurrentIndex(dialog.convention.findData(convention))
+
+        def measure(convention: TableConvention) -> None:
+            self._session.run(
+                LOOK,
+                N_("Reading particles"),
+                Job(measure_first, (paths, convention)),
+                dialog.set_first,
+                failed=lambda _: None,  # it is reported when the file is opened
+                repeats=True,
+            )
+
+        dialog.conventionChanged.connect(measure)
+        measure(convention)
         accepted = dialog.exec() == QDialog.DialogCode.Accepted
         self._session.stop(LOOK)
-        unit = dialog.value()
+        reading = dialog.value(), dialog.table_convention()
         dialog.deleteLater()
-        return unit if accepted else None
+        return reading if accepted else None
 
     def _folder(self) -> str:
         recent = [Path(path) for path in self._preferences.recent]

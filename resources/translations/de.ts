@@ -312,10 +312,6 @@
         <translation>1 erhält die Größe der Partikel; 10 macht sie zehnmal so groß.</translation>
     </message>
     <message>
-        <source>1 m in the file is 1 mm of the particles, coarse graining applied; y up</source>
-        <translation>1 m in der Datei ist 1 mm der Partikel, mit Coarse-Graining; y zeigt nach oben</translation>
-    </message>
-    <message>
         <source>1 open particle</source>
         <translation>1 offenes Partikel</translation>
     </message>
@@ -1128,6 +1124,10 @@
         <translation>Vergröbert dieses Partikel mit mehreren Anzahlen von Facetten.</translation>
     </message>
     <message>
+        <source>Coefficients</source>
+        <translation>Koeffizienten</translation>
+    </message>
+    <message>
         <source>Cohesion</source>
         <translation>Kohäsion</translation>
     </message>
@@ -1198,6 +1198,10 @@
     <message>
         <source>Compiling, once after an installation</source>
         <translation>Wird kompiliert, einmal nach einer Installation</translation>
+    </message>
+    <message>
+        <source>Complex, orthonormal, with the phase</source>
+        <translation>Komplex, orthonormal, mit der Phase</translation>
     </message>
     <message>
         <source>Components</source>
@@ -1278,6 +1282,10 @@
     <message>
         <source>Contour each grain and open it as a particle</source>
         <translation>Die Oberfläche jedes Korns bilden und es als Partikel öffnen</translation>
+    </message>
+    <message>
+        <source>Convention of coefficients</source>
+        <translation>Konvention der Koeffizienten</translation>
     </message>
     <message>
         <source>Convex hull instead of volume</source>
@@ -1498,6 +1506,10 @@
     <message>
         <source>Details …</source>
         <translation>Einzelheiten …</translation>
+    </message>
+    <message>
+        <source>Detect from the rows</source>
+        <translation>Aus den Zeilen erkennen</translation>
     </message>
     <message>
         <source>Detect from the values</source>
@@ -4264,6 +4276,10 @@
         <translation>Erreicht</translation>
     </message>
     <message>
+        <source>Read absent slices as empty: {numbers}</source>
+        <translation>Fehlende Schichten als leere lesen: {numbers}</translation>
+    </message>
+    <message>
         <source>Read labels</source>
         <translation>Labels lesen</translation>
     </message>
@@ -4314,6 +4330,14 @@
     <message>
         <source>Ready</source>
         <translation>Bereit</translation>
+    </message>
+    <message>
+        <source>Real, 4π normalisation (SHTOOLS)</source>
+        <translation>Reell, 4π-Normierung (SHTOOLS)</translation>
+    </message>
+    <message>
+        <source>Real, orthonormal (SHTOOLS)</source>
+        <translation>Reell, orthonormal (SHTOOLS)</translation>
     </message>
     <message>
         <source>Recipe</source>
@@ -7140,6 +7164,10 @@
         <translation>untere Schranke</translation>
     </message>
     <message>
+        <source>m, coarse graining applied; y up</source>
+        <translation>m, mit Vergröberung (coarse graining); y oben</translation>
+    </message>
+    <message>
         <source>mass</source>
         <translation>Masse</translation>
     </message>
@@ -8054,6 +8082,14 @@
     <message>
         <source>{edges} µm</source>
         <translation>{edges} µm</translation>
+    </message>
+    <message>
+        <source>{folder}: left out 1 file that no reader of meshes takes: {names}.</source>
+        <translation>{folder}: 1 Datei ausgelassen, die kein Leser für Netze annimmt: {names}.</translation>
+    </message>
+    <message>
+        <source>{folder}: left out {count} files that no reader of meshes takes: {names}.</source>
+        <translation>{folder}: {count} Dateien ausgelassen, die kein Leser für Netze annimmt: {names}.</translation>
     </message>
     <message>
         <source>{grains} grains from 1 connected body</source>

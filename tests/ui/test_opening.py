@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import trimesh
 from PySide6.QtCore import QTimer
 from PySide6.QtWidgets import QApplication, QDialog, QDialogButtonBox, QWidget
 
@@ -14,6 +15,7 @@ from regolith_studio.io.stl import stl_bytes
 from regolith_studio.jobs.model_jobs import GenerationRequest, draw_shapes, fit_shapes, make_particles
 from regolith_studio.jobs.runners.run_job import InlineRunner
 from regolith_studio.readers.shape_files import ShapeSource
+from regolith_studio.session.project import SessionRecipe
 from regolith_studio.session.provenance import SampleSource, VirtualSource
 from regolith_studio.session.session import Session
 from regolith_studio.shape_models.sample import Sample
@@ -56,6 +58,52 @@ def test_that_the_unit_dialog_says_what_cannot_be_opened(opening, monkeypatch, t
     ((sentence, can_open),) = seen
     assert said in sentence
     assert not can_open
+
+
+def test_that_the_convention_of_tables_of_coefficients_can_be_chosen(opening, monkeypatch, tmp_path, wait):
+    commands, session, _ = opening
+    path = tmp_path / "table.anm"
+    path.write_text("0 0 100 0\n")
+    names_before = names(session)
+    shown_rows = []
+
+    def choose(dialog):
+        shown_rows.append(not dialog.convention.isHidden())
+        dialog.setValue("um")
+        dialog.convention.setCurrentIndex(dialog.convention.findData("shtools-ortho"))
+        return QDialog.DialogCode.Accepted
+
+    monkeypatch.setattr(UnitDialog, "exec", choose)
+    press("opening_add")
+    commands.open_paths([path])
+    wait(lambda: names(session) != names_before)
+    assert shown_rows == [True]
+    origin = session.particles[-1].ref.origin
+    assert origin.convention == "shtools-ortho"
+    radius = session.particles[-1].particle.mesh.bounds[1, 0]
+    assert radius == pytest.approx(100 / np.sqrt(4 * np.pi), rel=0.01)
+    recipe = SessionRecipe.of(session.particles, session.choices).recipe
+    assert [each.convention for each in recipe.openings] == ["auto", "shtools-ortho"]
+
+
+def test_that_files_that_state_their_unit_are_opened_without_asking_for_it(opening, monkeypatch, tmp_path):
+    commands, session, _ = opening
+    trimesh.creation.icosphere(radius=5e-5).export(tmp_path / "ball.glb")
+    monkeypatch.setattr(UnitDialog, "exec", lambda _: pytest.fail("asked for a stated unit"))
+    press("opening_add")
+    commands.open_paths([tmp_path / "ball.glb"])
+    assert session.particles[-1].particle.mesh.bounds[1] == pytest.approx([50.0] * 3, rel=0.001)
+
+
+def test_that_files_of_a_folder_that_no_reader_takes_are_named(opening, tmp_path):
+    commands, session, _ = opening
+    said = []
+    session.events.left_out.connect(lambda sentences: said.extend(sentences))
+    write_ball(tmp_path / "c" / "ball.stl", 30.0)
+    (tmp_path / "c" / "heap.vtk").write_bytes(b"# vtk DataFile Version 3.0")
+    press("opening_add")
+    commands.open_paths([tmp_path / "c"], "um")
+    assert said == ["c: left out 1 file that no reader of meshes takes: heap.vtk."]
 
 
 def test_that_every_page_has_a_chapter_of_the_guide_without_directives():

@@ -51,6 +51,8 @@ class MeshFormat:
         with the end of a sentence that begins with the file's name.
     shares_vertices
         False where each triangle brings its own three vertices, to be joined after reading.
+    states_unit
+        Whether the file or its standard states the unit of lengths.
     """
 
     key: str
@@ -59,6 +61,7 @@ class MeshFormat:
     recognises: Callable[[bytes], bool]
     parse: Callable[[bytes, Path], ParsedMesh]
     shares_vertices: bool = True
+    states_unit: bool = False
 
 
 MESH_FORMATS: Registry[MeshFormat] = Registry(__name__, "FORMAT", "readers")

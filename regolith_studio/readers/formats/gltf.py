@@ -256,4 +256,4 @@ def _recognises(head: bytes) -> bool:
     return head[:4] == b"glTF"
 
 
-FORMAT = MeshFormat("gltf", "glTF", (".glb", ".gltf"), _recognises, parse)
+FORMAT = MeshFormat("gltf", "glTF", (".glb", ".gltf"), _recognises, parse, states_unit=True)

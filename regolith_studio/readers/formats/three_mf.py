@@ -222,4 +222,4 @@ def _recognises(head: bytes) -> bool:
     return head[:4] == b"PK\3\4" and b"3D/" in head
 
 
-FORMAT = MeshFormat("3mf", "3MF", (".3mf",), _recognises, parse)
+FORMAT = MeshFormat("3mf", "3MF", (".3mf",), _recognises, parse, states_unit=True)

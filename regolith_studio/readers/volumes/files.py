@@ -9,7 +9,7 @@ from regolith_studio.readers.error_messages import display_name, message_about
 from regolith_studio.readers.sandbox.parent import checked_size
 from regolith_studio.readers.volume_formats import VOLUME_FORMATS, volume_suffixes
 from regolith_studio.readers.voxels.folders import dicom_names, is_dicom, is_zarr, zarr_names
-from regolith_studio.readers.voxels.slice_series import slice_series
+from regolith_studio.readers.voxels.slice_series import number_ranges, slice_series
 
 
 def volume_files(path: str | Path) -> tuple[Path, ...]:
@@ -65,6 +65,14 @@ def slice_names(folder: Path) -> tuple[str, ...]:
     """Names of the slices in a folder, series by series in the order of their numbers; or none."""
     series, _ = slice_series(_visible_names(folder))
     return tuple(name for each in series for name in each.files)
+
+
+def missing_slices(folder: Path) -> dict[str, str]:
+    """Numbers that are absent from series of slices in a folder, as text, by the names of the series."""
+    if not folder.is_dir() or is_zarr(folder) or dicom_names(folder):
+        return {}
+    series, _ = slice_series(_visible_names(folder))
+    return {each.name: number_ranges(each.missing, each.step) for each in series if each.missing}
 
 
 def members_stamp(folder: Path, names: tuple[str, ...]) -> tuple[int, list[int]]:

@@ -186,7 +186,8 @@ class BatchInputs:
             for particle in sample_particles():
                 members.append(SampleInput(unique_name(particle.name, particle.group, taken), particle.name))
         for each in recipe.openings:
-            for file in find_files([base / name for name in each.files], problems, TableReading(each.l_max)):
+            reading = TableReading(each.l_max, each.convention)
+            for file in find_files([base / name for name in each.files], problems, reading):
                 name = unique_name(file.path.stem, file.group, taken)
                 members.append(FileInput(name, file, each.unit, each.repair))
         for folder in prepared.volumes:

@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+from PySide6.QtCore import Signal
 from PySide6.QtWidgets import (
     QComboBox,
     QDialog,
@@ -13,6 +14,8 @@ from PySide6.QtWidgets import (
 )
 
 from regolith_studio.messages import N_
+from regolith_studio.readers.coefficient_tables import TableConvention
+from regolith_studio.readers.particles import has_tables
 from regolith_studio.readers.units import UNITS, unit_factor
 from regolith_studio.ui.translation import tr, tr_count
 from regolith_studio.ui.widgets.labels import remark, short_number
@@ -32,8 +35,22 @@ GRAIN_SIZES = (1.0, 5000.0)
 """Plausible longest sides of regolith particles in micrometres."""
 
 
+CONVENTIONS = (
+    ("auto", N_("Detect from the rows")),
+    ("complex", N_("Complex, orthonormal, with the phase")),
+    ("shtools-4pi", N_("Real, 4π normalisation (SHTOOLS)")),
+    ("shtools-ortho", N_("Real, orthonormal (SHTOOLS)")),
+)
+"""Conventions of tables of coefficients; the real ones have no Condon-Shortley phase."""
+
+
 class UnitDialog(QDialog):
-    """Edits one unit, as the readers take it: ``mm``, or ``voxel:2.3`` with the voxel's edge in µm."""
+    """Edits one unit, as the readers take it: ``mm``, or ``voxel:2.3`` with the voxel's edge in µm.
+
+    For tables of coefficients it edits their convention too.
+    """
+
+    conventionChanged = Signal(str)  # noqa: N815
 
     def __init__(self, paths: list[Path], suggestion: str, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -68,6 +85,18 @@ class UnitDialog(QDialog):
         form = QFormLayout()
         form.addRow(tr("Unit"), self.unit)
         form.addRow(self._voxel_label, self.voxel)
+        self.convention = QComboBox(self)
+        self.convention.setObjectName("convention")
+        self.convention.setAccessibleName(tr("Convention of coefficients"))
+        for convention, label in CONVENTIONS:
+            self.convention.addItem(tr(label), convention)
+        if has_tables(paths):
+            form.addRow(tr("Coefficients"), self.convention)
+        else:
+            self.convention.hide()
+        self.convention.activated.connect(
+            lambda _: self.conventionChanged.emit(self.convention.currentData())
+        )
         buttons = self._buttons = QDialogButtonBox(
             QDialogButtonBox.StandardButton.Open | QDialogButtonBox.StandardButton.Cancel, parent=self
         )
@@ -90,6 +119,11 @@ class UnitDialog(QDialog):
         key = str(self.unit.currentData())
         return f"voxel:{self.voxel.value():g}" if key == "voxel" else key
 
+    def table_convention(self) -> TableConvention:
+        """The convention of tables of coefficients."""
+        convention: TableConvention = self.convention.currentData()
+        return convention
+
     def setValue(self, unit: str) -> None:
         """Suggest a unit."""
         key, _, size = unit.partition(":")
@@ -106,9 +140,9 @@ class UnitDialog(QDialog):
         first
             Name of the first particle, and its longest side as the file gives it; or why there is none.
         """
+        self._buttons.button(QDialogButtonBox.StandardButton.Open).setEnabled(not isinstance(first, str))
         if isinstance(first, str):
             self.size_note.setText(first)
-            self._buttons.button(QDialogButtonBox.StandardButton.Open).setEnabled(False)
             return
         self._first = first
         if first is not None and not self._touched and not _is_plausible(first[1], self.value()):

@@ -63,6 +63,24 @@ def test_that_a_region_is_read_again_and_a_wrong_one_is_explained(page, part, wa
     assert page.state()["region"]["crop"] == "10:70,:,92:161um"
 
 
+def test_that_absent_slices_are_named_and_read_as_empty_ones_if_that_is_chosen(page, tmp_path, wait):
+    for z in [*range(10), *range(12, 24)]:
+        tifffile.imwrite(tmp_path / f"s{z:03d}.tif", np.full((20, 30), 10 + z, dtype=np.uint8))
+    page.opening.open(tmp_path)
+    wait(lambda: page.findChild(VolumeDialog) is not None, SECONDS)
+    dialog = page.findChild(VolumeDialog)
+    open_it = dialog.findChild(QDialogButtonBox).button(QDialogButtonBox.StandardButton.Open)
+    assert not open_it.isEnabled()
+    assert "numbers 10 to 11" in dialog.allow_gaps.text()
+    dialog.allow_gaps.setChecked(True)
+    assert open_it.isEnabled()
+    dialog.accept()
+    wait(lambda: page.scan is not None, SECONDS)
+    assert page.scan.volume.shape == (30, 20, 24)
+    assert page.scan.volume.array[0, 0, 9:13].tolist() == [19, 0, 0, 22]
+    assert entry_of(page.opening.given, GrainSettings()).allow_gaps
+
+
 def test_that_a_box_drawn_in_a_slice_is_the_region_and_another_one_in_it_a_smaller_one(page, part, wait):
     page.opening.read(VolumeInput(part, 2.3, kind="grey"))
     wait(lambda: page.preview.found is not None, SECONDS)

@@ -1,5 +1,6 @@
 """Opening a volume: ask for it and for what its file does not state, and read its region of interest."""
 
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
@@ -15,6 +16,7 @@ from regolith_studio.jobs.extraction_settings import VolumeInput
 from regolith_studio.jobs.scan_jobs import FirstLook, Scan, read_header, read_sample_scan, read_scan
 from regolith_studio.readers.sandbox.parent import volume_sandbox
 from regolith_studio.readers.volume_formats import volume_suffixes
+from regolith_studio.readers.volumes.files import missing_slices
 from regolith_studio.readers.volumes.header import VolumeHeader, layout_from_name
 from regolith_studio.readers.volumes.region import RegionSettings, crop_of_rectangle
 from regolith_studio.readers.voxels.scanner_headers import header_beside
@@ -70,9 +72,10 @@ class VolumeOpening(QObject):
         if path.suffix.lower() in RAW_SUFFIXES and header_beside(path) is None:
             self._ask_layout(path)
             return
-        job = Job(read_header, (VolumeInput(path),))
+        gaps = self._gaps(path)
+        job = Job(read_header, (VolumeInput(path, allow_gaps=bool(gaps)),))
         self._context.start(
-            tr("Inspecting the volume"), job, lambda header: self._on_header(path, header), lane="read"
+            tr("Inspecting the volume"), job, lambda header: self._on_header(path, header, gaps), lane="read"
         )
 
     def open_sample(self) -> None:
@@ -120,9 +123,16 @@ class VolumeOpening(QObject):
         if self.scan is not None:
             self.scan.scratch.close()
 
-    def _on_header(self, path: Path, header: VolumeHeader) -> None:
-        if needs_asking(header):
-            self._show_dialog(VolumeDialog(path, header, last=self._last_size(), parent=self._page))
+    def _gaps(self, path: Path) -> Mapping[str, str]:
+        try:
+            return missing_slices(path)
+        except RegolithError:
+            return {}  # it is reported when the folder is read
+
+    def _on_header(self, path: Path, header: VolumeHeader, gaps: Mapping[str, str]) -> None:
+        if gaps or needs_asking(header):
+            last = self._last_size()
+            self._show_dialog(VolumeDialog(path, header, last=last, gaps=gaps, parent=self._page))
         else:
             self.read(VolumeInput(path))
 
@@ -132,7 +142,7 @@ class VolumeOpening(QObject):
         except RegolithError as error:
             self._context.toast.problem(str(error))
             return
-        self._show_dialog(VolumeDialog(path, None, layout, self._last_size(), self._page))
+        self._show_dialog(VolumeDialog(path, None, layout, self._last_size(), parent=self._page))
 
     def _show_dialog(self, dialog: VolumeDialog) -> None:
         dialog.accepted.connect(lambda: self._read_described(dialog.value()))

@@ -1,11 +1,12 @@
 """Dialog for the properties of a volume that its file does not contain."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
 from PySide6.QtWidgets import (
+    QCheckBox,
     QDialog,
     QDialogButtonBox,
     QFormLayout,
@@ -56,6 +57,8 @@ class VolumeDialog(QDialog):
         Layout from the name of a raw file, if any.
     last
         Initial voxel size and unit if the file has none.
+    gaps
+        Numbers that are absent from series of slices, by the names of the series.
     """
 
     def __init__(
@@ -64,6 +67,7 @@ class VolumeDialog(QDialog):
         header: VolumeHeader | None,
         layout: RawLayout | None = None,
         last: tuple[float, str] = (1.0, "um"),
+        gaps: Mapping[str, str] | None = None,
         parent: QWidget | None = None,
     ) -> None:
         super().__init__(parent)
@@ -81,6 +85,9 @@ class VolumeDialog(QDialog):
         self.offset = _count("offset", tr("Bytes before the first voxel"), least=0)
         self.kind = choice("kind", tr("Content of the volume"), KINDS)
         self.axes = choice("axes", tr("Order of the array's axes"), AXES)
+        self._gaps = gaps or {}
+        self.allow_gaps = QCheckBox()
+        self.allow_gaps.setObjectName("allow_gaps")
         self._said = tr("A raw file has no header. Enter the number of voxels and their type.")
         self.verdict, self.facts = remark(), remark()
         self._buttons = QDialogButtonBox(
@@ -96,6 +103,10 @@ class VolumeDialog(QDialog):
                 field.valueChanged.connect(self._check_size)
             self.dtype.currentIndexChanged.connect(self._check_size)
             self._check_size()
+        if self._gaps:
+            self.dataset.currentIndexChanged.connect(self._check_gaps)
+            self.allow_gaps.toggled.connect(self._check_gaps)
+            self._check_gaps()
 
     def value(self) -> VolumeInput:
         """The entered properties."""
@@ -113,6 +124,7 @@ class VolumeDialog(QDialog):
             self.dataset.currentData(),
             raw,
             self.axes.currentData(),
+            allow_gaps=self.allow_gaps.isChecked(),
         )
 
     def _follow(self, value: float) -> None:
@@ -177,6 +189,15 @@ class VolumeDialog(QDialog):
         self.verdict.setText(words)
         self._buttons.button(QDialogButtonBox.StandardButton.Open).setEnabled(needed <= there)
 
+    def _check_gaps(self) -> None:
+        """Enable opening if the chosen series is complete, or its absent slices are to be empty."""
+        chosen = self.dataset.currentData() or next(iter(self._gaps))
+        numbers = self._gaps.get(chosen, "")
+        self.allow_gaps.setText(inert(tr("Read absent slices as empty: {numbers}", numbers=numbers)))
+        self.allow_gaps.setVisible(bool(numbers))
+        complete = not numbers or self.allow_gaps.isChecked()
+        self._buttons.button(QDialogButtonBox.StandardButton.Open).setEnabled(complete)
+
     def _arrange(self) -> None:
         header = self._header
         form = QFormLayout()
@@ -192,6 +213,8 @@ class VolumeDialog(QDialog):
             form.addRow(tr("Axes"), self.axes)
         form.addRow(tr("Voxel size x, y, z"), _row([*self.edges, self.unit]))
         form.addRow(tr("Content"), self.kind)
+        if self._gaps:
+            form.addRow(self.allow_gaps)
         layout = QVBoxLayout(self)
         layout.addWidget(QLabel(inert(self._path.name)))
         layout.addWidget(self.facts)
