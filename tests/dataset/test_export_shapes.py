@@ -37,6 +37,7 @@ from regolith_studio.dataset.size_distributions import (
 )
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.half_spaces import HalfSpaces
+from regolith_studio.readers.particles import read_mesh
 from tests.tolerance import relative
 
 from .example import entry
@@ -363,7 +364,7 @@ def test_that_the_stated_volume_of_the_spheres_agrees_with_monte_carlo(
 # --- glTF
 
 
-def test_that_gltf_shows_every_particle_where_it_is_in_millimetres(dataset: Dataset, tmp_path: Path) -> None:
+def test_that_gltf_shows_every_particle_where_it_is_in_metres(dataset: Dataset, tmp_path: Path) -> None:
     folder = exported(dataset, "gltf", tmp_path / "x")
     scene = trimesh.load_scene(folder / "particles.glb")
     bodies = pack_on_lattice(dataset, OPTIONS)
@@ -376,9 +377,15 @@ def test_that_gltf_shows_every_particle_where_it_is_in_millimetres(dataset: Data
         placed.merge_vertices(merge_norm=True)
         placed.apply_transform(transform)
         assert placed.is_watertight
-        assert placed.volume == pytest.approx(np.pi / 6 * (bodies.diameter[index] * 1e3) ** 3, rel=1e-4)
-        x, y, z = bodies.position[index] * 1e3
-        assert placed.center_mass == pytest.approx([x, z, -y], abs=1e-4)
+        assert placed.volume == relative(np.pi / 6 * bodies.diameter[index] ** 3, 1e-4)
+        x, y, z = bodies.position[index]
+        assert placed.center_mass == pytest.approx([x, z, -y], abs=1e-7)
+
+
+def test_that_our_own_gltf_is_read_back_in_its_size(dataset: Dataset, tmp_path: Path) -> None:
+    path = exported(dataset, "gltf", tmp_path / "x") / "particles.glb"
+    expected = trimesh.load_scene(path).to_mesh().bounds * 1e6
+    assert read_mesh(path, repair=False).mesh.bounds == relative(expected, 1e-6)
 
 
 # --- sizes

@@ -141,7 +141,7 @@ def test_that_trimesh_loads_particles_of_any_size(size: float, tmp_path: Path) -
     for name in scene.graph.nodes_geometry:
         matrix, mesh = scene.graph[name]
         volume = scene.geometry[mesh].volume * np.linalg.det(matrix[:3, :3])
-        assert volume == relative(np.pi / 6 * (size * 1e-3) ** 3, 1e-4)
+        assert volume == relative(np.pi / 6 * (size * 1e-6) ** 3, 1e-4)
     for key in ("chrono", "aspherix", "edem"):
         folder = exported(dataset, key, tmp_path / key, options)
         meshes = [path for path in sorted(folder.rglob("shape_*")) if path.suffix in (".stl", ".obj")]

@@ -12,10 +12,7 @@ from regolith_studio.geometry.convex_compound import Polyhedron
 from regolith_studio.io.glb import Z_UP_TO_Y_UP, MeshBuffer, glb_bytes
 from regolith_studio.messages import N_
 
-ENLARGED = 1000.0
-"""Metres of the file for a metre of the particles: Blender cannot show particles of their true size well."""
-
-_NOTE = b"""particles.glb: 1 m in the file is 1 mm of the particles, so that a viewer's clipping planes fit.
+_NOTE = b"""particles.glb: lengths are in metres, as glTF demands; scale the node 'particles' up to see it.
 The file is y up as glTF demands; Blender turns it back to z up. Facets are shaded flat.
 Of compounds the surface of the union is drawn.
 Each particle is a node with its mesh's key, diameter and dataset name under 'extras'."""
@@ -58,9 +55,9 @@ def _nodes(dataset: Dataset, options: ExportOptions, keys: list[str]) -> list[di
             {
                 "name": f"particle_{index:06d}",
                 "mesh": int(which),
-                "translation": (place * ENLARGED).tolist(),
+                "translation": place.tolist(),
                 "rotation": turn[[1, 2, 3, 0]].tolist(),
-                "scale": [float(scale * ENLARGED)] * 3,
+                "scale": [float(scale)] * 3,
                 "extras": {
                     "shape": keys[which],
                     "name": dataset.representatives[which].name,
@@ -82,7 +79,7 @@ _LOAD = "blender --python-expr \"import bpy; bpy.ops.import_scene.gltf(filepath=
 EXPORTER = Exporter(
     key="gltf",
     label="glTF (Blender)",
-    units=N_("1 m in the file is 1 mm of the particles, coarse graining applied; y up"),
+    units=N_("m, coarse graining applied; y up"),
     carries=(N_("drawn particles: shape, size, orientation"), N_("flat shading of facets")),
     loses=(
         N_("exact half-spaces: float32 triangles"),
