@@ -16,6 +16,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cached_property
 from importlib import import_module
 from importlib.metadata import EntryPoint, entry_points
+from inspect import Parameter, isclass, signature
 from typing import Any, Generic, TypeVar
 
 T = TypeVar("T")
@@ -67,9 +68,10 @@ class Registry(Mapping[str, T], Generic[T]):
     def _rows(self) -> dict[str, T]:
         rows = self._own_rows()
         required = _shared_names(rows.values())
+        arguments = _shared_arguments(rows.values(), required)
         for entry in sorted(entry_points(group=self._group)):
             try:
-                self._add(entry, rows, required)
+                self._add(entry, rows, required, arguments)
             except (Exception, SystemExit) as error:  # noqa: BLE001 (whatever it raises, the rest must work)
                 reason = str(error) or type(error).__name__
                 sentence = f"The plug-in {_title(entry)} cannot be used: {reason.rstrip('.')}."
@@ -87,7 +89,9 @@ class Registry(Mapping[str, T], Generic[T]):
         rows = [getattr(module, self._attribute) for module in modules if hasattr(module, self._attribute)]
         return {str(row.key): row for row in rows}
 
-    def _add(self, entry: EntryPoint, rows: dict[str, T], required: set[str]) -> None:
+    def _add(
+        self, entry: EntryPoint, rows: dict[str, T], required: set[str], arguments: dict[str, list[str]]
+    ) -> None:
         """Add the row of an entry point, which must have what all own rows have; what is wrong is raised."""
         row = entry.load()
         key = row.key
@@ -97,6 +101,8 @@ class Registry(Mapping[str, T], Generic[T]):
             raise ValueError(f"there is a {self._attribute} {key!r} already")
         if missing := sorted(required - set(dir(row))):
             raise TypeError(f"it has no {missing[0]!r}")
+        for name, taken in arguments.items():
+            _check_arguments(name, getattr(row, name), taken)
         if self._order is not None:
             self._order(row)
         rows[key] = row
@@ -111,3 +117,26 @@ def _shared_names(rows: Iterable[object]) -> set[str]:
     """Public attributes that all rows have."""
     names = [{name for name in dir(row) if not name.startswith("_")} for row in rows]
     return set.intersection(*names) if names else set()
+
+
+def _shared_arguments(rows: Iterable[object], names: set[str]) -> dict[str, list[str]]:
+    """Positional arguments of each function that all rows have; of the row that takes the fewest."""
+    found: dict[str, list[str]] = {}
+    for name in sorted(names):
+        values = [getattr(row, name) for row in rows]
+        if all(callable(value) and not isclass(value) for value in values):
+            found[name] = min(map(_positional, values), key=len)
+    return found
+
+
+def _positional(function: Callable[..., Any]) -> list[str]:
+    kinds = (Parameter.POSITIONAL_ONLY, Parameter.POSITIONAL_OR_KEYWORD)
+    taken = signature(function).parameters.values()
+    return [each.name.lstrip("_") for each in taken if each.kind in kinds]
+
+
+def _check_arguments(name: str, function: Callable[..., Any], taken: list[str]) -> None:
+    try:
+        signature(function).bind(*taken)
+    except TypeError:
+        raise TypeError(f"its {name!r} must take {len(taken)} arguments ({', '.join(taken)})") from None

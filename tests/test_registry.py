@@ -17,6 +17,7 @@ ENTRY_POINTS = """
 [regolith_studio.coarsening_methods]
 lunar = lunar_kinds:METHOD
 clashing = lunar_kinds:CLASHING
+earlier = lunar_kinds:EARLIER
 half = lunar_kinds:HalfAMethod
 [regolith_studio.exporters]
 lunar = lunar_kinds:EXPORTER
@@ -110,16 +111,18 @@ from regolith_studio.dataset.exporters import EXPORTERS
 from regolith_studio.registry import plugin_problems
 assert "rocky" in EXPORTERS and "lunar_export" in EXPORTERS
 assert type(METHODS["quadric"]).__module__ == "regolith_studio.coarsening.methods.quadric"
-assert "half_a_method" not in METHODS
+assert not {"half_a_method", "earlier_method"} & set(METHODS)
 print(*plugin_problems(), sep="\\n")
 """
     done = run(installed, "-c", script)
-    missing, clashing, half = done.stdout.splitlines()
+    clashing, earlier, half, missing = sorted(done.stdout.splitlines())
     assert "'missing'" in missing
     assert "lunar_code_that_is_not_there" in missing
     assert "there is a METHOD 'quadric' already" in clashing
+    assert "its 'run' must take 6 arguments" in earlier
+    assert "(target, n_facets, weights, seed, settings, fewer)" in earlier
     assert "it has no 'Settings'" in half
-    assert done.stderr.count("\n") == 3
+    assert done.stderr.count("\n") == 4
     checked = run(installed, "-m", "regolith_studio", "check", "--json")
     assert "'missing'" in " ".join(json.loads(checked.stdout)["missing"])
 

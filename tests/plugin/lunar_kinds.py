@@ -24,9 +24,9 @@ class NoSettings:
 
 
 class LunarMethod:
-    key, label, Settings = "lunar_method", "Lunar method", NoSettings
+    key, label, keeps_terms, Settings = "lunar_method", "Lunar method", False, NoSettings
 
-    def run(self, target, n_facets, weights, seed, settings):  # noqa: ARG002
+    def run(self, target, n_facets, weights, seed, settings, fewer=None):  # noqa: ARG002
         quadric = QuadricMethod()
         return quadric.run(target, n_facets, weights, seed, quadric.Settings())
 
@@ -110,6 +110,18 @@ EXPORTER = Exporter(
 
 CLASHING = SimpleNamespace(key="quadric")
 """Has the key of a method of the program."""
+
+
+class EarlierMethod(LunarMethod):
+    """Runs without a result with fewer facets to begin from, which the program hands over."""
+
+    key = "earlier_method"
+
+    def run(self, target, n_facets, weights, seed, settings):
+        return super().run(target, n_facets, weights, seed, settings)
+
+
+EARLIER = EarlierMethod()
 
 
 class HalfAMethod:
