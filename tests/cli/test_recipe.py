@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 from regolith_studio.cli.entry import run
+from regolith_studio.coarsening.coarsen import FACETS_LIMITS
 from regolith_studio.session.outputs.summary import Summary, summary_page
 from regolith_studio.session.recipe import recipe_of
 
@@ -52,7 +53,8 @@ def test_that_a_recipe_stops_at_an_error_as_the_commands_do(command, grains: Pat
     assert command("dataset", "build", *common, "-o", tmp_path / "set").code == 0
     for name in ("out/dataset", "set"):
         metadata = json.loads((tmp_path / name / "dataset.json").read_text())["metadata"]
-        assert (metadata["coarsening"]["n_facets"], metadata["coarsening"]["max_error"]) == (200, 0.02)
+        most = FACETS_LIMITS[1]
+        assert (metadata["coarsening"]["n_facets"], metadata["coarsening"]["max_error"]) == (most, 0.02)
 
 
 def test_that_another_seed_can_be_given(command, grains: Path, tmp_path: Path) -> None:
