@@ -28,8 +28,10 @@ def files_below(folder: Path) -> set[str]:
 
 
 def shipped() -> set[str]:
-    """Resources of an installation: those of the checkout, and the guide."""
-    return files_below(ROOT / "resources") | {f"guide/{name}" for name in files_below(ROOT / "docs")}
+    """Resources of an installation: those of the checkout, the guide, and the results for its tables."""
+    folders = {"guide": ROOT / "docs", "results": ROOT / "benchmarks" / "results"}
+    below = {f"{inside}/{name}" for inside, folder in folders.items() for name in files_below(folder)}
+    return files_below(ROOT / "resources") | below
 
 
 def run(*command: str | Path, folder: Path) -> str:
