@@ -14,8 +14,9 @@ Cell = str | int | float | None
 """What a table may hold; ``None`` and NaN stand for a missing value."""
 PLAIN_NUMBERS = 1e7
 """Numbers below this are shown without an exponent of ten."""
-_FORMULA = re.compile(r"'*[=+\-@\t\r\n]")
-"""Begins a cell that a spreadsheet would compute, and one that stands for such a text."""
+_FORMULA = re.compile(r"(^|[;,\t\r\n])('*)(?=[=+\-@\t\r\n])")
+"""Before what a spreadsheet would compute: at the start of a cell, or behind what may separate cells."""
+_SHIELDED = re.compile(r"(^|[;,\t\r\n])'('*)(?=[=+\-@\t\r\n])")
 _NUMBER = re.compile(r"[+-]?((\d+\.?\d*|\.\d+)([eE][+-]?\d+)?|inf)")
 
 
@@ -101,7 +102,8 @@ def csv_bytes(rows: Iterable[Sequence[object]]) -> bytes:
     """Rows as CSV in UTF-8: floats by ``repr``, ``None`` as an empty cell, text quoted where necessary.
 
     A text that a spreadsheet would take for a formula, because it begins with ``=``, ``+``, ``-``, ``@`` or a
-    tab or line end and is no number, gets an apostrophe in front; :func:`read_csv` takes it away.
+    tab or line end and is no number, gets an apostrophe in front; so does what follows a semicolon, comma,
+    tab or line end in a text, as spreadsheets differ in what separates cells. :func:`read_csv` removes it.
     """
     return _csv(rows).encode("utf-8", UNPRINTABLE)
 
@@ -158,11 +160,11 @@ class _Lines(list[str]):
 
 
 def _as_text(cell: str) -> str:
-    return f"'{cell}" if _FORMULA.match(cell) and not _NUMBER.fullmatch(cell) else cell
+    return cell if _NUMBER.fullmatch(cell) else _FORMULA.sub(r"\1'\2", cell)
 
 
 def _original(cell: str) -> str:
-    return cell[1:] if cell.startswith("'") and _FORMULA.match(cell) else cell
+    return _SHIELDED.sub(r"\1\2", cell)
 
 
 def _plain(cell: object) -> Cell:

@@ -140,6 +140,15 @@ def test_that_a_spreadsheet_shows_names_as_text(cell: str) -> None:
     assert written == cell if number or cell == "'x" else written == f"'{cell}"
 
 
+@pytest.mark.parametrize("separator", [";", ",", "\t"])
+@pytest.mark.parametrize("cell", ["x;=1+1", "x,=1+1", "x\t=1+1", "x;'@a,+b", "x\n=1+1", "a;;-b\r\n=c"])
+def test_that_no_formula_begins_behind_another_separator(cell: str, separator: str) -> None:
+    text = csv_bytes([["a", "b"], ["x", cell]]).decode()
+    for row in csv.reader(io.StringIO(text, newline=""), delimiter=separator, quoting=csv.QUOTE_NONE):
+        assert not [part for part in row if part[:1] in ("=", "+", "-", "@")]
+    assert [row["b"] for row in read_csv(io.StringIO(text, newline=""))] == [cell]
+
+
 def _write_a_mesh(folder: Path) -> None:
     with staged_folder(folder, "run") as stage:
         (stage / "meshes").mkdir()

@@ -13,9 +13,11 @@ from regolith_studio.geometry.convex_compound import ConvexCompound
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.half_spaces import HalfSpaces
 from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.studies.figures.degrees import (
     EDGE,
     VIEW,
+    degree_figure,
     gallery_figure,
     union_picture,
     visible_facets,
@@ -115,3 +117,11 @@ def test_that_the_same_study_gives_the_same_bytes(
     assert [path.name for path in one] == ["solids.csv", "solids.json", "solids.png", "solids.svg"]
     assert [path.read_bytes() for path in one] == [path.read_bytes() for path in other]
     assert len(gallery_figure(study).axes) == 4
+
+
+def test_that_a_name_with_dollars_stands_in_a_figure_as_it_is() -> None:
+    name = r"a $\frac{1}{2 b$ c"  # as mathematics this cannot be set
+    figure = degree_figure({name: icosphere(1), "$x_1$": None})
+    figure.canvas.draw()
+    shown = [axis.title._preprocess_math(axis.title.get_text()) for axis in figure.axes]
+    assert shown == [(name, False), ("$x_1$", False)]

@@ -20,7 +20,7 @@ from regolith_studio.studies.coarsening import (
     particle_table,
     rmsre_table,
 )
-from regolith_studio.studies.figures.files import with_subscript, write_figure
+from regolith_studio.studies.figures.files import as_written, with_subscript, write_figure
 from regolith_studio.studies.sweeps import (
     SWEEPS,
     descriptor_error,
@@ -58,7 +58,7 @@ def tradeoff_figure(study: CoarseningStudy) -> Figure:
             color=f"C{r % 10}",
             elinewidth=0.8,
             capsize=2,
-            label=row.label,
+            label=as_written(row.label),
         )
     axis.set_xlabel("mean Jaccard distance (%)")
     axis.set_ylabel("mean RMSRE of the six descriptors (%)")
@@ -193,7 +193,7 @@ def column_symbol(key: str) -> str:
 def _described(study: CoarseningStudy, r: int) -> str:
     row = study.rows[r]
     weights = " ".join(f"{row.weights[key]:g}" for key in WEIGHT_KEYS)
-    return f"{row.label}\n({weights})"
+    return f"{as_written(row.label)}\n({weights})"
 
 
 def _printed(value: float) -> str:

@@ -21,7 +21,7 @@ from regolith_studio.geometry.convex_compound import ConvexCompound, Polyhedron
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.io.tables import write_table
-from regolith_studio.studies.figures.files import with_subscript, write_figure
+from regolith_studio.studies.figures.files import as_written, with_subscript, write_figure
 from regolith_studio.studies.lmax import BOX_NOTE, LmaxStudy, particle_table, rmsre_table
 from regolith_studio.studies.polyhedron_gallery import GalleryPolyhedron, GalleryStudy, gallery_table
 
@@ -75,7 +75,9 @@ def _draw_group(axis: Axes, study: LmaxStudy, group: str) -> None:
             linewidth=1.2,
         )
     axis.set_yscale("log")
-    axis.set_title(f"{group or 'all particles'} (n = {len(study.of_group(group))})", fontsize="medium")
+    axis.set_title(
+        f"{as_written(group) or 'all particles'} (n = {len(study.of_group(group))})", fontsize="medium"
+    )
     axis.set_xlabel("$l_{max}$")
     axis.grid(True, which="major", alpha=0.3)
 
@@ -106,9 +108,11 @@ def gallery_figure(study: GalleryStudy) -> Figure:
             if isinstance(found, GalleryPolyhedron):
                 _draw(axis, found.polyhedron, 1.05 * max(reaches))
                 axis.set_xlabel(f"J {found.jaccard_distance:.3f}", fontsize=7)
-        axes[0, column].set_title(name, fontsize=8)
+        axes[0, column].set_title(as_written(name), fontsize=8)
     for row, label in enumerate(study.rows):
-        axes[row, 0].set_ylabel(fill(label, LETTERS), rotation=0, ha="right", va="center", fontsize=8)
+        axes[row, 0].set_ylabel(
+            as_written(fill(label, LETTERS)), rotation=0, ha="right", va="center", fontsize=8
+        )
     return figure
 
 
@@ -204,7 +208,7 @@ def degree_figure(surfaces: Mapping[str, Mesh | None]) -> Figure:
     high = np.max([each.max(axis=0) for each in flat], axis=0)
     middle, reach = (low + high) / 2, 0.53 * float((high - low).max())
     for axis, (title, mesh) in zip(axes, surfaces.items(), strict=False):
-        axis.set_title(title, fontsize=8)
+        axis.set_title(as_written(title), fontsize=8)
         if mesh is None:
             axis.text(0.5, 0.5, "the radius is negative", ha="center", fontsize=7, transform=axis.transAxes)
         else:

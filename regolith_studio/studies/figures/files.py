@@ -24,6 +24,11 @@ def write_figure(figure: Figure, folder: Path, stem: str) -> tuple[Path, Path]:
     return picture, drawing
 
 
+def as_written(name: str) -> str:
+    """A name as matplotlib shows it as it is: between two dollars it would set mathematics."""
+    return name.replace("$", r"\$")
+
+
 def with_subscript(symbol: str) -> str:
     """A symbol such as ``D_min`` as matplotlib sets it, with a real subscript."""
     return re.sub(r"_(\w+)", r"$_\\mathrm{\1}$", symbol)
