@@ -1,6 +1,6 @@
 """Descriptors of one particle."""
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Generator, Iterable, Iterator, Mapping
 from typing import Any
 
 from regolith_studio.descriptors.catalogue import CATALOGUE, DEFAULT_KEYS
@@ -72,10 +72,29 @@ def describe(
     ValueError
         If a key or the box metric is unknown.
     """
+    steps = description_steps(solid, keys, box_metric)
+    while True:
+        try:
+            next(steps)
+        except StopIteration as end:
+            result: Descriptors = end.value
+            return result
+
+
+def description_steps(
+    solid: Particle | Mesh | ConvexPolyhedron | ConvexCompound,
+    keys: Iterable[str] | None = None,
+    box_metric: str = "exact",
+) -> Generator[str, None, Descriptors]:
+    """As :func:`describe`, with the label of each descriptor before it is worked out."""
     wanted = DEFAULT_KEYS if keys is None else tuple(keys)
     _check_keys(wanted)
     facts = ShapeCache(solid.mesh if isinstance(solid, Particle | ConvexCompound) else solid, box_metric)
-    return Descriptors({key: CATALOGUE[key].compute(facts) for key in wanted})
+    values = {}
+    for key in wanted:
+        yield CATALOGUE[key].label
+        values[key] = CATALOGUE[key].compute(facts)
+    return Descriptors(values)
 
 
 def _check_keys(keys: Iterable[str]) -> None:

@@ -2,11 +2,13 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import count
 from pathlib import Path
 
 import numpy as np
 
-from regolith_studio.descriptors.describe import Descriptors, describe
+from regolith_studio.descriptors.catalogue import DEFAULT_KEYS
+from regolith_studio.descriptors.describe import Descriptors, describe, description_steps
 from regolith_studio.errors import RegolithError
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.mesh import Mesh
@@ -18,7 +20,7 @@ from regolith_studio.harmonics.fit_options import DEFAULT_FIT_OPTIONS, FitOption
 from regolith_studio.harmonics.surface import reconstruct
 from regolith_studio.harmonics.visibility import StarPointVisibility, hidden_faces, star_point_visibility
 from regolith_studio.jobs.compile_kernels import compile_first
-from regolith_studio.jobs.events import Failed, Job, Partial, Progress, Started, Steps
+from regolith_studio.jobs.events import Failed, Job, Partial, Progress, Started, Steps, result_of
 from regolith_studio.jobs.executor import Executor, open_executor, value_of
 from regolith_studio.messages import N_
 from regolith_studio.readers.coefficient_tables import DEFAULT_TABLE_READING, TableConvention, TableReading
@@ -34,6 +36,10 @@ from regolith_studio.readers.particles import (
 
 FIT_DEGREE = 30
 """Everything is fitted to this degree once; lower ones are truncations of that fit."""
+
+
+LARGE = 200_000
+"""Faces of a mesh from which on the parts of its measurement are told: they take more than a second."""
 
 
 def load_particles(
@@ -106,11 +112,29 @@ class MeasuredParticle:
 
 def measure_particle(particle: Particle, box_metric: str = "exact") -> MeasuredParticle:
     """Health, descriptors and visibility of one particle; never raises for what is wrong with the mesh."""
+    measured: MeasuredParticle = result_of(_measuring(particle, box_metric))
+    return measured
+
+
+def _measuring(particle: Particle, box_metric: str) -> Steps:
+    """As :func:`measure_particle`; a large mesh names what is worked out before each part."""
     known = particle.repair
+    parts = 2 + len(DEFAULT_KEYS)
+    is_large = len(particle.mesh.faces) >= LARGE
+    if is_large:
+        yield Progress(0, parts, N_("Checking the mesh"))
     health = known.health_after if known and known.mesh is particle.mesh else inspect(particle.mesh)
+    if is_large:
+        yield Progress(1, parts, N_("Visibility"))
     visibility = _visibility(particle)
+    steps = description_steps(particle.mesh, box_metric=box_metric)
     try:
-        return MeasuredParticle(health, describe(particle.mesh, box_metric=box_metric), "", visibility)
+        for done in count(2):
+            label = next(steps)
+            if is_large:
+                yield Progress(done, parts, label)
+    except StopIteration as end:
+        return MeasuredParticle(health, end.value, "", visibility)
     except RegolithError as error:
         return MeasuredParticle(health, None, str(error), visibility)
 
@@ -140,7 +164,7 @@ def measure_one(particle: Particle, box_metric: str = "exact") -> Steps:
     """As :func:`measure_particle`, for a runner."""
     yield from compile_first("describe")
     yield Started(N_("Measuring"))
-    return measure_particle(particle, box_metric)
+    return (yield from _measuring(particle, box_metric))
 
 
 def measure_particles(particles: Sequence[Particle], box_metric: str = "exact") -> Steps:
@@ -170,8 +194,27 @@ def measure_sample(
     yield Started(N_("Measuring"), len(particles))
     jobs = [Job(measure_one, (particle, box_metric)) for particle in particles]
     with open_executor(workers) as executor:
+        if executor.in_this_thread:
+            return (yield from _measured_in_turn(particles, box_metric))
         results = yield from executor.run_all(jobs, [particle.name for particle in particles])
     return tuple(value_of(result) for result in results)
+
+
+def _measured_in_turn(particles: Sequence[Particle], box_metric: str) -> Steps:
+    """Each particle in this thread, with the parts of large ones."""
+    measured: list[MeasuredParticle] = []
+    for particle in particles:
+        steps = _measuring(particle, box_metric)
+        try:
+            while True:
+                step = next(steps)
+                assert isinstance(step, Progress)
+                words = f"{particle.name} ({step.done + 1}/{step.total}: {step.message})"
+                yield Progress(len(measured), len(particles), words)
+        except StopIteration as end:
+            measured.append(end.value)
+        yield Progress(len(measured), len(particles), particle.name)
+    return tuple(measured)
 
 
 @dataclass(frozen=True)

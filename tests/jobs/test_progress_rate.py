@@ -2,6 +2,12 @@
 
 import pytest
 
+from regolith_studio.descriptors.catalogue import DEFAULT_KEYS
+from regolith_studio.descriptors.describe import describe
+from regolith_studio.geometry.particle import Particle
+from regolith_studio.geometry.sphere_points import icosphere
+from regolith_studio.jobs import particle_jobs
+from regolith_studio.jobs.events import Progress
 from regolith_studio.jobs.progress_rate import ProgressRate, format_duration
 
 
@@ -22,3 +28,26 @@ def test_that_the_pace_is_items_by_seconds_and_forgets_what_was_done_before() ->
 )
 def test_that_a_time_is_said_as_people_say_it(seconds: float, words: str) -> None:
     assert format_duration(seconds) == words
+
+
+def test_that_the_parts_of_a_large_mesh_are_named_while_it_is_measured(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(particle_jobs, "LARGE", 300)
+    particles = (Particle("small", icosphere(1)), Particle("large", icosphere(2)))
+    steps = particle_jobs.measure_sample(particles)
+    story = []
+    try:
+        while True:
+            step = next(steps)
+            if isinstance(step, Progress):
+                story.append((step.done, step.message))
+    except StopIteration as end:
+        measured = end.value
+    parts = 2 + len(DEFAULT_KEYS)
+    assert story[0] == (1, "small")
+    assert story[-1] == (2, "large")
+    assert [message.split(":")[0] for _, message in story[1:-1]] == [
+        f"large ({k}/{parts}" for k in range(1, parts + 1)
+    ]
+    assert measured[1].descriptors == describe(icosphere(2))
