@@ -14,40 +14,19 @@ import pytest
 from regolith_studio.cli.entry import run
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.folder_io import write_dataset
-from regolith_studio.dem.case import PreparedCase
-from regolith_studio.dem.engine import RunChecks, SimulationResult
-from regolith_studio.dem.initial_packing import loose_column
-from regolith_studio.dem.run_io import find_runs, save_snapshot
-from regolith_studio.dem.snapshot import ParticleState, Snapshot
+from regolith_studio.dem.engine import SimulationResult
+from regolith_studio.dem.run_io import find_runs
+from regolith_studio.dem.snapshot import Snapshot
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.half_spaces import HalfSpaces
 from regolith_studio.jobs import repose_jobs
 from regolith_studio.jobs.events import Steps
 from regolith_studio.studies.figures import repose as figures
+from tests.dem.cone_engine import cone_engine, true_angle
 from tests.dem.interrupted_study import tree, write_figure
-from tests.dem.packings import cone
 
 N = 300
 Command = Callable[..., int]
-
-
-def true_angle(friction: float) -> float:
-    """Degrees of the heaps of the engine below."""
-    return 16.0 + 15.0 * friction
-
-
-def cone_engine(
-    _key: str, prepared: PreparedCase, _settings: Any, folder: Path, _threads: int
-) -> Generator[Snapshot, None, SimulationResult]:
-    """A cone whose angle follows from the friction; the filling is the denser the smaller the friction."""
-    friction, seed = prepared.case.contact.static_friction, prepared.case.seed
-    column = loose_column(prepared)
-    points = prepared.mean_diameter * cone(true_angle(friction), len(prepared), seed)
-    heap = ParticleState(points, column.diameters, column.orientations, column.class_index)
-    save_snapshot(folder, 0, heap)
-    yield Snapshot(heap, 0.5, "half")
-    checks = RunChecks(N, N, 0.0, 0.0, 0.0, 0.0, 0.0, True, 0.02, 0.60 - 0.1 * friction)
-    return SimulationResult(heap, checks, 1, 1.0)
 
 
 @pytest.fixture

@@ -9,24 +9,28 @@ from typing import Any
 import h5py
 import numpy as np
 import pytest
+import tifffile
 import typer.main
 
 import regolith_studio
 from regolith_studio.cli.commands import app
 from regolith_studio.cli.entry import run
-from regolith_studio.dem.evaluation.settings import EvaluationSettings
 from regolith_studio.harmonics.fit import fit_harmonics
+from regolith_studio.imaging.sample_volumes import sample_file
 from regolith_studio.io.stl import stl_bytes
+from regolith_studio.jobs import repose_jobs
+from regolith_studio.jobs.repose_jobs import ReposeRequest
 from regolith_studio.readers.particles import sample_particles
 from regolith_studio.session.recipe import Recipe
+from tests.dem.cone_engine import cone_engine, true_angle
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
 BLOCK = re.compile(r"^```([^\n]*)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
 INDENTED = re.compile(r"(?:^    regolith-studio .*\n)+", re.MULTILINE)
 SPAN = re.compile(r"`regolith-studio ([a-z][^`]*)`")
-ELSEWHERE = ("SLURMCluster", "on_cluster", ">>> ")
-"""Code that needs a cluster, and the exercises, which are tested by themselves."""
+ELSEWHERE = ("SLURMCluster", "on_cluster", ">>> ", "simulate_repose")
+"""Code that needs a cluster, and exercises and heaps, which are tested by themselves."""
 SHORT = ("README.md",)
 """Pages whose commands are run, in the folder of the fixture."""
 LONG = ("study", "demo", "run")
@@ -105,18 +109,31 @@ def test_that_the_python_of_the_pages_runs(page: str, text: str) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.usefixtures("here")
-def test_that_the_heaps_of_the_page_on_python_are_simulated() -> None:
-    """Those of the page, of 60 particles on the default engine."""
-    assert run(["dataset", "build", "grains/", "-o", "grains-20"]) == 0
-    [text] = [text for page, text in blocks("pycon") if page == "python.md"]
-    code = text.replace(">>> ", "").replace("... ", "").replace("n_particles=1000", "n_particles=60")
-    code = code.replace('engine="rapier"', "evaluation=few").replace("repeats=3, workers=4", "repeats=1")
-    names: dict[str, Any] = {"rs": regolith_studio, "few": EvaluationSettings(min_particles=60)}
+@pytest.mark.timeout(900)
+def test_that_the_page_on_python_goes_from_a_scan_to_friction(
+    here: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """All steps of the page for 2 virtual particles, and its heaps on an engine that makes cones."""
+    monkeypatch.setattr(repose_jobs, "run_engine", cone_engine)
+    slices = tifffile.imread(sample_file("grey"))
+    tifffile.imwrite(here / "scan.tif", slices[: len(slices) // 2])
+    [text] = [text for page, text in blocks("python") if page == "python.md"]
+    [heaps] = [text for page, text in blocks("pycon") if page == "python.md"]
+    names: dict[str, Any] = {}
+    few = text.replace("rs.draw_particles(model, 20", "rs.draw_particles(model, 2")
+    exec(compile(few, "python.md", "exec"), names)
+    assert len(names["fits"]) == len(names["grains"]) > 5
+    assert len(names["dataset"]) == 2
+    friction = ReposeRequest().case.contact.static_friction
+    assert names["run"].measurement.angle == pytest.approx(true_angle(friction), abs=2.0)
+    names["rs"] = regolith_studio
+    (here / "heap").rename(here / "first_heap")
+    code = heaps.replace(">>> ", "").replace("... ", "").replace(", workers=4", "")
     exec(compile(code, "python.md", "exec"), names)
-    assert names["run"].document["state"] == "finished"
-    assert names["study"].values == (0.2, 0.4, 0.8)
-    assert len(names["study"].runs) == 3
+    study = names["study"]
+    assert study.values == (0.2, 0.4, 0.8)
+    for value in study.values:
+        assert np.mean(study.angles(value)) == pytest.approx(true_angle(value), abs=2.0)
 
 
 @pytest.mark.slow
