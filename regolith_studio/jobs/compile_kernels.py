@@ -24,7 +24,7 @@ from regolith_studio.messages import N_, Message
 if TYPE_CHECKING:
     pass
 
-TASKS = {"read": 10, "fit": 27, "describe": 33, "quadric": 18, "annealing": 12, "exact": 86, "compound": 21}
+TASKS = {"read": 10, "fit": 27, "describe": 34, "quadric": 18, "annealing": 12, "exact": 106, "compound": 47}
 TASKS |= {"degrees": 3, "model": 7, "scan": 10, "representatives": 3}
 """What can be compiled, in the order in which the window needs it, and the files of machine code that each
 adds to those of the tasks before it. Annealing has no kernel that the exact method does not need too.
@@ -118,7 +118,9 @@ def run_task(name: str) -> None:
         waist = Mesh(mesh.vertices * np.column_stack([np.ones(len(along)), along, along]), mesh.faces)
         coarsen(waist, 12, name, settings={"parts": 2})
     else:
-        coarsen(mesh, 12, name)
+        found = coarsen(mesh, 12, name)
+        if name == "exact":
+            coarsen(mesh, 14, name, fewer=found.half_spaces)
 
 
 def _draw_particles() -> None:
