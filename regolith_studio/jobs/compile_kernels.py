@@ -24,7 +24,7 @@ from regolith_studio.messages import N_, Message
 if TYPE_CHECKING:
     pass
 
-TASKS = {"read": 10, "fit": 27, "describe": 34, "quadric": 18, "annealing": 12, "exact": 106, "compound": 47}
+TASKS = {"read": 10, "fit": 27, "describe": 34, "quadric": 18, "annealing": 12, "exact": 108, "compound": 47}
 TASKS |= {"degrees": 3, "model": 7, "scan": 10, "representatives": 3}
 """What can be compiled, in the order in which the window needs it, and the files of machine code that each
 adds to those of the tasks before it. Annealing has no kernel that the exact method does not need too.
@@ -86,6 +86,8 @@ def compile_first(*tasks: str) -> Steps:
 def run_task(name: str) -> None:
     """Call every kernel of one of :data:`TASKS` in this process."""
     from regolith_studio.coarsening.coarsen import coarsen
+    from regolith_studio.coarsening.optimiser.starts import round_start
+    from regolith_studio.coarsening.target import Target
     from regolith_studio.descriptors.catalogue import CATALOGUE
     from regolith_studio.descriptors.describe import describe
     from regolith_studio.geometry.hole_filling import fill_holes
@@ -121,6 +123,7 @@ def run_task(name: str) -> None:
         found = coarsen(mesh, 12, name)
         if name == "exact":
             coarsen(mesh, 14, name, fewer=found.half_spaces)
+            round_start(Target.of(mesh), 12, np.random.default_rng(0))
 
 
 def _draw_particles() -> None:
