@@ -194,9 +194,9 @@ def _resolution(coarsening: CoarseningRecordModel) -> str:
     return f"errors below {100 * coarsening.max_error:g} %"
 
 
-def _few(names: Sequence[str], most: int = 5) -> str:
-    more = f" and {len(names) - most} more" if len(names) > most else ""
-    return ", ".join(names[:most]) + more
+def _few(names: Sequence[str]) -> str:
+    more = f" and {len(names) - 5} more" if len(names) > 5 else ""
+    return ", ".join(names[:5]) + more
 
 
 _READERS = {DOCUMENT: _dataset, RECORD: _export, RESULT: _result}

@@ -377,7 +377,7 @@ def sizes_csv(dataset: Dataset) -> bytes:
     return csv_bytes(rows)
 
 
-def shape_names(dataset: Dataset, prefix: str = "shape") -> list[str]:
+def shape_names(dataset: Dataset) -> list[str]:
     """Names without special characters, in order: ``shape_00``, ``shape_01`` ..."""
     digits = max(2, len(str(len(dataset) - 1)))
-    return [f"{prefix}_{index:0{digits}d}" for index in range(len(dataset))]
+    return [f"shape_{index:0{digits}d}" for index in range(len(dataset))]

@@ -82,10 +82,10 @@ class DiscreteSizeDistribution(SizeDistribution):
         return self
 
     @classmethod
-    def empirical(cls, diameters: ArrayLike, weighting: Weighting = "number") -> "DiscreteSizeDistribution":
-        """Of measured diameters (µm), each with the same share; equal ones are joined."""
+    def empirical(cls, diameters: ArrayLike) -> "DiscreteSizeDistribution":
+        """By number, of measured diameters (µm), each with the same share; equal ones are joined."""
         values, counts = np.unique(np.asarray(diameters, dtype=np.float64), return_counts=True)
-        return cls.of(values, counts, weighting)
+        return cls.of(values, counts)
 
     @classmethod
     def of(
@@ -319,6 +319,10 @@ QUANTILES = 20_000
 """Quantiles of a continuous distribution, as many by number as by volume."""
 
 
+MAX_CLASSES = 16
+"""Of diameters that represent a distribution for programs that know given sizes only."""
+
+
 @dataclass(frozen=True, eq=False)
 class SizeClasses:
     """A few diameters that represent a distribution.
@@ -336,18 +340,18 @@ class SizeClasses:
     mass: FloatArray
 
 
-def size_classes(sizes: SizeDistribution, count: int = 16) -> SizeClasses:
-    """At most `count` diameters with their shares by number and by mass.
+def size_classes(sizes: SizeDistribution) -> SizeClasses:
+    """At most :data:`MAX_CLASSES` diameters with their shares by number and by mass.
 
-    Discrete distributions of at most `count` diameters are unchanged. Others are binned in ln d; the diameter
+    Discrete distributions of no more diameters are unchanged. Others are binned in ln d; the diameter
     of a bin has the mean volume of its particles, so that number and mass are both conserved.
     """
     diameters, number = _points(sizes)
-    if len(diameters) > count:
-        edges = np.geomspace(diameters[0], diameters[-1], count + 1)[1:-1]
+    if len(diameters) > MAX_CLASSES:
+        edges = np.geomspace(diameters[0], diameters[-1], MAX_CLASSES + 1)[1:-1]
         place = np.searchsorted(edges, diameters, side="right")
-        shares = np.bincount(place, weights=number, minlength=count).astype(np.float64)
-        cubes = np.bincount(place, weights=number * diameters**3, minlength=count).astype(np.float64)
+        shares = np.bincount(place, weights=number, minlength=MAX_CLASSES).astype(np.float64)
+        cubes = np.bincount(place, weights=number * diameters**3, minlength=MAX_CLASSES).astype(np.float64)
         held = shares > 0.0
         diameters, number = np.cbrt(cubes[held] / shares[held]), shares[held]
     mass = number * (diameters / diameters[-1]) ** 3

@@ -97,7 +97,6 @@ def write_stored(
     *,
     name: str,
     provenance: Provenance,
-    overwrite: bool = True,
 ) -> Path:
     """Write a dataset in which each of `count` shapes has the same weight.
 
@@ -118,7 +117,7 @@ def write_stored(
     origin = provenance if provenance.software else _with_software(provenance)
     try:
         recover_folder(target)
-        check_replaceable(target, overwrite)
+        check_replaceable(target, overwrite=True)
         replace_folder(target, _files(shapes, count, name, origin))
     except OSError as error:
         raise DatasetError(f"The dataset {target} cannot be written ({os_error_reason(error)}).") from error

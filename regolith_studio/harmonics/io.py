@@ -22,13 +22,13 @@ SYMMETRY_TOLERANCE = 1e-4
 """Largest violation of a_{l,-m} = (-1)^m conj(a_lm), as a share of the largest coefficient."""
 
 
-def fits_document(names: Sequence[str], fits: Sequence[HarmonicFit], unit: str = "um") -> dict[str, Any]:
+def fits_document(names: Sequence[str], fits: Sequence[HarmonicFit]) -> dict[str, Any]:
     """The JSON document of several fits, cut at the lowest degree among them."""
     return {
         "format": FORMAT,
         "version": 1,
         "convention": CONVENTION,
-        "unit": unit,
+        "unit": "um",
         "l_max": _common_degree(fits),
         "particles": [
             _entry(name, fit.truncated(_common_degree(fits))) for name, fit in zip(names, fits, strict=True)

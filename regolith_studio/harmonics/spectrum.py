@@ -77,19 +77,13 @@ def power_spectrum(coefficients: ShCoefficients) -> PowerSpectrum:
     return PowerSpectrum(sums / (2 * degree + 1), coefficients.mean_radius)
 
 
-def roughness_split(
-    spectrum: PowerSpectrum, ranges: Mapping[str, tuple[int, int]] = DEGREE_RANGES
-) -> dict[str, float]:
+def roughness_split(spectrum: PowerSpectrum) -> dict[str, float]:
     """Root-mean-square deviation from a sphere on each scale, as a share of the mean radius."""
-    return {name: spectrum.deviation(first, last) for name, (first, last) in ranges.items()}
+    return {name: spectrum.deviation(first, last) for name, (first, last) in DEGREE_RANGES.items()}
 
 
-def sample_spectrum(
-    particles: Sequence[ShCoefficients],
-    confidence: float = 0.95,
-    rng: np.random.Generator | None = None,
-) -> PowerSpectrum:
-    """Spectrum of a sample, by the unbiased estimates of section 2.3, with bootstrap confidence bands.
+def sample_spectrum(particles: Sequence[ShCoefficients]) -> PowerSpectrum:
+    """Spectrum of a sample, by the unbiased estimates of section 2.3, with bootstrap bands of 95 %.
 
     mu is the mean of c_00, A_0 its variance and A_l the mean of c_lm^2.
 
@@ -101,10 +95,6 @@ def sample_spectrum(
     ----------
     particles
         Coefficients of at least two particles; cut to the lowest degree among them.
-    confidence
-        Share that the band holds.
-    rng
-        Source of the resampling; a fixed one if ``None``.
 
     Raises
     ------
@@ -116,14 +106,13 @@ def sample_spectrum(
     l_max = min(particle.l_max for particle in particles)
     powers = np.stack([power_spectrum(particle.truncated(l_max)).values for particle in particles])
     firsts = np.array([particle.values[0] for particle in particles])
-    generator = np.random.default_rng(np.random.SeedSequence(0)) if rng is None else rng
+    generator = np.random.default_rng(np.random.SeedSequence(0))
     resampled = np.empty((N_RESAMPLES, l_max + 1))
     for row in resampled:  # one resample at a time: a sample may have a hundred thousand particles
         pick = generator.integers(len(particles), size=len(particles))
         row[:] = np.bincount(pick, minlength=len(particles)) / len(particles) @ powers
         row[0] = firsts[pick].var(ddof=1)
-    tail = 50 * (1 - confidence)
-    low, high = np.percentile(resampled, [tail, 100 - tail], axis=0)
+    low, high = np.percentile(resampled, [2.5, 97.5], axis=0)
     estimate = powers.mean(axis=0)
     estimate[0] = firsts.var(ddof=1)
     return PowerSpectrum(estimate, float(firsts.mean() / np.sqrt(4 * np.pi)), low, high)

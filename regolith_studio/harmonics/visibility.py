@@ -98,14 +98,11 @@ class StarPointVisibility:
         }
 
 
-def star_point_visibility(mesh: Mesh, rule: str | None = None) -> StarPointVisibility:
+def star_point_visibility(mesh: Mesh) -> StarPointVisibility:
     """Visibility of a closed mesh from its star point.
 
-    Parameters
-    ----------
-    rule
-        Key of ``STAR_POINT_RULES``. By default that of fits: the centre of mass, and where that lies
-        outside the particle, the nearby point that hides the least volume.
+    As for fits this is the centre of mass, and where that lies outside the particle, the nearby point that
+    hides the least volume.
 
     Raises
     ------
@@ -113,7 +110,7 @@ def star_point_visibility(mesh: Mesh, rule: str | None = None) -> StarPointVisib
         If the mesh is open or inside out, or no star point is found inside.
     """
     solid = require_solid(mesh)
-    for name in ("centre_of_mass", "least_hidden_volume") if rule is None else (rule,):
+    for name in ("centre_of_mass", "least_hidden_volume"):
         point = STAR_POINT_RULES[name](solid)
         volume = hidden_volume(solid, point, N_RAYS)
         if np.isfinite(volume):

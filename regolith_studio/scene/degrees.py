@@ -29,7 +29,6 @@ def degree_picture(
     degrees: Sequence[int],
     path: Path | None = None,
     level: int = 5,
-    direction: str = "isometric",
 ) -> Picture:
     """The particle and its fit cut at each of `degrees`, row by row, under one camera pose.
 
@@ -41,8 +40,6 @@ def degree_picture(
         PNG file to write; nothing is written if not given.
     level
         Icosphere level of the surfaces.
-    direction
-        A key of :data:`regolith_studio.scene.cameras.DIRECTIONS`.
 
     Returns
     -------
@@ -61,7 +58,7 @@ def degree_picture(
     plotter_setup.choose_off_screen_window()
     plotter = pv.Plotter(off_screen=True, shape=(rows, columns), window_size=size, border=False)
     try:
-        pose = cameras.framing_pose(particle.vertices, direction, CELL_SIZE[0] / CELL_SIZE[1])
+        pose = cameras.framing_pose(particle.vertices, "isometric", CELL_SIZE[0] / CELL_SIZE[1])
         for place in range(rows * columns):
             plotter.subplot(*divmod(place, columns))
             plotter_setup.set_stage(plotter, palette.PAPER)
@@ -83,7 +80,6 @@ def degree_animation(
     degrees: Sequence[int],
     path: Path,
     level: int = 5,
-    direction: str = "isometric",
 ) -> None:
     """Write a GIF or WebP of the fit growing through `degrees` beside the particle; the last frame lasts.
 
@@ -94,7 +90,7 @@ def degree_animation(
     InputError
         If a degree is negative or above that of the fit.
     """
-    frames = list(_frames(particle, fit, degrees, level, direction))
+    frames = list(_frames(particle, fit, degrees, level))
     seconds = [FRAME_SECONDS] * (len(frames) - 1) + [LAST_FRAME_SECONDS]
     save_animation(frames, seconds, path)
 
@@ -104,14 +100,12 @@ def degree_title(fit: HarmonicFit, degree: int) -> str:
     return f"l_max = {degree}, radial error {fit.truncated(degree).radial_error:.1%}"
 
 
-def _frames(
-    particle: Mesh, fit: HarmonicFit, degrees: Sequence[int], level: int, direction: str
-) -> Iterator[Picture]:
+def _frames(particle: Mesh, fit: HarmonicFit, degrees: Sequence[int], level: int) -> Iterator[Picture]:
     width, height = CELL_SIZE
     plotter_setup.choose_off_screen_window()
     plotter = pv.Plotter(off_screen=True, shape=(1, 2), window_size=[2 * width, height], border=False)
     try:
-        pose = cameras.framing_pose(particle.vertices, direction, width / height)
+        pose = cameras.framing_pose(particle.vertices, "isometric", width / height)
         for column in (0, 1):
             plotter.subplot(0, column)
             plotter_setup.set_stage(plotter, palette.PAPER)

@@ -134,7 +134,6 @@ def show_facet(
     facet: Facet | None,
     centre: ArrayLike = (0.0, 0.0, 0.0),
     surroundings: ThemeColors = palette.LIGHT,
-    colour: str = palette.HIDDEN_COLOUR,
 ) -> None:
     """Outline one facet and write its number upon it, counted from 1; or no facet.
 
@@ -151,7 +150,7 @@ def show_facet(
     size = float(np.ptp(ends, axis=0).max())
     lines = np.insert(np.arange(len(ends)), np.arange(0, len(ends), 2), 2)
     outline = pv.PolyData(ends + origin + LIFT * size * facet.normal, lines=lines)
-    show_named(plotter, FACET, outline, colour, line_width=4.0).prop.lighting = False
+    show_named(plotter, FACET, outline, palette.HIDDEN_COLOUR, line_width=4.0).prop.lighting = False
     _show_number(plotter, str(facet.index + 1), facet.middle + origin, surroundings)
 
 

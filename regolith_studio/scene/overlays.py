@@ -99,16 +99,10 @@ def show_named(
     return actor
 
 
-def bring_forward(actor: Any, steps: int = 1) -> None:
-    """Let an actor that lies on another surface hide it, instead of the two showing in turn.
-
-    Parameters
-    ----------
-    steps
-        Of depth as it is stored; of several actors at one place the one with the most is seen.
-    """
+def bring_forward(actor: Any) -> None:
+    """Let an actor that lies on another surface hide it, instead of the two showing in turn."""
     actor.mapper.SetResolveCoincidentTopologyToPolygonOffset()
-    actor.mapper.SetRelativeCoincidentTopologyPolygonOffsetParameters(-float(steps), -float(steps))
+    actor.mapper.SetRelativeCoincidentTopologyPolygonOffsetParameters(-1.0, -1.0)
 
 
 def hide_named(plotter: Any, name: str) -> None:

@@ -218,14 +218,14 @@ def calibrate(
 
 
 def density_of(
-    posterior: CalibrationPosterior, parameter: CalibrationParameter, index: int, bins: int = 32
+    posterior: CalibrationPosterior, parameter: CalibrationParameter, index: int
 ) -> tuple[FloatArray, FloatArray]:
-    """Places, shape (bins,), and marginal posterior density of a parameter; 1 is that of the prior.
+    """Places, shape (32,), and marginal posterior density of a parameter; 1 is that of the prior.
 
     Of a choice there is a place for each, whose density is its probability times their number.
     """
     beyond = 0.5 if parameter.choices else 0.0
-    bins = len(parameter.choices) or bins
+    bins = len(parameter.choices) or 32
     height, edges = np.histogram(
         posterior.points[:, index],
         bins,

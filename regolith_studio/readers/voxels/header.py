@@ -103,7 +103,7 @@ class OpenVolume(Protocol):
         """Close the file."""
 
 
-def three_dimensions(shape: tuple[int, ...], named: str = "shape") -> Shape:
+def three_dimensions(shape: tuple[int, ...]) -> Shape:
     """The shape without its edges of one voxel, which must leave three (or the last three).
 
     Raises
@@ -113,15 +113,15 @@ def three_dimensions(shape: tuple[int, ...], named: str = "shape") -> Shape:
     """
     edges = [int(edge) for edge in shape]
     if any(edge < 1 for edge in edges):
-        raise FileError(f"holds no voxels: its {named} is {format_shape(shape)}.")
+        raise FileError(f"holds no voxels: its shape is {format_shape(shape)}.")
     while len(edges) > 3 and 1 in edges:
         edges.remove(1)
     if len(edges) != 3:
         raise FileError(
-            f"is not a volume: its {named} is {format_shape(shape)}, and three dimensions are needed."
+            f"is not a volume: its shape is {format_shape(shape)}, and three dimensions are needed."
         )
     if max(edges) > MAX_EDGE:
-        raise FileError(f"is damaged: no volume can have the {named} {format_shape(shape)}.")
+        raise FileError(f"is damaged: no volume can have the shape {format_shape(shape)}.")
     return edges[0], edges[1], edges[2]
 
 

@@ -1,5 +1,6 @@
 """Figs. 4, 5 and 6: densities of descriptors, measured and virtual."""
 
+from itertools import combinations
 from math import ceil
 from pathlib import Path
 
@@ -31,9 +32,9 @@ GREYS = ("#e4e4e4", "#c8c8c8", "#a8a8a8", "#888888")
 N_COLUMNS = 3
 
 
-def density_figure(study: PopulationStudy, weighting: str = "number", columns: int = N_COLUMNS) -> Figure:
+def density_figure(study: PopulationStudy, weighting: str = "number") -> Figure:
     """Fig. 4 (by number) or Fig. 5 (by volume): histograms with bins shared by all, outer 0.2 % cut off."""
-    figure, axes = _panels(len(study.keys), columns)
+    figure, axes = _panels(len(study.keys))
     for axis, column in zip(axes, range(len(study.keys)), strict=False):
         tables = [study.measured, study.cut, *(model.table for model in study.models)]
         bins = histogram_edges(tables, column).tolist()
@@ -62,16 +63,16 @@ def density_figure(study: PopulationStudy, weighting: str = "number", columns: i
                 label=MODELS[model.key].label,
             )
         axis.set_xlabel(_label(study, column))
-    for axis in axes[::columns]:
+    for axis in axes[::N_COLUMNS]:
         axis.set_ylabel(f"density by {weighting}")
     handles, labels = axes[0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside upper center", ncols=3, frameon=False)
     return figure
 
 
-def quantile_figure(study: PopulationStudy, columns: int = N_COLUMNS) -> Figure:
+def quantile_figure(study: PopulationStudy) -> Figure:
     """Quantiles (0.5 to 99.5 %) of each model against those of the sample: equal ones lie on the line."""
-    figure, axes = _panels(len(study.keys), columns)
+    figure, axes = _panels(len(study.keys))
     for column, axis in enumerate(axes):
         measured = np.percentile(study.measured[:, column], QUANTILES)
         axis.plot(measured[[0, -1]], measured[[0, -1]], color="black", linewidth=0.8)
@@ -82,22 +83,19 @@ def quantile_figure(study: PopulationStudy, columns: int = N_COLUMNS) -> Figure:
             found = np.percentile(model.table[:, column], QUANTILES)
             axis.plot(measured, found, ".", color=colour, markersize=3, label=MODELS[model.key].label)
         axis.set_xlabel(f"measured {_label(study, column)}")
-    for axis in axes[::columns]:
+    for axis in axes[::N_COLUMNS]:
         axis.set_ylabel("drawn")
     handles, labels = axes[0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside upper center", ncols=3, frameon=False)
     return figure
 
 
-def pair_figure(study: PopulationStudy, keys: tuple[str, ...] | None = None) -> Figure:
+def pair_figure(study: PopulationStudy) -> Figure:
     """Fig. 6: contours that hold 25, 50, 75 and 95 % of the particles, a row a model.
 
     Kernel densities with Scott's bandwidth n^(-1/6) times the covariance; the measured sample is filled.
     """
-    wanted = [key for key in keys or study.keys[:3] if key in study.keys]
-    pairs = [
-        [study.keys.index(a), study.keys.index(b)] for i, a in enumerate(wanted) for b in wanted[i + 1 :]
-    ]
+    pairs = [list(pair) for pair in combinations(range(min(3, len(study.keys))), 2)]
     rows = max(1, len(study.models))
     figure = Figure(figsize=(1 + 3.2 * len(pairs), 0.8 + 2.7 * rows), layout="constrained")
     axes = figure.subplots(rows, len(pairs), squeeze=False)
@@ -165,8 +163,8 @@ def cut_label(study: PopulationStudy) -> str:
     return f"measured, cut at l = {study.cut_degree}"
 
 
-def _panels(n: int, columns: int) -> tuple[Figure, list[Axes]]:
-    columns = min(columns, n)
+def _panels(n: int) -> tuple[Figure, list[Axes]]:
+    columns = min(N_COLUMNS, n)
     rows = ceil(n / columns)
     figure = Figure(figsize=(1 + 3.2 * columns, 0.8 + 2.6 * rows), layout="constrained")
     axes = list(figure.subplots(rows, columns, squeeze=False).flat)
