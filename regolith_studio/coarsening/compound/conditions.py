@@ -171,7 +171,6 @@ def searched(problem: CompoundProblem, point: CompoundPoint) -> CompoundPoint | 
 
 
 _NO_BOXES = LocalBoxes(np.empty(0), np.empty((0, 3, 3)), np.empty((0, 3)), np.empty((0, 13), np.int64))
-_EVERYWHERE = np.empty((0, 3))
 
 
 def _boxes(
@@ -186,7 +185,7 @@ def _boxes(
         if lost is None or not lost[0]:
             return boxes
     solid = hull_solid(hull, compound.vertices)
-    boxes = local_boxes(solid, MARGIN, problem.sample_angle, _EVERYWHERE)
+    boxes = local_boxes(solid, MARGIN, problem.sample_angle)
     return _wanted_first(problem, boxes) if len(boxes.volumes) else None
 
 

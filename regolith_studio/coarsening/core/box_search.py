@@ -18,7 +18,6 @@ from regolith_studio.coarsening.core.box import (
 )
 from regolith_studio.coarsening.core.box_arcs import (
     ON_FACET,
-    Arc,
     ArcSample,
     Spare,
     arc_between,
@@ -37,12 +36,11 @@ from regolith_studio.coarsening.core.box_contacts import (
 )
 from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray
 from regolith_studio.geometry.kernels import kernel_noalloc
-from regolith_studio.geometry.vectors import along, mixed, row
+from regolith_studio.geometry.vectors import mixed, row
 
-SAMPLE_ANGLE = float(np.radians(13.0))
-"""Step along the arcs that misses few boxes, in radians."""
 FINE_ANGLE = float(np.radians(8.0))
-"""Step that missed none of 383 boxes of random spiky polyhedra with 12 facets (13 degrees missed 3)."""
+"""Step along the arcs that missed none of 383 boxes of random spiky polyhedra with 12 facets (13 degrees
+missed 3), in radians."""
 DENSE_ANGLE = float(np.radians(2.0))
 """Step that is fine enough for a verdict, in radians."""
 PROMISING = 1.12
@@ -50,8 +48,6 @@ PROMISING = 1.12
 SLACK = 1.02
 NO_ARC = 1e-7
 NO_FACET = 1e-13
-NEAR = float(np.cos(np.radians(7.0)))
-WINDOW = float(np.radians(7.0))
 MAX_BOXES = 64
 """Largest number of boxes returned."""
 SAME_VOLUME, SAME_FRAME = 1e-6, 1.0 - 1e-9
@@ -114,7 +110,7 @@ class BoxWorkspace(NamedTuple):
     spare: Spare
 
 
-def local_boxes(solid: Solid, margin: float, sample_angle: float, near: FloatArray) -> LocalBoxes:
+def local_boxes(solid: Solid, margin: float, sample_angle: float) -> LocalBoxes:
     """Locally minimal boxes with a volume of at most (1 + margin) times the least.
 
     Parameters
@@ -125,9 +121,6 @@ def local_boxes(solid: Solid, margin: float, sample_angle: float, near: FloatArr
         Share of the least volume.
     sample_angle
         Largest step between samples along an arc, in radians.
-    near
-        Directions, shape (k, 3): only boxes with an axis within about 7 degrees of one of them, to which a
-        side flush with an edge is normal, are looked for. None (k = 0): everywhere.
     """
     boxes, n = empty_boxes(MAX_BOXES), len(solid.normals)
     facets = OnFacets(
@@ -140,7 +133,7 @@ def local_boxes(solid: Solid, margin: float, sample_angle: float, near: FloatArr
     work = BoxWorkspace(
         scratch_for(solid), empty_touch(), empty_touch(), empty_sample(), empty_sample(), spare_samples()
     )
-    count, best = search(solid, margin, sample_angle, near, boxes, facets, work)
+    count, best = search(solid, margin, sample_angle, boxes, facets, work)
     order = np.argsort(boxes.volumes[:count])
     within = boxes.volumes[order] <= best * (1.0 + margin)
     boxes = boxes.selected(order[: max(1, np.count_nonzero(within))])
@@ -153,21 +146,6 @@ def local_boxes(solid: Solid, margin: float, sample_angle: float, near: FloatArr
 def empty_boxes(k: int) -> LocalBoxes:
     """Room for k boxes."""
     return LocalBoxes(np.empty(k), np.empty((k, 3, 3)), np.empty((k, 3)), np.zeros((k, ROW), np.int64))
-
-
-def same_boxes(some: LocalBoxes, others: LocalBoxes) -> BoolArray:
-    """Which of `some` are among the `others`: same volume and axes; shape (k,)."""
-    near = np.abs(others.volumes - some.volumes[:, None]) < SAME_VOLUME * some.volumes[:, None]
-    return np.asarray((near & (likeness(some.frames, others.frames) >= SAME_FRAME)).any(axis=1))
-
-
-def likeness(some: FloatArray, others: FloatArray) -> FloatArray:
-    """Cosine of the largest angle between the axes of frames (k, 3, 3) and (m, 3, 3), shape (k, m).
-
-    Axes may stand in any order and direction.
-    """
-    cosines = np.abs(some[:, None] @ others.transpose(0, 2, 1))
-    return np.asarray(cosines.max(axis=3).min(axis=2))
 
 
 @kernel_noalloc
@@ -218,7 +196,6 @@ def search(
     solid: Solid,
     margin: float,
     sample_angle: float,
-    near: FloatArray,
     boxes: LocalBoxes,
     facets: OnFacets,
     work: BoxWorkspace,
@@ -226,21 +203,17 @@ def search(
     """Fill `boxes`; how many there are, and the least volume."""
     scratch, touch, fallback, one, two, spare = work
     n, best, lowest = len(solid.normals), np.inf, np.inf
-    if len(near) == 0:
-        for f in range(n):
-            if solid.areas[f] > NO_FACET:
-                best = min(best, box_on_facet(f, facets, solid, best, scratch, touch))
+    for f in range(n):
+        if solid.areas[f] > NO_FACET:
+            best = min(best, box_on_facet(f, facets, solid, best, scratch, touch))
     count = 0
     for e in range(len(solid.edges)):
         arc = arc_between(solid, e)
         if arc.angle < NO_ARC:
             continue
-        low, high = window_on(arc, near)
-        if high < low:
-            continue
-        steps = max(1, int(np.ceil((high - low) / sample_angle)))
+        steps = max(1, int(np.ceil(arc.angle / sample_angle)))
         for i in range(steps + 1):
-            angle = low + (high - low) * i / steps
+            angle = arc.angle * i / steps
             best = sampled(arc, angle, solid, best, e, facets, scratch, touch, two)
             if two.number[1] < lowest:
                 lowest = two.number[1]
@@ -252,11 +225,7 @@ def search(
                     count = kept(count, boxes, volume, touch)
             one, two = two, one
     for f in range(n):
-        if (
-            facets.resting[f] == 1
-            and facets.volume[f] <= best * (1.0 + margin)
-            and is_near(solid.normals[f], near)
-        ):
+        if facets.resting[f] == 1 and facets.volume[f] <= best * (1.0 + margin):
             recalled(facets, f, touch)
             count = kept(count, boxes, facets.volume[f], touch)
     if count == 0 and lowest < np.inf:
@@ -306,32 +275,6 @@ def box_on_facet(
         facets.volume[f] = box_at(row(solid.normals, f), solid, PROMISING * best, scratch, touch)
         remembered(facets, f, touch)
     return facets.volume[f]  # type: ignore[no-any-return]
-
-
-@kernel_noalloc
-def window_on(arc: Arc, near: FloatArray) -> tuple[float, float]:
-    """Part of an arc near one of the directions (k, 3) or against it; empty if the second is less."""
-    if len(near) == 0:
-        return 0.0, arc.angle
-    low, high = arc.angle + 1.0, -1.0
-    for k in range(len(near)):
-        x, y = along(near, k, arc.one), along(near, k, arc.across)
-        for way in range(2):
-            if way == 1:
-                x, y = -x, -y
-            at = min(arc.angle, max(0.0, np.arctan2(y, x)))
-            if np.cos(at) * x + np.sin(at) * y > NEAR:
-                low, high = min(low, max(0.0, at - WINDOW)), max(high, min(arc.angle, at + WINDOW))
-    return low, high
-
-
-@kernel_noalloc
-def is_near(normal: FloatArray, near: FloatArray) -> bool:
-    """Whether all arcs around a facet have been searched."""
-    for k in range(len(near)):
-        if abs(near[k, 0] * normal[0] + near[k, 1] * normal[1] + near[k, 2] * normal[2]) > NEAR:
-            return True
-    return len(near) == 0
 
 
 @kernel_noalloc

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from regolith_studio.coarsening.core.box_contacts import MAX_TURN, VERTICES, pose_of, walk_to_minimum
-from regolith_studio.coarsening.core.box_search import LocalBoxes, is_same_box, same_boxes
+from regolith_studio.coarsening.core.box_search import LocalBoxes, is_same_box
 from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray
 from regolith_studio.geometry.kernels import kernel_noalloc
 from regolith_studio.geometry.vectors import along, mixed, row
@@ -132,25 +132,3 @@ def is_touched(contact: IntArray, side: int, count: int, v: int) -> bool:
     for t in range(count - 6):
         touched = touched or (contact[7 + 2 * t] == side and contact[8 + 2 * t] == v)
     return touched
-
-
-def lost_box_axes(tracked: TrackedBoxes, lost: BoolArray) -> FloatArray:
-    """Of each lost box the axis whose sides had the most ties, shape (k, 3), to look near it."""
-    axes = np.empty((np.count_nonzero(lost), 3))
-    for i, k in enumerate(np.flatnonzero(lost)):
-        contact = tracked.contacts[k]
-        ties = np.bincount(contact[7 : 7 + 2 * contact[0] : 2] // 2, minlength=3)
-        axes[i] = tracked.frames[k, ties.argmax()]
-    return axes
-
-
-def merge_boxes(some: LocalBoxes, others: LocalBoxes) -> LocalBoxes:
-    """Boxes of two lists, each once, the least first."""
-    others = others.selected(~same_boxes(others, some))
-    both = LocalBoxes(
-        np.concatenate([some.volumes, others.volumes]),
-        np.concatenate([some.frames, others.frames]),
-        np.concatenate([some.extents, others.extents]),
-        np.concatenate([some.contacts, others.contacts]),
-    )
-    return both.selected(np.argsort(both.volumes))
