@@ -235,8 +235,16 @@ def particles_of(
     )
 
 
+_VIRTUAL = "Virtual particle"
+
+
 def _origin(draws: Realizations) -> str:
-    return f"Drawn by {draws.model} with seed {draws.seed}."
+    return f"{_VIRTUAL} (model {draws.model}, seed {draws.seed})."
+
+
+def is_origin(note: str) -> bool:
+    """Whether a particle's note says that it was drawn from a model, not what was changed."""
+    return note.startswith(_VIRTUAL)
 
 
 def make_particles(draws: Realizations, model: FittedModel, title: str, level: int | None = None) -> Steps:

@@ -171,6 +171,8 @@ class Project(BaseModel):
         Key of the current page.
     pages
         State of each page, by its key.
+    file
+        Of the project that an automatic copy belongs to; empty in a project itself, and where there is none.
     """
 
     model_config = ConfigDict(extra="ignore", frozen=True)
@@ -181,6 +183,7 @@ class Project(BaseModel):
     selected: str = ""
     page: str = ""
     pages: dict[str, dict[str, Any]] = Field(default_factory=dict)
+    file: str = ""
 
     @classmethod
     def of(cls, session: Session, page: str = "", pages: dict[str, dict[str, Any]] | None = None) -> Self:
@@ -230,6 +233,29 @@ def read_project(path: Path) -> Project:
     except ValidationError as error:
         reason = format_validation_error(error.errors(include_url=False))
         raise FileError(f"{path} is not a project of this program: {reason}.") from error
+
+
+FINGERPRINTED = 1 << 20
+"""Bytes at each end of a file that its fingerprint covers: a scan of 50 GB is not read for it."""
+
+
+def fingerprint(path: Path) -> str:
+    """SHA-256 of size and both ends of a file, or of names and sizes of a folder; empty if there is none."""
+    digest = hashlib.sha256()
+    try:
+        if path.is_dir():
+            for each in sorted(path.iterdir()):
+                digest.update(f"{each.name}\0{each.stat().st_size}\0".encode())
+            return digest.hexdigest()
+        size = path.stat().st_size
+        digest.update(str(size).encode())
+        with path.open("rb") as file:
+            digest.update(file.read(FINGERPRINTED))
+            file.seek(max(FINGERPRINTED, size - FINGERPRINTED))
+            digest.update(file.read(FINGERPRINTED))
+    except OSError:
+        return ""
+    return digest.hexdigest()
 
 
 def inputs_of(session: Session) -> list[str]:

@@ -123,7 +123,10 @@ class LiveResults:
     def _clear(self, *kinds: Kind) -> None:
         for kind in kinds:
             self._board.stop_lane(kind)
-            self._session.update(kind.value, **_EMPTY[kind])
+            self._session.update(kind.value, failures=self._failures_without(kind), **_EMPTY[kind])
+
+    def _failures_without(self, kind: Kind) -> Mapping[str, str]:
+        return {each: why for each, why in self._session.results.failures.items() if each != kind.value}
 
     def _advance(self) -> None:
         for kind in LIVE:
@@ -138,6 +141,8 @@ class LiveResults:
         return kind in self._due or self._board.is_running(kind)
 
     def _start(self, kind: Kind) -> None:
+        if kind.value in self._session.results.failures:
+            self._session.update(kind.value, failures=self._failures_without(kind))
         job, keep, partial = getattr(self, f"_{kind.value}")()
 
         def finished(value: Any) -> None:
@@ -150,10 +155,19 @@ class LiveResults:
                 return
             self._drop_dependents(kind)
             self._clear(kind)
+            self._keep_failure(kind, failure.sentence)
             self._session.failure_reporter(TITLES[kind])(failure)
 
         reactions = Reactions(finished, partial, failed, lambda: self._drop_dependents(kind))
         self._board.start(kind, TITLES[kind], job, reactions, repeats=True)
+
+    def _keep_failure(self, kind: Kind, sentence: str) -> None:
+        """Keep why there is no result of this kind, nor of those that are computed from it."""
+        failures = {**self._session.results.failures, kind.value: sentence}
+        self._session.update(kind.value, failures=failures)
+        for other in LIVE:
+            if kind in needs(other, self._session.choices) and not self._is_pending(other):
+                self._keep_failure(other, sentence)
 
     def _drop_dependents(self, kind: Kind) -> None:
         """Cancel the results that depend on `kind`, and clear them."""

@@ -72,6 +72,8 @@ class Results:
         loss; ``None`` if there are none.
     lmax_study, coarsening_study
         Of all particles that are open; `outdated` names those that no longer fit the choices.
+    failures
+        Why there is no result, by its kind: its own work failed, or that which it is computed from.
     """
 
     fit: "HarmonicFit | None" = None
@@ -89,6 +91,7 @@ class Results:
     lmax_study: "LmaxStudy | None" = None
     coarsening_study: "CoarseningStudy | None" = None
     outdated: frozenset[str] = frozenset()
+    failures: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def polyhedron(self) -> Polyhedron | None:

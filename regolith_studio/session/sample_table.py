@@ -11,6 +11,7 @@ from regolith_studio.descriptors.zingg import zingg_class
 from regolith_studio.errors import InputError
 from regolith_studio.imaging.extraction import is_remark
 from regolith_studio.io.tables import Column, Table
+from regolith_studio.jobs.model_jobs import is_origin
 from regolith_studio.jobs.particle_jobs import MeasuredParticle
 from regolith_studio.messages import N_
 from regolith_studio.session.outputs.descriptors import descriptor_table
@@ -44,8 +45,9 @@ def health_word(entry: ParticleEntry) -> str:
         return "unsound"
     if entry.health.problems:
         return "doubtful"
-    if all(is_remark(note) for note in entry.particle.notes):
-        return "coarse" if entry.particle.notes else "sound"
+    notes = [note for note in entry.particle.notes if not is_origin(note)]
+    if all(is_remark(note) for note in notes):
+        return "coarse" if notes else "sound"
     return "repaired"
 
 

@@ -152,9 +152,9 @@ class Session:
         job = Job(load_particles, (named, unit, repair, TableReading(None, convention)))
         return self._load(N_("Reading particles"), job, origin, add)
 
-    def open_sample(self) -> int:
-        """Load the particles that ship with the program; returns the task's id."""
-        return self._load(N_("Reading the sample"), Job(load_sample), SampleSource())
+    def open_sample(self, add: bool = False) -> int:
+        """Load the shipped particles, in place of the open ones unless `add`; returns the task's id."""
+        return self._load(N_("Reading the sample"), Job(load_sample), SampleSource(), add)
 
     def open_recipe(self, recipe: Recipe, base: Path, *, keep_selected: bool = False) -> int:
         """Restore the particles of a recipe: read, extract or draw them; returns the task's id.

@@ -70,6 +70,14 @@ def polyhedron_verdict(
     )
 
 
+def redundant_planes(coarsened: CoarseningResult) -> str | None:
+    """How many of the planes bound a facet, where some do not; else ``None``."""
+    if coarsened.n_facets >= coarsened.n_facets_asked:
+        return None
+    template = N_("{real} of {asked} planes bound a facet: the others are redundant.")
+    return Message(template, real=coarsened.n_facets, asked=coarsened.n_facets_asked)
+
+
 def cost_of_imitating_the_fit(found: ParticleComparison) -> str:
     """The largest error of a fit's polyhedron against the particle itself, as a sentence."""
     worst = max(LOSS_KEYS, key=lambda key: found.errors[key])

@@ -36,7 +36,7 @@ ROWS: tuple[ActionSpec, ...] = (
         icon="sample",
         tip=N_("Open the shipped particles"),
         bar="words",
-        label=N_("Sample"),
+        label=N_("Shipped"),
         menu=FILE,
     ),
     ActionSpec("recent", N_("Open &recent"), menu=FILE),
@@ -179,6 +179,10 @@ class ToolBar(QToolBar):
                     button.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonIconOnly)
 
 
+STEPS = {"undo": N_("&Undo"), "redo": N_("&Redo")}
+"""Titles where there is nothing to undo or redo."""
+
+
 class Actions:
     """The actions as Qt actions in the menus and the tool bar of a window.
 
@@ -220,6 +224,13 @@ class Actions:
         self._offer_kinds(run)
         for number, page in enumerate(pages.values(), start=1):
             self._add_page(page, number, run, commands["go"])
+
+    def offer_step(self, name: str, title: str) -> None:
+        """Say what ``undo`` or ``redo`` would act on; nothing: it is disabled."""
+        action = self.by_name[name]
+        action.setEnabled(bool(title))
+        action.setText(title or tr(STEPS[name]))
+        action.setToolTip(action.text().replace("&", ""))
 
     def _offer_kinds(self, run: Callable[..., object]) -> None:
         """List beside the button *Open* what else can be opened."""

@@ -8,7 +8,7 @@ from tempfile import mkdtemp
 from typing import TypeVar
 from weakref import finalize
 
-from PySide6.QtCore import QObject
+from PySide6.QtCore import QObject, Signal
 from PySide6.QtGui import QGuiApplication
 from PySide6.QtWidgets import QDialog, QFileDialog, QWidget
 
@@ -89,6 +89,9 @@ class Commands(QObject):
         Parent of the dialogs.
     """
 
+    stepped = Signal()
+    """Undo or redo has changed choices that are made on Explore."""
+
     def __init__(self, session: Session, preferences: Preferences, toast: Toast, window: QWidget) -> None:
         super().__init__(window)
         self._session, self._preferences, self._toast, self._window = session, preferences, toast, window
@@ -112,9 +115,10 @@ class Commands(QObject):
         self.open_paths([Path(name)] if name else [])
 
     def open_sample(self) -> None:
-        """Open the shipped particles."""
-        self._remember_open()
-        self._session.open_sample()
+        """Open the shipped particles; asks before others that are open are replaced."""
+        if answer := self._add_or_replace(SampleSource):
+            self._remember_open()
+            self._session.open_sample(add=answer == ADD)
 
     def open_paths(self, paths: Sequence[Path], unit: str | None = None) -> None:
         """Open meshes and folders, or one file of another kind; asks for the unit of meshes if need be."""
@@ -238,7 +242,7 @@ class Commands(QObject):
     def undo(self) -> None:
         """Undo the last change; where there is none, reopen what was open before the last opening."""
         if self._session.can_undo or self._before is None:
-            self._session.undo()
+            self._step(self._session.undo)
             return
         before, self._before, self._after = self._before, None, self._to_reopen(self._session.particles)
         self._reopen(before)
@@ -246,10 +250,26 @@ class Commands(QObject):
     def redo(self) -> None:
         """Redo what was undone last, a change or an opening."""
         if self._session.can_redo or not self.can_redo:
-            self._session.redo()
+            self._step(self._session.redo)
             return
         after, self._after, self._before = self._after, None, self._to_reopen(self._session.particles)
         self._reopen(after)
+
+    def _step(self, step: Callable[[], None]) -> None:
+        before = self._session.choices
+        step()
+        if self._session.choices.changed_from(before) - {"selected"}:  # each page shows the particle
+            self.stepped.emit()
+
+    def step_title(self, name: str) -> str:
+        """What ``undo`` or ``redo`` would act on, and where; empty where it would change nothing."""
+        if name == "undo":
+            place, possible = tr("Undo on Explore"), self._session.can_undo
+            opening, again = tr("Undo the opening"), self.can_undo
+        else:
+            place, possible = tr("Redo on Explore"), self._session.can_redo
+            opening, again = tr("Redo the opening"), self.can_redo
+        return place if possible else opening if again else ""
 
     @property
     def can_undo(self) -> bool:

@@ -133,32 +133,30 @@ class MainWindow(QMainWindow):
         self.activity.wire(session, bindings, self.toast)
         self.commands.openers[FileKind.PROJECT] = self.projects.open
         for page in self.pages.pages.values():
-            self.commands.openers |= dict.fromkeys(page.opens, partial(self._open_in, page.key))
+            self.commands.openers |= dict.fromkeys(page.opens, partial(self.pages.open_in, page.key))
         self.pages.built.connect(lambda key: self.window_state.restore_parts(self.pages.widgets[key]))
         self.window_state.restore_parts(self)
         self.projects.changed.connect(lambda: self.setWindowTitle(self.projects.title()))
         bindings.refresh("tasks", lambda: self.tasks.setValue(session.tasks), slow=True)
         for show in (self.commands.show_tasks, self.batches.show_tasks, self.reports.show_tasks):
             bindings.refresh("tasks", show, slow=True)
-        bindings.listen("choices", self._show_choices)
-        bindings.listen("particles", self._show_choices)
+        for event in ("choices", "particles"):
+            bindings.listen(event, self._show_choices)
         self._show_choices()
         bindings.listen("failed", lambda failure: self.toast.problem(failure.sentence, failure.details))
         bindings.listen("problems", lambda problems: report_file_problems(self.toast, problems))
         bindings.listen("exported", self.commands.tell_exported)
         self.tasks.cancelRequested.connect(self.commands.stop)
+        self.commands.stepped.connect(lambda: self.go("explore"))
         QGuiApplication.styleHints().colorSchemeChanged.connect(self._apply_theme)
         self.menus.recent.aboutToShow.connect(self._list_recent)
-
-    def _open_in(self, key: str, path: Path) -> None:
-        self.go(key).open_path(path)
 
     def _open_palette(self) -> None:
         CommandPalette(self.menus.palette(self.pages.pages, self.pages.run), self).open()
 
     def _show_choices(self) -> None:
-        self.menus.by_name["undo"].setEnabled(self.commands.can_undo)
-        self.menus.by_name["redo"].setEnabled(self.commands.can_redo)
+        for name in ("undo", "redo"):
+            self.menus.offer_step(name, self.commands.step_title(name))
         self.menus.by_name["repair"].setChecked(self.session.choices.repair)
 
     def _list_recent(self) -> None:
@@ -183,8 +181,8 @@ class MainWindow(QMainWindow):
         QTimer.singleShot(0, self, lambda: self.commands.open_paths(paths))
 
     def closeEvent(self, event: QCloseEvent) -> None:
-        reasons = needs_confirmation(self.session.tasks, [*self.pages.busy(), *self.projects.unsaved()])
-        if not may_close(self, reasons):
+        stopped = needs_confirmation(self.session.tasks, self.pages.busy())
+        if not may_close(self, stopped, self.projects.unsaved(), self.projects.save):
             event.ignore()
             return
         self.window_state.keep(self)

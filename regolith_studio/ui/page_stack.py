@@ -1,6 +1,7 @@
 """The sidebar and the current page; a page is built when it is first opened."""
 
 from collections.abc import Callable
+from pathlib import Path
 
 from PySide6.QtCore import QEvent, QObject, QSize, Qt, Signal
 from PySide6.QtGui import QResizeEvent
@@ -97,6 +98,10 @@ class PageStack(QWidget):
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)
         self._fit_bar()
+
+    def open_in(self, key: str, path: Path) -> None:
+        """Show a page and open a file there."""
+        self.go(key).open_path(path)
 
     def neighbour(self, step: int) -> None:
         """The next page, or the one before."""

@@ -46,15 +46,19 @@ class ProjectFiles(QObject):
         self._saved: Project | None = None
         self._lock = _lock_of(autosave_path())
         self._recovered: dict[Path, QLockFile] = {}
-        self._timer = QTimer(self, interval=1000 * AUTOSAVE_SECONDS, singleShot=True)
-        self._timer.timeout.connect(self._autosave)
+        self._copied: Project | None = None
+        self._restored = False
+        self._changed = False
+        self._timer = QTimer(self, interval=1000 * AUTOSAVE_SECONDS)
+        self._timer.timeout.connect(self._follow_pages)
+        self._timer.start()
         for event in (session.events.choices, session.events.particles):
             event.connect(self._note_change)
 
     @property
     def modified(self) -> bool:
-        """Whether a project is open and no longer what its file holds."""
-        return self.path is not None and self._state() != self._saved
+        """Whether a project is open and no longer what its file holds; not while it is being opened."""
+        return self.path is not None and self._saved is not None and self._state() != self._saved
 
     def title(self) -> str:
         """Of the window."""
@@ -64,6 +68,8 @@ class ProjectFiles(QObject):
 
     def unsaved(self) -> list[str]:
         """What closing would lose, in sentences."""
+        if self._restored:
+            return [tr("What was restored after the crash is not saved as a project.")]
         if self.path is None or not self.modified:
             return []
         return [tr("{name} has changes that are not saved.", name=self.path.name)]
@@ -124,6 +130,7 @@ class ProjectFiles(QObject):
             box.deleteLater()
             self._recovered[path] = lock
             if answer == yes.value and self._bring_back(path):
+                self._take_name(path)
                 self._note_change()
                 return
             self._forget_recovered()
@@ -131,6 +138,13 @@ class ProjectFiles(QObject):
 
         box.finished.connect(decided)
         box.open()
+
+    def _take_name(self, copy: Path) -> None:
+        """Go on under the name of the project that an automatic copy belongs to, not saved yet."""
+        name = read_project(copy).file
+        self._restored = True
+        if name:
+            self.path, self._digest, self._saved = Path(name), _digest(Path(name)), Project()
 
     def _forget_recovered(self) -> None:
         for path, lock in self._recovered.items():
@@ -161,7 +175,7 @@ class ProjectFiles(QObject):
         except RegolithError as error:
             self._toast.problem(str(error))
             return False
-        self.path, self._saved, self._digest = path, state, _digest(path)
+        self.path, self._saved, self._digest, self._restored = path, state, _digest(path), False
         self._toast.note(" ".join((tr("Saved {path}.", path=path), *without(session_recipe))))
         self.changed.emit()
         return True
@@ -199,7 +213,7 @@ class ProjectFiles(QObject):
             particles.disconnect(later)
             if any(entry.id == name for entry in self._session.particles):
                 self._session.select(name)
-            if self.path is not None:
+            if self.path is not None and not self._restored:
                 self._saved = self._state()
                 self.changed.emit()
 
@@ -210,8 +224,17 @@ class ProjectFiles(QObject):
         particles.connect(later)
 
     def _note_change(self) -> None:
-        if not self._timer.isActive():
-            self._timer.start()
+        self._changed = True
+        self.changed.emit()
+
+    def _follow_pages(self) -> None:
+        """Renew the copy if anything has changed, also on a page that says nothing of it."""
+        state = self._state()
+        first, self._copied = self._copied is None, self._copied or state
+        if (first and not self._changed) or (state == self._copied and not self._changed):
+            return
+        self._changed, self._copied = False, state
+        self._autosave()
         self.changed.emit()
 
     def _autosave(self) -> None:
@@ -220,14 +243,15 @@ class ProjectFiles(QObject):
             path.parent.mkdir(parents=True, exist_ok=True)
         self._lock.tryLock(0)  # first: a file without a lock is one that a crash has left
         try:
-            self._state().save(path, self._session_recipe().model)
+            copy = self._state().model_copy(update={"file": str(self.path or "")})
+            copy.save(path, self._session_recipe().model)
         except RegolithError as error:
             self._toast.problem(str(error))
             return
         if not self._recovered:
             return
         if self._session.tasks:
-            self._timer.start()
+            self._changed = True
         else:  # what was brought back has been read, and is in this copy
             self._forget_recovered()
 

@@ -256,8 +256,8 @@
         <translation>+ Polyeder</translation>
     </message>
     <message>
-        <source>, one that bounds no facet at the moment</source>
-        <translation>, eine, die gerade keine Facette begrenzt</translation>
+        <source>, a redundant plane</source>
+        <translation>, eine überzählige Ebene</translation>
     </message>
     <message>
         <source>0 for the number with the lowest Bayesian information criterion.</source>
@@ -876,6 +876,10 @@
         <translation>Kalibrierung</translation>
     </message>
     <message>
+        <source>Cancel</source>
+        <translation>Abbrechen</translation>
+    </message>
+    <message>
         <source>Cards (*.json)</source>
         <translation>Karten (*.json)</translation>
     </message>
@@ -1082,10 +1086,6 @@
     <message>
         <source>Closing</source>
         <translation>Schließung</translation>
-    </message>
-    <message>
-        <source>Closing the window stops or discards this.</source>
-        <translation>Das Schließen des Fensters bricht das ab oder verwirft es.</translation>
     </message>
     <message>
         <source>Coarse graining</source>
@@ -1574,6 +1574,10 @@
     <message>
         <source>Does not contain: {what}</source>
         <translation>Enthält nicht: {what}</translation>
+    </message>
+    <message>
+        <source>Don&apos;t save</source>
+        <translation>Nicht speichern</translation>
     </message>
     <message>
         <source>Done</source>
@@ -2702,10 +2706,6 @@
     <message>
         <source>Keep the volume</source>
         <translation>Volumen erhalten</translation>
-    </message>
-    <message>
-        <source>Keep working</source>
-        <translation>Weiterarbeiten</translation>
     </message>
     <message>
         <source>Keep, split or drop the grains by their class</source>
@@ -4364,8 +4364,16 @@
         <translation>Wiederholen</translation>
     </message>
     <message>
+        <source>Redo on Explore</source>
+        <translation>Wiederholen auf Erkunden</translation>
+    </message>
+    <message>
         <source>Redo the last step (Ctrl+Shift+Z)</source>
         <translation>Den letzten Schritt wiederholen (Strg+Umschalt+Z)</translation>
+    </message>
+    <message>
+        <source>Redo the opening</source>
+        <translation>Öffnen wiederholen</translation>
     </message>
     <message>
         <source>Reference surface</source>
@@ -4724,6 +4732,10 @@
         <translation>Beispielscan</translation>
     </message>
     <message>
+        <source>Save</source>
+        <translation>Speichern</translation>
+    </message>
+    <message>
         <source>Save &amp;animation of l_max …</source>
         <translation>&amp;Animation von l_max speichern …</translation>
     </message>
@@ -5050,6 +5062,10 @@
     <message>
         <source>Share of the volume in bodies that were left out</source>
         <translation>Anteil des Volumens in weggelassenen Körpern</translation>
+    </message>
+    <message>
+        <source>Shipped</source>
+        <translation>Mitgeliefert</translation>
     </message>
     <message>
         <source>Show in &amp;Explore</source>
@@ -5900,6 +5916,10 @@
         <translation>Die Probe</translation>
     </message>
     <message>
+        <source>The scan {path} has been moved or changed since the project was saved: open it again; its corrections are left out.</source>
+        <translation>Der Scan {path} wurde verschoben oder geändert, seit das Projekt gespeichert wurde: bitte neu öffnen; seine Korrekturen bleiben weg.</translation>
+    </message>
+    <message>
         <source>The script is on the clipboard.</source>
         <translation>Das Skript ist in der Zwischenablage.</translation>
     </message>
@@ -6184,6 +6204,10 @@
         <translation>Alle Striche zurücknehmen</translation>
     </message>
     <message>
+        <source>Undo on Explore</source>
+        <translation>Rückgängig auf Erkunden</translation>
+    </message>
+    <message>
         <source>Undo stroke</source>
         <translation>Strich zurück</translation>
     </message>
@@ -6194,6 +6218,10 @@
     <message>
         <source>Undo the last stroke (Ctrl+Z)</source>
         <translation>Den letzten Strich zurücknehmen (Strg+Z)</translation>
+    </message>
+    <message>
+        <source>Undo the opening</source>
+        <translation>Öffnen rückgängig machen</translation>
     </message>
     <message>
         <source>Unit</source>
@@ -6310,6 +6338,10 @@
     <message>
         <source>Virtual particles</source>
         <translation>Virtuelle Partikel</translation>
+    </message>
+    <message>
+        <source>Visibility</source>
+        <translation>Sichtbarkeit</translation>
     </message>
     <message>
         <source>Volume</source>
@@ -6434,6 +6466,10 @@
     <message>
         <source>What has been exported is listed here, with the command that loads it.</source>
         <translation>Was exportiert wurde, steht hier, mit dem Befehl, der es lädt.</translation>
+    </message>
+    <message>
+        <source>What was restored after the crash is not saved as a project.</source>
+        <translation>Was nach dem Absturz wiederhergestellt wurde, ist nicht als Projekt gespeichert.</translation>
     </message>
     <message>
         <source>Wheel</source>
@@ -8156,6 +8192,10 @@
         <translation>{moved}: die Halbräume begrenzen kein Polyeder mehr. Abgelehnt, ohne u zu ziehen.</translation>
     </message>
     <message>
+        <source>{moved}: the loss does not change. Not larger, so it is accepted.</source>
+        <translation>{moved}: der Verlust ändert sich nicht. Nicht größer, also angenommen.</translation>
+    </message>
+    <message>
         <source>{moved}: the loss falls from {before} to {after}. Better, so it is accepted.</source>
         <translation>{moved}: der Verlust fällt von {before} auf {after}. Besser, also angenommen.</translation>
     </message>
@@ -8306,6 +8346,10 @@
     <message>
         <source>{preset}, modified</source>
         <translation>{preset}, geändert</translation>
+    </message>
+    <message>
+        <source>{real} of {asked} planes bound a facet: the others are redundant.</source>
+        <translation>{real} von {asked} Ebenen begrenzen eine Facette: die übrigen sind überzählig.</translation>
     </message>
     <message>
         <source>{row}, {column}: {before:.3g} % becomes {after:.3g} %</source>

@@ -86,7 +86,7 @@ def test_that_nothing_on_the_translated_part_of_the_window_goes_past_the_transla
         dialog.deleteLater()
     asked = []
     monkeypatch.setattr(QMessageBox, "exec", lambda box: asked.append(english_left(box)))
-    assert may_close(window, [tr("{name} has changes that are not saved.", name="a")]) is False
+    assert may_close(window, [], [tr("{name} has changes that are not saved.", name="a")], bool) is False
     assert asked == [[]]
 
 

@@ -164,7 +164,7 @@ def clear_prepared_inputs(prepared: PreparedInputs) -> None:
 
 
 def _extract_grains(entry: VolumeEntry, base: Path, root: Path, finished: bool, executor: Executor) -> Steps:
-    volume, settings = _volume_input(entry, base), _settings(entry, base)
+    volume, settings = volume_input(entry, base), _settings(entry, base)
     if not volume.path.exists():
         raise InputError(f"There is no volume {volume.path}.")
     document = entry.model_dump(mode="json", exclude={"recipe", "classifier"})
@@ -253,7 +253,8 @@ def _check_sources_exist(population: Population, paths: list[Path]) -> None:
             )
 
 
-def _volume_input(entry: VolumeEntry, base: Path) -> VolumeInput:
+def volume_input(entry: VolumeEntry, base: Path) -> VolumeInput:
+    """The volume that a recipe in `base` names."""
     raw = (
         None
         if entry.raw is None

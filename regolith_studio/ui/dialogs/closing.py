@@ -1,6 +1,6 @@
 """Asks for confirmation before running jobs are stopped by closing the window."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from PySide6.QtWidgets import QMessageBox, QWidget
 
@@ -15,21 +15,34 @@ def needs_confirmation(tasks: Sequence[Task], busy: Sequence[str]) -> list[str]:
     return [*(tr("{task} is running.", task=title) for title in titles), *busy]
 
 
-def may_close(parent: QWidget, reasons: Sequence[str]) -> bool:
-    """Ask whether to close although work would be lost; yes where there is none."""
-    if not reasons:
+def may_close(
+    parent: QWidget, reasons: Sequence[str], unsaved: Sequence[str], save: Callable[[], bool]
+) -> bool:
+    """Ask whether to close although work would be lost, and whether to save first; yes where there is none.
+
+    Parameters
+    ----------
+    reasons, unsaved
+        What would be stopped, and what is not saved, in sentences.
+    save
+        Saves what is not; whether that was done.
+    """
+    if not reasons and not unsaved:
         return True
-    title = tr("Close Regolith Studio?")
-    box = QMessageBox(QMessageBox.Icon.Question, title, "\n".join(map(inert, reasons)), parent=parent)
+    title, lost = tr("Close Regolith Studio?"), "\n".join(map(inert, (*reasons, *unsaved)))
+    box = QMessageBox(QMessageBox.Icon.Question, title, lost, parent=parent)
     box.setObjectName("closing")
-    box.setInformativeText(tr("Closing the window stops or discards this."))
-    stay = box.addButton(tr("Keep working"), QMessageBox.ButtonRole.RejectRole)
-    leave = box.addButton(tr("Stop and close"), QMessageBox.ButtonRole.DestructiveRole)
+    stay = box.addButton(tr("Cancel"), QMessageBox.ButtonRole.RejectRole)
+    words = tr("Stop and close") if reasons else tr("Don't save")
+    leave = box.addButton(words, QMessageBox.ButtonRole.DestructiveRole)
+    kept = box.addButton(tr("Save"), QMessageBox.ButtonRole.AcceptRole) if unsaved else None
+    if kept is not None:
+        kept.setObjectName("closing_save")
     stay.setObjectName("closing_stay")
     leave.setObjectName("closing_leave")
-    box.setDefaultButton(stay)
+    box.setDefaultButton(kept or stay)
     box.setEscapeButton(stay)
     box.exec()
-    decided = box.clickedButton() is leave
+    pressed = box.clickedButton()
     box.deleteLater()
-    return decided
+    return pressed is leave or (pressed is kept is not None and save())

@@ -10,7 +10,7 @@ from regolith_studio.descriptors.catalogue import CATALOGUE, LOSS_KEYS
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.results import Results
 from regolith_studio.ui.theme import Theme
-from regolith_studio.ui.translation import tr
+from regolith_studio.ui.translation import tr, translate
 from regolith_studio.ui.widgets.definitions import definition
 from regolith_studio.ui.widgets.labels import plain_symbol
 from regolith_studio.ui.widgets.plots.bars import BarPlot, BarSeries
@@ -45,6 +45,8 @@ class ErrorBarsPanel(QWidget):
             self._polyhedron, self._bounds, self._against_particle = {}, {}, {}
             self._polyhedron_of = choices.selected
         done = results.coarsened
+        if "coarsening" in results.failures:
+            self._polyhedron, self._bounds, self._against_particle = {}, {}, {}
         if done is not None:
             self._polyhedron = {**done.errors, JACCARD: done.jaccard_distance}
             self._bounds = bounds_in_force(done.bounds, done.errors)
@@ -69,6 +71,9 @@ class ErrorBarsPanel(QWidget):
         symbols = [plain_symbol(CATALOGUE[key].symbol) for key in LOSS_KEYS]
         tips = [definition(key) for key in (*LOSS_KEYS, JACCARD)]
         self.plot.set_bars([*symbols, "Jaccard"], series, short=[*symbols, "J"], tips=tips)
+        failure = translate(results.failures.get("descriptors", ""))
+        if self.plot.is_empty():
+            self.plot.set_empty(True, failure or tr("The errors appear when the fit is measured."))
 
     def set_theme(self, theme: Theme) -> None:
         """Take the colours of a theme."""

@@ -30,6 +30,9 @@ class LossCurvePanel(QWidget):
         self._results = results
         history = results.loss_history
         if not history:
+            if results.best is None:  # of another particle, or of none
+                self.plot.set_curves([])
+                self.plot.set_remark("")
             return
         best = accumulate((loss for _, loss in history), min)
         rows = [(*each, low) for each, low in zip(history, best, strict=True)]

@@ -35,7 +35,8 @@ class VerdictPanel(Headline):
             self._shown = None
         found = self._shown
         if found is None:
-            self.show_values(("–",) * 3, tr("The polyhedron is not finished yet."), fresh=False)
+            why = translate(results.failures.get("coarsening", ""))
+            self.show_values(("–",) * 3, why or tr("The polyhedron is not finished yet."), fresh=False)
             return
         error = "–" if found.rmsre != found.rmsre else number_text(found.rmsre, ".2%")
         figures = (number_text(found.loss, "#.4g"), error, number_text(found.jaccard_distance, ".1%"))

@@ -23,7 +23,7 @@ from regolith_studio.scene.projection import Projection
 from regolith_studio.scene.shapes import FIT, NAMES, PARTICLE, POLYHEDRON, SceneShape
 from regolith_studio.session.results import ParticleEntry, Results
 from regolith_studio.ui.theme import Theme, current_theme
-from regolith_studio.ui.translation import tr
+from regolith_studio.ui.translation import tr, translate
 from regolith_studio.ui.translation.numbers import number_text
 from regolith_studio.ui.translation.plain_text import Markup, rich
 from regolith_studio.ui.views.camera_link import CameraLink
@@ -137,6 +137,8 @@ class ThreeViews(QSplitter):
         """Show the newest polyhedron, also while another one is being made: else a drag would show none."""
         found = results.best
         if found is None or found.polyhedron is None:
+            if failure := results.failures.get("coarsening"):
+                self.show_failure(POLYHEDRON, failure)
             return
         solid, centre = found.polyhedron, np.asarray(found.centre, dtype=np.float64)
         shown = self._shapes.get(POLYHEDRON)
@@ -159,6 +161,16 @@ class ThreeViews(QSplitter):
             facets,
         )
         self.comparison.set_shapes(self._shapes, POLYHEDRON)
+
+    def show_failure(self, name: str, sentence: str) -> None:
+        """Say in a view why it stays empty, and show no earlier result there."""
+        title = tr("Polyhedron") if name == POLYHEDRON else tr("Spherical-harmonics fit")
+        self._shapes.pop(name, None)
+        self.pointer.clear()
+        self.views[name].draw(surfaces.clear)
+        self._draw_extras(name)
+        self.frames[name].set_texts(title, translate(sentence))
+        self.comparison.set_shapes(self._shapes, name)
 
     def show_step(self, step: CoarseningProgress) -> None:
         """Say which step of a run the polyhedron belongs to."""

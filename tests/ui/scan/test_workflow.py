@@ -190,3 +190,15 @@ def test_that_dark_grains_are_suspected_where_one_body_fills_the_frame(page, tmp
     page.controls.dark.click()
     wait(lambda: "dark" not in page.workflow.found.text(), SECONDS)
     assert page.preview.found.n_grains > 10
+
+
+def test_that_the_scan_of_a_project_is_opened_again_and_a_changed_one_is_not(page, wait):
+    page.opening.open_sample()
+    wait(lambda: page.scan is not None)
+    state = page.state()
+    assert state["scan"]["file"] == "sample:grey"
+    page.opening.scan.scratch.close()
+    page.opening.scan = None
+    page.restore(state)
+    wait(lambda: page.scan is not None)
+    assert page.opening.restore(state["scan"] | {"fingerprint": "of another"}) is False

@@ -10,8 +10,9 @@ from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.jobs.events import Job
 from regolith_studio.messages import join_messages
 from regolith_studio.scene.cameras import DIRECTIONS
-from regolith_studio.scene.shapes import PARTICLE
+from regolith_studio.scene.shapes import FIT, PARTICLE
 from regolith_studio.session.results import Results
+from regolith_studio.session.verdict import redundant_planes
 from regolith_studio.ui.layout import padded, scrolled_column, side_by_side, stacked
 from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.pages.explore.facet_search import FacetSearch
@@ -184,7 +185,10 @@ class ExplorePage(PageWidget):
         self.three_views.show_star_point(fit.star_point if fit else None)
 
     def _show_fit(self) -> None:
-        self.three_views.show_fit(self._session.results.surface, self._session.results.surface_l_max)
+        results = self._session.results
+        if results.surface is None and (failure := results.failures.get("surface")):
+            self.three_views.show_failure(FIT, failure)
+        self.three_views.show_fit(results.surface, results.surface_l_max)
 
     def _show_step(self, step: CoarseningProgress) -> None:
         """Show one step of a run, and where it stands in the curve of the loss."""
@@ -198,5 +202,6 @@ class ExplorePage(PageWidget):
             self.three_views.show_polyhedron(results)
             self.plots.loss_curve.plot.set_marker(None)
         coarse = results.coarsened
-        said = [each for each in (coarse.reason, coarse.warning) if each] if coarse else []
+        notes = (coarse.reason or redundant_planes(coarse), coarse.warning) if coarse else ()
+        said = [each for each in (*notes, results.failures.get("coarsening")) if each]
         self.coarsening.set_outcome(join_messages(said) if said else None)

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 from regolith_studio.coarsening.loss import Evaluation
 from regolith_studio.coarsening.methods.annealing import AnnealingSettings
+from regolith_studio.coarsening.progress import Move
 from regolith_studio.coarsening.weights import JACCARD, LossWeights
 from regolith_studio.descriptors.catalogue import CATALOGUE, LOSS_KEYS
 from regolith_studio.jobs.lecture_jobs import AnnealingLesson, AnnealingStep, DegreeStep
@@ -13,6 +14,8 @@ from regolith_studio.ui.translation.plain_text import Markup
 from regolith_studio.ui.widgets.formula import BREAK
 
 TERMS = (JACCARD, *LOSS_KEYS)
+ROUNDING = 1e-9
+"""Difference of losses below which they are equal but for rounding."""
 REFUSED, ACCEPTED, LUCKY, START = "refused", "accepted", "lucky", "start"
 """Outcomes of a step."""
 DEGREE = Markup("l<sub>max</sub>")
@@ -97,11 +100,18 @@ def decision_line(step: AnnealingStep) -> str:
     if move.proposed is None:
         return tr("no polyhedron") + r" $\quad\Rightarrow\quad$ " + tr("reject")
     change = move.proposed.loss - move.before.loss
-    if move.better:
+    if _falls(move):
         return rf"$\Delta L={_signed(change)}<0\quad\Rightarrow\quad$ " + tr("accept")
+    if move.better:
+        return r"$\Delta L=0\quad\Rightarrow\quad$ " + tr("accept")
     sign, end = ("<", tr("accept")) if move.accepted else (r"\geq ", tr("reject"))
     drawn = rf"u={_number(move.drawn)}{sign}T(k)"
     return rf"$\Delta L={_signed(change)}\geq 0,${BREAK}$\;{drawn}${BREAK}$\;\Rightarrow\;$ {end}"
+
+
+def _falls(move: Move) -> bool:
+    """Whether the loss falls by more than rounding, as where a plane that bounds no facet is moved."""
+    return move.proposed is not None and move.before.loss - move.proposed.loss >= ROUNDING
 
 
 def outcome_of(step: AnnealingStep) -> str:
@@ -129,19 +139,21 @@ def sentence_of(step: AnnealingStep, lesson: AnnealingLesson) -> str:
         distance=step.distance,
     )
     if step.facet is None:
-        moved += tr(", one that bounds no facet at the moment")
+        moved += tr(", a redundant plane")
     if move.proposed is None:
         return tr(
             "{moved}: the half-spaces bound no polyhedron any more. Rejected without drawing u.", moved=moved
         )
     losses = dict(zip(("before", "after"), _apart(move.before.loss, move.proposed.loss), strict=True))
+    if move.better and not _falls(move):
+        return tr("{moved}: the loss does not change. Not larger, so it is accepted.", moved=moved)
     if move.better:
         return tr(
             "{moved}: the loss falls from {before} to {after}. Better, so it is accepted.",
             moved=moved,
             **losses,
         )
-    same = move.proposed.loss == move.before.loss
+    same = abs(move.proposed.loss - move.before.loss) < ROUNDING
     how = tr("does not change") if same else tr("rises from {before} to {after}", **losses)
     chance = number_text(move.probability, ".2%")
     if move.accepted:
@@ -222,7 +234,7 @@ def _number(value: float) -> str:
 
 
 def _signed(value: float) -> str:
-    return _in_formula(value, "+.3g") if abs(value) >= 1e-9 else "0"
+    return _in_formula(value, "+.3g") if abs(value) >= ROUNDING else "0"
 
 
 def _in_formula(value: float, form: str = "g") -> str:

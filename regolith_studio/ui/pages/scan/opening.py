@@ -3,16 +3,18 @@
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import ValidationError
 from PySide6.QtCore import QObject, Signal
 from PySide6.QtWidgets import QFileDialog, QWidget
 
 from regolith_studio.errors import RegolithError
 from regolith_studio.imaging.sample_volumes import sample_file
 from regolith_studio.jobs.events import Job
-from regolith_studio.jobs.extraction_settings import VolumeInput
+from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput
 from regolith_studio.jobs.scan_jobs import FirstLook, Scan, read_header, read_sample_scan, read_scan
 from regolith_studio.readers.sandbox.parent import volume_sandbox
 from regolith_studio.readers.volume_formats import volume_suffixes
@@ -20,6 +22,9 @@ from regolith_studio.readers.volumes.files import missing_slices
 from regolith_studio.readers.volumes.header import VolumeHeader, layout_from_name
 from regolith_studio.readers.volumes.region import RegionSettings, crop_of_rectangle
 from regolith_studio.readers.voxels.scanner_headers import header_beside
+from regolith_studio.session.batch.preprocessing import entry_of, volume_input
+from regolith_studio.session.project import fingerprint
+from regolith_studio.session.recipe import VolumeEntry
 from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.pages.scan.controls import SegmentationControls
 from regolith_studio.ui.pages.scan.file_dialogs import VOLUMES, ask_to_open, last_folder
@@ -47,6 +52,7 @@ class VolumeOpening(QObject):
         self.scan: Scan | None = None
         self.first: FirstLook | None = None
         self.given = self.wanted = VolumeInput(Path())
+        self.fingerprint = ""
         self.region = self.wanted_region = RegionSettings()
         volume_sandbox().start_in_background()  # so that the first file need not wait for it
 
@@ -97,6 +103,33 @@ class VolumeOpening(QObject):
         self._context.start(
             title, job, lambda scan: self._take(scan, volume, region), partial=self._look, lane="read"
         )
+
+    def state(self) -> dict[str, Any]:
+        """Where the scan is, what its file does not say, and its fingerprint; nothing if none is open."""
+        if self.scan is None:
+            return {}
+        entry = entry_of(self.given, GrainSettings())
+        named = entry.model_dump(exclude={"region", "segmentation", "extraction"}, exclude_none=True)
+        return named | {"fingerprint": self.fingerprint}
+
+    def restore(self, state: Mapping[str, Any]) -> bool:
+        """Open the scan that :meth:`state` named, unless it has moved or changed; whether it is read."""
+        try:
+            entry = VolumeEntry(**{key: value for key, value in state.items() if key != "fingerprint"})
+        except (ValidationError, TypeError):
+            return False
+        volume = volume_input(entry, Path())
+        if fingerprint(volume.path) != state.get("fingerprint"):
+            self._context.toast.problem(
+                tr(
+                    "The scan {path} has been moved or changed since the project was saved: open it again; "
+                    "its corrections are left out.",
+                    path=volume.path,
+                )
+            )
+            return False
+        self.read(volume)
+        return True
 
     def follow_region(self) -> bool:
         """Read again if the controls want another region; returns whether they do."""
@@ -167,6 +200,7 @@ class VolumeOpening(QObject):
     def _take(self, scan: Scan, volume: VolumeInput, region: RegionSettings) -> None:
         self._leave()
         self.scan, self.given, self.region = scan, volume, region
+        self.fingerprint = fingerprint(volume.path)
         self.opened.emit()
 
     def _leave(self) -> None:

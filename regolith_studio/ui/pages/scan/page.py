@@ -1,6 +1,5 @@
 """Page "Scan": three slices with the grains, histogram, settings, and the steps of the workflow."""
 
-import contextlib
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -45,6 +44,8 @@ class ScanPage(PageWidget):
         self.setAcceptDrops(True)
         self._context = context
         self._found_with: SegmentationSettings | None = None
+        self._restored: Path | None = None
+        self._find_again = False
 
     def build(self) -> None:
         context = self._context
@@ -88,11 +89,21 @@ class ScanPage(PageWidget):
         }
 
     def state(self) -> dict[str, Any]:
-        return self._settings().as_document()
+        scan = self.opening.state() | ({"found": True} if self.grains is not None else {})
+        return self._settings().as_document() | ({"scan": scan} if self.scan is not None else {})
 
     def restore(self, state: Mapping[str, Any]) -> None:
-        with contextlib.suppress(RegolithError):
-            self._use(GrainSettings.from_document(state))
+        scan = state.get("scan")
+        try:
+            self._use(GrainSettings.from_document({k: v for k, v in state.items() if k != "scan"}))
+        except RegolithError:
+            return
+        if isinstance(scan, Mapping):
+            named = {key: value for key, value in scan.items() if key != "found"}
+            if self.opening.restore(named):
+                self._restored, self._find_again = self.opening.wanted.path, bool(scan.get("found"))
+                return
+        self.corrections.forget()  # corrections belong to one scan
 
     def on_close(self) -> None:
         self.preview.stop()
@@ -163,6 +174,18 @@ class ScanPage(PageWidget):
         self.controls.set_kind(self.scan.volume.kind)
         self._show_level()
         self._schedule_preview()
+        self._go_on_with_project()
+
+    def _go_on_with_project(self) -> None:
+        """Find the grains of the scan of a project again; its corrections are of no other scan."""
+        restored, self._restored = self._restored, None
+        again, self._find_again = self._find_again, False
+        if restored is not None and restored != self.opening.given.path:
+            self.corrections.forget()
+        elif again and self.scan is not None:
+            if self.scan.volume.kind == "labels":
+                return
+            self.find_grains()
 
     def _on_looked(self) -> None:
         self._stop_work()
