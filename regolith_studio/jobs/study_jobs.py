@@ -267,8 +267,7 @@ def _fit_of(particle: Particle, request: CoarseningRequest) -> HarmonicFit | str
 
 
 def _with_loss(request: CoarseningRequest, row: LossVariant) -> CoarseningRequest:
-    baseline = row.weights.all_zero  # the quadric start itself
-    method, settings = ("quadric", ()) if baseline else (row.method, row.settings)
+    method, settings = row.method_run, row.settings_run
     return dataclasses.replace(
         request, weights=row.weights, method=method, settings=settings, largest_error=None
     )

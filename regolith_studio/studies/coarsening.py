@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 
 from regolith_studio.coarsening.coarsen import DEFAULT_METHOD, coarsen
-from regolith_studio.coarsening.decimated_hull import decimated_hull
 from regolith_studio.coarsening.result import CoarseningResult
 from regolith_studio.coarsening.target import Target
 from regolith_studio.coarsening.weights import JACCARD
@@ -128,10 +127,7 @@ def coarsening_errors(
         goal = Target.of((target or TargetChoice()).mesh_of(mesh))
         wanted = describe(goal.mesh, LOSS_KEYS, box_metric)
         results = coarsened_rows(goal, rows, seed)
-        table = [
-            _row_errors(goal, row, found, wanted, box_metric)
-            for row, found in zip(rows, results, strict=True)
-        ]
+        table = [_row_errors(found, wanted, box_metric) for found in results]
     except RegolithError as error:
         return str(error)
     return np.array(table), tuple(found.reason is None for found in results)
@@ -145,8 +141,7 @@ def coarsened_rows(target: Target, rows: Sequence[LossVariant], seed: int) -> li
     """
     results: list[CoarseningResult] = []
     for row in rows:
-        method = "quadric" if row.is_baseline else row.method
-        settings = None if row.is_baseline else dict(row.settings)
+        settings = dict(row.settings_run)
         alike = [
             found
             for earlier, found in zip(rows, results, strict=False)
@@ -155,18 +150,16 @@ def coarsened_rows(target: Target, rows: Sequence[LossVariant], seed: int) -> li
         ]
         fewer = min(alike, key=lambda found: (found.reason is not None, found.loss), default=None)
         start = None if fewer is None else fewer.half_spaces
-        results.append(coarsen(target, row.n_facets, method, row.weights, seed, settings, start))
+        results.append(coarsen(target, row.n_facets, row.method_run, row.weights, seed, settings, start))
     return results
 
 
-def _row_errors(
-    target: Target, row: LossVariant, found: CoarseningResult, wanted: Any, box_metric: str
-) -> list[float]:
-    if box_metric == "exact" and not row.is_baseline:
+def _row_errors(found: CoarseningResult, wanted: Any, box_metric: str) -> list[float]:
+    """Errors of the polyhedron that the method returned, which is also what a gallery shows."""
+    if box_metric == "exact":
         errors = dict(found.errors)
     else:
-        solid = decimated_hull(target, row.n_facets) if row.is_baseline else _in_unit_frame(found)
-        errors = relative_errors(wanted, describe(solid, LOSS_KEYS, box_metric))
+        errors = relative_errors(wanted, describe(_in_unit_frame(found), LOSS_KEYS, box_metric))
     return [*[errors[key] for key in LOSS_KEYS], found.jaccard_distance]
 
 
@@ -248,7 +241,7 @@ def rmsre_table(study: CoarseningStudy) -> Table:
     """Fig. 8 as numbers: a row for each row of weights and each descriptor."""
     values, (low, high) = 100 * study.rmsre, 100 * study.bands
     lines = [
-        (row.label, row.method, row.n_facets, key, values[r, k], low[r, k], high[r, k], study.n_unmet[r])
+        (row.label, row.method_run, row.n_facets, key, values[r, k], low[r, k], high[r, k], study.n_unmet[r])
         for r, row in enumerate(study.rows)
         for k, key in enumerate(COLUMNS)
     ]
@@ -264,7 +257,7 @@ def rmsre_table(study: CoarseningStudy) -> Table:
 def particle_table(study: CoarseningStudy) -> Table:
     """Relative error of every descriptor of every particle in every row."""
     lines = [
-        (name, row.label, row.method, row.n_facets, *study.errors[i, r])
+        (name, row.label, row.method_run, row.n_facets, *study.errors[i, r])
         for i, name in enumerate(study.names)
         for r, row in enumerate(study.rows)
     ]

@@ -62,8 +62,18 @@ class LossVariant:
 
     @property
     def is_baseline(self) -> bool:
-        """Whether the decimated mesh itself is measured, as in the first row of Fig. 8."""
+        """Whether the quadric start is the result, as in the first row of Fig. 8."""
         return self.weights.all_zero or self.method == "quadric"
+
+    @property
+    def method_run(self) -> str:
+        """Key of the method that makes the row: of a baseline ``quadric``, whatever was named."""
+        return "quadric" if self.is_baseline else self.method
+
+    @property
+    def settings_run(self) -> tuple[tuple[str, Any], ...]:
+        """Settings of that method: none if another was named."""
+        return self.settings if self.method_run == self.method else ()
 
     def relabelled(self, label: str, **changes: Any) -> Self:
         """A copy with `changes` under another name."""

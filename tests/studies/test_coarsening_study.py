@@ -8,8 +8,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.spatial import ConvexHull
 
+from regolith_studio.coarsening.coarsen import coarsen
 from regolith_studio.coarsening.weights import LossWeights
+from regolith_studio.descriptors.catalogue import LOSS_KEYS
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
@@ -83,6 +86,22 @@ def test_that_a_bad_particle_is_listed_and_stops_nothing(study: CoarseningStudy)
     assert study.names == ("egg 1.2", "egg 1.5")
     assert study.failures[0][0] == "open"
     assert "not closed" in study.failures[0][1]
+
+
+@pytest.mark.parametrize("box_metric", ["exact", "trimesh"])
+def test_that_the_quadric_row_is_measured_on_the_polyhedron_that_is_shown(box_metric: str) -> None:
+    rows = (LossVariant("start", LossWeights.of(), "exact", 12), ROWS[0])
+    study = finished(coarsening_study([Particle("egg", egg(1.5))], rows, box_metric=box_metric))[1]
+    shown = coarsen(egg(1.5), 12, "quadric")
+    volume = COLUMNS.index("volume")
+    hull = ConvexHull(shown.polyhedron.vertices)
+    expected = abs(hull.volume / egg(1.5).volume - 1)
+    assert study.errors[0, :, volume] == pytest.approx(expected, abs=1e-9)
+    if box_metric == "exact":
+        assert study.errors[0, 0] == pytest.approx(
+            [*map(shown.errors.get, LOSS_KEYS), shown.jaccard_distance]
+        )
+    assert [line[2] for line in particle_table(study).rows] == ["quadric", "quadric"]
 
 
 def test_that_the_band_holds_the_value(study: CoarseningStudy) -> None:
