@@ -22,8 +22,9 @@ from regolith_studio.geometry.sphere_points import fibonacci_directions
 JITTER = 1e-10
 WELD = 1e-8
 """Vertices of a hull of size 1 that are closer are one for the search."""
-MAX_VERTICES, MAX_TURN = 10_000, 120.0
-"""Hulls with more vertices, or more curves of boxes, are thinned for the search."""
+MAX_VERTICES, MAX_TURN, MAX_KNOWN_TURN = 10_000, 120.0, 300.0
+"""Hulls with more vertices, or more curves of boxes, are thinned for the search; of more curves than the
+last, where the box of a thinned hull is known, not all are searched."""
 FIRST_CELL = 0.02
 """Cells of a hull of size 1 that is thinned; they grow until the search is short enough."""
 
@@ -100,9 +101,10 @@ def minimum_volume_box(solid: Mesh | ConvexPolyhedron) -> OrientedBox:
     adjacent sides are flush with edges of the hull), and independent of unit and orientation. Of boxes that
     tie in volume, the one with the smallest sum of edges is taken. The box of a mesh is kept with it.
 
-    Hulls whose search would be long are thinned for it: those of more than `MAX_VERTICES` vertices, and fine
-    balls, cones and cylinders, whose edges cannot be ruled out. The box holds the whole hull; its volume is
-    above the minimum by at most the share by which it is above that of the thinned hull's.
+    Of fine balls, cones and cylinders, whose edges cannot be ruled out, no box with a side on a facet is
+    smaller, but one flush with two edges may be. Hulls of more than `MAX_VERTICES` vertices are thinned: the
+    box holds the whole hull; its volume is above the minimum by at most the share by which it is above that
+    of the thinned hull's.
 
     Raises
     ------
@@ -163,14 +165,27 @@ def _searched(solid: Mesh | ConvexPolyhedron) -> OrientedBox:
 
 
 def _axes_of_box(points: FloatArray, faces: IntArray) -> FloatArray:
-    """Axes of the minimum-volume box; where the search would be long, of a hull of fewer vertices."""
-    thinned, cell = points, FIRST_CELL
+    """Axes of the minimum-volume box; where the search would be long, that of a hull of fewer vertices first.
+
+    The box found there rules out most of the edges of the whole hull.
+    """
+    if len(points) > MAX_VERTICES:
+        return _axes_of_thinned(points)
+    facets = facets_of_hull(points, faces) or _facets_of_perturbed(points)
+    with suppress(TooManyCurvesError):
+        return minimum_box(facets, MAX_TURN)
+    return minimum_box(facets, MAX_KNOWN_TURN, _axes_of_thinned(points))
+
+
+def _axes_of_thinned(points: FloatArray) -> FloatArray:
+    """Axes of the minimum-volume box of a hull of as many of its vertices as the search can take."""
+    cell = FIRST_CELL
     while True:
-        if len(thinned) <= MAX_VERTICES:
-            with suppress(TooManyCurvesError):
-                return minimum_box(facets_of_hull(thinned, faces) or _facets_of_perturbed(thinned), MAX_TURN)
         hull = Mesh(_farthest_in_cells(points, cell), np.empty((0, 3), dtype=np.int64)).hull
-        thinned, faces = hull.vertices, hull.faces
+        if len(hull.vertices) <= MAX_VERTICES:
+            with suppress(TooManyCurvesError):
+                facets = facets_of_hull(hull.vertices, hull.faces) or _facets_of_perturbed(hull.vertices)
+                return minimum_box(facets, MAX_TURN)
         cell *= 1.25
 
 

@@ -5,7 +5,7 @@ import pytest
 from scipy.spatial import ConvexHull, HalfspaceIntersection
 
 from regolith_studio.coarsening.coarsen import coarsen
-from regolith_studio.coarsening.optimiser.search import first_sizes, more_surface_than_hull
+from regolith_studio.coarsening.optimiser.search import first_starts, more_surface_than_hull, stage_below
 from regolith_studio.coarsening.optimiser.starts import with_waiting
 from regolith_studio.coarsening.result import CoarseningResult
 from regolith_studio.coarsening.target import Target
@@ -76,18 +76,25 @@ def test_that_surface_beyond_the_hull_is_that_of_volume_and_area_by_scipy() -> N
 
 
 def test_that_the_number_asked_for_is_always_among_those_to_start_with() -> None:
-    rough, round_ball = Target.of(bumpy(2, roughness=0.3)), Target.of(icosphere(3))
+    rough = Target.of(bumpy(2, roughness=0.3))
     for n_facets in (5, 20, 24, 26, 50, 63, 200):
         for keeps_sphericity in (False, True):
-            numbers = first_sizes(rough, n_facets, keeps_sphericity)
+            stage = stage_below(rough, n_facets, keeps_sphericity)
+            numbers = [size for _, size in first_starts(rough, n_facets, keeps_sphericity, stage)]
             assert n_facets in numbers
-            assert len(set(numbers)) == len(numbers)
-            assert max(numbers) == n_facets
-    assert first_sizes(rough, 20, True)[0] == 20
-    assert first_sizes(rough, 15, True) == (15,)
-    assert first_sizes(rough, 100, True)[0] < 100
-    assert first_sizes(rough, 100, False)[0] == 100
-    assert first_sizes(round_ball, 100, True) == (100,)
+            assert stage < min(numbers) <= max(numbers) == n_facets
+    assert {size for _, size in first_starts(rough, 15, True, 0)} == {15}
+    rougher = Target.of(bumpy(2, roughness=0.4))
+    assert more_surface_than_hull(rougher) > 0.12
+    assert first_starts(rougher, 20, True, 0)[0] == ("grouped", 12)
+    assert first_starts(rougher, 20, False, 0)[0] == ("grouped", 20)
+
+
+def test_that_a_search_begins_with_the_next_smaller_stage_that_can_be_met() -> None:
+    rough, round_ball = Target.of(bumpy(2, roughness=0.3)), Target.of(icosphere(3))
+    assert [stage_below(rough, n_facets, True) for n_facets in (25, 26, 62, 63, 200)] == [0, 20, 20, 50, 125]
+    assert stage_below(round_ball, 50, True) == 0  # Goldberg: no twenty facets are as round
+    assert stage_below(round_ball, 50, False) == 20
 
 
 def test_that_waiting_half_spaces_leave_a_cube_a_cube() -> None:

@@ -55,6 +55,17 @@ def test_that_the_box_of_a_ball_is_the_cube_around_it() -> None:
     assert minimum_volume_box(icosphere(3)).extents == pytest.approx(np.full(3, 2.0), rel=0.01)
 
 
+@pytest.mark.parametrize("sides", [64, 256])
+def test_that_a_cylinder_of_many_sides_stands_in_the_square_around_them(sides: int) -> None:
+    """A regular polygon whose number of sides is a multiple of four has its least rectangle on two sides."""
+    angles = 2.0 * np.pi * np.arange(sides) / sides
+    ring = np.column_stack([np.cos(angles), np.sin(angles)])
+    corners = np.vstack([np.column_stack([ring, np.full(sides, z)]) for z in (-1.0, 1.0)])
+    mesh = Mesh(corners @ rotation(3).T, np.empty((0, 3), dtype=np.int64))
+    box = minimum_volume_box(mesh)
+    assert box.volume == pytest.approx(8.0 * np.cos(np.pi / sides) ** 2, rel=1e-6)
+
+
 def test_that_the_search_for_the_box_of_a_cylinder_of_many_sides_ends() -> None:
     sides = 1000
     angles = np.linspace(0.0, 2.0 * np.pi, sides, endpoint=False)

@@ -6,7 +6,7 @@ from regolith_studio.coarsening.core.intersection import FINE
 from regolith_studio.coarsening.core.polyhedron_measures import measure_polyhedron
 from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray
 from regolith_studio.geometry.kernels import kernel_noalloc
-from regolith_studio.geometry.vectors import Vector, along, length, mixed, row
+from regolith_studio.geometry.vectors import Vector, along, cross, dot, length, mixed, row
 
 MIN_CUT = 3e-3
 """Least depth of a cut that is worth it, at unit volume."""
@@ -42,7 +42,7 @@ def insert_lost_facets(
     most
         At most so many half-spaces are replaced; all that bound no facet where not given.
     axes
-        Of the polyhedron's box, shape (3, 3): corners that touch it are left alone, where there are others,
+        Of the polyhedron's box, shape (3, 3): corners that touch it are left alone, where others have room,
         since a cut there would change the box to first order.
 
     Returns
@@ -64,23 +64,27 @@ def insert_lost_facets(
         rooms = np.empty(len(vertices))
         free = _not_touching(vertices, axes)
         at = _best_corner(normals, vertices, triples, directions, first, distance, depth, free, rooms)
+        if not rooms[at] > 0.0:
+            free[:] = True
+            at = _best_corner(normals, vertices, triples, directions, first, distance, depth, free, rooms)
+        if not rooms[at] > 0.0:
+            break
         cut = normals[triples[at]].sum(axis=0)
         cut /= np.sqrt((cut * cut).sum())
-        below = max(depth * rooms[at], min(MIN_CUT, DEEPEST * rooms[at]))
-        normals[lost[0]], offsets[lost[0]] = cut, (cut * vertices[at]).sum() - below
+        normals[lost[0]], offsets[lost[0]] = cut, (cut * vertices[at]).sum() - _below(depth, rooms[at])
         n_cuts += 1
     return n_cuts, normals, offsets
 
 
 def _not_touching(vertices: FloatArray, axes: FloatArray | None) -> BoolArray:
-    """Which corners touch no side of the box; all where every one does."""
+    """Which corners touch no side of the box; all where there is none."""
     everywhere = np.ones(len(vertices), dtype=np.bool_)
     if axes is None:
         return everywhere
     for axis in axes:
         heights = vertices[:, 0] * axis[0] + vertices[:, 1] * axis[1] + vertices[:, 2] * axis[2]
         everywhere &= (heights < heights.max() - TOUCHING) & (heights > heights.min() + TOUCHING)
-    return everywhere if everywhere.any() else np.ones(len(vertices), dtype=np.bool_)
+    return everywhere
 
 
 @kernel_noalloc
@@ -98,16 +102,26 @@ def _best_corner(
     """Index of the corner that hangs out farthest of the free ones with room for a cut.
 
     Fills `rooms`: for each corner the way along its cut's normal to the nearest neighbouring corner, (v,);
-    none where it is not free.
+    none where it is not free, or so sharp that the cut would not count as a facet.
     """
     for v in range(len(vertices)):
-        normal = _corner_normal(normals, triples, v)
-        rooms[v] = np.inf
+        rooms[v] = 0.0
+        if not free[v]:
+            continue
+        normal, count = _corner_normal(normals, triples, v), 0
+        one = two = three = (0.0, 0.0, 0.0)
+        room = np.inf
         for u in range(len(vertices)):
-            if not free[v]:
-                rooms[v] = 0.0
-            elif _share_edge(triples, u, v):
-                rooms[v] = min(rooms[v], along(vertices, v, normal) - along(vertices, u, normal))
+            if _share_edge(triples, u, v):
+                edge = mixed(row(vertices, u), 1.0, row(vertices, v), -1.0)
+                fall = -dot(edge, normal)
+                room, count = min(room, fall), count + 1
+                edge = mixed(edge, 1.0 / max(fall, 1e-300), edge, 0.0)  # down to one below the corner
+                one, two, three = two, three, edge
+        below = _below(depth, room)
+        sides = cross(mixed(two, 1.0, one, -1.0), mixed(three, 1.0, one, -1.0))
+        if count == 3 and room > 0.0 and 0.5 * below * below * length(sides) > 2.0 * MIN_FACET:
+            rooms[v] = room
     at, max_overhang = int(rooms.argmax()), -np.inf
     enough = max(MIN_CUT / depth, ROOMY * rooms[at])
     for v in range(len(vertices)):
@@ -116,6 +130,12 @@ def _best_corner(
             if overhang > max_overhang:
                 at, max_overhang = v, overhang
     return at
+
+
+@kernel_noalloc
+def _below(depth: float, room: float) -> float:
+    """How far below its corner a cut lies."""
+    return max(depth * room, min(MIN_CUT, DEEPEST * room))
 
 
 @kernel_noalloc

@@ -3,6 +3,8 @@
 Terms stand in the order V, S, D_min, D_max, AR. A residual is a relative error, value / wanted - 1; the
 derivatives of all are with the coordinates (shift and two tilts) of every plane. D_min, D_max and AR have a
 kink where two edges of the box are equal; four further rows say what the middle edge must not pass there.
+D_min and D_max have another where two vertices are equally far out at one end; four rows more say how far out
+the second of them may be.
 Nothing here calls a library for more than a square root, so that every processor finds the same bits.
 """
 
@@ -32,9 +34,15 @@ from regolith_studio.geometry.kernels import kernel_noalloc
 from regolith_studio.geometry.vectors import along, row
 
 VOLUME, SPHERICITY, SHORTEST, LONGEST, RATIO = 0, 1, 2, 3, 4
-N_TERMS, N_FIXED = 5, 9
+N_TERMS, N_FIXED = 5, 13
 MIDDLE_LONGEST, MIDDLE_SHORTEST, MIDDLE_SHORT, LONG_MIDDLE = 5, 6, 7, 8
 """Rows of the middle edge: it is at most D_max, at least D_min, and neither makes AR larger."""
+FIRST_TIE = 9
+"""Rows of D_min and then D_max, each with another vertex at the upper, then at the lower end of the edge."""
+FAR_BELOW = -1.0
+"""Residual of a row of a vertex that is not there."""
+NEARLY_TIED = 0.03
+"""Vertices farther from a side than this, at unit volume, do not count as the next one at its end."""
 MAX_BOXES = 8
 """Boxes followed at a time: the one that is measured, and rivals that came below it on the way."""
 GONE = 1.0
@@ -81,7 +89,7 @@ class Body(NamedTuple):
     frames, contacts, planes, extents
         Of the boxes, the measured one first; shapes (b, 3, 3), (b, 13), (b, 9, 3) and (b, 3).
     residuals, rows
-        Of the terms and of the middle edge, shapes (9,) and (9, 3 n).
+        Of the terms, the middle edge and vertices that nearly tie, shapes (13,) and (13, 3 n).
     slack, rival_rows
         volume / volume of the measured box - 1 of the boxes, and the derivatives; the first is 0.
     """
@@ -119,6 +127,8 @@ class BodyScratch(NamedTuple):
         Vertex that owns two planes, (n, n).
     start, ties
         Axes, (3, 3).
+    contact
+        A row of contacts, (13,).
     """
 
     intersection: IntersectionWorkspace
@@ -129,6 +139,7 @@ class BodyScratch(NamedTuple):
     owner: IntArray
     start: FloatArray
     ties: FloatArray
+    contact: IntArray
 
 
 def empty_body(n: int) -> Body:
@@ -167,6 +178,7 @@ def body_scratch(n: int) -> BodyScratch:
         np.empty((n, n), np.int64),
         np.empty((3, 3)),
         np.empty((3, 3)),
+        np.empty(ROW, np.int64),
     )
 
 
@@ -349,6 +361,51 @@ def fill_box_terms(body: Body, wanted: FloatArray, scratch: BodyScratch) -> None
             body.residuals[MIDDLE_SHORTEST] = 1.0 - middle / wanted[SHORTEST]
             body.residuals[MIDDLE_SHORT] = middle / short / wanted[RATIO] - 1.0
             body.residuals[LONG_MIDDLE] = long / middle / wanted[RATIO] - 1.0
+            for end in range(2):
+                _fill_tie(body, FIRST_TIE + end, 2 * low + end, wanted[SHORTEST], scratch)
+                _fill_tie(body, FIRST_TIE + 2 + end, 2 * high + end, wanted[LONGEST], scratch)
+
+
+@kernel_noalloc
+def _fill_tie(body: Body, r: int, side: int, wanted: float, scratch: BodyScratch) -> None:
+    """Residual and row of an edge of the measured box if it ended, on one side, at the next vertex.
+
+    A side with ties turns the box when its vertices change, and has no such row.
+    """
+    contact, frame, other = body.contacts[0], body.frames[0], scratch.contact
+    body.residuals[r] = FAR_BELOW
+    for tie in range(contact[0]):
+        if contact[7 + 2 * tie] == side:
+            return
+    axis, end, sign = row(frame, side // 2), contact[1 + side], 1.0 - 2.0 * (side % 2)
+    least, at = NEARLY_TIED, -1
+    for v in range(body.counts[N_VERTICES]):
+        gap = sign * (along(body.vertices, end, axis) - along(body.vertices, v, axis))
+        if v != end and gap < least:
+            least, at = gap, v
+    if at < 0:
+        return
+    for c in range(len(other)):
+        other[c] = contact[c]
+    other[1 + side] = at
+    k, charges = side // 2, scratch.charges
+    fill_points(body.vertices, other, scratch.points)
+    extent = extent_forces(scratch.points, other, frame, scratch.forces)[k]
+    _fill_charges(body, other, scratch.forces[k], charges)
+    fill_gradient(charges, body.tangents, body.scales, body.rows[r])
+    for j in range(body.rows.shape[1]):
+        body.rows[r, j] *= extent / wanted
+    body.residuals[r] = extent / wanted - 1.0
+
+
+@kernel_noalloc
+def _fill_charges(body: Body, contact: IntArray, forces: FloatArray, charges: FloatArray) -> None:
+    """Charges of the planes for forces (9, 3) on the vertices of a row of contacts."""
+    charges[:] = 0.0
+    for i in range(6 + contact[0]):
+        v = contact[1 + i] if i < 6 else contact[8 + 2 * (i - 6)]
+        force = row(forces, i)
+        add_vertex_charges(body.normals, body.triples, body.vertices, v, force, body.centroids, charges)
 
 
 @kernel_noalloc
@@ -360,12 +417,7 @@ def fill_extent_gradients(body: Body, b: int, scratch: BodyScratch) -> None:
     fill_points(body.vertices, contact, points)
     extent_forces(points, contact, frame, forces)
     for k in range(3):
-        charges[:] = 0.0
-        for i in range(6 + contact[0]):
-            v = contact[1 + i] if i < 6 else contact[8 + 2 * (i - 6)]
-            add_vertex_charges(
-                body.normals, body.triples, body.vertices, v, row(forces[k], i), body.centroids, charges
-            )
+        _fill_charges(body, contact, forces[k], charges)
         fill_gradient(charges, body.tangents, body.scales, gradients[k])
 
 

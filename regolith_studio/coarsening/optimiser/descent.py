@@ -18,6 +18,7 @@ from regolith_studio.coarsening.core.plane_coordinates import fill_gradient, fil
 from regolith_studio.coarsening.core.polyhedron_measures import add_volume_charges
 from regolith_studio.coarsening.optimiser.body import (
     BODY_VOLUME,
+    FIRST_TIE,
     GONE,
     JACCARD,
     LONGEST,
@@ -50,20 +51,22 @@ LOCK = 100.0
 met stay below 10."""
 KEPT = 20.0
 """Terms with a higher price, in units of that of the Jaccard distance, are to be kept."""
-CLEARANCE = 2e-4
-"""Rivals are kept above the measured box by this share of its volume."""
+CLEARANCE, PRESSING = 2e-4, 1e-4
+"""Rivals are brought above the measured box by the first share of its volume, and cost below the second: the
+way between them keeps rivals that only come near from deciding over steps."""
 CHECK_EVERY = 8
 """Accepted steps between two searches for smaller boxes."""
 MET = 1e-9
 """Residuals of terms at a kink after the corrections of a step."""
-CORRECTIONS = 5
-CURVATURE = 0.03
+CORRECTIONS, CURVATURE = 5, 0.03
 MAX_RADIUS, RESTART_RADIUS, MIN_RADIUS = 0.25, 0.02, 2e-4
 SHRINK, GOOD = 0.35, 0.5
 MIN_GAIN = 1e-7
 """The descent ends where a step brings less of the Jaccard distance."""
 NEAR_KINK = -0.1
-"""Rows of the middle edge with a larger residual take part in the steps."""
+"""Rows of the middle edge and of the next vertex with a larger residual take part in the steps."""
+TIED = 1e-3
+"""Where corrections lead nowhere, vertices that tie up to this residual are corrected together."""
 N_ROWS = N_FIXED + MAX_BOXES
 STEPS, CHECKS, EVALUATIONS = 0, 1, 2
 
@@ -88,11 +91,11 @@ class Steps(NamedTuple):
     gradient, trial_gradient, step, total, change
         Shape (3 n,): of the overlap at both bodies, the step, with its corrections, and of the Lagrangian.
     rows, across
-        Rows and their products with the metric, shapes (17, 3 n) and (18, 3 n), the gradient's last.
+        Rows and their products with the metric, shapes (21, 3 n) and (22, 3 n), the gradient's last.
     residuals, low, high, multipliers, slopes
-        Of the rows, shape (17,).
+        Of the rows, shape (21,).
     products, factor
-        Shapes (17, 17) and (17, 18).
+        Shapes (21, 21) and (21, 22).
     diagonal
         Of the metric that a descent begins with, (3 n,).
     radius, plane
@@ -192,7 +195,6 @@ def descend(
         Whether the overlap does not count: what is kept is restored, no more.
     normals, offsets, tangents
         In place, shapes (n, 3), (n,) and (n, 2, 3).
-
     memory
         ``memory.scratch.start`` takes the axes of the measured box, if there is one.
 
@@ -299,7 +301,7 @@ def merit_of(body: Body, prices: Prices) -> float:
     for r in range(N_TERMS):
         total += max(prices.low[r] * body.residuals[r], prices.high[r] * body.residuals[r])
     for b in range(1, body.counts[N_BOXES]):
-        total += LOCK * max(0.0, CLEARANCE - body.slack[b])
+        total += LOCK * max(0.0, PRESSING - body.slack[b])
     return float(total)
 
 
@@ -369,7 +371,7 @@ def gather_rows(body: Body, prices: Prices, work: Steps) -> int:
         for j in range(size):
             work.rows[r, j] = body.rows[r, j] if asked else 0.0
     for b in range(1, body.counts[N_BOXES]):
-        work.low[m], work.high[m], work.residuals[m] = 0.0, LOCK, CLEARANCE - body.slack[b]
+        work.low[m], work.high[m], work.residuals[m] = 0.0, LOCK, PRESSING - body.slack[b]
         for j in range(size):
             work.rows[m, j] = -body.rival_rows[b, j]
         m += 1
@@ -383,6 +385,8 @@ def bounds_of(r: int, body: Body, prices: Prices) -> tuple[float, float]:
         return prices.low[r], prices.high[r]
     if body.counts[N_BOXES] == 0 or body.residuals[r] < NEAR_KINK:
         return 0.0, 0.0
+    if r >= FIRST_TIE:
+        return 0.0, prices.high[SHORTEST if r < FIRST_TIE + 2 else LONGEST]
     term = LONGEST if r == MIDDLE_LONGEST else (SHORTEST if r == MIDDLE_SHORTEST else RATIO)
     return 0.0, -prices.low[term] if term == SHORTEST else prices.high[term]
 
@@ -488,12 +492,15 @@ def correct(
 
     Gauss-Newton steps, least in the diagonal metric; a rival counts where it is below its clearance.
     """
-    size, before = len(work.step), np.inf
+    size, before, tied = len(work.step), np.inf, 0.0
     for _ in range(CORRECTIONS):
-        count, worst = _gather_kinks(there, prices, work)
+        count, worst = _gather_kinks(there, prices, tied, work)
         if worst < MET:
             return True
-        if worst > before or not worst < 0.5:
+        if worst > before and tied == 0.0 and worst < TIED:
+            tied = TIED  # two vertices take turns at the end of an edge
+            count, worst = _gather_kinks(there, prices, tied, work)
+        elif worst > before or not worst < 0.5:
             return worst <= 2.0 * before and worst < 1e-6
         before = worst
         for r in range(count):
@@ -515,17 +522,20 @@ def correct(
             work.total[j] += work.step[j]
         if not move(there, there, work.step, prices, needs_box, scratch):
             return False
-    _, worst = _gather_kinks(there, prices, work)
+    _, worst = _gather_kinks(there, prices, 0.0, work)
     return worst < 1e-6
 
 
 @kernel_noalloc
-def _gather_kinks(body: Body, prices: Prices, work: Steps) -> tuple[int, float]:
-    """Rows of the terms at a kink, in `work.across`, their residuals in `work.slopes`: number and largest."""
+def _gather_kinks(body: Body, prices: Prices, tied: float, work: Steps) -> tuple[int, float]:
+    """Rows of the terms at a kink, in `work.across`, their residuals in `work.slopes`: number and largest.
+
+    Of vertices that nearly tie those count, too, whose residual is above -`tied`.
+    """
     count, worst = 0, 0.0
     for r in range(N_FIXED):
         low, high = bounds_of(r, body, prices)
-        passed = r >= N_TERMS and high > 0.0 and body.residuals[r] > 0.0
+        passed = r >= N_TERMS and high > 0.0 and body.residuals[r] > (-tied if r >= FIRST_TIE else 0.0)
         if low < work.multipliers[r] < high or (passed and work.multipliers[r] < high):
             for j in range(work.across.shape[1]):
                 work.across[count, j] = body.rows[r, j]
@@ -580,8 +590,8 @@ def _add_row_changes(here: Body, there: Body, m: int, work: Steps) -> None:
     size = len(work.change)
     for r in range(m):
         factor, b = work.multipliers[r], r - N_FIXED + 1
-        if factor == 0.0:
-            continue
+        if factor == 0.0 or FIRST_TIE <= r < N_FIXED:
+            continue  # vertices that tie may be others by now
         if r < N_FIXED:
             for j in range(size):
                 work.change[j] += factor * (there.rows[r, j] - here.rows[r, j])

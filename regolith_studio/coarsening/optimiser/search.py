@@ -1,7 +1,7 @@
 """Starts of the descent, one after the other, and the best of what they lead to."""
 
 from collections.abc import Generator, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -56,15 +56,24 @@ TIE_BREAK_PRICE = 1e-2
 """Price of the overlap where it has none: shapes that only meet descriptors drift away from the particle."""
 FREE_STEPS, STEPS, FURTHER_STEPS, LAST_STEPS = 25, 60, 30, 120
 """On the overlap alone, on the whole loss, after half-spaces became cuts, and of the best at the end."""
+CONTINUATIONS = 3
+"""Descents that have not met all by then go on so often, with a new metric: most are still on the way."""
 GROWTH_STEPS = 25
 """After each stage of cuts on the way from few half-spaces to many."""
-FEW_FACETS = (
-    (0.15, (20, 12, 30, 50)),
-    (0.085, (20, 30, 50, 12)),
-    (0.055, (30, 20, 50, 12)),
-    (-np.inf, (50, 30, 20, 12)),
+FEW, MIDDLE = 12, 30
+"""Half-spaces to grow from: after a stage the second instead of the first."""
+FIRST_STARTS = (
+    (0.2, (("grouped", FEW), ("grouped", FEW), ("round", 0), ("grouped", 0))),
+    (0.12, (("grouped", FEW), ("round", 0), ("grouped", 0))),
+    (-np.inf, (("grouped", 0), ("round", 0))),
 )
-"""Half-spaces to grow from, best first, by how much more surface a particle has than its hull (logarithm)."""
+"""Kinds of starts and their half-spaces (0: as many as are asked for), by how much more surface a particle
+has than its hull (logarithm). Measured on 52 particles: where much surface is to be kept, starts with few
+half-spaces to grow from end near each other and others do not; elsewhere they are worse."""
+STAGES = (20, 50, 125, 312)
+"""Numbers of facets whose results larger numbers grow from, so that more facets are not worse."""
+DIRECT = 62
+"""Where more facets are asked for, no start has so many: growth leads to as much with less effort."""
 ALIKE, FACTOR = 1.25, 2.5
 """Where less than the first times as many are asked for, all begin at once; half-spaces after and before each
 stage of cuts."""
@@ -72,7 +81,7 @@ ROUNDS = 3
 """At most so many times half-spaces without a facet become cuts."""
 FREE_RADIUS, FIRST_RADIUS, FURTHER_RADIUS = 0.1, 0.2, 0.05
 """Longest moves at first; all but the first shrink with the square root of the number of facets."""
-CUT_COST = 4e-3
+CUT_COST = 2e-3
 """By how much the loss may rise for facets that are put back."""
 CUT_DEPTHS = (0.06, 0.02, 0.2)
 """Depths of cuts that only give half-spaces a facet, as shares of the way to the next corner; the later ones
@@ -80,10 +89,11 @@ where a single cut fails."""
 CUT_ROUNDS, CUT_STEPS, CUT_RADIUS = 24, 8, 0.05
 """Attempts to put facets back, steps of each, and their longest moves at first."""
 FURTHER_STARTS = 3
-"""Where all is kept, but a half-space bounds no facet."""
-ROUND_EVERY = 3
-"""Of further starts every third has the sides of the box, for particles that nearly fill it, and every third
-is evenly tiled, for those that are rounder than what others lead to."""
+"""Where all is kept, but a half-space bounds no facet or the best two differ by more than the next factor."""
+SPREAD = 1.03
+BOX_EVERY = 3
+"""Of starts beyond those of the effort every third has the sides of the box, for particles that nearly fill
+it."""
 CONFIRMED = 4
 """At most so many candidates are measured by the public descriptors."""
 SAME_LOSS = 1e-6
@@ -99,7 +109,7 @@ class SearchEffort:
     finalists: int
 
 
-EFFORTS = {"fast": SearchEffort(3, 1), "best": SearchEffort(10, 3)}
+EFFORTS = {"fast": SearchEffort(2, 1), "best": SearchEffort(10, 3)}
 
 
 @dataclass(frozen=True, eq=False)
@@ -203,20 +213,25 @@ class Search:
         self._target, self._keep, self._n_facets = target, keep, n_facets
         self._effort, self._fewer = effort, fewer
         self._rng = np.random.default_rng(seed)
+        self._weights, self._retries, self._seed = weights, retries, seed
         self._prices = prices_of(target, weights, keep)
         nothing = np.zeros(len(TERMS))
         self._free_prices = self._prices._replace(low=nothing, high=nothing)
         rays = target.rays
         self._rays = Rays(rays.directions, rays.first, rays.distance, rays.sign, rays.weight)
-        self._sizes = first_sizes(target, n_facets, "sphericity" in keep)
+        keeps = "sphericity" in keep
+        self._stage = stage_below(target, n_facets, keeps)
+        self._plan = first_starts(target, n_facets, keeps, self._stage)
+        self._needed = (0 if keeps else 1) if self._stage and n_facets > DIRECT else effort.starts
         self._triangles = hull_triangles(target)
         self._judge = LossFunction(target, weights, everything=True)
-        hopeless = "sphericity" in keep and sphericity_reason(target.descriptors["sphericity"], n_facets)
+        hopeless = keeps and sphericity_reason(target.descriptors["sphericity"], n_facets)
         self._most = effort.starts + (0 if hopeless else retries)
         self._memory: dict[int, Memory] = {}
         self._found: list[Candidate] = []
         self._history: list[float] = []
         self._free_distance = np.inf
+        self._before = 0
 
     def steps(self) -> Generator[MethodStep, None, MethodResult]:
         """A step for each better polyhedron, and the result; the first is the first start itself.
@@ -230,17 +245,19 @@ class Search:
         if own is not None:
             yield self._step(0, own.half_spaces)
             return self._result(own, own_reason(own.n_facets, self._n_facets), 0)
-        tried, few = 0, list[Candidate]()
-        for tried, (start, held) in enumerate(self._starts(), 1):
-            if tried == 1:
+        few = yield from self._of_fewer()
+        tried = 0
+        for start, held in self._starts():
+            if self._good_enough(tried, (*few, *self._found)):
+                break
+            tried += 1
+            if tried == 1 and not few:
                 yield self._step(0, start)
             found = self._from_start(start, held)
             if found is not None and len(found.half_spaces.offsets) == self._n_facets:
                 yield from self._record(tried, found)
             elif found is not None:
                 few.append(found)
-            if self._good_enough(tried, (*few, *self._found)):
-                break
         for found in sorted(few, key=lambda each: each.rank(0))[: self._effort.finalists]:
             yield from self._record(tried, self._grown(found))
         if self._fewer is not None:
@@ -248,7 +265,8 @@ class Search:
         if not self._found:
             raise GeometryError("No start of the exact method bounds a polyhedron.")
         for candidate in sorted(self._found, key=self._rank)[: self._effort.finalists]:
-            last = self._descended(candidate.half_spaces, LAST_STEPS, FURTHER_RADIUS) or candidate
+            steps = LAST_STEPS if self._n_facets <= DIRECT else FURTHER_STEPS
+            last = self._descended(candidate.half_spaces, steps, FURTHER_RADIUS) or candidate
             yield from self._record(tried, last)
             whole = self._with_facets(last)
             yield from self._record(tried, whole)
@@ -262,6 +280,19 @@ class Search:
         descriptors, free = self._target.descriptors, self._free_distance
         reason = reason_for(descriptors, achieved, self._keep, self._n_facets, solid.n_facets, free)
         return self._result(solid, reason, tried, achieved)
+
+    def _of_fewer(self) -> Generator[MethodStep, None, list[Candidate]]:
+        """What the same search finds for the next smaller of :data:`STAGES`, with its steps."""
+        if self._stage == 0:
+            return []
+        search = Search(
+            self._target, self._weights, self._keep, self._stage, self._effort, self._retries, self._seed
+        )
+        for step in search.steps():
+            yield replace(step, steps=step.steps + self._most)
+            self._before = step.step
+        self._free_distance, self._history = search._free_distance, search._history
+        return sorted(search._found, key=search._rank)[: self._effort.finalists]
 
     def _made_whole(self, tried: int, few: Sequence[Candidate]) -> Iterator[MethodStep]:
         """A step for a polyhedron with all facets, from any that keeps all, where the best have lost some."""
@@ -280,10 +311,11 @@ class Search:
                 return
 
     def _good_enough(self, tried: int, found: Sequence[Candidate]) -> bool:
-        """Whether all is kept, with all facets or after further starts for them."""
-        met = [each for each in found if each.met]
-        whole = any(each.n_facets == len(each.half_spaces.offsets) for each in met)
-        return bool(met) and tried >= self._effort.starts + (0 if whole else FURTHER_STARTS)
+        """Whether all is kept, with all facets, and by two starts about as well, or after further starts."""
+        met = sorted(each.merit for each in found if each.met)
+        whole = any(each.n_facets == len(each.half_spaces.offsets) for each in found if each.met)
+        alike = len(met) > 1 and met[1] <= SPREAD * met[0]
+        return bool(met) and tried >= self._needed + (0 if whole and alike else FURTHER_STARTS)
 
     def _starts(self) -> Iterator[tuple[HalfSpaces, int]]:
         """As many as the effort and the retries allow, some with few half-spaces to grow from.
@@ -291,14 +323,13 @@ class Search:
         With each comes how many of its half-spaces do not move.
         """
         for number in range(self._most):
-            further = number - self._effort.starts
-            size, rest = self._sizes[number % len(self._sizes)], further % ROUND_EVERY
+            kind, size = self._plan[number % len(self._plan)]
             boxed = None
-            if further >= 0 and rest == 0:
-                boxed = box_start(self._target, self._triangles, size, self._rng)
+            if number >= self._effort.starts and (number - self._effort.starts) % BOX_EVERY == 0:
+                boxed = box_start(self._target, self._triangles, self._n_facets, self._rng)
             if boxed is not None:
                 yield boxed, N_SIDES
-            elif further >= 0 and rest == ROUND_EVERY - 1:
+            elif kind == "round":
                 yield round_start(self._target, size, self._rng), 0
             else:
                 yield grouped_start(self._target, self._triangles, size, self._rng), 0
@@ -310,7 +341,12 @@ class Search:
         if sound:
             self._free_distance = min(self._free_distance, distance)
             start = HalfSpaces(planes[0], planes[1])
-        return self._settled(self._descended(start, STEPS, FIRST_RADIUS, held=held), held)
+        found = self._descended(start, STEPS, FIRST_RADIUS, held=held)
+        for _ in range(CONTINUATIONS):
+            if found is None or found.met:
+                break
+            found = self._descended(found.half_spaces, STEPS, FURTHER_RADIUS, held=held) or found
+        return self._settled(found, held)
 
     def _grown(self, few: Candidate) -> Candidate | None:
         """With further half-spaces in stages, as cuts across the corners that hang out farthest."""
@@ -428,7 +464,7 @@ class Search:
         value = self._judge.value(half_spaces.normals, half_spaces.offsets)
         if number > 0:
             self._history.append(value)
-        return MethodStep(number, self._most, value, half_spaces)
+        return MethodStep(self._before + number, self._before + self._most, value, half_spaces)
 
     def _rank(self, candidate: Candidate) -> tuple[bool, bool, float]:
         return candidate.rank(self._n_facets)
@@ -471,20 +507,28 @@ class Search:
         )
 
 
-def first_sizes(target: Target, n_facets: int, keeps_sphericity: bool) -> tuple[int, ...]:
-    """Half-spaces of the starts, one after the other; `n_facets` is among them.
+def stage_below(target: Target, n_facets: int, keeps_sphericity: bool) -> int:
+    """The largest of :data:`STAGES` that a search for `n_facets` begins with; 0 where none could be met."""
+    wanted = target.descriptors["sphericity"] if keeps_sphericity else 0.0
+    stages = [size for size in STAGES if ALIKE * size < n_facets and max_sphericity(size) > wanted]
+    return max(stages, default=0)
+
+
+def first_starts(
+    target: Target, n_facets: int, keeps_sphericity: bool, stage: int
+) -> tuple[tuple[str, int], ...]:
+    """Kinds of starts and their half-spaces, one after the other, to be repeated.
 
     A particle has more surface than its convex hull as a rule. A convex polyhedron that is to have as much
     must be edgy, which few facets are by themselves; begun with many, facets are lost on the way to it.
     Numbers whose Goldberg bound is below the particle's sphericity are left out.
     """
     surplus = more_surface_than_hull(target) if keeps_sphericity else -np.inf
-    few = next(sizes for least, sizes in FEW_FACETS if surplus >= least)
     wanted = target.descriptors["sphericity"] if keeps_sphericity else 0.0
-    sizes = [size if ALIKE * size < n_facets else n_facets for size in few if max_sphericity(size) > wanted]
-    if not keeps_sphericity:
-        sizes.insert(0, n_facets)
-    return tuple(dict.fromkeys([*sizes, n_facets]))
+    few = MIDDLE if stage else FEW
+    usable = ALIKE * few < n_facets and max_sphericity(few) > wanted
+    plan = next(plan for least, plan in FIRST_STARTS if surplus >= least)
+    return tuple((kind, few if size and usable else n_facets) for kind, size in plan)
 
 
 def more_surface_than_hull(target: Target) -> float:
