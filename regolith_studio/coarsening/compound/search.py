@@ -62,9 +62,16 @@ class CompoundCandidate(NamedTuple):
         return self.point.worst <= LOOSE
 
 
+def asked_terms(weights: LossWeights) -> tuple[str, ...]:
+    """Descriptors that a compound keeps: those that are named, else all with a weight above 0."""
+    if weights.keep is not None:
+        return tuple(key for key in KEYS if key in weights.keep)
+    return tuple(key for key in KEYS if weights[key] > 0)
+
+
 def conditions_of(weights: LossWeights) -> IntArray:
-    """Indices of :data:`KEYS` whose weights are above 0; the aspect ratio follows from both diameters."""
-    asked = [index for index, key in enumerate(KEYS) if weights[key] > 0]
+    """Indices of :data:`KEYS` that are asked for; the aspect ratio follows from both diameters."""
+    asked = [KEYS.index(key) for key in asked_terms(weights)]
     if {2, 3} <= set(asked) and 4 in asked:
         asked.remove(4)
     return np.array(asked, dtype=np.int64)

@@ -7,7 +7,14 @@ from functools import partial
 import numpy as np
 
 from regolith_studio.coarsening.compound.conditions import KEYS
-from regolith_studio.coarsening.compound.search import CompoundCandidate, Effort, compound_of, search_compound
+from regolith_studio.coarsening.compound.line_overlap import compound_distance
+from regolith_studio.coarsening.compound.search import (
+    CompoundCandidate,
+    Effort,
+    asked_terms,
+    compound_of,
+    search_compound,
+)
 from regolith_studio.coarsening.compound.start import MIN_FACETS
 from regolith_studio.coarsening.loss import loss
 from regolith_studio.coarsening.optimiser.search import EFFORTS as CONVEX_EFFORTS
@@ -20,6 +27,7 @@ from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.descriptors.comparison import relative_errors
 from regolith_studio.descriptors.describe import Descriptors, describe
 from regolith_studio.errors import InputError
+from regolith_studio.geometry.convex_compound import ConvexCompound
 from regolith_studio.geometry.half_spaces import HalfSpaces
 from regolith_studio.messages import N_, Message, join_messages
 from regolith_studio.settings import is_whole
@@ -75,11 +83,11 @@ class CompoundSettings:
 class CompoundMethod:
     """Constrained optimisation of the planes of several convex parts.
 
-    Weights above 0 make conditions on the union: volume, sphericity, shortest and longest edge of its exact
-    minimum-volume box, aspect ratio, convex hull volume. On the surface where all hold, the Jaccard distance
-    goes down. There are at most `parts` parts with 5 facets or more each, which overlap or touch. A convex
-    particle needs no parts, and fewer than 10 facets do not suffice for two: then the result is the
-    polyhedron of the exact method.
+    Terms that are to be kept, or else weights above 0, make conditions on the union: volume, sphericity,
+    shortest and longest edge of its exact minimum-volume box, aspect ratio, convex hull volume. On the
+    surface where all hold, the Jaccard distance goes down. There are at most `parts` parts with 5 facets or
+    more each, which overlap or touch. The result is the polyhedron of the exact method where that is better,
+    or the particle is convex, or there are fewer than 10 facets, which do not suffice for two parts.
     """
 
     key = "compound"
@@ -98,14 +106,40 @@ class CompoundMethod:
     ) -> Generator[MethodStep, None, MethodResult]:
         """A step for each start and each better compound of the last descents."""
         parts = min(settings.parts, n_facets // MIN_FACETS)
+        convex = CONVEX_EFFORTS[settings.level]
+        search = Search(target, weights, weights.kept, n_facets, convex, RETRIES, seed)
         if target.solidity > 1.0 - CONVEX or parts < PARTS_LIMITS[0]:
-            convex = CONVEX_EFFORTS[settings.level]
-            search = Search(target, weights, weights.kept, n_facets, convex, RETRIES, seed)
             result = yield from search.steps()
             return replace(result, makes_compounds=True, reason=_reason_of_one(target, weights, result))
         effort, touching = EFFORTS[settings.level], settings.joint == "touch"
         run = search_compound(target, weights, parts, n_facets, effort, seed, touching)
-        return (yield from _compound(target, n_facets, weights, parts, effort, run))
+        result = yield from _compound(target, n_facets, weights, parts, effort, run)
+        one = _last(search.steps())
+        if _rank(target, weights, one) < _rank(target, weights, result):
+            missing = one.achieved and _reason(target, weights, one.achieved, parts, n_facets)
+            return replace(one, makes_compounds=True, reason=missing or one.reason)
+        return result
+
+
+def _last(run: Generator[MethodStep, None, MethodResult]) -> MethodResult:
+    while True:
+        try:
+            next(run)
+        except StopIteration as end:
+            result: MethodResult = end.value
+            return result
+
+
+def _rank(target: Target, weights: LossWeights, result: MethodResult) -> tuple[bool, float]:
+    """Sorting key, the best first: whether all that is asked for is met, then Eq. 9."""
+    solid, achieved = result.solid, result.achieved
+    assert achieved is not None, "both searches measure what they return"
+    if isinstance(solid, ConvexCompound):
+        overlap = compound_distance(target.mesh, solid)
+    else:
+        overlap = target.jaccard_distance(solid)
+    errors = relative_errors(target.descriptors, achieved)
+    return bool(_missed(target, weights, achieved)), loss(weights, errors, overlap)
 
 
 def _compound(
@@ -183,7 +217,7 @@ def _reason_of_one(target: Target, weights: LossWeights, result: MethodResult) -
 
 def _missed(target: Target, weights: LossWeights, achieved: Descriptors) -> str:
     """The weighted descriptors that are missed and by how much, the largest error first; may be empty."""
-    missed = missed_terms(target.descriptors, achieved, [key for key in KEYS if weights[key] > 0])
+    missed = missed_terms(target.descriptors, achieved, asked_terms(weights))
     return named_errors(missed) if missed else ""
 
 

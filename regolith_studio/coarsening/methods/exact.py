@@ -22,7 +22,8 @@ class ExactSettings:
     Parameters
     ----------
     level
-        ``fast`` (two starts) or ``best`` (these and six more, the best continued: better overlap).
+        ``fast`` (two starts, up to three more where these differ) or ``best`` (ten, the best three of which
+        are continued: better overlap).
     retries
         Further starts where none keeps what is to be kept.
 

@@ -117,6 +117,22 @@ def test_that_a_weight_of_zero_frees_a_descriptor(mesh: Mesh) -> None:
     assert found.errors["sphericity"] > 1e-6
 
 
+def test_that_only_the_terms_named_are_kept_exactly(mesh: Mesh) -> None:
+    weights = LossWeights.from_preset("all").keeping(["volume", "convex_hull_volume"])
+    found = coarsen(mesh, 16, "compound", weights, settings={"parts": 2})
+    assert found.reason is None
+    assert max(found.errors["volume"], found.errors["convex_hull_volume"]) <= 1e-6
+    assert found.errors["sphericity"] > 1e-6
+
+
+def test_that_a_compound_is_not_worse_than_one_convex_body(mesh: Mesh) -> None:
+    weights = LossWeights.of(jaccard_distance=1.0, volume=1.0)
+    one = coarsen(mesh, 12, "exact", weights)
+    union = coarsen(mesh, 12, "compound", weights, settings={"parts": 2})
+    assert union.reason is None
+    assert union.jaccard_distance <= one.jaccard_distance + 1e-9
+
+
 def test_that_a_convex_particle_gets_the_polyhedron_of_the_exact_method() -> None:
     brick = cuboid(3.0, 2.0, 1.0)
     found, exact = coarsen(brick, 12, "compound"), coarsen(brick, 12, "exact")
@@ -127,7 +143,14 @@ def test_that_a_convex_particle_gets_the_polyhedron_of_the_exact_method() -> Non
 
 def test_that_too_few_facets_for_two_parts_make_one(mesh: Mesh) -> None:
     assert coarsen(mesh, 8, "compound").n_parts == 1
-    assert coarsen(mesh, 10, "compound").n_parts == 2
+    assert coarsen(mesh, 16, "compound").n_parts == 2
+
+
+def test_that_one_body_takes_the_place_of_two_poor_parts_and_says_what_it_misses(mesh: Mesh) -> None:
+    found = coarsen(mesh, 10, "compound")
+    assert found.n_parts == 1
+    assert "No compound of 2 parts with 10 facets" in str(found.reason)
+    assert "convex hull volume" in str(found.reason)
 
 
 def test_that_parts_neither_overlap_nor_touch_is_one_sentence(mesh: Mesh) -> None:
