@@ -60,6 +60,8 @@ CONTINUATIONS = 3
 """Descents that have not met all by then go on so often, with a new metric: most are still on the way."""
 GROWTH_STEPS = 25
 """After each stage of cuts on the way from few half-spaces to many."""
+ROUND_STARTS = ("round", "round", "grouped")
+"""For particles that are rounder than the number of facets can be (Goldberg)."""
 FEW, MIDDLE = 12, 30
 """Half-spaces to grow from: after a stage the second instead of the first."""
 FIRST_STARTS = (
@@ -225,8 +227,10 @@ class Search:
         self._needed = (0 if keeps else 1) if self._stage and n_facets > DIRECT else effort.starts
         self._triangles = hull_triangles(target)
         self._judge = LossFunction(target, weights, everything=True)
-        hopeless = keeps and sphericity_reason(target.descriptors["sphericity"], n_facets)
-        self._most = effort.starts + (0 if hopeless else retries)
+        if keeps and sphericity_reason(target.descriptors["sphericity"], n_facets):
+            self._plan = tuple((kind, n_facets) for kind in ROUND_STARTS)
+            retries = min(retries, FURTHER_STARTS)
+        self._most = effort.starts + retries
         self._memory: dict[int, Memory] = {}
         self._found: list[Candidate] = []
         self._history: list[float] = []
@@ -245,13 +249,14 @@ class Search:
         if own is not None:
             yield self._step(0, own.half_spaces)
             return self._result(own, own_reason(own.n_facets, self._n_facets), 0)
+        yield from self._of_less_effort()
         few = yield from self._of_fewer()
         tried = 0
         for start, held in self._starts():
             if self._good_enough(tried, (*few, *self._found)):
                 break
             tried += 1
-            if tried == 1 and not few:
+            if tried == 1 and not few and not self._found:
                 yield self._step(0, start)
             found = self._from_start(start, held)
             if found is not None and len(found.half_spaces.offsets) == self._n_facets:
@@ -285,14 +290,27 @@ class Search:
         """What the same search finds for the next smaller of :data:`STAGES`, with its steps."""
         if self._stage == 0:
             return []
-        search = Search(
-            self._target, self._weights, self._keep, self._stage, self._effort, self._retries, self._seed
-        )
+        found = yield from self._of_another(self._stage, self._effort)
+        return found[: self._effort.finalists]
+
+    def _of_less_effort(self) -> Iterator[MethodStep]:
+        """What the least effort finds is among the candidates of more, with its steps."""
+        least = EFFORTS["fast"]
+        if self._effort != least:
+            found = yield from self._of_another(self._n_facets, least)
+            self._found += found[:1]
+
+    def _of_another(
+        self, n_facets: int, effort: SearchEffort
+    ) -> Generator[MethodStep, None, list[Candidate]]:
+        """Candidates of another search with the same seed, the best first, with its steps."""
+        target, before = self._target, self._before
+        search = Search(target, self._weights, self._keep, n_facets, effort, self._retries, self._seed)
         for step in search.steps():
-            yield replace(step, steps=step.steps + self._most)
-            self._before = step.step
-        self._free_distance, self._history = search._free_distance, search._history
-        return sorted(search._found, key=search._rank)[: self._effort.finalists]
+            self._before = before + step.step
+            yield replace(step, step=self._before, steps=before + step.steps + self._most)
+        self._free_distance = min(self._free_distance, search._free_distance)
+        return sorted(search._found, key=search._rank)
 
     def _made_whole(self, tried: int, few: Sequence[Candidate]) -> Iterator[MethodStep]:
         """A step for a polyhedron with all facets, from any that keeps all, where the best have lost some."""
@@ -463,6 +481,9 @@ class Search:
     def _step(self, number: int, half_spaces: HalfSpaces) -> MethodStep:
         value = self._judge.value(half_spaces.normals, half_spaces.offsets)
         if number > 0:
+            # less of Eq. 9 that misses more of what is to be kept was no step towards this
+            while self._history and self._history[-1] < value:
+                self._history.pop()
             self._history.append(value)
         return MethodStep(self._before + number, self._before + self._most, value, half_spaces)
 
