@@ -309,6 +309,7 @@ class Search:
         for step in search.steps():
             self._before = before + step.step
             yield replace(step, step=self._before, steps=before + step.steps + self._most)
+        self._history = self._history or search._history
         self._free_distance = min(self._free_distance, search._free_distance)
         return sorted(search._found, key=search._rank)
 
