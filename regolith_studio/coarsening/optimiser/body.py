@@ -5,7 +5,7 @@ derivatives of all are with the coordinates (shift and two tilts) of every plane
 kink where two edges of the box are equal; four further rows say what the middle edge must not pass there.
 D_min and D_max have another where two vertices are equally far out at one end; four rows more say how far out
 the second of them may be.
-Nothing here calls a library for more than a square root, so that every processor finds the same bits.
+Nothing here calls BLAS or LAPACK, so that every processor finds the same.
 """
 
 from typing import NamedTuple
@@ -21,6 +21,7 @@ from regolith_studio.coarsening.core.box_contacts import (
     walk_to_minimum,
 )
 from regolith_studio.coarsening.core.box_gradient import extent_forces
+from regolith_studio.coarsening.core.box_search import likeness_of
 from regolith_studio.coarsening.core.intersection import FINE, IntersectionWorkspace, workspace_for
 from regolith_studio.coarsening.core.plane_coordinates import fill_gradient, fill_tilt_scales
 from regolith_studio.coarsening.core.polyhedron_measures import (
@@ -442,15 +443,3 @@ def is_same_box(body: Body, one: int, two: int) -> bool:
     """Whether two boxes have the same volume and axes."""
     same = abs(box_volume(body, one) - box_volume(body, two)) < SAME_VOLUME * box_volume(body, one)
     return same and likeness_of(body.frames[one], body.frames[two]) > SAME_FRAME
-
-
-@kernel_noalloc
-def likeness_of(one: FloatArray, two: FloatArray) -> float:
-    """Cosine of the largest angle between the axes of two frames (3, 3), in any order and direction."""
-    least = 1.0
-    for a in range(3):
-        most = 0.0
-        for b in range(3):
-            most = max(most, abs(one[a, 0] * two[b, 0] + one[a, 1] * two[b, 1] + one[a, 2] * two[b, 2]))
-        least = min(least, most)
-    return float(least)

@@ -68,7 +68,7 @@ NEAR_KINK = -0.1
 TIED = 1e-3
 """Where corrections lead nowhere, vertices that tie up to this residual are corrected together."""
 N_ROWS = N_FIXED + MAX_BOXES
-STEPS, CHECKS, EVALUATIONS = 0, 1, 2
+STEPS, CHECKS = 0, 1
 
 
 class Rays(NamedTuple):
@@ -160,7 +160,7 @@ def memory_for(n: int, n_rays: int) -> Memory:
         np.empty(n_rays, np.int64),
         np.empty((n, 4)),
     )
-    return Memory(empty_body(n), empty_body(n), body_scratch(n), box_memory(n), steps, np.zeros(3, np.int64))
+    return Memory(empty_body(n), empty_body(n), body_scratch(n), box_memory(n), steps, np.zeros(2, np.int64))
 
 
 @kernel
