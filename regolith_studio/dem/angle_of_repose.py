@@ -9,13 +9,8 @@ from numpy.typing import ArrayLike
 from scipy.stats import t as student_t
 
 from regolith_studio.dem.evaluation.profile import Profile, base_level, project, surface_profile
-from regolith_studio.dem.evaluation.section import Section, evaluate_section
-from regolith_studio.dem.evaluation.settings import (
-    HEAP_SHARE,
-    MAX_CURVATURE,
-    EvaluationSettings,
-    NotAPileError,
-)
+from regolith_studio.dem.evaluation.section import NotAPileError, Section, evaluate_section
+from regolith_studio.dem.evaluation.settings import HEAP_SHARE, MAX_CURVATURE, EvaluationSettings
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.messages import N_, Message, Number
@@ -24,21 +19,15 @@ RELIABLE_N = 1000
 """Number of particles above which the bias of the evaluation is below half a degree."""
 COARSE_PILE = Message(
     N_(
-        "With fewer than {count} particles the cut at the toe changes the angle by some degrees; "
-        "the interval contains that."
+        "Fewer than {count} particles: the cut at the toe changes the angle by some degrees, included in the "
+        "interval."
     ),
     count=Number(RELIABLE_N, ","),
 )
 """Said of smaller piles, before a run and with the angle."""
 LEFT_OUT = N_("Left out: {reason}")
-DOME = N_(
-    "The heap is a dome: its flanks are steeper at the foot than at the top by {share} % of their slope, "
-    "so that it has no single angle."
-)
-HOLLOW = N_(
-    "The heap is hollow: its flanks are flatter at the foot than at the top by {share} % of their slope, "
-    "so that it has no single angle."
-)
+CONVEX = N_("Convex flanks: {top} degrees at the top, {toe} degrees at the toe; no single angle.")
+CONCAVE = N_("Concave flanks: {top} degrees at the top, {toe} degrees at the toe; no single angle.")
 ROUGH_SHARE = 0.3
 """Part of the scatter of a flank about its line by which a rough surface seems to rise from tip to toe, where
 the silhouette is the highest of more grains. Measured: 0.28, on noisy cones of 5,000 balls."""
@@ -144,21 +133,15 @@ def measure_repose(
     mean_diameter = float(sizes.mean())
     level = base_level(where, sizes) if base is None else base
     surfaces, left_out = _surfaces(where, sizes, level, mean_diameter, settings)
-    fitted, refused = _sections(surfaces, mean_diameter, settings)
-    _check_straightness(fitted)
-    sections = [each for each in fitted if each.has_tip]
+    fitted: list[Section] = []
+    try:
+        fitted, refused = _sections(surfaces, mean_diameter, settings)
+        _check_straightness(fitted)
+        sections, paper = _two_flanked(fitted, settings)
+    except NotAPileError as refusal:
+        refusal.base, refusal.profiles, refusal.sections = level, surfaces, tuple(fitted)
+        raise
     refused += [_without_tip(each) for each in fitted if not each.has_tip]
-    if len(sections) < settings.azimuths / 2:
-        raise NotAPileError(
-            Message(
-                N_("Only {count} of {total} sections through the heap have two straight flanks."),
-                count=len(sections),
-                total=settings.azimuths,
-            )
-        )
-    paper = [each for each in sections if each.azimuth in PAPER_AZIMUTHS]
-    if not paper:
-        raise NotAPileError(Message(N_("Neither the x-z nor the y-z section has two straight flanks.")))
     warnings = [*left_out, *refused]
     if len(where) < RELIABLE_N:
         warnings.append(COARSE_PILE)
@@ -278,18 +261,42 @@ def _sections(
     return sections, left_out
 
 
+def _two_flanked(
+    fitted: Sequence[Section], settings: EvaluationSettings
+) -> tuple[list[Section], list[Section]]:
+    """The sections with two flanks, and those of the paper among them."""
+    sections = [each for each in fitted if each.has_tip]
+    if len(sections) < settings.azimuths / 2:
+        raise NotAPileError(
+            Message(
+                N_("Only {count} of {total} sections through the heap have two straight flanks."),
+                count=len(sections),
+                total=settings.azimuths,
+            )
+        )
+    paper = [each for each in sections if each.azimuth in PAPER_AZIMUTHS]
+    if not paper:
+        raise NotAPileError(Message(N_("Neither the x-z nor the y-z section has two straight flanks.")))
+    return sections, paper
+
+
 def _without_tip(section: Section) -> str:
     return Message(LEFT_OUT, reason=Message(NO_TIP, azimuth=Number(section.azimuth, "g")))
 
 
 def _check_straightness(sections: Sequence[Section]) -> None:
-    """Refuse domes and heaps with hollow flanks, where their curvature is certain."""
+    """Refuse convex and concave flanks, where their curvature is certain."""
     if not sections:
         return
     curvatures = [each for section in sections for each in section.curvature]
     mean = float(np.mean(curvatures))
     if abs(mean) > max(MAX_CURVATURE, standard_interval(curvatures, 0.99)):
-        raise NotAPileError(Message(DOME if mean > 0.0 else HOLLOW, share=Number(100 * abs(mean), ".0f")))
+        top, toe = np.mean([section.end_angles for section in sections], axis=0)
+        sentence = CONVEX if mean > 0.0 else CONCAVE
+        raise NotAPileError(
+            Message(sentence, top=Number(float(top), ".0f"), toe=Number(float(toe), ".0f")),
+            "convex" if mean > 0.0 else "concave",
+        )
 
 
 def _cut_shift(

@@ -1236,6 +1236,10 @@
         <translation>Für dieses Partikel berechnen</translation>
     </message>
     <message>
+        <source>Concave flanks: {top} degrees at the top, {toe} degrees at the toe; no single angle.</source>
+        <translation>Konkave Flanken: {top} Grad oben, {toe} Grad am Fuß; kein einheitlicher Winkel.</translation>
+    </message>
+    <message>
         <source>Confidence</source>
         <translation>Vertrauensbereich</translation>
     </message>
@@ -1286,6 +1290,10 @@
     <message>
         <source>Convention of coefficients</source>
         <translation>Konvention der Koeffizienten</translation>
+    </message>
+    <message>
+        <source>Convex flanks: {top} degrees at the top, {toe} degrees at the toe; no single angle.</source>
+        <translation>Konvexe Flanken: {top} Grad oben, {toe} Grad am Fuß; kein einheitlicher Winkel.</translation>
     </message>
     <message>
         <source>Convex hull instead of volume</source>
@@ -1982,6 +1990,10 @@
     <message>
         <source>Fewer facets make the simulation faster. The title of the view states the numbers of facets, vertices and triangles; a note appears here if a request cannot be met.</source>
         <translation>Weniger Facetten machen die Simulation schneller. Der Titel der Ansicht nennt die Anzahl der Facetten, Ecken und Dreiecke; hier erscheint ein Hinweis, wenn eine Anforderung nicht erfüllbar ist.</translation>
+    </message>
+    <message>
+        <source>Fewer than {count} particles: the cut at the toe changes the angle by some degrees, included in the interval.</source>
+        <translation>Weniger als {count} Partikel: Der Schnitt am Fuß ändert den Winkel um einige Grad; das Intervall enthält das.</translation>
     </message>
     <message>
         <source>Field drawn to its hull</source>
@@ -5752,14 +5764,6 @@
         <translation>Die Grauwerte um ein Korn geben sein Volumen genauer an als seine Maske, auch in unscharfen Scans.</translation>
     </message>
     <message>
-        <source>The heap is a dome: its flanks are steeper at the foot than at the top by {share} % of their slope, so that it has no single angle.</source>
-        <translation>Die Schüttung ist eine Kuppel: Ihre Flanken sind am Fuß um {share} % ihrer Neigung steiler als oben, sodass sie keinen einzelnen Winkel hat.</translation>
-    </message>
-    <message>
-        <source>The heap is hollow: its flanks are flatter at the foot than at the top by {share} % of their slope, so that it has no single angle.</source>
-        <translation>Die Schüttung ist hohl: Ihre Flanken sind am Fuß um {share} % ihrer Neigung flacher als oben, sodass sie keinen einzelnen Winkel hat.</translation>
-    </message>
-    <message>
         <source>The heap is {angle} degrees steep: the column still stands and has not become a pile.</source>
         <translation>Die Schüttung ist {angle} Grad steil: Die Säule steht noch und ist nicht zum Schüttkegel geworden.</translation>
     </message>
@@ -6500,10 +6504,6 @@
         <translation>Wischen</translation>
     </message>
     <message>
-        <source>With fewer than {count} particles the cut at the toe changes the angle by some degrees; the interval contains that.</source>
-        <translation>Mit weniger als {count} Partikeln verändert die Grenze am Fuß den Winkel um einige Grad; der Bereich enthält das.</translation>
-    </message>
-    <message>
         <source>With the overlap alone the Jaccard distance would be {free}.</source>
         <translation>Mit der Überdeckung allein wäre die Jaccard-Distanz {free}.</translation>
     </message>
@@ -6824,6 +6824,10 @@
         <translation>mit anderen Einstellungen berechnet</translation>
     </message>
     <message>
+        <source>concave</source>
+        <translation>konkav</translation>
+    </message>
+    <message>
         <source>contact parameters</source>
         <translation>Kontaktparameter</translation>
     </message>
@@ -6838,6 +6842,10 @@
     <message>
         <source>continuous size distributions: at most 16 sizes per shape</source>
         <translation>stetige Größenverteilungen: höchstens 16 Größen je Form</translation>
+    </message>
+    <message>
+        <source>convex</source>
+        <translation>konvex</translation>
     </message>
     <message>
         <source>convex hull volume</source>

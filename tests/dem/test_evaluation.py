@@ -16,7 +16,8 @@ from regolith_studio.dem.angle_of_repose import (
     standard_interval,
 )
 from regolith_studio.dem.evaluation.profile import Discs, Profile, base_level, connected_tops, project
-from regolith_studio.dem.evaluation.settings import EvaluationSettings, NotAPileError
+from regolith_studio.dem.evaluation.section import NotAPileError
+from regolith_studio.dem.evaluation.settings import EvaluationSettings
 from regolith_studio.dem.evaluation.slope_fit import Line, fit_asymmetric, fit_symmetric
 from regolith_studio.errors import InputError
 from regolith_studio.studies.figures.repose import framed
@@ -219,12 +220,30 @@ def test_that_a_tip_rounded_within_a_fifth_of_the_base_does_not_count() -> None:
 
 @pytest.mark.parametrize(
     ("curve", "height", "word"),
-    [("dome", 0.45, "dome"), ("dome", 0.7, "dome"), ("exponential", 1.0, "hollow")],
+    [("dome", 0.45, "convex"), ("dome", 0.7, "convex"), ("exponential", 1.0, "concave")],
 )
 def test_that_domes_and_exponential_heaps_are_refused(curve: str, height: float, word: str) -> None:
-    with pytest.raises(NotAPileError, match=word) as refusal:
+    with pytest.raises(NotAPileError, match=word.capitalize()) as refusal:
         measure_repose(*surface_of_revolution(1500, 3, 10 * height, 10.0, curve))
-    assert refusal.value.status == "no flanks"
+    assert refusal.value.status == word
+
+
+def test_that_a_refused_heap_keeps_its_profiles_and_both_angles_of_its_flanks() -> None:
+    with pytest.raises(NotAPileError) as refusal:
+        measure_repose(*surface_of_revolution(1500, 3, 10.0, 10.0, "exponential"))
+    heap = refusal.value
+    assert len(heap.profiles) == len(heap.sections) == 12
+    top, toe = np.mean([each.end_angles for each in heap.sections], axis=0)
+    assert top > np.mean([each.flanks for each in heap.sections]) > toe
+    assert f"{top:.0f} degrees at the top, {toe:.0f} degrees at the toe" in heap.sentence
+    assert heap.section_at(90.0) is heap.sections[1]
+    layer = _refused(np.column_stack([np.mgrid[-15:15, -15:15].reshape(2, -1).T, np.full(900, 0.5)]))
+    assert (len(layer.profiles), layer.sections) == (12, ())
+
+
+def test_that_a_straight_flank_has_one_angle_from_top_to_toe() -> None:
+    top, toe = np.mean([each.end_angles for each in measure_repose(cone(30, 4000, 1), 1.0).sections], axis=0)
+    assert (top, toe) == (pytest.approx(30.0, abs=4.0), pytest.approx(30.0, abs=4.0))
 
 
 def test_that_the_document_names_both_planes_and_every_choice() -> None:

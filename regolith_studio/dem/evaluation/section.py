@@ -1,6 +1,8 @@
 """Both triangle models in one vertical section."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
@@ -9,7 +11,6 @@ from regolith_studio.dem.evaluation.settings import (
     MAX_ANGLE,
     MIN_R_SQUARED,
     EvaluationSettings,
-    NotAPileError,
 )
 from regolith_studio.dem.evaluation.slope_fit import (
     AsymmetricFit,
@@ -19,6 +20,7 @@ from regolith_studio.dem.evaluation.slope_fit import (
     flank_curvature,
     silhouette_deficit,
 )
+from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import BoolArray, FloatArray
 from regolith_studio.messages import N_, Message, Number
 
@@ -65,6 +67,15 @@ class Section:
         return self.asymmetric.left.angle, self.asymmetric.right.angle
 
     @property
+    def end_angles(self) -> tuple[float, float]:
+        """Angles at the top and at the toe in degrees, of parabolas through the flanks, as a mean of both."""
+        lines = (self.asymmetric.left, self.asymmetric.right)
+        slopes = [(abs(line.slope), each / 2) for line, each in zip(lines, self.curvature, strict=True)]
+        top = np.mean([np.arctan(slope * (1.0 - half)) for slope, half in slopes])
+        toe = np.mean([np.arctan(slope * (1.0 + half)) for slope, half in slopes])
+        return float(np.degrees(top)), float(np.degrees(toe))
+
+    @property
     def has_tip(self) -> bool:
         """Whether the lines meet above the upper cut, within the heap, and between the points of both flanks.
 
@@ -78,6 +89,43 @@ class Section:
         between = u[on_left].max() - step <= place <= u[~on_left].min() + step
         within = profile.u[profile.first] < place < profile.u[profile.last]
         return bool(height > self.high and within and between)
+
+
+Status = Literal[
+    "pile", "too few particles", "layer", "column stands", "no flanks", "concave", "convex", "scattered"
+]
+"""Classification of particles at rest."""
+
+
+class NotAPileError(InputError):
+    """The particles form no pile whose angle could be measured.
+
+    Parameters
+    ----------
+    sentence
+        Reason, for the user.
+    status
+        Reason, for programs and tables.
+
+    Attributes
+    ----------
+    base
+        Level of the plate.
+    profiles, sections
+        The surface at each azimuth, and what could be fitted: as far as the evaluation came.
+    """
+
+    def __init__(self, sentence: str, status: Status = "no flanks") -> None:
+        super().__init__(sentence)
+        self.sentence = sentence
+        self.status: Status = status
+        self.base = 0.0
+        self.profiles: Mapping[float, Profile] = {}
+        self.sections: tuple[Section, ...] = ()
+
+    def section_at(self, azimuth: float) -> Section | None:
+        """The section at an azimuth in degrees, or ``None`` if nothing was fitted there."""
+        return next((each for each in self.sections if each.azimuth == azimuth), None)
 
 
 def evaluate_section(

@@ -1,7 +1,6 @@
-"""Parameters and limits of the evaluation, and the error raised for particles that form no pile."""
+"""Parameters and limits of the evaluation."""
 
 from dataclasses import dataclass, field
-from typing import Literal
 
 from regolith_studio.dataset.parameters import check_limits
 from regolith_studio.errors import InputError
@@ -100,9 +99,6 @@ class EvaluationSettings:
             )
 
 
-Status = Literal["pile", "too few particles", "layer", "column stands", "no flanks", "scattered"]
-"""Classification of particles at rest."""
-
 MAX_ANGLE = 60.0
 """Maximum angle in degrees; a steeper heap is a column that has not collapsed."""
 MIN_R_SQUARED = 0.7
@@ -112,20 +108,3 @@ MAX_CURVATURE = 0.5
 domes, -0.7 to -1.1 on exponential heaps, 0.3 at most on cones of 1,000 balls."""
 HEAP_SHARE = 0.6
 """Minimum share of the particles that must lie in the heap."""
-
-
-class NotAPileError(InputError):
-    """The particles form no pile whose angle could be measured.
-
-    Parameters
-    ----------
-    sentence
-        Reason, for the user.
-    status
-        Reason, for programs and tables.
-    """
-
-    def __init__(self, sentence: str, status: Status = "no flanks") -> None:
-        super().__init__(sentence)
-        self.sentence = sentence
-        self.status: Status = status

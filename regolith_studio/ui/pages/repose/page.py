@@ -12,7 +12,7 @@ from regolith_studio.dataset.parameters import LiftingCylinderTest
 from regolith_studio.dem.angle_of_repose import PAPER_AZIMUTHS, ReposeMeasurement
 from regolith_studio.dem.case import PreparedCase
 from regolith_studio.dem.engines import engine_named
-from regolith_studio.dem.evaluation.settings import NotAPileError
+from regolith_studio.dem.evaluation.section import NotAPileError
 from regolith_studio.dem.run_io import (
     FINAL,
     RunSummary,

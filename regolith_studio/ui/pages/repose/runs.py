@@ -37,7 +37,8 @@ AGAINST: Mapping[str, tuple[str, ...]] = {
 SHAPES = (N_("polyhedra"), N_("spheres"))
 STATES = (
     *(N_("finished"), N_("stopped"), N_("failed")),
-    *(N_("too few particles"), N_("layer"), N_("column stands"), N_("no flanks"), N_("scattered")),
+    *(N_("too few particles"), N_("layer"), N_("column stands"), N_("no flanks")),
+    *(N_("concave"), N_("convex"), N_("scattered")),
 )
 """States of a run, and why a heap has no angle."""
 HEADINGS = (
