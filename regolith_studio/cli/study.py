@@ -162,7 +162,7 @@ class RunOptions:
             Makes the steps; takes the number of `workers` and the checkpoint of `answers`.
         """
         from regolith_studio.io.atomic import JOURNAL, staged_folder
-        from regolith_studio.jobs.study_checkpoint import StudyCheckpoint
+        from regolith_studio.jobs.study_jobs import StudyCheckpoint
         from regolith_studio.session.outputs.studies import STUDIES
 
         with StudyCheckpoint(folder / JOURNAL / f"{kind}.sqlite", self.resume) as answers:

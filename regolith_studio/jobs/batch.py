@@ -7,9 +7,17 @@ from typing import Any
 
 from regolith_studio.errors import JobCancelled, MissingRequirement
 from regolith_studio.io.checkpoint import Checkpoint, CheckpointRecord
-from regolith_studio.jobs.events import Failed, Finished, Job, JobResult, Progress, Step, Stopped
+from regolith_studio.jobs.events import (
+    Failed,
+    Finished,
+    Job,
+    JobResult,
+    Progress,
+    ProgressRate,
+    Step,
+    Stopped,
+)
 from regolith_studio.jobs.executor import Executor
-from regolith_studio.jobs.progress_rate import ProgressRate
 
 SMALL_BATCH = 200
 """Below so many items each is a chunk of its own: their items tend to be those that take long."""

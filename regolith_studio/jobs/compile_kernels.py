@@ -17,8 +17,7 @@ import numpy as np
 
 from regolith_studio.geometry.kernels import machine_code_folder
 from regolith_studio.io.output_lock import lock_file
-from regolith_studio.jobs.events import Progress, Started, Steps
-from regolith_studio.jobs.progress_rate import ProgressRate, format_duration
+from regolith_studio.jobs.events import Progress, ProgressRate, Started, Steps, format_duration
 from regolith_studio.messages import N_, Message
 
 if TYPE_CHECKING:

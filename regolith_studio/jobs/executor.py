@@ -20,9 +20,8 @@ from regolith_studio.jobs.events import (
     Steps,
     Stopped,
 )
-from regolith_studio.jobs.runners import Handle, Runner
+from regolith_studio.jobs.runners import Handle, Runner, iterate_job
 from regolith_studio.jobs.runners.process_pool import ProcessPoolRunner, cores
-from regolith_studio.jobs.runners.run_job import iterate_job
 
 if TYPE_CHECKING:
     from regolith_studio.jobs.runners.dask_cluster import TlsFiles

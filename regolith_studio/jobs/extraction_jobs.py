@@ -1,4 +1,4 @@
-"""Jobs that make particles of volumes (section 2.1): read, segment, contour, measure."""
+"""Jobs that make particles of volumes (section 2.1): read, segment, contour, measure, write their labels."""
 
 import hashlib
 from collections.abc import Callable, Generator
@@ -17,24 +17,71 @@ from regolith_studio.imaging.extraction import (
     Extraction,
     ExtractionProgress,
     ExtractionSettings,
+    LabelSelection,
     extraction_steps,
+    select_labels,
 )
+from regolith_studio.imaging.label_files import write_label_file
 from regolith_studio.imaging.segmentation.scan_outside import find_outside
 from regolith_studio.imaging.segmentation.segment import Segmentation
 from regolith_studio.imaging.segmentation.thresholding import ThresholdSettings, hidden_class
 from regolith_studio.imaging.volume import Volume, VolumeKind
 from regolith_studio.imaging.volume_slabs import ScratchArrays, SliceSource
+from regolith_studio.io.atomic import write_bytes
+from regolith_studio.io.tables import Column, Table, csv_text
 from regolith_studio.jobs.compile_kernels import compile_first
 from regolith_studio.jobs.events import Progress, Started, Step, Steps
 from regolith_studio.jobs.executor import Executor, open_executor
 from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput
-from regolith_studio.jobs.label_jobs import write_labels
 from regolith_studio.jobs.particle_jobs import MeasuredParticle, measure_particle
 from regolith_studio.jobs.scan_jobs import read_all, scratch_arrays, scratch_folder, segment_volume
 from regolith_studio.jobs.unfinished_maps import finished_slabs
 from regolith_studio.messages import N_, Message
 from regolith_studio.readers.file_bytes import sha256_of
 from regolith_studio.readers.volumes.files import member_folder, member_names
+
+
+def write_labels(labels: Volume, settings: ExtractionSettings, path: Path, segmented: bool) -> Steps:
+    """Write a label volume, and the table of its labels beside it; returns the path of the table.
+
+    Parameters
+    ----------
+    settings, segmented
+        Which labels become particles, as for ``select_labels``.
+    path
+        A name that ends in one of ``LABEL_SUFFIXES``; the table has the same name with ``.csv``.
+
+    Raises
+    ------
+    InputError
+        If there is no label, or the suffix is another.
+    FileError
+        If the file cannot be written.
+    """
+    yield Started(Message(N_("Writing labels to {name}"), name=path.name))
+    chosen = select_labels(labels, settings, segmented)
+    for done, total in write_label_file(path, labels, max(chosen.boxes)):
+        yield Progress(done, total)
+    table = label_names_file(path)
+    write_bytes(table, csv_text(label_names(chosen)).encode("utf-8"))
+    return table
+
+
+def label_names_file(path: Path) -> Path:
+    """The table that is written beside a file of labels."""
+    return path.with_suffix(".csv")
+
+
+def label_names(chosen: LabelSelection) -> Table:
+    """The particle of each label, or why it became none, and its number of voxels."""
+    left_out = dict.fromkeys(chosen.border, "border") | dict.fromkeys(chosen.small, "small")
+    columns = (Column("label"), Column("particle"), Column("left_out"), Column("voxels"))
+    rows = tuple(
+        (label, None if label in left_out else chosen.name_of(label), left_out.get(label), count)
+        for label, count in sorted(chosen.sizes.items())
+    )
+    return Table(N_("Particles of labels"), columns, rows)
+
 
 _Made = TypeVar("_Made")
 
@@ -140,7 +187,7 @@ def extract_measured(
     make
         As in :func:`extract_each`, of a particle and what was measured of it.
     labels_file
-        Where to write the label volume, if anywhere (:func:`~regolith_studio.jobs.label_jobs.write_labels`).
+        Where to write the label volume, if anywhere (:func:`write_labels`).
     unfinished
         Where to keep finished slabs of the map that a classifier makes of a large scan, if anywhere; the same
         call goes on from there after an interruption.

@@ -10,10 +10,9 @@ from vtkmodules.vtkCommonDataModel import vtkPlane
 from regolith_studio.geometry.cross_section import CrossSection
 from regolith_studio.scene import clipping, overlays, palette
 from regolith_studio.scene.annotations import before_each_picture, flat_actor
-from regolith_studio.scene.cameras import pose_of
+from regolith_studio.scene.cameras import Projection, pose_of
 from regolith_studio.scene.clipping import SectionPlane
 from regolith_studio.scene.palette import ThemeColors
-from regolith_studio.scene.projection import Projection
 from regolith_studio.scene.shapes import MATERIALS, SceneShape, show_shape
 from regolith_studio.scene.surfaces import OUTLINE, SURFACE
 

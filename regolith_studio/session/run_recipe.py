@@ -28,8 +28,7 @@ from regolith_studio.jobs.compile_kernels import compile_first_for
 from regolith_studio.jobs.dataset_jobs import dataset_provenance
 from regolith_studio.jobs.events import Job, Progress, Started, Step, Steps
 from regolith_studio.jobs.executor import Executor, open_executor
-from regolith_studio.jobs.study_checkpoint import StudyCheckpoint
-from regolith_studio.jobs.study_jobs import study_coarsening, study_lmax
+from regolith_studio.jobs.study_jobs import StudyCheckpoint, study_coarsening, study_lmax
 from regolith_studio.messages import N_
 from regolith_studio.session.batch.dataset_step import (
     build_dataset_step,

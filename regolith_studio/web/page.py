@@ -12,15 +12,37 @@ from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.errors import RegolithError
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.jobs.particle_jobs import FIT_DEGREE
-from regolith_studio.scene.figure import view_titles
+from regolith_studio.scene.figure import SideBySide, view_titles
 from regolith_studio.scene.shapes import FIT, NAMES, PARTICLE, POLYHEDRON, SceneShape
-from regolith_studio.scene.side_by_side import SideBySide
 from regolith_studio.session.results import Failure
 from regolith_studio.session.session import Session
 from regolith_studio.session.verdict import polyhedron_verdict
-from regolith_studio.web.style import STYLE
 
-"""Of a descriptor, by its dimension as a length."""
+STYLE = """
+html, body, #app { height: 100%; margin: 0; }
+body { font: 14px/1.4 system-ui, sans-serif; color: #2b2f36; background: #f4f6f8; }
+.page { display: flex; height: 100vh; }
+.views { flex: 1; display: flex; flex-direction: column; min-width: 0; }
+.titles { display: flex; }
+.titles > div { flex: 1; padding: 6px 8px; text-align: center; min-width: 0; }
+.picture { flex: 1; min-height: 240px; position: relative; }
+.controls { width: 372px; box-sizing: border-box; padding: 10px 14px; overflow-y: auto; background: #fff; }
+.controls { border-left: 1px solid #d5dbe1; }
+.control { display: block; margin-bottom: 10px; }
+.control > span { display: block; margin-bottom: 2px; }
+.control > input, .control > select { width: 100%; box-sizing: border-box; font: inherit; }
+.status { color: #56606c; min-height: 1.4em; }
+.verdict { margin: 6px 0 10px; }
+table { border-collapse: collapse; width: 100%; font-size: 12.5px; font-variant-numeric: tabular-nums; }
+th, td { text-align: right; padding: 2px 4px; border-bottom: 1px solid #e4e8ec; }
+td:first-child { text-align: left; white-space: nowrap; }
+@media (max-width: 900px) {
+  .page { flex-direction: column; height: auto; min-height: 100vh; }
+  .picture { height: 46vh; flex: none; }
+  .controls { width: auto; border-left: 0; }
+}
+"""
+
 EVENTS = ("particles", "choices", "fit", "surface", "descriptors", "coarsening", "comparison", "tasks")
 PICTURE_INTERVAL = 0.05
 """Seconds between two pictures that are sent while results arrive."""

@@ -9,7 +9,7 @@ import pytest
 
 from regolith_studio.cli.entry import run
 from regolith_studio.jobs.events import Failed, Job, Steps
-from regolith_studio.jobs.runners.run_job import run_job
+from regolith_studio.jobs.runners import run_job
 
 COMMANDS = (
     "coarsen MESH",

@@ -8,6 +8,7 @@ from pathlib import Path
 import mujoco
 import numpy as np
 import pytest
+from regolith_studio.dem.engines.mujoco.model import build_model
 
 from regolith_studio.dataset.build import build_dataset
 from regolith_studio.dataset.dataset import Dataset
@@ -16,10 +17,9 @@ from regolith_studio.dem.case import PreparedCase, ReposeCase, prepare
 from regolith_studio.dem.engine import SimulationResult
 from regolith_studio.dem.engines import engine_named
 from regolith_studio.dem.engines.lammps import ENGINE as LAMMPS
-from regolith_studio.dem.engines.lammps.clumps import clump_shape
 from regolith_studio.dem.engines.lammps.program import LammpsSettings
+from regolith_studio.dem.engines.lammps.script import clump_shape
 from regolith_studio.dem.engines.mujoco import ENGINE
-from regolith_studio.dem.engines.mujoco.model import build_model
 from regolith_studio.dem.engines.mujoco.settings import MujocoSettings
 from regolith_studio.dem.run_io import read_shapes, save_shapes
 from regolith_studio.dem.snapshot import Snapshot

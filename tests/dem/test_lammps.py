@@ -14,9 +14,15 @@ from regolith_studio.dataset.parameters import ContactParameters, LiftingCylinde
 from regolith_studio.dem.case import CohesionKind, ReposeCase, ShapeKind, prepare
 from regolith_studio.dem.engine import SimulationResult
 from regolith_studio.dem.engines.lammps import ENGINE, simulation
-from regolith_studio.dem.engines.lammps.clumps import clump_shape, clumps_of
 from regolith_studio.dem.engines.lammps.program import LammpsSettings
-from regolith_studio.dem.engines.lammps.script import schedule, script, stiffness, viscosity
+from regolith_studio.dem.engines.lammps.script import (
+    clump_shape,
+    clumps_of,
+    schedule,
+    script,
+    stiffness,
+    viscosity,
+)
 from regolith_studio.dem.engines.lammps.simulation import early_end, kinetic_energies, read_bodies
 from regolith_studio.dem.snapshot import Snapshot
 from regolith_studio.errors import InputError, RegolithError

@@ -9,7 +9,8 @@ from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.parameters import ContactParameters
 from regolith_studio.dem.case import ReposeCase, prepare
 from regolith_studio.dem.engines.mujoco import simulation
-from regolith_studio.dem.engines.mujoco.model import (
+from regolith_studio.dem.engines.mujoco.settings import MujocoSettings
+from regolith_studio.dem.engines.mujoco.simulation import (
     ADHESION_GAP,
     N_WALLS,
     PARTICLE,
@@ -19,7 +20,6 @@ from regolith_studio.dem.engines.mujoco.model import (
     adhesion,
     build_model,
 )
-from regolith_studio.dem.engines.mujoco.settings import MujocoSettings
 from regolith_studio.dem.lifting_cylinder import Units
 from regolith_studio.errors import InputError
 

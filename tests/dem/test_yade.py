@@ -20,8 +20,8 @@ from regolith_studio.dataset.parameters import ContactParameters, LiftingCylinde
 from regolith_studio.dem.case import ReposeCase, prepare
 from regolith_studio.dem.engine import SimulationResult
 from regolith_studio.dem.engines import engine_named
-from regolith_studio.dem.engines.yade.input_files import LENGTH, TIME, WEIGHT, input_document
 from regolith_studio.dem.engines.yade.program import YadeSettings, command, find_yade
+from regolith_studio.dem.engines.yade.simulation import LENGTH, TIME, WEIGHT, input_document
 from regolith_studio.dem.initial_packing import loose_column
 from regolith_studio.dem.snapshot import Snapshot
 from regolith_studio.errors import InputError, RegolithError

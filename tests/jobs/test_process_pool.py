@@ -12,8 +12,8 @@ import pytest
 
 from regolith_studio.jobs.events import Event, Failed, Finished, Job, Progress, Stopped
 from regolith_studio.jobs.executor import Executor, in_order, open_executor
+from regolith_studio.jobs.runners import InlineRunner
 from regolith_studio.jobs.runners.process_pool import ProcessPoolRunner
-from regolith_studio.jobs.runners.run_job import InlineRunner
 
 from .small_jobs import (
     SlowToImport,

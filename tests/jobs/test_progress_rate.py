@@ -7,8 +7,7 @@ from regolith_studio.descriptors.describe import describe
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.jobs import particle_jobs
-from regolith_studio.jobs.events import Progress
-from regolith_studio.jobs.progress_rate import ProgressRate, format_duration
+from regolith_studio.jobs.events import Progress, ProgressRate, format_duration
 
 
 def test_that_the_pace_is_items_by_seconds_and_forgets_what_was_done_before() -> None:

@@ -20,7 +20,7 @@ from regolith_studio.jobs.events import (
     Steps,
     Stopped,
 )
-from regolith_studio.jobs.runners.run_job import InlineRunner, run_job
+from regolith_studio.jobs.runners import InlineRunner, run_job
 from regolith_studio.jobs.runners.thread import ThreadRunner
 
 from .small_jobs import count_to, give_up, refuse, stumble, wait_forever

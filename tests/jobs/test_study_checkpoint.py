@@ -13,7 +13,7 @@ import pytest
 from regolith_studio.errors import FileError
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
-from regolith_studio.jobs.study_checkpoint import MAX_NUMBERS, StudyCheckpoint, hash_of_particles
+from regolith_studio.jobs.study_jobs import MAX_NUMBERS, StudyCheckpoint, hash_of_particles
 
 GIVEN: dict[int, Any] = {
     0: np.array([[0.1, -0.0, np.nan], [np.inf, 1e-308, 2.0 / 3.0]]),

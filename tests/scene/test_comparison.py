@@ -8,11 +8,10 @@ from regolith_studio.geometry.cross_section import cross_section
 from regolith_studio.geometry.ray_casting import radial_hits
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.scene import clipping, comparison, facets, plotter_setup, surfaces
-from regolith_studio.scene.cameras import apply_pose, framing_pose, pose_of
+from regolith_studio.scene.cameras import Projection, apply_pose, framing_pose, pose_of
 from regolith_studio.scene.clipping import SectionPlane
 from regolith_studio.scene.comparison import OTHER, Divider, arrange, show_cuts, show_other
 from regolith_studio.scene.palette import PAPER
-from regolith_studio.scene.projection import Projection
 from regolith_studio.scene.shapes import FIT, PARTICLE, POLYHEDRON, SceneShape
 from tests.dataset.example import elbow
 

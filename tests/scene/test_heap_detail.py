@@ -8,7 +8,7 @@ from scipy.spatial.transform import Rotation
 
 from benchmarks.heaps import HeapKind, heap
 from regolith_studio.dem.snapshot import ParticleState
-from regolith_studio.scene import cameras, heap_detail, instancing, plotter_setup
+from regolith_studio.scene import cameras, instancing, plotter_setup
 from tests.dataset.example import polyhedron
 
 N = 6000
@@ -49,7 +49,7 @@ SIDES = [
 
 @pytest.mark.parametrize("side", SIDES, ids=("low", "high", "level"))
 def test_that_pictures_at_rest_are_those_of_all_particles(pile, shapes, side, monkeypatch) -> None:
-    hidden = heap_detail.hidden_particles(pile, heap_detail.AT_REST)
+    hidden = instancing.hidden_particles(pile, instancing.AT_REST)
     assert 0.05 < hidden.mean() < 0.9
     fewer = picture(shapes, pile, side)
     monkeypatch.setattr(instancing, "MANY_TRIANGLES", 10**9)
@@ -68,7 +68,7 @@ def test_that_octahedra_cover_what_the_particles_cover(pile, shapes) -> None:
 def test_that_an_octahedron_has_the_volume_and_the_proportions_of_its_shape() -> None:
     turn = Rotation.from_euler("xyz", [20, 40, 60], degrees=True)
     box = np.array(np.meshgrid([-1, 1], [-1, 1], [-1, 1])).reshape(3, -1).T * [2.0, 1.0, 0.5] / 2
-    corners = heap_detail.octahedron_of([turn.apply(box)])
+    corners = instancing.octahedron_of([turn.apply(box)])
     assert ConvexHull(corners).volume == pytest.approx(1.0)
     along = turn.inv().apply(corners)
     assert np.ptp(along, axis=0) / np.ptp(along[:, 1]) == pytest.approx([2.0, 1.0, 0.5])
@@ -79,7 +79,7 @@ def test_that_only_what_lies_deep_is_hidden() -> None:
     places = np.stack(np.meshgrid(*[np.arange(20)] * 3, indexing="ij"), axis=-1).reshape(-1, 3) + 0.5
     ones, turns = np.ones(len(places)), np.tile([1.0, 0, 0, 0], (len(places), 1))
     block = ParticleState(places, ones, turns, np.zeros(len(places), dtype=int))
-    hidden = heap_detail.hidden_particles(block, heap_detail.AT_REST)
+    hidden = instancing.hidden_particles(block, instancing.AT_REST)
     depth = np.minimum(np.minimum(places[:, :2], 20 - places[:, :2]).min(axis=1), 20 - places[:, 2])
     assert depth[hidden].min() > 4.0
     assert hidden[depth > 6.0].all()
@@ -93,11 +93,11 @@ def test_that_few_large_and_far_particles_are_never_hidden() -> None:
     diameters[0] = 6.0
     turns = np.tile([1.0, 0, 0, 0], (4000, 1))
     state = ParticleState(points, diameters, turns, np.zeros(4000, dtype=int))
-    hidden = heap_detail.hidden_particles(state, heap_detail.AT_REST)
+    hidden = instancing.hidden_particles(state, instancing.AT_REST)
     assert hidden.any()
     assert not hidden[:2].any()
     empty = ParticleState(points[:0], diameters[:0], turns[:0], np.zeros(0, dtype=int))
-    assert heap_detail.hidden_particles(empty, heap_detail.MOVING).shape == (0,)
+    assert instancing.hidden_particles(empty, instancing.MOVING).shape == (0,)
 
 
 def test_that_a_heap_of_many_sizes_hides_most_of_its_particles_while_the_view_turns() -> None:
@@ -105,7 +105,7 @@ def test_that_a_heap_of_many_sizes_hides_most_of_its_particles_while_the_view_tu
     points = np.random.default_rng(1).uniform(0.0, 40.0, (42_000, 3))
     turns = np.tile([1.0, 0, 0, 0], (len(points), 1))
     state = ParticleState(points, np.ones(len(points)), turns, np.zeros(len(points), dtype=int))
-    assert heap_detail.hidden_particles(state, heap_detail.MOVING).mean() > 0.5
+    assert instancing.hidden_particles(state, instancing.MOVING).mean() > 0.5
 
 
 def test_that_edges_are_smoothed_again_when_the_view_rests(pile, shapes) -> None:

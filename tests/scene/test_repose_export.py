@@ -19,13 +19,12 @@ from regolith_studio.cli.entry import run
 from regolith_studio.dataset.build import build_dataset
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dem.case import ReposeCase, prepare
-from regolith_studio.dem.heap_files import run_shapes
 from regolith_studio.dem.run_io import FORMAT, read_run, save_result, save_shapes, save_snapshot
 from regolith_studio.dem.snapshot import ParticleState
 from regolith_studio.errors import FileError, InputError, RegolithError
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.scene import cameras, plotter_setup
-from regolith_studio.scene.repose_export import export_repose
+from regolith_studio.scene.repose_export import export_repose, run_shapes
 from tests.dataset.example import elbow_entry, entry
 
 N = 30

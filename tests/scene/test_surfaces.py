@@ -7,7 +7,7 @@ import pyvista as pv
 from regolith_studio.geometry import ConvexCompound, ConvexPolyhedron, HalfSpaces
 from regolith_studio.scene import surfaces
 from regolith_studio.scene.cameras import CameraPose, apply_pose, pose_of
-from regolith_studio.scene.distance import signed_distances
+from regolith_studio.scene.surfaces import signed_distances
 
 POSE = CameraPose((0.0, -300.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 1.0), 50.0)
 

@@ -10,7 +10,7 @@ from regolith_studio.cli.entry import run
 from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.io.stl import stl_bytes
-from regolith_studio.jobs.runners.run_job import InlineRunner
+from regolith_studio.jobs.runners import InlineRunner
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.code_export import as_command, as_python
 from regolith_studio.session.project import Project, input_shown, inputs_of, read_project, without_file

@@ -7,7 +7,7 @@ import pytest
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.jobs.events import Job, Listener
-from regolith_studio.jobs.runners.run_job import run_job
+from regolith_studio.jobs.runners import run_job
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.session import Session
 

@@ -16,7 +16,7 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.io.stl import stl_bytes
 from regolith_studio.jobs.dataset_jobs import DatasetOptions
-from regolith_studio.jobs.runners.run_job import InlineRunner
+from regolith_studio.jobs.runners import InlineRunner
 from regolith_studio.jobs.runners.thread import ThreadRunner
 from regolith_studio.session import recompute
 from regolith_studio.session.choices import Choices, Kind

@@ -19,7 +19,7 @@ from regolith_studio.io.stl import stl_bytes
 from regolith_studio.jobs.extraction_jobs import extract_file, extract_labels
 from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput
 from regolith_studio.jobs.model_jobs import GenerationRequest, draw_shapes, fit_shapes, make_particles
-from regolith_studio.jobs.runners.run_job import InlineRunner
+from regolith_studio.jobs.runners import InlineRunner
 from regolith_studio.jobs.scan_jobs import find_grains, read_scan
 from regolith_studio.readers.shape_files import ShapeSource
 from regolith_studio.session.batch.preprocessing import entry_of

@@ -16,7 +16,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from regolith_studio.jobs.runners.run_job import InlineRunner
+from regolith_studio.jobs.runners import InlineRunner
 from regolith_studio.session.session import Session
 from regolith_studio.ui.app import open_window
 from regolith_studio.ui.appearance import Appearance

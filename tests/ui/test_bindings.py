@@ -2,7 +2,7 @@
 
 from PySide6.QtCore import QObject
 
-from regolith_studio.jobs.runners.run_job import InlineRunner
+from regolith_studio.jobs.runners import InlineRunner
 from regolith_studio.session.session import Session
 from regolith_studio.ui.bindings import Bindings
 

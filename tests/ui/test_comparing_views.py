@@ -9,10 +9,9 @@ from PySide6.QtWidgets import QApplication
 
 from regolith_studio.geometry.cross_section import cross_section
 from regolith_studio.scene import clipping, facets
+from regolith_studio.scene.cameras import Projection
 from regolith_studio.scene.comparison import OTHER
-from regolith_studio.scene.distance import signed_distances
-from regolith_studio.scene.projection import Projection
-from regolith_studio.scene.surfaces import OUTLINE, SURFACE
+from regolith_studio.scene.surfaces import OUTLINE, SURFACE, signed_distances
 from regolith_studio.ui.app import open_window
 from regolith_studio.ui.theme import DARK, LIGHT
 from regolith_studio.ui.widgets.labels import grouped_number

@@ -17,7 +17,7 @@ from regolith_studio.dataset.validation import validate_dataset
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.io.stl import stl_bytes
-from regolith_studio.jobs.runners.run_job import InlineRunner
+from regolith_studio.jobs.runners import InlineRunner
 from regolith_studio.session.recipe import Exports, Recipe, Representatives, read_recipe
 from regolith_studio.session.run_recipe import run_recipe
 from regolith_studio.session.session import Session

@@ -15,7 +15,7 @@ from PySide6.QtWidgets import (
     QSlider,
 )
 
-from regolith_studio.jobs.runners.run_job import InlineRunner
+from regolith_studio.jobs.runners import InlineRunner
 from regolith_studio.session.choices import Choices, Kind
 from regolith_studio.session.session import Session
 from regolith_studio.ui.main_window import MainWindow

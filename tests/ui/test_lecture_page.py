@@ -14,7 +14,7 @@ from PySide6.QtWidgets import QSplitter, QWidget
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.jobs.lecture_jobs import DegreeStep, trace_degrees
-from regolith_studio.jobs.runners.run_job import InlineRunner
+from regolith_studio.jobs.runners import InlineRunner
 from regolith_studio.scene.lecture_scenes import FACET_OLD, FRAME_NEW
 from regolith_studio.session.session import Session
 from regolith_studio.ui.bindings import Bindings

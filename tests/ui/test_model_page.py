@@ -14,7 +14,7 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.harmonics.coefficients import degrees
-from regolith_studio.jobs.runners.run_job import InlineRunner
+from regolith_studio.jobs.runners import InlineRunner
 from regolith_studio.messages import Message
 from regolith_studio.readers.shape_files import ShapeSource, read_shape_source
 from regolith_studio.session.session import Session

@@ -13,7 +13,7 @@ from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.guide import chapter
 from regolith_studio.io.stl import stl_bytes
 from regolith_studio.jobs.model_jobs import GenerationRequest, draw_shapes, fit_shapes, make_particles
-from regolith_studio.jobs.runners.run_job import InlineRunner
+from regolith_studio.jobs.runners import InlineRunner
 from regolith_studio.readers.shape_files import ShapeSource
 from regolith_studio.session.project import SessionRecipe
 from regolith_studio.session.provenance import SampleSource, VirtualSource

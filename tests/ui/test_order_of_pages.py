@@ -6,7 +6,7 @@ from PySide6.QtWidgets import QPushButton, QScrollArea, QWidget
 
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
-from regolith_studio.jobs.runners.run_job import InlineRunner
+from regolith_studio.jobs.runners import InlineRunner
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.session import Session
 from regolith_studio.ui.main_window import MainWindow

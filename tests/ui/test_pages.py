@@ -10,7 +10,7 @@ from PySide6.QtWidgets import QLabel, QVBoxLayout, QWidget
 
 from regolith_studio.jobs.events import Job, Partial, Progress, Started
 from regolith_studio.jobs.particle_jobs import load_sample
-from regolith_studio.jobs.runners.run_job import InlineRunner
+from regolith_studio.jobs.runners import InlineRunner
 from regolith_studio.resources import resource
 from regolith_studio.session.session import Session
 from regolith_studio.ui.bindings import Bindings

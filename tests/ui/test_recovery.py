@@ -9,7 +9,7 @@ import time
 import pytest
 from PySide6.QtWidgets import QMessageBox
 
-from regolith_studio.jobs.runners.run_job import InlineRunner
+from regolith_studio.jobs.runners import InlineRunner
 from regolith_studio.session import project
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.project import Project, read_project

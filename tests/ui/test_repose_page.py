@@ -22,7 +22,7 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.jobs.events import Partial, Progress
-from regolith_studio.jobs.runners.run_job import InlineRunner
+from regolith_studio.jobs.runners import InlineRunner
 from regolith_studio.jobs.runners.thread import ThreadRunner
 from regolith_studio.messages import to_json
 from regolith_studio.scene import instancing

@@ -6,7 +6,7 @@ from PySide6.QtCore import QSize, Qt
 from PySide6.QtWidgets import QHBoxLayout, QLineEdit, QScrollArea, QSplitter, QWidget
 
 from regolith_studio.imaging.segmentation.segment import GrainsAtHeight
-from regolith_studio.jobs.runners.run_job import InlineRunner
+from regolith_studio.jobs.runners import InlineRunner
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.session import Session
 from regolith_studio.ui.dialogs.preferences import LETTERS

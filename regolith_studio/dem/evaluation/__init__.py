@@ -3,6 +3,6 @@
 * :mod:`~regolith_studio.dem.evaluation.settings`: parameters and limits; the error of particles
   that form no pile.
 * :mod:`~regolith_studio.dem.evaluation.profile`: a vertical section and the surface of the pile in it.
-* :mod:`~regolith_studio.dem.evaluation.slope_fit`: the asymmetric and the symmetric triangle.
+* :mod:`~regolith_studio.dem.evaluation.section`: the asymmetric and the symmetric triangle.
 * :mod:`~regolith_studio.dem.evaluation.section`: both models in one section.
 """

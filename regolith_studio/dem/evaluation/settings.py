@@ -26,7 +26,7 @@ class EvaluationSettings:
     slab
         Thickness of the slice that is projected; 0 projects the whole pile, as the paper does.
     grain_correction
-        Raise the surface by :func:`~regolith_studio.dem.evaluation.slope_fit.silhouette_deficit`, the bias of
+        Raise the surface by :func:`~regolith_studio.dem.evaluation.section.silhouette_deficit`, the bias of
         a pile of few grains; only for the projection of the whole pile. The paper does not.
     azimuths
         Vertical sections, equally spaced over half a turn and beginning with x-z; even, so that y-z is

@@ -15,8 +15,8 @@ from urllib.parse import urlsplit
 
 from regolith_studio.errors import InputError, MissingRequirement
 from regolith_studio.jobs.events import Event, Failed, Job, JobResult, Listener, Stopped
+from regolith_studio.jobs.runners import run_job
 from regolith_studio.jobs.runners.process_pool import cores, memory_limit
-from regolith_studio.jobs.runners.run_job import run_job
 
 CONNECT_SECONDS = 8.0
 WORKER_SECONDS = 20.0

@@ -14,7 +14,7 @@ from regolith_studio.jobs.events import (
     Progress,
     Stopped,
 )
-from regolith_studio.jobs.runners.run_job import run_job
+from regolith_studio.jobs.runners import run_job
 
 Post = Callable[[Callable[[], None]], None]
 """Takes a function and calls it, soon and in order, in the thread that owns the listeners."""

@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from regolith_studio.jobs.events import Event, Failed, Job, JobResult, Progress
-from regolith_studio.jobs.runners.run_job import run_job
+from regolith_studio.jobs.runners import run_job
 
 SLOTS = 4096
 """Length of the shared array of cancel flags; more than the jobs that are ever open at a time."""

@@ -20,7 +20,7 @@ from regolith_studio.jobs.coarsening_jobs import CoarsenedParticle, CoarseningRe
 from regolith_studio.jobs.events import Failed, Finished, Job, JobResult, Progress, Started, Step, Steps
 from regolith_studio.jobs.executor import call
 from regolith_studio.jobs.particle_jobs import FitRequest, MeasuredParticle, fit_one, measure_particle
-from regolith_studio.jobs.runners.run_job import iterate_job
+from regolith_studio.jobs.runners import iterate_job
 from regolith_studio.messages import N_
 from regolith_studio.session.batch.inputs import BatchInput
 from regolith_studio.session.outputs.coarsening import STL_HEADER, coarsening_entry, meshes_of

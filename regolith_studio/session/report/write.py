@@ -14,7 +14,7 @@ from regolith_studio.io.tables import Column, Table
 from regolith_studio.jobs.compile_kernels import compile_first_for
 from regolith_studio.jobs.events import Partial, Started, Steps
 from regolith_studio.jobs.executor import Executor, open_executor
-from regolith_studio.jobs.study_checkpoint import hash_of_particles
+from regolith_studio.jobs.study_jobs import hash_of_particles
 from regolith_studio.messages import N_
 from regolith_studio.session.outputs.summary import SHOWN_ROWS
 from regolith_studio.session.report.draft import ReportDraft, SectionSteps

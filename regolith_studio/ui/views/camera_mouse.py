@@ -10,8 +10,7 @@ from PySide6.QtCore import QPointF, Qt
 from PySide6.QtGui import QKeyEvent, QMouseEvent, QWheelEvent
 from PySide6.QtWidgets import QWidget
 
-from regolith_studio.scene.cameras import CameraPose, orbited, panned, rolled, zoomed
-from regolith_studio.scene.projection import Projection
+from regolith_studio.scene.cameras import CameraPose, Projection, orbited, panned, rolled, zoomed
 
 WHEEL_ZOOM = 1.12
 """Factor of one notch of the wheel."""

@@ -6,9 +6,9 @@ import numpy as np
 from PySide6.QtCore import Qt
 
 from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.scene.cameras import Projection
 from regolith_studio.scene.clipping import SectionPlane
 from regolith_studio.scene.comparison import Divider
-from regolith_studio.scene.projection import Projection
 
 REACH = 8.0
 """Pixels from what is drawn at which it is still held."""

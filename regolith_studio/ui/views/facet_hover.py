@@ -7,8 +7,8 @@ import numpy as np
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.messages import N_
 from regolith_studio.scene import facets
+from regolith_studio.scene.cameras import Projection
 from regolith_studio.scene.palette import ThemeColors
-from regolith_studio.scene.projection import Projection
 from regolith_studio.scene.shapes import SceneShape
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.views.protocol import SceneView

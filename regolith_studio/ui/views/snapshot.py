@@ -7,7 +7,7 @@ from PySide6.QtCore import QLineF, QPointF, QRectF, QSizeF, Qt
 from PySide6.QtGui import QColor, QImage, QPainter, QPen, QPolygonF, QTextDocument
 
 from regolith_studio.scene.annotations import bar_length, length_text
-from regolith_studio.scene.projection import Projection
+from regolith_studio.scene.cameras import Projection
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation.plain_text import rich
 from regolith_studio.ui.views.protocol import Picture

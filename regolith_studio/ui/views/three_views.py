@@ -18,9 +18,9 @@ from regolith_studio.harmonics.visibility import hidden_faces
 from regolith_studio.jobs.events import Job, Started, Steps
 from regolith_studio.messages import N_
 from regolith_studio.scene import overlays, surfaces
-from regolith_studio.scene.distance import signed_distances
-from regolith_studio.scene.projection import Projection
+from regolith_studio.scene.cameras import Projection
 from regolith_studio.scene.shapes import FIT, NAMES, PARTICLE, POLYHEDRON, SceneShape
+from regolith_studio.scene.surfaces import signed_distances
 from regolith_studio.session.results import ParticleEntry, Results
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import tr, translate
@@ -370,6 +370,6 @@ class Distances(QObject):
 
 
 def measure_distances(fit: Mesh, particle: Mesh) -> Steps:
-    """A job: :func:`~regolith_studio.scene.distance.signed_distances` of a fit's vertices."""
+    """A job: :func:`~regolith_studio.scene.surfaces.signed_distances` of a fit's vertices."""
     yield Started(N_("Measuring distances"))
     return signed_distances(fit.vertices, particle)

@@ -12,11 +12,12 @@ from scipy.spatial.transform import Rotation
 
 from regolith_studio.dem.case import PreparedCase
 from regolith_studio.dem.engine import RunChecks, SimulationResult
-from regolith_studio.dem.engines.lammps.clumps import Clumps, clumps_of
 from regolith_studio.dem.engines.lammps.program import LammpsSettings, command
 from regolith_studio.dem.engines.lammps.script import (
+    Clumps,
     Schedule,
     bodies_file,
+    clumps_of,
     data_file,
     schedule,
     script,

@@ -1,11 +1,13 @@
 """MuJoCo as a solver of the lifting-cylinder test."""
 
+from dataclasses import dataclass
+
 import mujoco
 import numpy as np
 
 from regolith_studio.dem.case import PreparedCase
-from regolith_studio.dem.engines.mujoco.model import PARTICLE, build_model
 from regolith_studio.dem.engines.mujoco.settings import MujocoSettings
+from regolith_studio.dem.initial_packing import enclosing_radii, loose_column
 from regolith_studio.dem.lifting_cylinder import (
     Units,
     friction_in,
@@ -15,8 +17,190 @@ from regolith_studio.dem.lifting_cylinder import (
 )
 from regolith_studio.dem.snapshot import PHASES
 from regolith_studio.errors import RegolithError
-from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.geometry.arrays import FloatArray, IntArray
 from regolith_studio.messages import N_, Message
+
+N_WALLS = 32
+WALL_THICKNESS = 2.0
+PARTICLE, WALL, PLATE = 1, 2, 4
+"""Bits of contact: particles meet all, walls and plate only particles."""
+CONTACT_SOFTNESS = (0.95, 0.99, 0.05, 0.5, 2.0)
+ARENA, ARENA_PER_PARTICLE = 64 << 20, 128 << 10
+"""Bytes for contacts and solver: ten times what a run was seen to use, touched only as far as it is used.
+MuJoCo's own guess grows with the square of the number: 14 GB at 3,000 particles; 5,000 could not begin."""
+ADHESION_GAP = 0.001
+"""Distance over which cohesion acts, in mean diameters. Over ten times as much, grains that do not touch are
+drawn together, and heaps came out flatter with cohesion than without."""
+POINTS_PER_PAIR = 1.6
+"""Contact points of two touching polyhedra in the mean of a settled filling; they share the force."""
+
+
+@dataclass(frozen=True, eq=False)
+class BuiltModel:
+    """A compiled model.
+
+    Parameters
+    ----------
+    model
+        MuJoCo's.
+    walls
+        Identifiers of the walls' geoms.
+    top
+        Height of the highest particle at the start.
+    """
+
+    model: mujoco.MjModel
+    walls: IntArray
+    top: float
+
+
+def build_model(prepared: PreparedCase, settings: MujocoSettings) -> BuiltModel:
+    """The model with its particles in a loose column above the plate, turned at random."""
+    units = Units.of(prepared)
+    spec = mujoco.MjSpec()
+    _set_options(spec, settings)
+    spec.memory = ARENA + ARENA_PER_PARTICLE * len(prepared)
+    radius = prepared.case.test.diameter / 2 / units.length
+    sizes = prepared.scales / units.length
+    column = loose_column(prepared)
+    places, turns = column.points / units.length, column.orientations
+    top = float((places[:, 2] + enclosing_radii(prepared) / units.length).max())
+    _add_plate(spec, prepared, settings)
+    _add_walls(spec, prepared, settings, radius, 1.1 * top + 2.0)
+    _add_particles(spec, prepared, settings, sizes, places, turns)
+    model = spec.compile()
+    walls = np.flatnonzero(model.geom_contype == WALL)
+    return BuiltModel(model, walls.astype(np.int64), top)
+
+
+def _set_options(spec: mujoco.MjSpec, settings: MujocoSettings) -> None:
+    option = spec.option
+    option.timestep = settings.time_step
+    option.gravity = [0.0, 0.0, -1.0]
+    option.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
+    option.solver = mujoco.mjtSolver.mjSOL_CG
+    option.iterations = settings.iterations
+    option.tolerance = settings.tolerance
+    option.jacobian = mujoco.mjtJacobian.mjJAC_SPARSE
+    option.enableflags |= int(mujoco.mjtEnableBit.mjENBL_ENERGY)
+    option.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_AUTORESET)
+    spec.stat.extent = 10.0
+
+
+def _contact(prepared: PreparedCase, settings: MujocoSettings, friction: float) -> dict[str, object]:
+    rolling = prepared.case.contact.rolling_friction / 2
+    return {
+        "friction": [friction, max(rolling, 1e-6), max(rolling, 1e-6)],
+        "condim": 6 if rolling > 0.0 else 3,
+        "solref": [settings.contact_steps * settings.time_step, 1.0],
+        "solimp": list(CONTACT_SOFTNESS),
+    }
+
+
+def _add_plate(spec: mujoco.MjSpec, prepared: PreparedCase, settings: MujocoSettings) -> None:
+    spec.worldbody.add_geom(
+        type=mujoco.mjtGeom.mjGEOM_PLANE,
+        size=[0.0, 0.0, 1.0],
+        contype=PLATE,
+        conaffinity=0,
+        priority=1,
+        **_contact(prepared, settings, prepared.case.test.plate_friction),
+    )
+
+
+def _add_walls(
+    spec: mujoco.MjSpec, prepared: PreparedCase, settings: MujocoSettings, radius: float, height: float
+) -> None:
+    frame = spec.worldbody.add_body(name="cylinder", mocap=True)
+    half_width = (radius + WALL_THICKNESS) * np.tan(np.pi / N_WALLS)
+    for k in range(N_WALLS):
+        angle = 2 * np.pi * k / N_WALLS
+        distance = radius + WALL_THICKNESS / 2
+        frame.add_geom(
+            type=mujoco.mjtGeom.mjGEOM_BOX,
+            size=[WALL_THICKNESS / 2, half_width, height / 2],
+            pos=[distance * np.cos(angle), distance * np.sin(angle), height / 2],
+            quat=[np.cos(angle / 2), 0.0, 0.0, np.sin(angle / 2)],
+            contype=WALL,
+            conaffinity=0,
+            priority=1,
+            density=0.0,
+            # a surface that never moves would be compiled away
+            surfacevel=[0.0, 0.0, lift_speed(prepared), 0.0, 0.0, 0.0],
+            **_contact(prepared, settings, prepared.case.test.wall_friction),
+        )
+
+
+def _add_particles(
+    spec: mujoco.MjSpec,
+    prepared: PreparedCase,
+    settings: MujocoSettings,
+    sizes: FloatArray,
+    places: FloatArray,
+    turns: FloatArray,
+) -> None:
+    contact = _contact(prepared, settings, prepared.case.contact.static_friction)
+    pull = adhesion(prepared)
+    spheres = prepared.case.shapes == "spheres"
+    names: dict[tuple[int, float], list[str]] = {}
+    for k in range(len(prepared)):
+        kind, size = int(prepared.class_index[k]), float(sizes[k])
+        if spheres:
+            radius = size / (np.pi / 6) ** (1 / 3) / 2
+            forms = [{"type": mujoco.mjtGeom.mjGEOM_SPHERE, "size": [radius, 0, 0]}]
+        else:
+            if (kind, size) not in names:
+                names[kind, size] = _add_meshes(spec, prepared, kind, size)
+            forms = [{"type": mujoco.mjtGeom.mjGEOM_MESH, "meshname": name} for name in names[kind, size]]
+        body = spec.worldbody.add_body(pos=places[k], quat=turns[k])
+        body.add_freejoint()
+        if len(forms) > 1:  # masses of parts that overlap would add up to more than the body's
+            _set_inertia(body, prepared.inertias[kind], size)
+        for form in forms:
+            body.add_geom(
+                density=1.0,
+                contype=PARTICLE,
+                conaffinity=PARTICLE | WALL | PLATE,
+                gap=ADHESION_GAP if pull.any() else 0.0,
+                adhesion=float(pull[k]),
+                **form,
+                **contact,
+            )
+
+
+def _add_meshes(spec: mujoco.MjSpec, prepared: PreparedCase, kind: int, size: float) -> list[str]:
+    """Meshes of the convex parts of a shape at one size, by their names."""
+    names = []
+    for vertices in prepared.part_vertices[kind]:
+        names.append(f"shape{len(spec.meshes)}")
+        spec.add_mesh(
+            name=names[-1],
+            uservert=(vertices * size).ravel(),
+            inertia=mujoco.mjtMeshInertia.mjMESH_INERTIA_CONVEX,
+        )
+    return names
+
+
+def _set_inertia(body: "mujoco.MjsBody", inertia: FloatArray, size: float) -> None:
+    """Mass and inertia of a unit-volume shape about its centroid, at density 1 and a size."""
+    body.explicitinertial = True
+    body.mass = size**3
+    body.ipos = [0.0, 0.0, 0.0]
+    body.fullinertia = (inertia * size**5)[[0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]]
+
+
+def adhesion(prepared: PreparedCase) -> FloatArray:
+    """Each particle's share of the pull-off force 3/2 pi w R* at a contact point, in the solver's unit.
+
+    The shares of two particles add up to the force exactly if they are equally large (R* = d/4); polyhedra
+    touch at several points, which share it.
+    """
+    points = POINTS_PER_PAIR if prepared.case.shapes == "polyhedra" else 1.0
+    test, contact = prepared.case.test, prepared.case.contact
+    force = contact.density * prepared.mean_diameter**3 * test.gravity
+    pull = 0.5 * 1.5 * np.pi * prepared.surface_energy * prepared.diameters / 4
+    return np.asarray(pull / force / points)
+
 
 MAX_MOVE = 0.01
 """Largest way in a step of all but one in a hundred particles, in mean diameters. Grains that slide faster

@@ -43,7 +43,7 @@ class YadeEngine:
 
     def seconds(self, prepared: PreparedCase, settings: YadeSettings) -> float:
         """From the cost of a step and the expected length of the phases."""
-        from regolith_studio.dem.engines.yade.input_files import TIME, time_step
+        from regolith_studio.dem.engines.yade.simulation import TIME, time_step
 
         steps = expected_duration(prepared) * TIME / time_step(prepared, settings)
         return 3.0 + SECONDS_PER_PARTICLE_AND_STEP * len(prepared) * steps

@@ -7,9 +7,8 @@ from regolith_studio.imaging.extraction import Extraction
 from regolith_studio.imaging.label_files import LABEL_SUFFIXES
 from regolith_studio.imaging.segmentation.segment import Segmentation
 from regolith_studio.jobs.events import Job
-from regolith_studio.jobs.extraction_jobs import extract_labels
+from regolith_studio.jobs.extraction_jobs import extract_labels, write_labels
 from regolith_studio.jobs.extraction_settings import GrainSettings
-from regolith_studio.jobs.label_jobs import write_labels
 from regolith_studio.session.batch.preprocessing import entry_of
 from regolith_studio.session.provenance import VolumeSource
 from regolith_studio.session.recipe import VolumeEntry
