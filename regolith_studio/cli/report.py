@@ -55,9 +55,9 @@ def report(
 def _load(sample: list[Path], reading: ReadingOptions, jobs: int) -> "LoadedParticles":
     """The particles of meshes, of a scan as ``extract`` finds them by default, or of a recipe."""
     from regolith_studio.errors import InputError
+    from regolith_studio.session.batch.inputs import load_recipe_particles
     from regolith_studio.session.file_kinds import FileKind, kind_of_all
     from regolith_studio.session.recipe import VolumeEntry, read_recipe, recipe_of
-    from regolith_studio.session.report.inputs import load_recipe_particles
 
     match kind := kind_of_all(sample):
         case FileKind.PARTICLES:

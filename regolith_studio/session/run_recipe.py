@@ -30,18 +30,16 @@ from regolith_studio.jobs.events import Job, Progress, Started, Step, Steps
 from regolith_studio.jobs.executor import Executor, open_executor
 from regolith_studio.jobs.study_jobs import StudyCheckpoint, study_coarsening, study_lmax
 from regolith_studio.messages import N_
-from regolith_studio.session.batch.dataset_step import (
-    build_dataset_step,
-    check_dataset_request,
-    export_dataset_step,
-)
 from regolith_studio.session.batch.inputs import BatchInputs
 from regolith_studio.session.batch.particle_task import ParticleTask, process_particles
 from regolith_studio.session.batch.preprocessing import PreparedInputs, clear_prepared_inputs, prepare_inputs
 from regolith_studio.session.batch.writers import (
     ResultWriter,
     RunStatistics,
+    build_dataset_step,
+    check_dataset_request,
     descriptor_writer,
+    export_dataset_step,
     failure_writer,
     fit_writer,
     mesh_writer,

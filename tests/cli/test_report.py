@@ -6,8 +6,7 @@ import pytest
 
 from regolith_studio.jobs.events import Progress
 from regolith_studio.session.report import write
-from regolith_studio.session.report.draft import ReportDraft, SectionSteps
-from regolith_studio.session.report.sections import ReportSection
+from regolith_studio.session.report.sections import ReportDraft, ReportSection, SectionSteps
 
 
 def names(draft: ReportDraft, title: str) -> SectionSteps:

@@ -8,7 +8,6 @@ from pathlib import Path
 import mujoco
 import numpy as np
 import pytest
-from regolith_studio.dem.engines.mujoco.model import build_model
 
 from regolith_studio.dataset.build import build_dataset
 from regolith_studio.dataset.dataset import Dataset
@@ -21,6 +20,7 @@ from regolith_studio.dem.engines.lammps.program import LammpsSettings
 from regolith_studio.dem.engines.lammps.script import clump_shape
 from regolith_studio.dem.engines.mujoco import ENGINE
 from regolith_studio.dem.engines.mujoco.settings import MujocoSettings
+from regolith_studio.dem.engines.mujoco.simulation import build_model
 from regolith_studio.dem.run_io import read_shapes, save_shapes
 from regolith_studio.dem.snapshot import Snapshot
 from regolith_studio.errors import InputError

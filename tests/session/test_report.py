@@ -25,17 +25,30 @@ from regolith_studio.jobs.events import Progress, Steps
 from regolith_studio.jobs.executor import Executor
 from regolith_studio.readers.particles import sample_particles
 from regolith_studio.resources import resource
+from regolith_studio.session.batch.inputs import load_recipe_particles
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.outputs.summary import html_table
 from regolith_studio.session.recipe import VolumeEntry, recipe_of
 from regolith_studio.session.report import heap_sections, write
-from regolith_studio.session.report.draft import ReportDraft, SectionSteps
-from regolith_studio.session.report.inputs import load_recipe_particles
-from regolith_studio.session.report.page import MAX_TRIANGLES, report_page
 from regolith_studio.session.report.pdf import column_groups
-from regolith_studio.session.report.sections import ReportFigure, ReportSection, error_table, interval_text
+from regolith_studio.session.report.sections import (
+    ReportDraft,
+    ReportFigure,
+    ReportSection,
+    SectionSteps,
+    error_table,
+    interval_text,
+)
 from regolith_studio.session.report.settings import ReportSettings
-from regolith_studio.session.report.write import DOCUMENT, PAGE, PDF, WrittenReport, write_report
+from regolith_studio.session.report.write import (
+    DOCUMENT,
+    MAX_TRIANGLES,
+    PAGE,
+    PDF,
+    WrittenReport,
+    report_page,
+    write_report,
+)
 from regolith_studio.settings import settings_of_kind
 from regolith_studio.studies.figures.files import write_figure
 

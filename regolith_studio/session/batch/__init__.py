@@ -4,5 +4,5 @@
 * :mod:`~regolith_studio.session.batch.preprocessing`: grains of volumes and fitted models.
 * :mod:`~regolith_studio.session.batch.particle_task`: all that is done to one particle, in any process.
 * :mod:`~regolith_studio.session.batch.writers`: the files that the results become.
-* :mod:`~regolith_studio.session.batch.dataset_step`: the dataset and its exports.
+* :mod:`~regolith_studio.session.batch.writers`: the dataset and its exports.
 """

@@ -1,5 +1,6 @@
 """The particles of a recipe before they are read: small, picklable, in a fixed order."""
 
+import tempfile
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -11,17 +12,28 @@ from regolith_studio.errors import InputError
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.harmonics.surface import level_for
 from regolith_studio.io.file_names import name_key, unique_name
+from regolith_studio.jobs.events import Progress, Started, Steps
+from regolith_studio.jobs.executor import open_executor
 from regolith_studio.jobs.model_jobs import PAPER_DEGREE, drawn_names, groups_of
+from regolith_studio.jobs.scan_jobs import scratch_folder
+from regolith_studio.messages import N_
 from regolith_studio.readers.coefficient_tables import TableReading
 from regolith_studio.readers.particles import (
     FileProblem,
     MeshFile,
+    collect_particles,
     find_files,
     read_file,
     sample_particles,
 )
 from regolith_studio.readers.shape_files import read_shape_source
-from regolith_studio.session.batch.preprocessing import MODEL, PreparedInputs, read_grain, read_index
+from regolith_studio.session.batch.preprocessing import (
+    MODEL,
+    PreparedInputs,
+    prepare_inputs,
+    read_grain,
+    read_index,
+)
 from regolith_studio.session.recipe import SAMPLE, NamedParticle, Population, Recipe
 from regolith_studio.shape_models.materials import materials
 from regolith_studio.shape_models.protocol import FittedModel
@@ -260,3 +272,32 @@ def _cached_draws(population: str, folder: Path | None, seed: int) -> tuple[Real
     model = model_of(selection, folder)
     draws = model.draw(selection.n, seed, selection.bounds)
     return draws, groups_of(draws, model)
+
+
+def load_recipe_particles(recipe: Recipe, base: Path, workers: int = 1) -> Steps:
+    """Read or make all particles of a recipe; returns :class:`LoadedParticles`.
+
+    Parameters
+    ----------
+    base
+        Folder that relative inputs are relative to.
+
+    Raises
+    ------
+    FileError
+        If nothing can be read.
+    InputError
+        If the recipe holds something that cannot be used.
+    """
+    with tempfile.TemporaryDirectory(dir=scratch_folder()) as folder, open_executor(workers) as executor:
+        prepared = yield from prepare_inputs(recipe, base, Path(folder) / "prepared", executor)
+        inputs = BatchInputs.of(recipe, base, prepared)
+        yield Started(N_("Reading particles"), len(inputs.members))
+        results: list[Particle | FileProblem] = []
+        for number, item in enumerate(inputs.members, start=1):
+            try:
+                results.append(item.particle())
+            except InputError as error:
+                results.append(FileProblem(item.name, str(error)))
+            yield Progress(number, len(inputs.members), item.name)
+        return collect_particles(results, inputs.problems)

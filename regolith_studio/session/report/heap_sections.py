@@ -19,8 +19,14 @@ from regolith_studio.jobs.repose_jobs import ReposeRequest, ReposeRun, repose_st
 from regolith_studio.jobs.representatives_jobs import RepresentativesRequest
 from regolith_studio.jobs.study_jobs import study_coarsening, study_gallery
 from regolith_studio.session.outputs.studies import STUDIES
-from regolith_studio.session.report.draft import ReportDraft, SectionSteps
-from regolith_studio.session.report.sections import ReportFigure, ReportSection, error_table, png_of
+from regolith_studio.session.report.sections import (
+    ReportDraft,
+    ReportFigure,
+    ReportSection,
+    SectionSteps,
+    error_table,
+    png_of,
+)
 from regolith_studio.session.study_requests import chosen_rows
 from regolith_studio.studies.coarsening import rmsre_table
 from regolith_studio.studies.loss_variants import PAPER_LOSSES

@@ -14,10 +14,11 @@ from regolith_studio.jobs.particle_jobs import FIT_DEGREE, FitRequest, fit_sampl
 from regolith_studio.jobs.representatives_jobs import MeasuredPopulation, measure_population
 from regolith_studio.jobs.study_jobs import study_lmax, study_population
 from regolith_studio.session.outputs.studies import STUDIES
-from regolith_studio.session.report.draft import ReportDraft, SectionSteps
 from regolith_studio.session.report.sections import (
+    ReportDraft,
     ReportFigure,
     ReportSection,
+    SectionSteps,
     error_table,
     interval_text,
     png_of,
