@@ -12,7 +12,7 @@ from typing import Any
 
 from benchmarks.heaps import HeapKind, heap, surface_of_revolution
 from regolith_studio.dem.angle_of_repose import measure_repose
-from regolith_studio.dem.evaluation.settings import NotAPileError
+from regolith_studio.dem.evaluation.section import NotAPileError
 
 CURVES = {"dome, 0.45": ("dome", 0.45), "dome, 0.7": ("dome", 0.7), "exponential, 1": ("exponential", 1.0)}
 GRAINS = (300, 1000, 3000)
