@@ -35,8 +35,15 @@ def shipped() -> set[str]:
 
 
 def run(*command: str | Path, folder: Path) -> str:
+    """What a command prints that finds the program only where it is installed."""
+    environment = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
     done = subprocess.run(
-        [str(word) for word in command], cwd=folder, capture_output=True, text=True, check=False
+        [str(word) for word in command],
+        cwd=folder,
+        env=environment,
+        capture_output=True,
+        text=True,
+        check=False,
     )
     assert done.returncode == 0, done.stdout + done.stderr
     return done.stdout

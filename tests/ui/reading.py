@@ -44,8 +44,8 @@ OF_PYQTGRAPH = ("Export...", "Export")
 """In menus that nobody can open."""
 POINT = re.compile(r"\b0\.\d|\d\.(\d{1,2}|\d{4,})(?!\d)")
 """A decimal point; three digits behind a point may be thousands."""
-OTHER_POINTS = re.compile(r"Abschnitt \d\.\d|\d+(\.\d+){2,}")
-"""Sections of the paper, and versions."""
+OTHER_POINTS = re.compile(r"Abschnitt \d\.\d|\d+(\.\d+){2,}|\b20\d\d\.\d\d[a-z]?\b")
+"""Sections of the paper, and versions, also those named after a month (YADE 2023.02a)."""
 WORD = re.compile(r"[^\W\d_]{3,}")
 
 

@@ -93,6 +93,11 @@ def egg(n):
     return Particle(f"egg-{n}", Mesh(ball.vertices * np.array([1.4, 1.2, 1.0]) * (10.0 + n), ball.faces))
 
 
+def column_texts(table, column):
+    """The different texts in a column."""
+    return {table.item(row, column).text() for row in range(table.rowCount())}
+
+
 def choose_model(page, key):
     page.source.model.setCurrentIndex(page.source.model.findData(key))
 
@@ -230,7 +235,7 @@ def test_that_models_are_judged_on_the_sample_that_was_fitted(page):
     headers = [tables["distances"].horizontalHeaderItem(at).text() for at in range(6)]
     assert headers == ["Model", "Weighting", "Descriptor", "W [%]", "from [%]", "to [%]"]
     assert tables["distances"].item(0, 2).text() == CATALOGUE[KEYS[0]].label
-    assert tables["targets"].item(0, 4).text() in ("yes", "no")
+    assert column_texts(tables["targets"], 5) <= {"yes", "no", "not decidable with so few"}
     assert tables["energies"].rowCount() == 10
 
 
@@ -241,7 +246,7 @@ def test_that_a_model_of_another_package_is_fitted_shown_and_drawn(opened, monke
     take(page, rough_sample())
     choose_model(page, "lunar_model")
     page.fit_model()
-    np.testing.assert_allclose(page.live.spectrum.value(), np.full(4, 0.01), rtol=0.2)
+    np.testing.assert_allclose(page.live.spectrum.value(), np.full(2, 0.01), rtol=0.2)
     assert len(page.gallery._shown[0]) > 0
     page.draw()
     assert page._drawn.draws.model == "lunar_model"
@@ -372,8 +377,8 @@ def test_that_the_outcome_of_a_judgement_is_told_in_german(opened, speaking):
     words = page.evaluation.notes.text()
     assert words.startswith("30 gemessene Partikel mit Graden bis 4, 0 ausgelassen;")
     assert words.endswith("1 Teilung, je Anpassung 2 Mal 20 gezogen, Startwert 0.")
-    wanted = {page.evaluation.tables["targets"].item(row, 3).text().split()[0] for row in range(3)}
-    assert wanted <= {"mindestens", "höchstens"}
+    wanted = column_texts(page.evaluation.tables["targets"], 4)
+    assert {text.split()[0] for text in wanted} == {"mindestens", "höchstens"}
     values = {"name": Message("Mixture of fields"), "split": 2, "draw": 3}
     step = Message("{name}, split {split}, draw {draw}", **values)
     assert translate(step) == "Mischung von Feldern, Teilung 2, Ziehung 3"
