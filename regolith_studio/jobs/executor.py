@@ -95,13 +95,23 @@ class Executor:
                 yield value_of(result)
 
     def run_all(self, jobs: Sequence[Job], names: Sequence[str]) -> Generator[Step, None, list[JobResult]]:
-        """Results of `jobs`, with a progress event after each that names what is done."""
-        results: list[JobResult] = []
-        for result in self.results(jobs):
-            if result is not None:
-                results.append(result)
-            yield Progress(len(results), len(jobs), names[len(results) - 1] if results else "")
-        return results
+        """Results of `jobs`, with progress events that name what has ended last, or the part of a job that
+        reports its own progress."""
+        results: dict[int, JobResult] = {}
+        current = ""
+
+        def follow(number: int, step: Progress) -> None:
+            nonlocal current
+            if step.message:
+                current = f"{names[number]} ({step.done + 1}/{step.total}: {step.message})"
+
+        for answer in self.as_completed(jobs, follow):
+            if answer is not None:
+                number, result = answer
+                results[number] = result
+                current = names[number]
+            yield Progress(len(results), len(jobs), current)
+        return [results[number] for number in range(len(jobs))]
 
     @property
     def in_this_thread(self) -> bool:

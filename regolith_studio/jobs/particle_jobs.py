@@ -189,32 +189,13 @@ def measure_particles(particles: Sequence[Particle], box_metric: str = "exact") 
 def measure_sample(
     particles: Sequence[Particle], box_metric: str = "exact", workers: int | Executor = 1
 ) -> Steps:
-    """As :func:`measure_particles`, by several processes; returns a tuple of :class:`MeasuredParticle`."""
+    """As :func:`measure_particles`, in one or several processes; returns a tuple of what was measured."""
     yield from compile_first("describe")
     yield Started(N_("Measuring"), len(particles))
     jobs = [Job(measure_one, (particle, box_metric)) for particle in particles]
     with open_executor(workers) as executor:
-        if executor.in_this_thread:
-            return (yield from _measured_in_turn(particles, box_metric))
         results = yield from executor.run_all(jobs, [particle.name for particle in particles])
     return tuple(value_of(result) for result in results)
-
-
-def _measured_in_turn(particles: Sequence[Particle], box_metric: str) -> Steps:
-    """Each particle in this thread, with the parts of large ones."""
-    measured: list[MeasuredParticle] = []
-    for particle in particles:
-        steps = _measuring(particle, box_metric)
-        try:
-            while True:
-                step = next(steps)
-                assert isinstance(step, Progress)
-                words = f"{particle.name} ({step.done + 1}/{step.total}: {step.message})"
-                yield Progress(len(measured), len(particles), words)
-        except StopIteration as end:
-            measured.append(end.value)
-        yield Progress(len(measured), len(particles), particle.name)
-    return tuple(measured)
 
 
 @dataclass(frozen=True)

@@ -80,7 +80,7 @@ def wait_for(path: str) -> Steps:
 def count_until(path: str) -> Steps:
     yield Started("Counting")
     for number in itertools.count(1):
-        yield Progress(number, 0)
+        yield Progress(number, 0, "counting")
         if os.path.exists(path):  # noqa: PTH110
             return number
         time.sleep(0.01)

@@ -137,6 +137,27 @@ def test_that_the_progress_of_jobs_reaches_who_waits_for_them(workers: int, tmp_
     assert min(heard[0], heard[1]) > 0
 
 
+@pytest.mark.parametrize("workers", [1, 2])
+def test_that_parts_of_long_jobs_are_named_and_results_come_in_order(workers: int, tmp_path: Path) -> None:
+    story: list[tuple[int, str]] = []
+    with open_executor(workers) as executor:
+        jobs = [Job(count_until, (str(tmp_path / "file"),)), Job(square, (3,))]
+        steps = executor.run_all(jobs, ["long", "short"])
+        try:
+            while True:
+                step = next(steps)
+                assert isinstance(step, Progress)
+                story.append((step.done, step.message))
+                if step.message.startswith("long (") and (workers == 1 or step.done == 1):
+                    (tmp_path / "file").touch()
+        except StopIteration as end:
+            results = end.value
+    assert any(message.startswith("long (") and message.endswith(": counting)") for _, message in story)
+    assert story[-1][0] == 2
+    assert isinstance(results[0], Finished)
+    assert results[1] == Finished(9)
+
+
 def test_that_workers_without_a_job_are_threads_of_the_others() -> None:
     assert [Executor(8).threads_for(n) for n in (0, 1, 3, 8, 20)] == [8, 8, 2, 1, 1]
     assert Executor(1).threads_for(3) is None

@@ -39,7 +39,7 @@ def test_that_the_parts_of_a_large_mesh_are_named_while_it_is_measured(
     try:
         while True:
             step = next(steps)
-            if isinstance(step, Progress):
+            if isinstance(step, Progress) and (step.done, step.message) not in [(0, ""), *story[-1:]]:
                 story.append((step.done, step.message))
     except StopIteration as end:
         measured = end.value
