@@ -1,15 +1,91 @@
 """Language, theme and font size: read from the preferences, chosen in a dialog, saved."""
 
-from collections.abc import Callable
-from typing import cast
+from collections.abc import Callable, Mapping
+from typing import Any, cast
 
-from PySide6.QtCore import QObject
-from PySide6.QtWidgets import QApplication, QWidget
+from PySide6.QtCore import QObject, QSignalBlocker, Signal
+from PySide6.QtWidgets import (
+    QApplication,
+    QDialog,
+    QDialogButtonBox,
+    QFormLayout,
+    QSpinBox,
+    QVBoxLayout,
+    QWidget,
+)
 
+from regolith_studio.messages import N_
 from regolith_studio.session.preferences import Preferences
-from regolith_studio.ui.dialogs.preferences import LETTERS, PreferencesDialog
 from regolith_studio.ui.keyboard import KeyboardFocus, UndoKeys
-from regolith_studio.ui.theme import apply_letters, choose_letters, choose_theme
+from regolith_studio.ui.theme import LARGEST, SMALLEST, USUAL, apply_letters, choose_letters, choose_theme
+from regolith_studio.ui.translation import LANGUAGES, SETTING, SYSTEM, tr
+from regolith_studio.ui.widgets.combo_box import ChoiceBox
+from regolith_studio.ui.widgets.labels import remark
+
+LETTERS = "letters"
+"""In the preferences of the window: size of letters in percent."""
+THEMES = {SYSTEM: N_("As the system"), "light": N_("Light"), "dark": N_("Dark")}
+
+
+class PreferencesDialog(QDialog):
+    """Edits settings of the window; changes apply at once, the language at the next start."""
+
+    valueChanged = Signal(dict)  # noqa: N815
+
+    def __init__(self, kept: Mapping[str, Any], parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setWindowTitle(tr("Preferences"))
+        self.setObjectName("preferences_dialog")
+        self.setMinimumWidth(420)
+        self.language = ChoiceBox("preferences_language", tr("Language"), LANGUAGES)
+        self.theme = ChoiceBox("preferences_theme", tr("Theme"), THEMES)
+        self.letters = QSpinBox()
+        self.letters.setObjectName("preferences_letters")
+        self.letters.setAccessibleName(tr("Size of letters"))
+        self.letters.setRange(int(SMALLEST), int(LARGEST))
+        self.letters.setSingleStep(10)
+        self.letters.setSuffix(" %")
+        self.letters.setKeyboardTracking(False)
+        self.note = remark(tr("The language takes effect when the program starts again."))
+        self._arrange()
+        self.setValue(kept)
+        self._begun = self.language.value()
+        self.language.activated.connect(self._change_language)
+        self.theme.activated.connect(lambda _: self.valueChanged.emit({"theme": self.theme.value()}))
+        self.letters.valueChanged.connect(lambda percent: self.valueChanged.emit({LETTERS: percent}))
+
+    def value(self) -> dict[str, Any]:
+        """All of it."""
+        return {
+            SETTING: self.language.value(),
+            "theme": self.theme.value(),
+            LETTERS: self.letters.value(),
+        }
+
+    def setValue(self, value: Mapping[str, Any]) -> None:
+        """Show these settings, the usual ones where they are missing or not known; announces nothing."""
+        for box, name, known in ((self.language, SETTING, LANGUAGES), (self.theme, "theme", THEMES)):
+            box.setValue(value[name] if value.get(name) in known else SYSTEM)
+        percent = value.get(LETTERS)
+        with QSignalBlocker(self.letters):
+            self.letters.setValue(int(percent) if isinstance(percent, int | float) else int(USUAL))
+
+    def _change_language(self) -> None:
+        self.note.setVisible(self.language.value() != self._begun)
+        self.valueChanged.emit({SETTING: self.language.value()})
+
+    def _arrange(self) -> None:
+        form = QFormLayout()
+        form.addRow(tr("Language"), self.language)
+        form.addRow("", self.note)
+        form.addRow(tr("Theme"), self.theme)
+        form.addRow(tr("Size of letters"), self.letters)
+        buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Close, parent=self)
+        buttons.rejected.connect(self.reject)
+        layout = QVBoxLayout(self)
+        layout.addLayout(form)
+        layout.addWidget(buttons)
+        self.note.hide()
 
 
 class Appearance(QObject):

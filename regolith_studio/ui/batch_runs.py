@@ -15,8 +15,7 @@ from regolith_studio.session.preferences import Preferences
 from regolith_studio.session.project import SessionRecipe, without_file
 from regolith_studio.session.recipe import Recipe, read_recipe
 from regolith_studio.session.session import Session
-from regolith_studio.ui.dialogs.batch import BatchDialog, BatchRequest
-from regolith_studio.ui.dialogs.run_dialog import RunDialog
+from regolith_studio.ui.dialogs.batch import BatchDialog, BatchRequest, RunDialog
 from regolith_studio.ui.translation import tr, translate
 from regolith_studio.ui.widgets.toast import Toast
 

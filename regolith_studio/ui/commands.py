@@ -38,9 +38,8 @@ from regolith_studio.session.recipe import DatasetRequest, Recipe, read_recipe
 from regolith_studio.session.results import ParticleEntry
 from regolith_studio.session.session import Session
 from regolith_studio.session.verdict import cost_of_imitating_the_fit
-from regolith_studio.ui.dialogs.add_or_replace import ADD, REPLACE, ask_add_or_replace
 from regolith_studio.ui.dialogs.export import ExportDialog, ExportRequest
-from regolith_studio.ui.dialogs.unit import UnitDialog
+from regolith_studio.ui.dialogs.opening import ADD, REPLACE, UnitDialog, ask_add_or_replace
 from regolith_studio.ui.translation import tr, translate
 from regolith_studio.ui.widgets.toast import Toast
 

@@ -1,19 +1,93 @@
-"""Layouts: splitters, columns and tabs."""
+"""Splitters, scroll areas, tabs, sections that fold, and rows that wrap."""
 
 from collections.abc import Callable, Sequence
 
 from PySide6.QtCore import QEvent, QObject, QSize, Qt
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import (
+    QBoxLayout,
+    QComboBox,
     QFormLayout,
     QHBoxLayout,
     QScrollArea,
     QSizePolicy,
     QSplitter,
     QTabWidget,
+    QToolButton,
     QVBoxLayout,
     QWidget,
 )
+
+
+class Collapsible(QWidget):
+    """A button with an arrow, and parts below each other that it shows or hides; collapsed at first."""
+
+    def __init__(self, title: str, *parts: QWidget) -> None:
+        super().__init__()
+        self.content = QWidget()
+        column = QVBoxLayout(self.content)
+        column.setContentsMargins(0, 0, 0, 0)
+        for part in parts:
+            column.addWidget(part)
+        self.button = QToolButton()
+        self.button.setText(title)
+        self.button.setCheckable(True)
+        self.button.setAutoRaise(True)
+        self.button.setProperty("role", "fold")
+        self.button.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextBesideIcon)
+        self.button.setAccessibleName(title)
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.setSpacing(4)
+        layout.addWidget(self.button)
+        layout.addWidget(self.content)
+        self.button.toggled.connect(self.set_open)
+        self.set_open(False)
+
+    def set_open(self, is_open: bool) -> None:
+        """Expand or collapse."""
+        self.button.setChecked(is_open)
+        self.button.setArrowType(Qt.ArrowType.DownArrow if is_open else Qt.ArrowType.RightArrow)
+        self.content.setVisible(is_open)
+
+
+class WrappingRow(QWidget):
+    """Two groups of controls in a row, or below each other where the row is too narrow.
+
+    Parameters
+    ----------
+    first, last
+        Combo boxes among them stretch.
+    margins
+        Left, top, right, bottom.
+    """
+
+    def __init__(
+        self, first: Sequence[QWidget], last: Sequence[QWidget], margins: tuple[int, int, int, int]
+    ) -> None:
+        super().__init__()
+        self._box = QBoxLayout(QBoxLayout.Direction.LeftToRight, self)
+        self._box.setContentsMargins(*margins)
+        self._parts = [QHBoxLayout(), QHBoxLayout()]
+        for part, row in zip((first, last), self._parts, strict=True):
+            for each in part:
+                row.addWidget(each, int(isinstance(each, QComboBox)))
+        self._box.addLayout(self._parts[0], 1)
+        self._box.addLayout(self._parts[1])
+        self._box.setAlignment(self._parts[1], Qt.AlignmentFlag.AlignLeft)
+
+    def minimumSizeHint(self) -> QSize:
+        least, margins = [part.minimumSize().width() for part in self._parts], self._box.contentsMargins()
+        return QSize(max(least) + margins.left() + margins.right(), super().minimumSizeHint().height())
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        margins = self._box.contentsMargins()
+        needed = sum(part.sizeHint().width() for part in self._parts) + self._box.spacing()
+        narrow = self.width() < needed + margins.left() + margins.right()
+        way = QBoxLayout.Direction
+        self._box.setDirection(way.TopToBottom if narrow else way.LeftToRight)
+
 
 CONTROLS_WIDTH = 290
 MAX_FIXED = 0.55

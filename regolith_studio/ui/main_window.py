@@ -12,24 +12,19 @@ from PySide6.QtWidgets import QApplication, QMainWindow
 from regolith_studio.session.file_kinds import FileKind
 from regolith_studio.session.preferences import Preferences
 from regolith_studio.session.session import Session
-from regolith_studio.ui.actions import Actions
-from regolith_studio.ui.activity import ActivityDock
+from regolith_studio.ui.actions import Actions, CommandPalette
+from regolith_studio.ui.activity import ActivityDock, TasksPanel
 from regolith_studio.ui.appearance import Appearance
 from regolith_studio.ui.batch_runs import BatchRuns, ReportRuns
 from regolith_studio.ui.bindings import Bindings
 from regolith_studio.ui.commands import Commands
-from regolith_studio.ui.dialogs.closing import may_close, needs_confirmation
-from regolith_studio.ui.dialogs.command_palette import CommandPalette
-from regolith_studio.ui.dialogs.guide import guide_dialog
-from regolith_studio.ui.dialogs.help import CitationLinks, about_dialog
-from regolith_studio.ui.dialogs.shortcuts import ShortcutsDialog
+from regolith_studio.ui.dialogs.help import CitationLinks, about_dialog, guide_dialog
 from regolith_studio.ui.layout import scale_borders
 from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.page_stack import PageStack
 from regolith_studio.ui.pages import PAGES
-from regolith_studio.ui.panels.tasks import TasksPanel
-from regolith_studio.ui.project_files import ProjectFiles
-from regolith_studio.ui.shortcuts import Shortcuts
+from regolith_studio.ui.project_files import ProjectFiles, may_close, needs_confirmation
+from regolith_studio.ui.shortcuts import Shortcuts, ShortcutsDialog
 from regolith_studio.ui.theme import THEMES, apply_theme, current_theme
 from regolith_studio.ui.tour import start_tour
 from regolith_studio.ui.widgets.toast import Toast, report_file_problems

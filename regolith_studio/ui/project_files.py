@@ -1,7 +1,8 @@
-"""Project files in the window: saving, opening, autosaving, and recovery after a crash."""
+"""Projects in the window: opened, saved, recovered, and asked about before it closes."""
 
 import hashlib
 import os
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from pathlib import Path
 
@@ -13,10 +14,51 @@ from regolith_studio.messages import N_
 from regolith_studio.session.preferences import preferences_path
 from regolith_studio.session.project import SUFFIX, Project, SessionRecipe, read_project
 from regolith_studio.session.session import Session
+from regolith_studio.session.tasks import Task
 from regolith_studio.ui.commands import without
 from regolith_studio.ui.page_stack import PageStack
-from regolith_studio.ui.translation import tr
+from regolith_studio.ui.translation import inert, tr
 from regolith_studio.ui.widgets.toast import Toast
+
+
+def needs_confirmation(tasks: Sequence[Task], busy: Sequence[str]) -> list[str]:
+    """What closing would stop, a sentence each, none of them twice; nothing of work that repeats itself."""
+    titles = dict.fromkeys(tr(task.title) for task in tasks if not task.repeats)
+    return [*(tr("{task} is running.", task=title) for title in titles), *busy]
+
+
+def may_close(
+    parent: QWidget, reasons: Sequence[str], unsaved: Sequence[str], save: Callable[[], bool]
+) -> bool:
+    """Ask whether to close although work would be lost, and whether to save first; yes where there is none.
+
+    Parameters
+    ----------
+    reasons, unsaved
+        What would be stopped, and what is not saved, in sentences.
+    save
+        Saves what is not; whether that was done.
+    """
+    if not reasons and not unsaved:
+        return True
+    title, lost = tr("Close Regolith Studio?"), "\n".join(map(inert, (*reasons, *unsaved)))
+    box = QMessageBox(QMessageBox.Icon.Question, title, lost, parent=parent)
+    box.setObjectName("closing")
+    stay = box.addButton(tr("Cancel"), QMessageBox.ButtonRole.RejectRole)
+    words = tr("Stop and close") if reasons else tr("Don't save")
+    leave = box.addButton(words, QMessageBox.ButtonRole.DestructiveRole)
+    kept = box.addButton(tr("Save"), QMessageBox.ButtonRole.AcceptRole) if unsaved else None
+    if kept is not None:
+        kept.setObjectName("closing_save")
+    stay.setObjectName("closing_stay")
+    leave.setObjectName("closing_leave")
+    box.setDefaultButton(kept or stay)
+    box.setEscapeButton(stay)
+    box.exec()
+    pressed = box.clickedButton()
+    box.deleteLater()
+    return pressed is leave or (pressed is kept is not None and save())
+
 
 FILTER = N_("Projects (*.regolith)")
 AUTOSAVE_SECONDS = 10

@@ -53,7 +53,7 @@ def run(paths: Sequence[str | Path] = (), unit: str | None = None) -> int:
     splash.show()
     app.processEvents()
     from regolith_studio.session.preferences import Preferences
-    from regolith_studio.ui.translation.language import SETTING, SYSTEM, install_translators
+    from regolith_studio.ui.translation import SETTING, SYSTEM, install_translators
 
     preferences = Preferences.load()
     install_translators(app, str(preferences.window.get(SETTING, SYSTEM)))

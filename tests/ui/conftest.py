@@ -28,7 +28,7 @@ from regolith_studio.ui import app as ui_app
 from regolith_studio.ui import main_window
 from regolith_studio.ui.bindings import Bindings
 from regolith_studio.ui.startup import make_application
-from regolith_studio.ui.translation.language import install_translators, remove_translators
+from regolith_studio.ui.translation import install_translators, remove_translators
 from regolith_studio.ui.widgets.formula import THREAD_NAME, all_outlines
 
 

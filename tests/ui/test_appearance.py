@@ -19,8 +19,7 @@ from PySide6.QtWidgets import (
 from regolith_studio.jobs.runners import InlineRunner
 from regolith_studio.session.session import Session
 from regolith_studio.ui.app import open_window
-from regolith_studio.ui.appearance import Appearance
-from regolith_studio.ui.dialogs.preferences import LETTERS
+from regolith_studio.ui.appearance import LETTERS, Appearance
 from regolith_studio.ui.icons import pixmap
 from regolith_studio.ui.layout import padded
 from regolith_studio.ui.main_window import MainWindow

@@ -6,7 +6,7 @@ import pytest
 from PySide6.QtCore import QSize
 from PySide6.QtWidgets import QApplication, QCheckBox, QMenu, QSpinBox
 
-from regolith_studio.ui.widgets.plots.canvas import CountAxis, FittedAxis, PlotCanvas
+from regolith_studio.ui.widgets.plots.base import CountAxis, FittedAxis, PlotCanvas
 from regolith_studio.ui.widgets.plots.curves import CurvePlot
 
 STEPS = np.arange(1.0, 9.0)

@@ -6,13 +6,13 @@ from PySide6.QtCore import Qt
 
 from regolith_studio.coarsening.weights import JACCARD
 from regolith_studio.descriptors.catalogue import CATALOGUE, LOSS_KEYS
+from regolith_studio.ui.pages.explore.panels import weight_spec
+from regolith_studio.ui.pages.explore.plots import DescriptorTablePanel
 from regolith_studio.ui.pages.sample.table import columns
-from regolith_studio.ui.panels.descriptor_table import DescriptorTablePanel
-from regolith_studio.ui.panels.loss import weight_spec
 from regolith_studio.ui.panels.particle_list import ParticleListPanel
-from regolith_studio.ui.widgets.definitions import definition
 from regolith_studio.ui.widgets.heat_table import HeatTable
 from regolith_studio.ui.widgets.labels import plain_symbol
+from regolith_studio.ui.widgets.table import definition
 
 pytestmark = pytest.mark.usefixtures("app")
 

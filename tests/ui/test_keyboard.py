@@ -29,10 +29,10 @@ from regolith_studio.session.session import Session
 from regolith_studio.session.tasks import Task
 from regolith_studio.ui.app import open_window
 from regolith_studio.ui.dialogs.help import CitationLinks
-from regolith_studio.ui.dialogs.unit import UnitDialog
+from regolith_studio.ui.dialogs.opening import UnitDialog
 from regolith_studio.ui.main_window import MainWindow
 from regolith_studio.ui.pages import PAGES
-from regolith_studio.ui.views.camera_mouse import WHEEL_ZOOM
+from regolith_studio.ui.views.view import WHEEL_ZOOM
 from regolith_studio.ui.views.view_frame import ViewFrame
 from regolith_studio.ui.widgets.labels import CitingLabel
 from regolith_studio.ui.widgets.study_frame import StudyFrame

@@ -26,8 +26,8 @@ from regolith_studio.ui.bindings import Bindings
 from regolith_studio.ui.commands import Commands
 from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.pages.model import PAGE
-from regolith_studio.ui.pages.model.distributions import distance_text
-from regolith_studio.ui.pages.model.evaluation_panel import EvaluationPanel
+from regolith_studio.ui.pages.model.evaluation import EvaluationPanel
+from regolith_studio.ui.pages.model.views import distance_text
 from regolith_studio.ui.translation import translate
 from regolith_studio.ui.widgets.plots.spectrum_editor import SpectrumEditor
 from regolith_studio.ui.widgets.toast import Toast

@@ -30,7 +30,7 @@ from regolith_studio.dataset.validation import validate_dataset
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.io.stl import stl_bytes
 from regolith_studio.ui.app import open_window, show_recovery_and_tour
-from regolith_studio.ui.dialogs.unit import UnitDialog
+from regolith_studio.ui.dialogs.opening import UnitDialog
 
 MOST = 10
 """Interactions that a task may take."""

@@ -10,7 +10,7 @@ from regolith_studio.jobs.runners import InlineRunner
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.session import Session
 from regolith_studio.ui.main_window import MainWindow
-from regolith_studio.ui.pages.dataset.gallery import CELL
+from regolith_studio.ui.pages.dataset.views import CELL
 from regolith_studio.ui.widgets.formula import BREAK, LOWEST_LINE, MIN_LINE_HEIGHT, FormulaLabel
 
 WITH_CHOICES = ("explore", "scan", "model", "studies", "dataset", "repose")

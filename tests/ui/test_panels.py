@@ -25,14 +25,12 @@ from regolith_studio.session.results import ParticleEntry, Results
 from regolith_studio.session.sample_table import health_word
 from regolith_studio.session.tasks import Task
 from regolith_studio.studies.lmax import LmaxStudy
+from regolith_studio.ui.activity import IDLE, TasksPanel
+from regolith_studio.ui.pages.explore.panels import FitPanel, LossPanel, VerdictPanel
+from regolith_studio.ui.pages.explore.plots import LossCurvePanel
+from regolith_studio.ui.pages.studies.plots import LmaxStudyPanel
 from regolith_studio.ui.panels.coarsening import CoarseningPanel
-from regolith_studio.ui.panels.fit import FitPanel
-from regolith_studio.ui.panels.lmax_study import LmaxStudyPanel
-from regolith_studio.ui.panels.loss import LossPanel
-from regolith_studio.ui.panels.loss_curve import LossCurvePanel
 from regolith_studio.ui.panels.particle_list import ParticleListPanel
-from regolith_studio.ui.panels.tasks import IDLE, TasksPanel
-from regolith_studio.ui.panels.verdict import VerdictPanel
 from regolith_studio.ui.widgets.forms import SettingsForm
 from regolith_studio.ui.widgets.plots.bars import BarPlot, BarSeries
 

@@ -9,7 +9,7 @@ from PySide6.QtTest import QAbstractItemModelTester
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.session.results import ParticleEntry
-from regolith_studio.ui.widgets.particle_table_model import UNSORTED, ParticleTableModel
+from regolith_studio.ui.widgets.table import UNSORTED, ParticleTableModel
 
 FALLING = Qt.SortOrder.DescendingOrder
 MESH = icosphere(1)

@@ -12,8 +12,7 @@ from regolith_studio.session.project import Project
 from regolith_studio.session.recipe import Recipe
 from regolith_studio.ui.app import open_window
 from regolith_studio.ui.pages import PAGES
-from regolith_studio.ui.translation import tr, translate
-from regolith_studio.ui.translation.plain_text import Markup, inert, rich
+from regolith_studio.ui.translation import Markup, inert, rich, tr, translate
 from regolith_studio.ui.widgets.labels import remark, with_subscripts
 
 SECONDS = 240

@@ -4,7 +4,7 @@ import pytest
 from PySide6.QtWidgets import QApplication, QDialog
 
 from regolith_studio.ui.app import open_window
-from regolith_studio.ui.dialogs.preferences import PreferencesDialog
+from regolith_studio.ui.appearance import PreferencesDialog
 
 
 @pytest.fixture

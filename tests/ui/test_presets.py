@@ -10,7 +10,7 @@ from regolith_studio.dataset.parameters import ContactParameters
 from regolith_studio.errors import InputError
 from regolith_studio.session.preferences import UserPresets
 from regolith_studio.session.recipe import Recipe
-from regolith_studio.ui.panels.loss import LossPanel
+from regolith_studio.ui.pages.explore.panels import LossPanel
 from regolith_studio.ui.widgets.combo_box import text_room
 from regolith_studio.ui.widgets.presets import PresetBar, PresetEntry, PresetForm
 

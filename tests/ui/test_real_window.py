@@ -27,7 +27,7 @@ from regolith_studio.dataset.validation import validate_dataset
 from regolith_studio.resources import resource
 from regolith_studio.ui.app import open_window
 from regolith_studio.ui.dialogs.export import ExportDialog
-from regolith_studio.ui.dialogs.unit import UnitDialog
+from regolith_studio.ui.dialogs.opening import UnitDialog
 from regolith_studio.ui.theme import current_theme
 from regolith_studio.ui.tour import Tour, start_tour
 

@@ -112,7 +112,7 @@ def test_that_the_window_writes_the_report_of_the_command_and_opens_it(
     sections(**{"The sample": counts, "Fig. 2": fails})
     opened = []
     monkeypatch.setattr(
-        "regolith_studio.ui.dialogs.run_dialog.QDesktopServices.openUrl", lambda url: opened.append(url)
+        "regolith_studio.ui.dialogs.batch.QDesktopServices.openUrl", lambda url: opened.append(url)
     )
     dialog = asked(reports)
     dialog.go.click()

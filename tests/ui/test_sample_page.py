@@ -14,9 +14,8 @@ from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.session.results import ParticleEntry
 from regolith_studio.ui.app import open_window
-from regolith_studio.ui.dialogs.preferences import LETTERS
-from regolith_studio.ui.pages.sample.scatter import ScatterPanel
-from regolith_studio.ui.pages.sample.statistics import StatisticsPanel
+from regolith_studio.ui.appearance import LETTERS
+from regolith_studio.ui.pages.sample.plots import ScatterPanel, StatisticsPanel
 
 SECONDS = 120.0
 
@@ -203,7 +202,7 @@ def test_that_no_point_covers_a_name_of_zingg(shown, height):
 
 
 def test_that_a_logarithmic_plot_cannot_be_dragged_to_where_numbers_end(shown):
-    from regolith_studio.ui.widgets.plots.canvas import MAX_DECADES
+    from regolith_studio.ui.widgets.plots.base import MAX_DECADES
     from regolith_studio.ui.widgets.plots.curves import CurvePlot
 
     plot = shown(CurvePlot("degree", "amplitude", "nothing", log_y=True))

@@ -8,8 +8,7 @@ from PySide6.QtWidgets import QWidget
 
 from regolith_studio.errors import InputError
 from regolith_studio.session.preferences import Preferences
-from regolith_studio.ui.dialogs.shortcuts import ShortcutsDialog
-from regolith_studio.ui.shortcuts import Shortcuts
+from regolith_studio.ui.shortcuts import Shortcuts, ShortcutsDialog
 
 pytestmark = pytest.mark.usefixtures("preferences")
 

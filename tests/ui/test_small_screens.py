@@ -9,12 +9,11 @@ from regolith_studio.imaging.segmentation.segment import GrainsAtHeight
 from regolith_studio.jobs.runners import InlineRunner
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.session import Session
-from regolith_studio.ui.dialogs.preferences import LETTERS
+from regolith_studio.ui.appearance import LETTERS
 from regolith_studio.ui.main_window import MainWindow
-from regolith_studio.ui.page_stack import ScrollablePage
+from regolith_studio.ui.page_stack import ScrollablePage, Sidebar
 from regolith_studio.ui.pages import PAGES
-from regolith_studio.ui.pages.explore.plot_area import LETTERS as LETTERS_OF_TWO
-from regolith_studio.ui.sidebar import Sidebar
+from regolith_studio.ui.pages.explore.plots import LETTERS as LETTERS_OF_TWO
 from regolith_studio.ui.theme import LIGHT, choose_letters
 from regolith_studio.ui.widgets.combo_box import text_room
 from regolith_studio.ui.widgets.plots.export import plain_text

@@ -16,9 +16,8 @@ from regolith_studio.session.study_requests import varied_rows
 from regolith_studio.studies.loss_variants import PAPER_LOSSES, losses, paper_variants
 from regolith_studio.studies.sweeps import sufficient_facets
 from regolith_studio.ui.app import open_window
-from regolith_studio.ui.pages.studies.loss_selector import LossSelector
 from regolith_studio.ui.pages.studies.page import write_studies
-from regolith_studio.ui.pages.studies.sweep_panel import ROW_COLOURS
+from regolith_studio.ui.pages.studies.sweep import ROW_COLOURS, LossSelector
 from regolith_studio.ui.theme import DARK
 
 SECONDS = 170.0

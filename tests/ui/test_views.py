@@ -20,9 +20,9 @@ from regolith_studio.scene import instancing, surfaces
 from regolith_studio.scene.cameras import CameraPose, framing_pose
 from regolith_studio.scene.palette import DARK
 from regolith_studio.session.results import ParticleEntry, Results
-from regolith_studio.ui.views.camera_link import CameraLink
 from regolith_studio.ui.views.factory import best_kind, make_view
 from regolith_studio.ui.views.three_views import ThreeViews
+from regolith_studio.ui.views.view import CameraLink
 
 BALL = icosphere(3).moved(scale=20.0)
 CUBE = ConvexPolyhedron.from_half_spaces(HalfSpaces(np.vstack([np.eye(3), -np.eye(3)]), np.full(6, 10.0)))

@@ -18,7 +18,7 @@ from regolith_studio.resources import resource
 from regolith_studio.session.results import SessionEvents
 from regolith_studio.ui.app import make_excepthook, open_window
 from regolith_studio.ui.dialogs.export import ExportDialog
-from regolith_studio.ui.dialogs.unit import UnitDialog
+from regolith_studio.ui.dialogs.opening import UnitDialog
 from regolith_studio.ui.page_stack import PageStack
 from regolith_studio.ui.startup import check_display
 from regolith_studio.ui.theme import DARK, LIGHT, current_theme

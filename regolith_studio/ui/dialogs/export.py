@@ -28,9 +28,7 @@ from regolith_studio.jobs.dataset_jobs import DatasetOptions
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.tasks import Task
 from regolith_studio.ui.dialogs.folder import FolderDialog
-from regolith_studio.ui.translation import tr
-from regolith_studio.ui.translation.numbers import number_text
-from regolith_studio.ui.translation.plain_text import Markup, rich
+from regolith_studio.ui.translation import Markup, number_text, rich, tr
 from regolith_studio.ui.widgets.labels import remark, rich_symbol
 
 

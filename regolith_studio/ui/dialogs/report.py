@@ -16,7 +16,7 @@ from regolith_studio.messages import N_
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.report.settings import ReportSettings
 from regolith_studio.session.report.write import PAGE, SectionBegun
-from regolith_studio.ui.dialogs.run_dialog import RunDialog
+from regolith_studio.ui.dialogs.batch import RunDialog
 from regolith_studio.ui.translation import tr, tr_count
 from regolith_studio.ui.widgets.forms import SettingsForm
 from regolith_studio.ui.widgets.labels import remark

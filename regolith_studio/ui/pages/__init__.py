@@ -20,7 +20,7 @@ and announces the page; the widget lives in modules beside it::
         actions=(ActionSpec("count", "&Count", icon="play", shortcut="Ctrl+Return", bar="words"),),
     )
 
-The window finds it by itself; its chapter in ``ui/dialogs/guide.py`` and its German texts are added by hand.
+The window finds it by itself; its chapter in ``ui/dialogs/help.py`` and its German texts are added by hand.
 and ``page.py``::
 
     class GrainsPage(PageWidget):

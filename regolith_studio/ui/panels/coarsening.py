@@ -19,14 +19,14 @@ from regolith_studio.coarsening.coarsen import FACETS_LIMITS
 from regolith_studio.coarsening.methods import METHODS
 from regolith_studio.messages import N_
 from regolith_studio.ui.icons import icon
+from regolith_studio.ui.layout import Collapsible
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import tr, translate
-from regolith_studio.ui.widgets.collapsible import Collapsible
 from regolith_studio.ui.widgets.combo_box import ChoiceBox
 from regolith_studio.ui.widgets.fixed_height_text import FixedHeightText
 from regolith_studio.ui.widgets.forms import SettingsForm
 from regolith_studio.ui.widgets.labels import heading, remark
-from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec
+from regolith_studio.ui.widgets.numbers import NumberSlider, NumberSpec
 
 STOPS = {
     "facets": N_("Facets n"),

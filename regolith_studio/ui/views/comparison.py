@@ -1,22 +1,216 @@
-"""Two surfaces in one view: overlaid, or side by side along a line that can be dragged (wipe)."""
+"""Comparison of two shapes by a divider and by sections."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from functools import partial
 from typing import Any
 
 import numpy as np
+from PySide6.QtCore import QObject, Qt, Signal
 
 from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.geometry.cross_section import CrossSection, cross_section
+from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.oriented_box import minimum_volume_box
 from regolith_studio.messages import N_
-from regolith_studio.scene.clipping import show_frame
+from regolith_studio.scene.cameras import Projection
+from regolith_studio.scene.clipping import SectionPlane, frame_corners, normals_of, reach_along, show_frame
 from regolith_studio.scene.comparison import Divider, arrange, show_cuts, show_other
 from regolith_studio.scene.palette import ThemeColors
 from regolith_studio.scene.shapes import FIT, NAMES, PARTICLE, POLYHEDRON, SceneShape
 from regolith_studio.ui.theme import Theme
-from regolith_studio.ui.views.drag_handles import DividerGrip, PlaneGrip
-from regolith_studio.ui.views.sections import Sections
 from regolith_studio.ui.views.view_frame import ViewFrame
+
+REACH = 8.0
+"""Pixels from what is drawn at which it is still held."""
+EDGE = 0.02
+"""Share of the picture that the line of a wipe keeps from its edges."""
+
+
+class DividerGrip:
+    """Moves the line of a wipe.
+
+    Parameters
+    ----------
+    moved
+        Told the new share of the picture's width.
+    """
+
+    cursor = Qt.CursorShape.SplitHCursor
+
+    def __init__(self, divider: Divider, moved: Callable[[float], None]) -> None:
+        self._divider, self._moved = divider, moved
+
+    def is_under_cursor(self, sight: Projection, x: float, y: float) -> bool:  # noqa: ARG002
+        """Whether the line is under the mouse."""
+        return self._divider.shown and abs(x - self._divider.share * sight.width) <= REACH
+
+    def pull(self, sight: Projection, right: float, down: float) -> None:  # noqa: ARG002
+        """Follow the mouse."""
+        share = self._divider.share + right / max(sight.width, 1.0)
+        self._moved(min(max(share, EDGE), 1.0 - EDGE))
+
+
+class PlaneGrip:
+    """Moves the plane of a section along its normal, held at its frame.
+
+    Parameters
+    ----------
+    plane
+        The plane and the corners of its frame, shape (4, 3), or ``None`` while there is no section.
+    moved
+        Told the new offset.
+    """
+
+    cursor = Qt.CursorShape.SizeAllCursor
+
+    def __init__(
+        self,
+        plane: Callable[[], tuple[SectionPlane, FloatArray] | None],
+        moved: Callable[[float], None],
+    ) -> None:
+        self._plane, self._moved = plane, moved
+
+    def is_under_cursor(self, sight: Projection, x: float, y: float) -> bool:
+        """Whether the frame is under the mouse."""
+        known = self._plane()
+        if known is None:
+            return False
+        corners = sight.seen(known[1])
+        following = np.roll(corners, -1, axis=0)
+        return _distance(np.array([x, y]), corners, following) <= REACH
+
+    def pull(self, sight: Projection, right: float, down: float) -> None:
+        """Follow the mouse along the normal."""
+        known = self._plane()
+        if known is not None:
+            self._moved(known[0].offset + sight.along(known[0].normal, right, down))
+
+
+def _distance(point: FloatArray, starts: FloatArray, ends: FloatArray) -> float:
+    """Of a point from the nearest of some line segments in the plane."""
+    along = ends - starts
+    square = np.maximum(np.einsum("ij,ij->i", along, along), 1e-12)
+    share = np.clip(np.einsum("ij,ij->i", point - starts, along) / square, 0.0, 1.0)
+    return float(np.linalg.norm(point - starts - share[:, None] * along, axis=1).min())
+
+
+EYE = "eye"
+
+
+class Sections(QObject):
+    """A plane by its direction and its position between the ends of the particle; ``changed`` reports both.
+
+    Also told when the bodies change while the section is shown.
+    """
+
+    changed = Signal()
+
+    def __init__(self, parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self.shown = False
+        self.direction = "y"
+        self.flipped = True
+        self._share = 0.5
+        self._eye = np.array([0.0, -1.0, 0.0])
+        self._shapes: Mapping[str, SceneShape] = {}
+        self._cuts: dict[str, tuple[SceneShape, SectionPlane, CrossSection]] = {}
+        self._normals: tuple[Mesh, dict[str, FloatArray]] | None = None
+
+    def set_shown(self, shown: bool) -> None:
+        """Cut the bodies, or show them whole."""
+        self.shown = shown
+        self.changed.emit()
+
+    def set_shapes(self, shapes: Mapping[str, SceneShape]) -> None:
+        """Cut other bodies from now on."""
+        self._shapes = dict(shapes)
+        if self.shown:
+            self.changed.emit()
+
+    def set_direction(self, key: str, eye: FloatArray | None = None) -> None:
+        """Cut across one of :data:`~regolith_studio.scene.clipping.DIRECTIONS`; `eye` points to the eye.
+
+        What lies on the side of the eye is taken away.
+        """
+        self.direction = key
+        if eye is not None:
+            self._eye = np.array(eye)
+            self.flipped = key != EYE and float(self._axis() @ self._eye) < 0.0
+        self.changed.emit()
+
+    def set_flipped(self, flipped: bool) -> None:
+        """Show the other half."""
+        self.flipped = flipped
+        self.changed.emit()
+
+    def set_position(self, micrometres: float) -> None:
+        """Move the plane to a distance from the particle's middle, along the direction."""
+        low, high = self._reach()
+        position = micrometres + (low + high) / 2
+        self._share = float(np.clip((position - low) / (high - low), 0.0, 1.0)) if high > low else 0.5
+        self.changed.emit()
+
+    def move_to(self, offset: float) -> None:
+        """Move the plane to an offset along its own normal."""
+        low, high = self._reach()
+        self.set_position((-offset if self.flipped else offset) - (low + high) / 2)
+
+    @property
+    def position(self) -> float:
+        """Distance of the plane from the particle's middle along the direction."""
+        return (self._share - 0.5) * 2 * self.half_length
+
+    @property
+    def half_length(self) -> float:
+        """Half the particle's length along the direction."""
+        low, high = self._reach()
+        return (high - low) / 2
+
+    @property
+    def plane(self) -> SectionPlane | None:
+        """The plane, while a section is shown of a particle."""
+        if not self.shown or PARTICLE not in self._shapes:
+            return None
+        low, high = self._reach()
+        sign = -1.0 if self.flipped else 1.0
+        x, y, z = (sign * float(each) for each in self._axis())
+        return SectionPlane((x, y, z), sign * (low + self._share * (high - low)))
+
+    @property
+    def framed(self) -> tuple[SectionPlane, FloatArray] | None:
+        """The plane and the corners of its frame, shape (4, 3)."""
+        plane = self.plane
+        return None if plane is None else (plane, frame_corners(self._shapes[PARTICLE].mesh, plane))
+
+    def cuts(self) -> dict[str, CrossSection]:
+        """What the plane cuts out of each body; nothing while no section is shown."""
+        plane = self.plane
+        if plane is None:
+            return {}
+        for name, shape in self._shapes.items():
+            known = self._cuts.get(name)
+            if known is None or known[0] is not shape or known[1] != plane:
+                self._cuts[name] = (shape, plane, cross_section(shape.mesh, plane.normal, plane.offset))
+        return {name: self._cuts[name][2] for name in self._shapes}
+
+    def _reach(self) -> tuple[float, float]:
+        particle = self._shapes.get(PARTICLE)
+        return (-1.0, 1.0) if particle is None else reach_along(particle.mesh, self._axis())
+
+    def _axis(self) -> FloatArray:
+        axes = self._axes()
+        return axes.get(self.direction, self._eye)
+
+    def _axes(self) -> dict[str, FloatArray]:
+        """The box of a particle is looked for once, and only if one of its directions is wanted."""
+        particle = self._shapes.get(PARTICLE)
+        if particle is None or self.direction in (*"xyz", EYE):
+            return normals_of(None)
+        if self._normals is None or self._normals[0] is not particle.mesh:
+            self._normals = (particle.mesh, normals_of(minimum_volume_box(particle.mesh)))
+        return self._normals[1]
+
 
 PARTNERS = {PARTICLE: "", FIT: PARTICLE, POLYHEDRON: PARTICLE}
 """What each body is compared with at first."""

@@ -9,7 +9,7 @@ from PySide6.QtWidgets import QWidget
 from regolith_studio.scene.palette import LIGHT, ThemeColors
 
 if TYPE_CHECKING:  # geometry and its compiler: the splash is shown before they are there
-    from regolith_studio.ui.views.protocol import SceneView
+    from regolith_studio.ui.views.view import SceneView
 
 VARIABLE = "REGOLITH_STUDIO_VIEWS"
 """Environment variable that asks for ``live`` or ``image``."""

@@ -13,9 +13,7 @@ from pyvistaqt import QtInteractor
 from regolith_studio.scene import annotations, cameras, plotter_setup
 from regolith_studio.scene.cameras import CameraPose
 from regolith_studio.scene.palette import LIGHT, ThemeColors
-from regolith_studio.ui.views.camera_mouse import CameraMouse
-from regolith_studio.ui.views.keep_framed import KeepFramed
-from regolith_studio.ui.views.protocol import Picture
+from regolith_studio.ui.views.view import CameraMouse, KeepFramed, Picture
 
 
 class _Canvas(QtInteractor):
@@ -77,7 +75,7 @@ def _without_format_warning() -> Iterator[None]:
 
 
 class LiveView(QWidget):
-    """See :class:`~regolith_studio.ui.views.protocol.SceneView`."""
+    """See :class:`~regolith_studio.ui.views.view.SceneView`."""
 
     def __init__(self, surroundings: ThemeColors = LIGHT, parent: QWidget | None = None) -> None:
         super().__init__(parent)

@@ -1,12 +1,12 @@
-"""Particle, fit and polyhedron side by side in three views."""
+"""The three views of Explore: particle, harmonic fit and polyhedron."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Any
 
 import numpy as np
-from PySide6.QtCore import QObject, Qt, Signal
-from PySide6.QtGui import QImage
+from PySide6.QtCore import QLineF, QObject, QPointF, QRectF, QSizeF, Qt, Signal
+from PySide6.QtGui import QColor, QImage, QPainter, QPen, QPolygonF, QTextDocument
 from PySide6.QtWidgets import QSplitter, QWidget
 
 from regolith_studio.coarsening.progress import CoarseningProgress
@@ -17,22 +17,192 @@ from regolith_studio.geometry.oriented_box import minimum_volume_box
 from regolith_studio.harmonics.visibility import hidden_faces
 from regolith_studio.jobs.events import Job, Started, Steps
 from regolith_studio.messages import N_
-from regolith_studio.scene import overlays, surfaces
+from regolith_studio.scene import facets, overlays, surfaces
+from regolith_studio.scene.annotations import bar_length, length_text
 from regolith_studio.scene.cameras import Projection
+from regolith_studio.scene.palette import ThemeColors
 from regolith_studio.scene.shapes import FIT, NAMES, PARTICLE, POLYHEDRON, SceneShape
 from regolith_studio.scene.surfaces import signed_distances
 from regolith_studio.session.results import ParticleEntry, Results
 from regolith_studio.ui.theme import Theme, current_theme
-from regolith_studio.ui.translation import tr, translate
-from regolith_studio.ui.translation.numbers import number_text
-from regolith_studio.ui.translation.plain_text import Markup, rich
-from regolith_studio.ui.views.camera_link import CameraLink
-from regolith_studio.ui.views.comparison import COMPARE, Comparison, partners_of
-from regolith_studio.ui.views.facet_hover import FacetHover
+from regolith_studio.ui.translation import Markup, number_text, rich, tr, translate
+from regolith_studio.ui.views.comparison import COMPARE, Comparison, Sections, partners_of
 from regolith_studio.ui.views.factory import make_view
-from regolith_studio.ui.views.sections import Sections
-from regolith_studio.ui.views.snapshot import snapshot
+from regolith_studio.ui.views.view import CameraLink, Picture, SceneView
 from regolith_studio.ui.views.view_frame import ViewFrame
+
+
+class FacetHover:
+    """Outlines and numbers the facet, and reports its properties in one line.
+
+    Parameters
+    ----------
+    view
+        That shows the polyhedron.
+    shape
+        Reads what it shows.
+    ink
+        Reads the inks.
+    is_visible
+        Whether a point of the body, shape (3,), at a share of the picture's width is seen.
+    report
+        Receives the line, or nothing when the mouse is elsewhere.
+    """
+
+    def __init__(
+        self,
+        view: SceneView,
+        shape: Callable[[], SceneShape | None],
+        ink: Callable[[], ThemeColors],
+        is_visible: Callable[[FloatArray, float], bool],
+        report: Callable[[str], None],
+    ) -> None:
+        self._view, self._shape, self._ink, self._report = view, shape, ink, report
+        self._is_visible = is_visible
+        self._shown: tuple[SceneShape, int] | None = None
+        view.mouse.pointed.append(self._point)
+        view.mouse.left.append(self.clear)
+
+    def clear(self) -> None:
+        """Highlight no facet."""
+        if self._shown is not None:
+            self._shown = None
+            self._view.draw(lambda plotter: facets.show_facet(plotter, None))
+            self._report("")
+
+    def _point(self, sight: Projection, x: float, y: float) -> None:
+        shape = self._shape()
+        if shape is None or shape.polyhedron is None:
+            return
+        start, direction = sight.ray(x, y)
+        outside = start - shape.origin - 1e3 * float(np.linalg.norm(start - shape.origin)) * direction
+        hit = facets.facet_met(shape.polyhedron, outside, direction)
+        met, reach = hit if hit is not None else (-1, 0.0)
+        if hit is None or not self._is_visible(outside + reach * direction + shape.origin, x / sight.width):
+            self.clear()
+        elif self._shown is None or self._shown[0] is not shape or self._shown[1] != met:
+            self._shown = (shape, met)
+            facet, ink = facets.facet_of(shape.polyhedron, met), self._ink()
+            self._view.draw(lambda plotter: facets.show_facet(plotter, facet, shape.origin, ink))
+            self._report(words_of(facet))
+
+
+def words_of(facet: facets.Facet) -> str:
+    """One line; lengths in micrometres, facets and parts counted from 1."""
+    numbers = {
+        "number": facet.index + 1,
+        "count": facet.count,
+        "area": facet.area,
+        "share": facet.share,
+        "x": facet.normal[0],
+        "y": facet.normal[1],
+        "z": facet.normal[2],
+        "offset": facet.offset,
+    }
+    if facet.part is None:
+        text = N_(
+            "facet {number} of {count}: {area:,.4g} µm² ({share:.1%}), normal ({x:.2f}, {y:.2f}, {z:.2f}),"
+            " {offset:.4g} µm from the centre, {corners} corners"
+        )
+        return tr(text, corners=len(facet.outline), **numbers)
+    text = N_(
+        "part {part}, facet {number} of {count}: {area:,.4g} µm² exposed ({share:.1%}), normal"
+        " ({x:.2f}, {y:.2f}, {z:.2f}), {offset:.4g} µm from the centre"
+    )
+    return tr(text, part=facet.part + 1, **numbers)
+
+
+GAP = 8
+
+
+def snapshot(
+    frames: Sequence[ViewFrame],
+    theme: Theme,
+    scale: int = 1,
+    transparent: bool = False,
+    lines: Sequence[float | None] = (),
+) -> QImage:
+    """The frames that are not hidden side by side, `scale` times as large as on the screen.
+
+    What they show is drawn anew at that size, not enlarged.
+
+    Parameters
+    ----------
+    lines
+        For each frame the share of its width at which the line of a wipe stands, ``None`` for no line.
+    """
+    standing = dict(zip(frames, lines, strict=True)) if lines else {}
+    seen = [frame for frame in frames if not frame.isHidden()]
+    pictures = [frame.view.shot(scale, transparent) for frame in seen]
+    headings = [
+        _heading(frame, theme, picture.shape[1] / scale)
+        for frame, picture in zip(seen, pictures, strict=True)
+    ]
+    top = max(heading.size().height() for heading in headings)
+    width = sum(picture.shape[1] for picture in pictures) + GAP * scale * (len(pictures) - 1)
+    height = max(picture.shape[0] for picture in pictures) + round(top * scale)
+    image = QImage(width, height, QImage.Format.Format_ARGB32)
+    image.fill(Qt.GlobalColor.transparent if transparent else theme.base)
+    painter = QPainter(image)
+    left = 0
+    for frame, heading, picture in zip(seen, headings, pictures, strict=True):
+        painter.save()
+        painter.translate(left, 0)
+        painter.scale(scale, scale)
+        heading.drawContents(painter, QRectF(0, 0, picture.shape[1] / scale, top))
+        painter.restore()
+        painter.drawImage(left, round(top * scale), _image(picture))
+        painter.save()
+        painter.translate(left, round(top * scale))
+        _draw_over(painter, frame, theme, picture, scale, standing.get(frame))
+        painter.restore()
+        left += picture.shape[1] + GAP * scale
+    painter.end()
+    return image
+
+
+def _heading(frame: ViewFrame, theme: Theme, width: float) -> QTextDocument:
+    made = QTextDocument()
+    made.setDefaultFont(frame.font())
+    made.setDocumentMargin(4)
+    made.setHtml(
+        f'<div style="color:{theme.text}"><b>{frame.title}</b></div>'
+        f'<div style="color:{theme.muted}">{rich(frame.detail.text())}</div>'
+    )
+    made.setPageSize(QSizeF(width, -1))
+    made.setTextWidth(width)
+    return made
+
+
+def _draw_over(
+    painter: QPainter, frame: ViewFrame, theme: Theme, picture: Picture, scale: int, line: float | None
+) -> None:
+    """Scale bar, and the line of the wipe if there is one; the origin is the picture's upper left."""
+    height, width = picture.shape[:2]
+    sight = Projection(frame.view.pose, width, height)
+    length = bar_length(width * sight.per_pixel)
+    painter.setPen(QPen(QColor(theme.surroundings.ink), 2.0 * scale))
+    if line is not None:
+        painter.drawLine(QLineF(line * width, 0, line * width, height))
+    if not length:
+        return
+    left, low, tick = 16.0 * scale, height - 14.0 * scale, 5.0 * scale
+    right = left + length / sight.per_pixel
+    points = [(left, low - tick), (left, low), (right, low), (right, low - tick)]
+    painter.drawPolyline(QPolygonF([QPointF(x, y) for x, y in points]))
+    font = painter.font()
+    font.setPixelSize(12 * scale)
+    painter.setFont(font)
+    place = QRectF((left + right) / 2 - 100 * scale, low - 24 * scale, 200 * scale, 18 * scale)
+    painter.drawText(place, Qt.AlignmentFlag.AlignCenter, length_text(length))
+
+
+def _image(picture: Picture) -> QImage:
+    pixels = np.ascontiguousarray(picture)
+    height, width, channels = pixels.shape
+    kind = QImage.Format.Format_RGBA8888 if channels == 4 else QImage.Format.Format_RGB888
+    return QImage(pixels.data, width, height, channels * width, kind).copy()
+
 
 Follow = Callable[[Job, Callable[[Any], None], Callable[[str], None]], None]
 """Submits a job with functions that show its result, or the sentence of its failure."""

@@ -9,7 +9,7 @@ from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QVBoxLayout, QWidget
 
 from regolith_studio.ui.keyboard import FOCUSED
 from regolith_studio.ui.translation import tr
-from regolith_studio.ui.views.protocol import SceneView
+from regolith_studio.ui.views.view import SceneView
 from regolith_studio.ui.widgets.combo_box import ChoiceBox
 from regolith_studio.ui.widgets.labels import ElidedLabel
 from regolith_studio.ui.widgets.plots.export import plain_text

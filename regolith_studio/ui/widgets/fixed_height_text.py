@@ -7,8 +7,7 @@ from PySide6.QtGui import QResizeEvent
 from PySide6.QtGui import Qt as QtOfText
 from PySide6.QtWidgets import QLabel, QScrollArea, QSizePolicy, QToolButton, QVBoxLayout, QWhatsThis, QWidget
 
-from regolith_studio.ui.translation import tr
-from regolith_studio.ui.translation.plain_text import rich
+from regolith_studio.ui.translation import rich, tr
 
 NOTE_LINES = 2
 """Visible lines of a note between controls."""

@@ -19,7 +19,7 @@ from PySide6.QtWidgets import (
 from regolith_studio.dataset.parameters import NOT_GIVEN
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.labels import rich_symbol
-from regolith_studio.ui.widgets.number_fields import DecimalField
+from regolith_studio.ui.widgets.numbers import DecimalField
 
 Scalar = bool | int | float | str
 LARGEST_NUMBER = 2**31 - 1

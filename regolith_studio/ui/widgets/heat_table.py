@@ -17,9 +17,7 @@ from PySide6.QtWidgets import (
 )
 
 from regolith_studio.ui.theme import Theme, current_theme
-from regolith_studio.ui.translation import tr
-from regolith_studio.ui.translation.numbers import localized
-from regolith_studio.ui.translation.plain_text import inert
+from regolith_studio.ui.translation import inert, localized, tr
 from regolith_studio.ui.widgets.table import FontRowHeight
 
 _MAX_HEADER_SHARE, _MIN_HEADER_SHARE = 0.33, 0.2

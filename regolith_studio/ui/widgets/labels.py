@@ -7,8 +7,7 @@ from PySide6.QtCore import QEvent, QLocale, QSize, Qt
 from PySide6.QtGui import QFocusEvent, QPainter, QPaintEvent, QResizeEvent
 from PySide6.QtWidgets import QLabel, QSizePolicy, QWidget
 
-from regolith_studio.ui.translation.numbers import localized, number_text
-from regolith_studio.ui.translation.plain_text import Markup, inert, rich
+from regolith_studio.ui.translation import Markup, inert, localized, number_text, rich
 
 _TAG = re.compile(r"(<[^<>]*>)")
 _CITED = re.compile(

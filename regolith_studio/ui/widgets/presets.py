@@ -11,11 +11,10 @@ from PySide6.QtWidgets import QFormLayout, QInputDialog, QMenu, QPushButton, QTo
 from regolith_studio.errors import InputError
 from regolith_studio.messages import N_
 from regolith_studio.session.preferences import UserPresets
-from regolith_studio.ui.translation import tr
-from regolith_studio.ui.translation.plain_text import inert
+from regolith_studio.ui.layout import WrappingRow
+from regolith_studio.ui.translation import inert, tr
 from regolith_studio.ui.widgets.combo_box import ComboBoxRow, ElidedComboBox
 from regolith_studio.ui.widgets.forms import ParameterForm
-from regolith_studio.ui.widgets.wrapping_row import WrappingRow
 
 MODIFIED = N_("{preset} (modified)")
 SHIPPED = "paper"

@@ -17,8 +17,7 @@ from PySide6.QtWidgets import (
 )
 
 from regolith_studio.readers.particles import FileProblem
-from regolith_studio.ui.translation import tr, translate
-from regolith_studio.ui.translation.plain_text import inert
+from regolith_studio.ui.translation import inert, tr, translate
 
 NOTE_SECONDS = 6
 PROBLEM_SECONDS = 20

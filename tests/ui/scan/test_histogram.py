@@ -7,7 +7,7 @@ import pytest
 from PySide6.QtCore import QPointF
 
 from regolith_studio.imaging.segmentation.thresholding import Histogram, histogram
-from regolith_studio.ui.pages.scan.histogram_plot import HistogramPlot
+from regolith_studio.ui.pages.scan.slices import HistogramPlot
 
 GREYS = np.repeat(np.arange(60, 70, dtype=np.uint8), np.arange(1, 11))
 

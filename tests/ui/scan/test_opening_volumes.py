@@ -158,7 +158,7 @@ def test_that_raw_voxels_with_the_header_of_a_scanner_beside_them_are_read_witho
 def test_that_the_file_dialog_shows_every_format_of_volumes(page, monkeypatch):
     asked = []
     monkeypatch.setattr(
-        "regolith_studio.ui.pages.scan.file_dialogs.QFileDialog.getOpenFileName",
+        "regolith_studio.ui.pages.scan.files.QFileDialog.getOpenFileName",
         lambda *given: asked.append(given[-1]) or ("", ""),
     )
     page.opening.ask_for_file()

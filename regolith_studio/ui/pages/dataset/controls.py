@@ -17,8 +17,7 @@ from regolith_studio.ui.pages.dataset.export_panel import ExportPanel
 from regolith_studio.ui.translation import tr, tr_count
 from regolith_studio.ui.widgets.fixed_height_text import FixedHeightText
 from regolith_studio.ui.widgets.labels import heading, remark
-from regolith_studio.ui.widgets.number_fields import NumbersLine
-from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec
+from regolith_studio.ui.widgets.numbers import NumberSlider, NumbersLine, NumberSpec
 
 MAX_REPRESENTATIVES = 200
 COUNT = NumberSpec("N", N_("Number of representatives"), 1, MAX_REPRESENTATIVES, tip=N_("Usually 10."))

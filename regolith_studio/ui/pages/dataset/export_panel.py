@@ -25,13 +25,11 @@ from regolith_studio.dataset.parameters import NOT_GIVEN, ContactParameters, Lif
 from regolith_studio.errors import InputError
 from regolith_studio.messages import N_
 from regolith_studio.session.recipe import Exports
-from regolith_studio.ui.translation import tr
-from regolith_studio.ui.translation.numbers import number_text
-from regolith_studio.ui.translation.plain_text import Markup, inert, rich
-from regolith_studio.ui.widgets.collapsible import Collapsible
+from regolith_studio.ui.layout import Collapsible
+from regolith_studio.ui.translation import Markup, inert, number_text, rich, tr
 from regolith_studio.ui.widgets.forms import ParameterForm
 from regolith_studio.ui.widgets.labels import ElidedLabel, heading, remark
-from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec
+from regolith_studio.ui.widgets.numbers import NumberSlider, NumberSpec
 from regolith_studio.ui.widgets.presets import PresetForm
 
 FIRST = ("rocky", "yade")

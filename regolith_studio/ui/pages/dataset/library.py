@@ -25,8 +25,7 @@ from regolith_studio.messages import N_
 from regolith_studio.ui.layout import side_by_side
 from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.theme import Theme, current_theme
-from regolith_studio.ui.translation import tr
-from regolith_studio.ui.translation.plain_text import inert
+from regolith_studio.ui.translation import inert, tr
 from regolith_studio.ui.widgets.labels import ElidedLabel, remark
 from regolith_studio.ui.widgets.thumbnails import thumbnail
 

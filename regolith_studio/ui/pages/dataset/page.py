@@ -43,18 +43,19 @@ from regolith_studio.ui.pages.dataset.controls import (
     SizesPanel,
 )
 from regolith_studio.ui.pages.dataset.export_panel import ExportPanel, ExportsList, LossesLabel
-from regolith_studio.ui.pages.dataset.gallery import CELL, RepresentativesGallery
 from regolith_studio.ui.pages.dataset.library import LibraryPanel
-from regolith_studio.ui.pages.dataset.plots import QualityPlot, SizesPlot
-from regolith_studio.ui.pages.dataset.view_data import (
+from regolith_studio.ui.pages.dataset.views import (
+    CELL,
     SHAPE_FIELDS,
+    QualityPlot,
+    RepresentativesGallery,
+    SizesPlot,
     chosen_particles,
     coarsening_text,
     dataset_title,
     shapes,
 )
-from regolith_studio.ui.translation import tr, tr_count
-from regolith_studio.ui.translation.plain_text import inert
+from regolith_studio.ui.translation import inert, tr, tr_count
 from regolith_studio.ui.widgets.headline import Headline
 
 FIND, BUILD, EXPORT = "find", "build", "export"

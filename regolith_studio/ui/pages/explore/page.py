@@ -1,31 +1,161 @@
 """Page "Explore": particle list, three views with plots below, and controls."""
 
+from collections import deque
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from functools import partial
 
+from PySide6.QtCore import QObject, QTimer, Signal
 from PySide6.QtWidgets import QHBoxLayout, QMainWindow, QVBoxLayout, QWidget
 
 from regolith_studio.coarsening.progress import CoarseningProgress
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.jobs.events import Job
+from regolith_studio.jobs.study_jobs import study_coarsening
 from regolith_studio.messages import join_messages
 from regolith_studio.scene.cameras import DIRECTIONS
 from regolith_studio.scene.shapes import FIT, PARTICLE
+from regolith_studio.session.choices import Choices
 from regolith_studio.session.results import Results
+from regolith_studio.session.study_requests import varied_rows
 from regolith_studio.session.verdict import redundant_planes
+from regolith_studio.studies.coarsening import CoarseningStudy
+from regolith_studio.studies.sweeps import SWEEPS, sufficient_facets
 from regolith_studio.ui.layout import padded, scrolled_column, side_by_side, stacked
 from regolith_studio.ui.page import PageContext, PageWidget
-from regolith_studio.ui.pages.explore.facet_search import FacetSearch
+from regolith_studio.ui.pages.explore.panels import FitPanel, LossPanel, VerdictPanel
 from regolith_studio.ui.pages.explore.pictures import PictureExport
-from regolith_studio.ui.pages.explore.plot_area import PlotArea
-from regolith_studio.ui.pages.explore.replay import RunReplay
+from regolith_studio.ui.pages.explore.plots import PlotArea
 from regolith_studio.ui.panels.coarsening import CoarseningPanel
-from regolith_studio.ui.panels.fit import FitPanel
-from regolith_studio.ui.panels.loss import LossPanel
 from regolith_studio.ui.panels.particle_list import ParticleListPanel
-from regolith_studio.ui.panels.verdict import VerdictPanel
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.views.three_views import ThreeViews
+
+INTERVAL = 40
+"""Milliseconds between two steps."""
+FRAMES = 40
+"""About as many steps are shown of those that wait, so that a long run is shown in two seconds too."""
+REPLAYED = ("annealing",)
+"""Methods whose steps are worth watching; the others come to their result in few."""
+
+
+class RunReplay(QObject):
+    """Collects the steps of a run and emits them at a steady pace."""
+
+    shown = Signal(object)
+    """A :class:`CoarseningProgress` with its polyhedron."""
+    ended = Signal()
+    """All steps that there are have been shown."""
+
+    def __init__(self, parent: QObject) -> None:
+        super().__init__(parent)
+        self._waiting: deque[CoarseningProgress] = deque()
+        self._last: CoarseningProgress | None = None
+        self._timer = QTimer(self, interval=INTERVAL)
+        self._timer.timeout.connect(self._show_next)
+
+    @property
+    def playing(self) -> bool:
+        """Whether steps are still to be shown."""
+        return self._timer.isActive()
+
+    def follow(self, results: Results, method: str) -> None:
+        """Take the newest steps of the results; forget the others where another run has begun."""
+        newest = results.coarsening_progress
+        if newest is None or method not in REPLAYED:
+            self.stop()
+            return
+        for step in newest.recent:
+            if self._last is None or step.step > self._last.step:
+                self._add(step)
+        if self._waiting and not self.playing:
+            self._timer.start()
+            self._show_next()
+
+    def stop(self) -> None:
+        """Forget the steps that have not been shown."""
+        self._waiting.clear()
+        self._last = None
+        self._timer.stop()
+
+    def _add(self, step: CoarseningProgress) -> None:
+        if step.polyhedron is None and self._last is not None:
+            step = replace(step, polyhedron=self._last.polyhedron)
+        self._last = step
+        self._waiting.append(step)
+
+    def _show_next(self) -> None:
+        if self._waiting:
+            for _ in range(len(self._waiting) // FRAMES):
+                self._waiting.popleft()
+            self.shown.emit(self._waiting.popleft())
+        else:
+            self._timer.stop()
+            self.ended.emit()
+
+
+LANE = "facets"
+
+
+class FacetSearch(QObject):
+    """Coarsens the particle at several numbers of facets, and offers the one that is enough.
+
+    Parameters
+    ----------
+    context
+        Of the page.
+    panel
+        Has the button; shows the answer.
+    """
+
+    def __init__(self, context: PageContext, panel: CoarseningPanel, parent: QObject) -> None:
+        super().__init__(parent)
+        self._context, self._session, self._panel = context, context.session, panel
+        self._found: tuple[Choices, int, bool] | None = None
+        panel.searchRequested.connect(self.start)
+        context.bindings.refresh("choices particles coarsening tasks", self._show)
+
+    def start(self) -> None:
+        """Start the search with the present choices."""
+        particle, choices = self._session.selected, self._session.choices
+        if particle is None:
+            self._context.toast.problem(tr("No particle is open; open a mesh first."))
+            return
+        sweep = SWEEPS["facets"]
+        rows = varied_rows("facets", choices, ", ".join(f"{value:g}" for value in sweep.values))
+        options = {"rows": rows, "box_metric": choices.box_metric}
+        job = Job(study_coarsening, ((particle.particle,), choices.coarsening_request), options)
+        self._context.start(
+            tr("Searching for the sufficient number of facets"),
+            job,
+            lambda study: self._take(choices, study),
+            lane=LANE,
+        )
+
+    def _take(self, choices: Choices, study: CoarseningStudy) -> None:
+        if study.names:
+            enough = sufficient_facets(study)
+            self._found = choices, enough, enough < max(row.n_facets for row in study.rows)
+        self._show()
+
+    def _show(self) -> None:
+        """Show the answer while it belongs to the present choices."""
+        choices, results = self._session.choices, self._session.results
+        running = any(task.lane == f"{self._context.key}:{LANE}" for task in self._session.tasks)
+        if self._found is not None and not _differ_in_facets_only(self._found[0], choices):
+            self._found = None
+        if self._found is not None:
+            _, enough, saturated = self._found
+            self._panel.show_sufficient(enough, saturated=saturated, now=choices.facet_count)
+        elif results.fewer_facets is not None:
+            self._panel.show_sufficient(results.fewer_facets[0], saturated=True, now=choices.facet_count)
+        else:
+            self._panel.show_search(running=running)
+
+
+def _differ_in_facets_only(one: Choices, other: Choices) -> bool:
+    return replace(one, n_facets=other.n_facets) == other
+
 
 LIST_WIDTH, NAMES_WIDTH = 38, 16
 """Initial and least width of the particle list in digits."""

@@ -13,12 +13,10 @@ from regolith_studio.session.results import ParticleEntry
 from regolith_studio.ui.layout import name_tabs
 from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.pages.lecture.annealing import AnnealingView
-from regolith_studio.ui.pages.lecture.degrees import DegreesView
-from regolith_studio.ui.pages.lecture.field import FieldView
+from regolith_studio.ui.pages.lecture.lessons import DegreesView, FieldView
 from regolith_studio.ui.pages.lecture.playback_bar import PlaybackBar
 from regolith_studio.ui.theme import Theme, current_theme, ensure_polished, letters_share
-from regolith_studio.ui.translation import tr
-from regolith_studio.ui.translation.plain_text import rich
+from regolith_studio.ui.translation import rich, tr
 from regolith_studio.ui.widgets.combo_box import ChoiceBox
 
 LETTERS, FEW_LINES, LETTERS_OF_FEW = 1.35, 54, 1.1

@@ -7,7 +7,7 @@ from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QSlider, QWidget
 
 from regolith_studio.messages import N_
 from regolith_studio.ui.translation import tr
-from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec
+from regolith_studio.ui.widgets.numbers import NumberSlider, NumberSpec
 
 SPEED = NumberSpec(
     N_("Speed"),

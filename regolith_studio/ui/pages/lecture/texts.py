@@ -8,9 +8,7 @@ from regolith_studio.coarsening.progress import Move
 from regolith_studio.coarsening.weights import JACCARD, LossWeights
 from regolith_studio.descriptors.catalogue import CATALOGUE, LOSS_KEYS
 from regolith_studio.jobs.lecture_jobs import AnnealingLesson, AnnealingStep, DegreeStep
-from regolith_studio.ui.translation import tr
-from regolith_studio.ui.translation.numbers import number_text
-from regolith_studio.ui.translation.plain_text import Markup
+from regolith_studio.ui.translation import Markup, number_text, tr
 from regolith_studio.ui.widgets.formula import BREAK
 
 TERMS = (JACCARD, *LOSS_KEYS)

@@ -28,8 +28,7 @@ from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.fixed_height_text import FixedHeightText
 from regolith_studio.ui.widgets.forms import SettingsForm
 from regolith_studio.ui.widgets.labels import heading, remark
-from regolith_studio.ui.widgets.number_fields import DecimalField
-from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec
+from regolith_studio.ui.widgets.numbers import DecimalField, NumberSlider, NumberSpec
 
 L_MAX = NumberSpec(
     "l<sub>max</sub>",

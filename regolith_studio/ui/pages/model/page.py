@@ -1,12 +1,15 @@
 """Page "Shape model": controls, spectrum with a drawn particle, gallery and evaluation."""
 
+import re
 from collections.abc import Callable, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import partial
+from math import exp
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from PySide6.QtWidgets import QFileDialog, QHBoxLayout
+from PySide6.QtWidgets import QFileDialog, QHBoxLayout, QWidget
 
 from regolith_studio.errors import InputError, RegolithError
 from regolith_studio.geometry.mesh import Mesh
@@ -17,28 +20,173 @@ from regolith_studio.jobs.model_jobs import (
     GenerationRequest,
     GenerationResult,
     ModelFitResult,
+    ModelOrigin,
     draw_live,
     draw_shapes,
     fit_shapes,
+    make_card,
     make_particles,
 )
-from regolith_studio.messages import N_
+from regolith_studio.jobs.particle_jobs import FIT_DEGREE
+from regolith_studio.messages import N_, Message
 from regolith_studio.readers.shape_files import ShapeSource, read_shape_source
 from regolith_studio.session.provenance import VirtualSource
+from regolith_studio.session.session import Session
+from regolith_studio.shape_models.io import write_model
+from regolith_studio.shape_models.materials import MaterialCard, materials, write_card
+from regolith_studio.shape_models.models import MODELS
 from regolith_studio.shape_models.protocol import EditableModel, FittedModel, relative_amplitudes
 from regolith_studio.shape_models.sample import Sample
 from regolith_studio.ui.layout import padded, scrolled_column, side_by_side, stacked, tabs
 from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.pages.model.controls import DrawControls, SourceControls, default_degree, request_from
-from regolith_studio.ui.pages.model.distributions import DistributionsPanel
-from regolith_studio.ui.pages.model.evaluation_panel import EvaluationPanel
-from regolith_studio.ui.pages.model.files import save_card, save_model
-from regolith_studio.ui.pages.model.source_box import OPEN_PARTICLES, SourceBox, usual_sizes
-from regolith_studio.ui.pages.model.views import LiveShape, ShapeGallery
+from regolith_studio.ui.pages.model.evaluation import EvaluationPanel
+from regolith_studio.ui.pages.model.views import DistributionsPanel, LiveShape, ShapeGallery
 from regolith_studio.ui.theme import current_theme
-from regolith_studio.ui.translation import tr
+from regolith_studio.ui.translation import tr, translate
 from regolith_studio.ui.views.factory import make_view
 from regolith_studio.ui.widgets.labels import rich_symbol
+from regolith_studio.ui.widgets.toast import Toast
+
+MODEL_FILES, CARD_FILES = N_("Models (*.json)"), N_("Cards (*.json)")
+
+
+def save_model(parent: QWidget, toast: Toast, model: FittedModel, source: ShapeSource) -> None:
+    """Ask for a name and write the model."""
+    name, _ = QFileDialog.getSaveFileName(parent, tr("Save the model"), "model.json", tr(MODEL_FILES))
+    if not name:
+        return
+    path = _json_path(name)
+    try:
+        write_model(path, model, {"source": source.name, "sha256": source.sha256 or None})
+    except RegolithError as error:
+        toast.problem(str(error))
+        return
+    toast.note(tr("Saved {name}.", name=path.name))
+
+
+def save_card(parent: QWidget, context: PageContext, sample: Sample, source: ShapeSource) -> None:
+    """Ask for a name and write the card of a sample; the file's name becomes that of the material."""
+    name, _ = QFileDialog.getSaveFileName(parent, tr("Save a material card"), "material.json", tr(CARD_FILES))
+    if not name:
+        return
+    path = _json_path(name)
+    key = re.sub(r"[^a-z0-9_]+", "_", path.stem.lower()).strip("_") or "material"
+    template = N_("Statistics of {count} particles of {name}, made by Regolith Studio.")
+    origin = Message(template, count=len(sample), name=source.name)
+    job = Job(make_card, (sample, key, path.stem, origin))
+    context.start(tr("Making a material card"), job, partial(_write_card, context.toast, path), lane="card")
+
+
+def _json_path(name: str) -> Path:
+    """The path of a name that the user may have typed without its suffix."""
+    return Path(name if name.endswith(".json") else f"{name}.json")
+
+
+def _write_card(toast: Toast, path: Path, card: MaterialCard) -> None:
+    try:
+        write_card(card, path)
+    except (RegolithError, OSError) as error:
+        reason = error.strerror if isinstance(error, OSError) else error
+        toast.problem(tr("The card {name} cannot be written ({reason}).", name=path.name, reason=reason))
+        return
+    toast.note(tr("Saved {name}.", name=path.name))
+
+
+OPEN_PARTICLES = "open"
+"""Key of the open particles."""
+
+
+@dataclass(frozen=True)
+class SourceKind:
+    """Description of a source for the controls.
+
+    Parameters
+    ----------
+    brings_model
+        Key of the model that comes with it; empty for measured particles.
+    max_degree
+        Highest degree.
+    words
+        One sentence.
+    """
+
+    brings_model: str
+    max_degree: int
+    words: str
+
+
+class SourceBox:
+    """By key: ``open``, names of materials, and ``file:`` with a number."""
+
+    def __init__(self, session: Session) -> None:
+        self._session = session
+        self._files: dict[str, ShapeSource] = {}
+
+    def add(self, source: ShapeSource) -> str:
+        """Add the content of a file; returns its key."""
+        known = {each.sha256: key for key, each in self._files.items()}
+        key = known.get(source.sha256, f"file:{len(self._files) + 1}")
+        self._files[key] = source
+        return key
+
+    def labels(self) -> dict[str, str]:
+        """Label of each key."""
+        count = len(self._session.particles)
+        found = {OPEN_PARTICLES: tr("Open particles ({count})", count=count)}
+        found |= {key: source.name for key, source in self._files.items()}
+        return found | {name: tr(card.label) for name, card in materials().items()}
+
+    def kind(self, key: str) -> SourceKind:
+        """The source of a key."""
+        if key == OPEN_PARTICLES:
+            return SourceKind("", FIT_DEGREE, tr("They are expanded in spherical harmonics first."))
+        content = self._files[key].content if key in self._files else materials()[key]
+        match content:
+            case MaterialCard():
+                words = " ".join(filter(None, (translate(content.judged), tr(content.origin))))
+                return SourceKind(content.key, content.l_max, words)
+            case Sample():
+                words = tr("{count} particles up to l = {degree}.", count=len(content), degree=content.l_max)
+                return SourceKind("", content.l_max, words)
+            case _:
+                words = tr("A fitted model: {name}.", name=_inside(MODELS[content.key].label))
+                return SourceKind(content.key, content.l_max, words)
+
+    def origin(self, key: str) -> ModelOrigin:
+        """The source as a job takes it.
+
+        Raises
+        ------
+        InputError
+            If no particle is open.
+        """
+        if key == OPEN_PARTICLES:
+            particles = tuple(entry.particle for entry in self._session.particles)
+            if not particles:
+                raise InputError(tr("No particle is open: open some, or choose a material."))
+            return particles
+        return self._files[key] if key in self._files else ShapeSource(materials()[key], key)
+
+
+def _inside(label: str) -> str:
+    """A label within a sentence: lower case in English, unchanged in other languages."""
+    words = tr(label)
+    return label.lower() if words == label else words
+
+
+def usual_sizes(source: ShapeSource) -> tuple[float, float] | None:
+    """Range of equivalent radii: of the particles, or two standard deviations about a card's median."""
+    match source.content:
+        case Sample():
+            radii = source.content.equivalent_radii
+            return float(radii.min()), float(radii.max())
+        case MaterialCard():
+            spread = exp(2 * source.content.log_deviation)
+            return source.content.median_radius / spread, source.content.median_radius * spread
+        case _:
+            return None
+
 
 SOURCE_FILTER = N_("Fits, models and material cards (*.json);;All files (*)")
 DRAWN = N_("A drawn particle")

@@ -31,7 +31,7 @@ from regolith_studio.ui.layout import task_columns
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import tr, translate
 from regolith_studio.ui.widgets.labels import remark
-from regolith_studio.ui.widgets.number_fields import DecimalField, NumbersLine
+from regolith_studio.ui.widgets.numbers import DecimalField, NumbersLine
 from regolith_studio.ui.widgets.plots.curves import CurvePlot, PlotCurve
 
 PARAMETERS: Mapping[str, tuple[str, str]] = {

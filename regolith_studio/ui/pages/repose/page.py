@@ -48,8 +48,7 @@ from regolith_studio.ui.pages.repose.section_plot import SectionPlot
 from regolith_studio.ui.pages.repose.setup import EnginePanel, SetupPanel
 from regolith_studio.ui.pages.repose.study import StudyPanel
 from regolith_studio.ui.pages.repose.study_controller import ReposeStudyController
-from regolith_studio.ui.translation import tr, translate
-from regolith_studio.ui.translation.numbers import localized
+from regolith_studio.ui.translation import localized, tr, translate
 from regolith_studio.ui.widgets.headline import Headline
 
 PREVIEW_DELAY = 250

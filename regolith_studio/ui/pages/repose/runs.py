@@ -19,8 +19,7 @@ from PySide6.QtWidgets import (
 from regolith_studio.dem.angle_of_repose import ReposeMeasurement
 from regolith_studio.dem.run_io import RunSummary
 from regolith_studio.messages import N_
-from regolith_studio.ui.translation import tr, translate
-from regolith_studio.ui.translation.numbers import localized, number_text
+from regolith_studio.ui.translation import localized, number_text, tr, translate
 from regolith_studio.ui.widgets.plots.curves import CurvePlot, PlotCurve
 
 AGAINST: Mapping[str, tuple[str, ...]] = {

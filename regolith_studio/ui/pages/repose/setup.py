@@ -27,10 +27,8 @@ from regolith_studio.errors import InputError
 from regolith_studio.jobs.repose_jobs import ReposeRequest
 from regolith_studio.jobs.runners.process_pool import cores
 from regolith_studio.messages import N_
-from regolith_studio.ui.translation import tr, translate
-from regolith_studio.ui.translation.numbers import number_text
-from regolith_studio.ui.translation.plain_text import Markup, inert, rich
-from regolith_studio.ui.widgets.collapsible import Collapsible
+from regolith_studio.ui.layout import Collapsible
+from regolith_studio.ui.translation import Markup, inert, number_text, rich, tr, translate
 from regolith_studio.ui.widgets.combo_box import ElidedComboBox
 from regolith_studio.ui.widgets.fixed_height_text import FixedHeightText
 from regolith_studio.ui.widgets.forms import SettingsForm

@@ -28,10 +28,9 @@ from regolith_studio.studies.repose import ReposeStudy, ReposeStudyRun
 from regolith_studio.ui.layout import task_columns
 from regolith_studio.ui.pages.repose.runs import explanation
 from regolith_studio.ui.theme import Theme
-from regolith_studio.ui.translation import tr
-from regolith_studio.ui.translation.numbers import localized, number_text
+from regolith_studio.ui.translation import localized, number_text, tr
 from regolith_studio.ui.widgets.labels import remark
-from regolith_studio.ui.widgets.number_fields import NumbersLine
+from regolith_studio.ui.widgets.numbers import NumbersLine
 from regolith_studio.ui.widgets.plots.curves import CurvePlot, PlotCurve
 
 VARIED: Mapping[str, tuple[str, str]] = {

@@ -24,8 +24,7 @@ from regolith_studio.messages import N_
 from regolith_studio.scene.overlays import FAULT_COLOURS
 from regolith_studio.session.results import ParticleEntry
 from regolith_studio.session.sample_table import health_sentences
-from regolith_studio.ui.translation import tr, translate
-from regolith_studio.ui.translation.numbers import localized, number_text
+from regolith_studio.ui.translation import localized, number_text, tr, translate
 from regolith_studio.ui.widgets.labels import WrappedLabel, short_number
 from regolith_studio.ui.widgets.table import FontRowHeight
 

@@ -20,15 +20,12 @@ from regolith_studio.session.sample_table import filter_of, sample_table
 from regolith_studio.ui.layout import equal_parts, side_by_side, stacked, tabs
 from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.pages.sample.health import HealthPanel, translated_health
-from regolith_studio.ui.pages.sample.scatter import ScatterPanel
-from regolith_studio.ui.pages.sample.statistics import StatisticsPanel
+from regolith_studio.ui.pages.sample.plots import ScatterPanel, StatisticsPanel
 from regolith_studio.ui.pages.sample.table import FORM_WORDS, HEALTH_WORDS, SampleTable
 from regolith_studio.ui.theme import Theme, current_theme
-from regolith_studio.ui.translation import tr
-from regolith_studio.ui.translation.numbers import with_decimal_point
-from regolith_studio.ui.translation.plain_text import rich
-from regolith_studio.ui.views.camera_link import CameraLink
+from regolith_studio.ui.translation import rich, tr, with_decimal_point
 from regolith_studio.ui.views.factory import make_view
+from regolith_studio.ui.views.view import CameraLink
 from regolith_studio.ui.views.view_frame import ViewFrame
 from regolith_studio.ui.widgets.fixed_height_text import FixedHeightText
 from regolith_studio.ui.widgets.labels import heading, remark

@@ -13,18 +13,16 @@ from regolith_studio.messages import N_
 from regolith_studio.session.results import ParticleEntry
 from regolith_studio.session.sample_table import Filter, form_of, has_weights, health_sentences, health_word
 from regolith_studio.ui.theme import Theme, current_theme
-from regolith_studio.ui.translation import tr, translate
-from regolith_studio.ui.translation.numbers import number_text
-from regolith_studio.ui.translation.plain_text import inert
-from regolith_studio.ui.widgets.definitions import definition
+from regolith_studio.ui.translation import inert, number_text, tr, translate
 from regolith_studio.ui.widgets.labels import plain_symbol, short_number
-from regolith_studio.ui.widgets.particle_table_model import (
+from regolith_studio.ui.widgets.table import (
     RIGHT,
     UNSORTED,
+    ListTable,
     ParticleTableModel,
+    definition,
     health_pixmaps,
 )
-from regolith_studio.ui.widgets.table import ListTable
 
 HEALTH, FORM = "health", "form"
 WEIGHT = "weight"

@@ -26,14 +26,12 @@ from regolith_studio.imaging.segmentation.segment import GrainsAtHeight, Segment
 from regolith_studio.jobs.extraction_settings import GrainSettings
 from regolith_studio.messages import N_
 from regolith_studio.readers.volumes.region import RegionSettings
-from regolith_studio.ui.translation import tr, translate
-from regolith_studio.ui.translation.numbers import number_text
-from regolith_studio.ui.widgets.collapsible import Collapsible
+from regolith_studio.ui.layout import Collapsible
+from regolith_studio.ui.translation import number_text, tr, translate
 from regolith_studio.ui.widgets.fixed_height_text import FixedHeightText
 from regolith_studio.ui.widgets.forms import SettingsForm
 from regolith_studio.ui.widgets.labels import heading, remark
-from regolith_studio.ui.widgets.number_fields import DecimalField
-from regolith_studio.ui.widgets.number_slider import NumberSlider, NumberSpec, align_labels
+from regolith_studio.ui.widgets.numbers import DecimalField, NumberSlider, NumberSpec, align_labels
 
 DENOISE = (
     ("median", N_("Median of 27 voxels")),

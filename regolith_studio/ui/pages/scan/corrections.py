@@ -32,10 +32,15 @@ from regolith_studio.jobs.object_jobs import (
 from regolith_studio.jobs.scan_jobs import GrainSegmentation
 from regolith_studio.session.history import History
 from regolith_studio.ui.page import PageContext
-from regolith_studio.ui.pages.scan.brush_panel import Brush
-from regolith_studio.ui.pages.scan.edits_panel import BRUSHED, NO_TOOL, EditsPanel
-from regolith_studio.ui.pages.scan.objects_panel import OBJECT_COLOURS, ObjectsPanel
-from regolith_studio.ui.pages.scan.slices_view import SlicesView
+from regolith_studio.ui.pages.scan.slices import SlicesView
+from regolith_studio.ui.pages.scan.tools import (
+    BRUSHED,
+    NO_TOOL,
+    OBJECT_COLOURS,
+    Brush,
+    EditsPanel,
+    ObjectsPanel,
+)
 from regolith_studio.ui.translation import tr, translate
 
 _OPACITY, _EXAMPLE_OPACITY = 90, 190

@@ -22,8 +22,8 @@ from regolith_studio.jobs.extraction_settings import VolumeInput
 from regolith_studio.readers.volumes.region import RegionSettings
 from regolith_studio.session.history import History
 from regolith_studio.ui.page import PageContext
-from regolith_studio.ui.pages.scan.brush_panel import CLASSES, BrushPanel
-from regolith_studio.ui.pages.scan.slices_view import SlicesView
+from regolith_studio.ui.pages.scan.slices import SlicesView
+from regolith_studio.ui.pages.scan.tools import CLASSES, BrushPanel
 from regolith_studio.ui.translation import tr, translate
 
 Strokes = tuple[Stroke, ...]

@@ -22,10 +22,9 @@ from regolith_studio.messages import N_
 from regolith_studio.readers.volume_formats import WITH_AXES
 from regolith_studio.readers.volumes.header import RawLayout, VolumeHeader
 from regolith_studio.ui.pages.scan.controls import choice
-from regolith_studio.ui.translation import tr, translate
-from regolith_studio.ui.translation.plain_text import inert
+from regolith_studio.ui.translation import inert, tr, translate
 from regolith_studio.ui.widgets.labels import remark
-from regolith_studio.ui.widgets.number_fields import DecimalField
+from regolith_studio.ui.widgets.numbers import DecimalField
 
 RAW_SUFFIXES = (".raw", ".bin", ".vol", ".dat")
 AXES = (

@@ -7,9 +7,8 @@ from regolith_studio.imaging.segmentation.segment import Segmentation
 from regolith_studio.imaging.volume import Volume
 from regolith_studio.jobs.scan_jobs import FirstLook, Scan
 from regolith_studio.messages import N_
-from regolith_studio.ui.pages.scan.brush_panel import button
-from regolith_studio.ui.translation import tr, tr_count, translate
-from regolith_studio.ui.translation.numbers import number_text
+from regolith_studio.ui.pages.scan.tools import button
+from regolith_studio.ui.translation import number_text, tr, tr_count, translate
 from regolith_studio.ui.widgets.fixed_height_text import FixedHeightText
 from regolith_studio.ui.widgets.labels import WrappedLabel, heading
 

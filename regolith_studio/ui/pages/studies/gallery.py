@@ -20,9 +20,7 @@ from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.jobs.study_jobs import GalleryCell
 from regolith_studio.messages import N_
 from regolith_studio.ui.theme import Theme, current_theme
-from regolith_studio.ui.translation import tr
-from regolith_studio.ui.translation.numbers import number_text
-from regolith_studio.ui.translation.plain_text import inert
+from regolith_studio.ui.translation import inert, number_text, tr
 from regolith_studio.ui.widgets.heat_table import centred_remark
 from regolith_studio.ui.widgets.study_frame import StudyFrame
 from regolith_studio.ui.widgets.thumbnails import thumbnail

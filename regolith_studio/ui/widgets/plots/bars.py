@@ -9,8 +9,7 @@ import pyqtgraph as pg
 from PySide6.QtCore import QPointF
 from PySide6.QtGui import QColor, QFont, QFontMetrics, QResizeEvent
 
-from regolith_studio.ui.translation import tr
-from regolith_studio.ui.translation.numbers import number_text
+from regolith_studio.ui.translation import number_text, tr
 from regolith_studio.ui.widgets.plots.base import Numbers, Plot
 
 GAP = 3

@@ -9,10 +9,8 @@ from PySide6.QtCore import QPointF
 from PySide6.QtGui import QColor
 
 from regolith_studio.geometry.arrays import FloatArray
-from regolith_studio.ui.translation import tr
-from regolith_studio.ui.translation.numbers import number_text
-from regolith_studio.ui.widgets.plots.base import Numbers, Plot
-from regolith_studio.ui.widgets.plots.canvas import PlotCanvas
+from regolith_studio.ui.translation import number_text, tr
+from regolith_studio.ui.widgets.plots.base import Numbers, Plot, PlotCanvas
 from regolith_studio.ui.widgets.plots.export import plain_text
 
 SYMBOL = 5

@@ -8,8 +8,7 @@ from numpy.typing import NDArray
 from PySide6.QtCore import QEvent, QObject, QPointF, Qt, QTimer, Signal
 from PySide6.QtGui import QColor, QKeyEvent, QMouseEvent
 
-from regolith_studio.ui.translation import tr
-from regolith_studio.ui.translation.numbers import localized, number_text
+from regolith_studio.ui.translation import localized, number_text, tr
 from regolith_studio.ui.widgets.plots.base import Numbers, Plot
 
 THROTTLE = 30

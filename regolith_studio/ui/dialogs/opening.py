@@ -1,0 +1,212 @@
+"""What is asked when files are opened: their unit, and what becomes of the open particles."""
+
+from pathlib import Path
+
+from PySide6.QtCore import Signal
+from PySide6.QtWidgets import (
+    QCheckBox,
+    QComboBox,
+    QDialog,
+    QDialogButtonBox,
+    QFormLayout,
+    QLabel,
+    QMessageBox,
+    QVBoxLayout,
+    QWidget,
+)
+
+from regolith_studio.messages import N_
+from regolith_studio.readers.coefficient_tables import TableConvention
+from regolith_studio.readers.particles import has_tables
+from regolith_studio.readers.units import UNITS, unit_factor
+from regolith_studio.session.preferences import Preferences
+from regolith_studio.ui.translation import tr, tr_count
+from regolith_studio.ui.widgets.labels import remark, short_number
+from regolith_studio.ui.widgets.numbers import DecimalField
+
+SETTING = "on_opening"
+"""In the preferences of the window: ``add`` or ``replace``, if it is not to be asked."""
+ADD, REPLACE = "add", "replace"
+
+
+def ask_add_or_replace(preferences: Preferences, count: int, parent: QWidget) -> str | None:
+    """``add`` or ``replace``, as remembered or as answered now; ``None`` to open nothing.
+
+    Parameters
+    ----------
+    count
+        Of the particles that are open.
+    """
+    kept = preferences.window.get(SETTING)
+    if kept in (ADD, REPLACE):
+        return str(kept)
+    box = QMessageBox(parent)
+    box.setObjectName("add_or_replace")
+    box.setWindowTitle(tr("Open particles"))
+    box.setText(tr_count(N_("1 particle is open."), N_("{count} particles are open."), count))
+    box.setInformativeText(tr("Add the new ones to them, or replace them? Undo restores replaced ones."))
+    add = box.addButton(tr("Add"), QMessageBox.ButtonRole.AcceptRole)
+    replace = box.addButton(tr("Replace"), QMessageBox.ButtonRole.DestructiveRole)
+    cancel = box.addButton(QMessageBox.StandardButton.Cancel)
+    for button, name in ((add, "opening_add"), (replace, "opening_replace"), (cancel, "opening_cancel")):
+        button.setObjectName(name)
+    box.setDefaultButton(add)
+    remember = QCheckBox(tr("Do not ask again"))
+    remember.setObjectName("opening_remember")
+    box.setCheckBox(remember)
+    box.exec()
+    pressed = box.clickedButton()
+    answer = ADD if pressed is add else REPLACE if pressed is replace else None
+    if answer and remember.isChecked():
+        preferences.window = preferences.window | {SETTING: answer}
+    box.deleteLater()
+    return answer
+
+
+LABELS = {
+    "um": N_("Micrometres (µm)"),
+    "mm": N_("Millimetres (mm)"),
+    "m": N_("Metres (m)"),
+    "nm": N_("Nanometres (nm)"),
+    "cm": N_("Centimetres (cm)"),
+    "voxel": N_("Voxels of a CT volume"),
+}
+
+
+GRAIN_SIZES = (1.0, 5000.0)
+"""Plausible longest sides of regolith particles in micrometres."""
+
+
+CONVENTIONS = (
+    ("auto", N_("Detect from the rows")),
+    ("complex", N_("Complex, orthonormal, with the phase")),
+    ("shtools-4pi", N_("Real, 4π normalisation (SHTOOLS)")),
+    ("shtools-ortho", N_("Real, orthonormal (SHTOOLS)")),
+)
+"""Conventions of tables of coefficients; the real ones have no Condon-Shortley phase."""
+
+
+class UnitDialog(QDialog):
+    """Edits one unit, as the readers take it: ``mm``, or ``voxel:2.3`` with the voxel's edge in µm.
+
+    For tables of coefficients it edits their convention too.
+    """
+
+    conventionChanged = Signal(str)  # noqa: N815
+
+    def __init__(self, paths: list[Path], suggestion: str, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._first: tuple[str, float] | None = None
+        self._touched = False
+        self.size_note = remark()
+        self.size_note.setObjectName("unit_size")
+        self.setWindowTitle(tr("Length unit"))
+        self.setObjectName("unit_dialog")
+        question = QLabel(
+            tr_count(
+                N_("Length unit of {name}"),
+                N_("Length unit of these {count} files and folders"),
+                len(paths),
+                name=paths[0].name,
+            )
+        )
+        question.setWordWrap(True)
+        self.unit = QComboBox()
+        self.unit.setObjectName("unit")
+        self.unit.setAccessibleName(tr("Length unit"))
+        for key in UNITS:
+            self.unit.addItem(tr(LABELS.get(key, key)), key)
+        self.voxel = DecimalField()
+        self.voxel.setObjectName("voxel_size")
+        self.voxel.setAccessibleName(tr("Edge of a voxel in micrometres"))
+        self.voxel.setRange(0.001, 10_000.0)
+        self.voxel.setDecimals(3)
+        self.voxel.setSuffix(" µm")
+        self.voxel.setValue(2.3)
+        self._voxel_label = QLabel(tr("Edge of a voxel"))
+        form = QFormLayout()
+        form.addRow(tr("Unit"), self.unit)
+        form.addRow(self._voxel_label, self.voxel)
+        self.convention = QComboBox(self)
+        self.convention.setObjectName("convention")
+        self.convention.setAccessibleName(tr("Convention of coefficients"))
+        for convention, label in CONVENTIONS:
+            self.convention.addItem(tr(label), convention)
+        if has_tables(paths):
+            form.addRow(tr("Coefficients"), self.convention)
+        else:
+            self.convention.hide()
+        self.convention.activated.connect(
+            lambda _: self.conventionChanged.emit(self.convention.currentData())
+        )
+        buttons = self._buttons = QDialogButtonBox(
+            QDialogButtonBox.StandardButton.Open | QDialogButtonBox.StandardButton.Cancel, parent=self
+        )
+        buttons.accepted.connect(self.accept)
+        buttons.rejected.connect(self.reject)
+        layout = QVBoxLayout(self)
+        layout.addWidget(question)
+        layout.addLayout(form)
+        layout.addWidget(self.size_note)
+        layout.addWidget(remark(tr("Only 3MF and glTF state their unit. The answer is kept for the folder.")))
+        layout.addWidget(buttons)
+        self.unit.currentIndexChanged.connect(self._show_voxel)
+        self.unit.currentIndexChanged.connect(self._show_size)
+        self.unit.activated.connect(lambda _: setattr(self, "_touched", True))
+        self.voxel.valueChanged.connect(self._show_size)
+        self.setValue(suggestion)
+
+    def value(self) -> str:
+        """The unit."""
+        key = str(self.unit.currentData())
+        return f"voxel:{self.voxel.value():g}" if key == "voxel" else key
+
+    def table_convention(self) -> TableConvention:
+        """The convention of tables of coefficients."""
+        convention: TableConvention = self.convention.currentData()
+        return convention
+
+    def setValue(self, unit: str) -> None:
+        """Suggest a unit."""
+        key, _, size = unit.partition(":")
+        self.unit.setCurrentIndex(max(0, self.unit.findData(key)))
+        if size:
+            self.voxel.setValue(float(size))
+        self._show_voxel()
+
+    def set_first(self, first: tuple[str, float] | str | None) -> None:
+        """Show how large a particle would be; suggest the unit that makes it a grain.
+
+        Parameters
+        ----------
+        first
+            Name of the first particle, and its longest side as the file gives it; or why there is none.
+        """
+        self._buttons.button(QDialogButtonBox.StandardButton.Open).setEnabled(not isinstance(first, str))
+        if isinstance(first, str):
+            self.size_note.setText(first)
+            return
+        self._first = first
+        if first is not None and not self._touched and not _is_plausible(first[1], self.value()):
+            plausible = [unit for unit in UNITS if unit != "voxel" and _is_plausible(first[1], unit)]
+            if plausible:
+                self.setValue(plausible[0])
+        self._show_size()
+
+    def _show_size(self) -> None:
+        if self._first is None:
+            return
+        name, length = self._first
+        size = f"{short_number(length * unit_factor(self.value()), 3)} µm"
+        self.size_note.setText(tr("{name} would be {size} across.", name=name, size=size))
+
+    def _show_voxel(self) -> None:
+        asked = self.unit.currentData() == "voxel"
+        self.voxel.setEnabled(asked)
+        self._voxel_label.setEnabled(asked)
+
+
+def _is_plausible(length: float, unit: str) -> bool:
+    """Whether a particle of this longest side has the size of a grain."""
+    low, high = GRAIN_SIZES
+    return low <= length * unit_factor(unit) <= high

@@ -1,0 +1,322 @@
+"""Representatives of a dataset: thumbnails with captions and tool tips, error and size plots."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from PySide6.QtCore import QSize, Qt, QTimer
+from PySide6.QtWidgets import QLabel, QListView, QListWidget, QListWidgetItem, QVBoxLayout, QWidget
+
+from regolith_studio.coarsening.methods import METHODS
+from regolith_studio.dataset.build import ShapeClass
+from regolith_studio.dataset.dataset import Dataset
+from regolith_studio.dataset.quality import QualityCurve, QualityPoint
+from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.particle import Particle
+from regolith_studio.jobs.representatives_jobs import ChosenParticles
+from regolith_studio.messages import N_
+from regolith_studio.session.choices import Choices
+from regolith_studio.ui.dialogs.export import facet_limit_text
+from regolith_studio.ui.theme import Theme, current_theme
+from regolith_studio.ui.translation import localized, tr, tr_count
+from regolith_studio.ui.widgets.labels import heading
+from regolith_studio.ui.widgets.plots.curves import CurvePlot, PlotCurve
+from regolith_studio.ui.widgets.thumbnails import Painting, paint_thumbnail
+
+SIZE, CELL = 120, QSize(140, 164)
+"""Size of a thumbnail, and of a cell with its caption, in pixels."""
+
+
+@dataclass(frozen=True)
+class GalleryItem:
+    """A mesh with caption and tool tip; `coarsened` selects the colour."""
+
+    mesh: Mesh
+    caption: str
+    tip: str
+    coarsened: bool = False
+
+
+class RepresentativesGallery(QWidget):
+    """A list of thumbnails, or a placeholder."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._theme = current_theme()
+        self._shown: tuple[GalleryItem, ...] = ()
+        self._next = 0
+        self._painting: Painting | None = None
+        self._timer = QTimer(self, interval=0)
+        self._timer.timeout.connect(self._draw_next)
+        self.title = heading(tr("Representatives"))
+        self.list = QListWidget()
+        self.list.setObjectName("dataset_gallery")
+        self.list.setAccessibleName(tr("Representative particles"))
+        self.list.setViewMode(QListView.ViewMode.IconMode)
+        self.list.setResizeMode(QListView.ResizeMode.Adjust)
+        self.list.setMovement(QListView.Movement.Static)
+        self.list.setIconSize(QSize(SIZE, SIZE))
+        self.list.setGridSize(CELL + QSize(4, 4))
+        self.list.setTextElideMode(Qt.TextElideMode.ElideMiddle)
+        self.list.setFrameShape(self.list.Shape.NoFrame)
+        self.empty = QLabel(tr("Press Find representatives to show them here with their weights."))
+        self.empty.setProperty("role", "remark")
+        self.empty.setAlignment(Qt.AlignmentFlag.AlignCenter)
+        self.empty.setWordWrap(True)
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(8, 6, 8, 6)
+        layout.addWidget(self.title)
+        layout.addWidget(self.list, 1)
+        layout.addWidget(self.empty, 1)
+        self.show_shapes(tr("Representatives"), ())
+
+    @property
+    def shown(self) -> tuple[GalleryItem, ...]:
+        """The items, in order."""
+        return self._shown
+
+    def show_shapes(self, title: str, shown: Sequence[GalleryItem]) -> None:
+        """Show other items."""
+        self.title.setText(title)
+        self._shown = tuple(shown)
+        self.list.clear()
+        for each in self._shown:
+            item = QListWidgetItem(each.caption)
+            item.setToolTip(each.tip)
+            item.setSizeHint(CELL)
+            item.setTextAlignment(Qt.AlignmentFlag.AlignHCenter)
+            self.list.addItem(item)
+        self.list.setVisible(bool(shown))
+        self.empty.setVisible(not shown)
+        self._redraw()
+
+    def set_theme(self, theme: Theme) -> None:
+        """Take the colours of a theme."""
+        self._theme = theme
+        self._redraw()
+
+    def release(self) -> None:
+        """Stop drawing."""
+        self._timer.stop()
+        self._painting = None
+
+    def _redraw(self) -> None:
+        self._next, self._painting = 0, None
+        if self._shown:
+            self._timer.start()
+
+    def _draw_next(self) -> None:
+        if self._next >= len(self._shown):
+            self._timer.stop()
+            return
+        if self._painting is None:
+            each = self._shown[self._next]
+            colour = self._theme.polyhedron if each.coarsened else self._theme.particle
+            self._painting = paint_thumbnail(each.mesh, colour, SIZE)
+        try:
+            next(self._painting)
+        except StopIteration as end:
+            self.list.item(self._next).setIcon(end.value)
+            self._painting = None
+            self._next += 1
+
+
+NAMES = {
+    "aspect_ratio": "AR",
+    "sphericity": "S",
+    "convexity": "V/CH",
+    "min_diameter": "D<sub>min</sub>",
+    "max_diameter": "D<sub>max</sub>",
+}
+COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#8c6d00")
+WEIGHTINGS = (N_("number"), N_("volume"))
+"""Weightings of distributions."""
+MAX_CLASSES = 12
+"""Number of classes up to which each distribution is drawn; beyond it only the mixture."""
+
+
+class QualityPlot(CurvePlot):
+    """Wasserstein distance per descriptor, their mean, and the sampling noise of the population."""
+
+    def __init__(self) -> None:
+        self._points: tuple[QualityPoint, ...] = ()
+        self._noise: float | None = None
+        super().__init__(
+            tr("Number of representatives"),
+            tr("Distance to the population [deviations]"),
+            tr("Press Find representatives to plot the error against their number."),
+            log_y=True,
+        )
+        self.setObjectName("dataset_quality")
+
+    @property
+    def points(self) -> tuple[QualityPoint, ...]:
+        """The data that are drawn."""
+        return self._points
+
+    def show_points(self, points: Sequence[QualityPoint]) -> None:
+        """Draw the points that are computed so far."""
+        self._points, self._noise = tuple(points), None
+        self._draw()
+
+    def show_curve(self, curve: QualityCurve | None) -> None:
+        """Draw the whole curve, or nothing."""
+        self._points = curve.points if curve else ()
+        self._noise = curve.noise_mean if curve else None
+        enough = curve.sufficient_count if curve else None
+        self.set_remark(tr("below the sampling noise for N ≥ {count}", count=enough) if enough else "")
+        self._draw()
+
+    def set_theme(self, theme: Theme) -> None:
+        before = self.theme
+        super().set_theme(theme)
+        if theme != before:
+            self._draw()
+
+    def _draw(self) -> None:
+        counts = tuple(float(point.count) for point in self._points)
+        curves = [
+            PlotCurve(NAMES.get(key, key), colour, counts, self._column(key), markers=len(counts) < 40)
+            for key, colour in zip(NAMES, COLOURS, strict=True)
+        ]
+        curves.append(
+            PlotCurve(
+                tr("mean"),
+                self.theme.text,
+                counts,
+                tuple(map(_positive, (point.mean for point in self._points))),
+            )
+        )
+        if self._noise is not None and counts:
+            ends = (counts[0], counts[-1])
+            curves.append(
+                PlotCurve(tr("noise"), self.theme.muted, ends, (self._noise, self._noise), dash=True)
+            )
+        self.set_curves(curves)
+
+    def _column(self, key: str) -> tuple[float, ...]:
+        return tuple(_positive(point.errors.get(key, np.nan)) for point in self._points)
+
+
+def _positive(error: float) -> float:
+    """NaN instead of zero, which a logarithmic axis cannot show."""
+    return float(error) if error > 1e-6 else float("nan")
+
+
+class SizesPlot(CurvePlot):
+    """Cumulative distribution of the mixture and, up to :data:`MAX_CLASSES`, of each class."""
+
+    def __init__(self) -> None:
+        self._classes: tuple[ShapeClass, ...] = ()
+        super().__init__(
+            tr("Equivalent diameter [µm]"),
+            tr("Share at or below [%]"),
+            tr("The sizes of the classes appear here."),
+        )
+        self.setObjectName("dataset_sizes")
+
+    @property
+    def classes(self) -> tuple[ShapeClass, ...]:
+        """The data that are drawn."""
+        return self._classes
+
+    def show_classes(self, classes: Sequence[ShapeClass]) -> None:
+        """Draw other distributions; none for the placeholder."""
+        self._classes = tuple(classes)
+        self._draw()
+
+    def set_theme(self, theme: Theme) -> None:
+        before = self.theme
+        super().set_theme(theme)
+        if theme != before:
+            self._draw()
+
+    def _draw(self) -> None:
+        if not self._classes:
+            self.set_curves(())
+            return
+        weights = np.array([one.weight for one in self._classes])
+        low = min(float(one.sizes.quantile(0.002)) for one in self._classes)
+        high = max(float(one.sizes.quantile(0.998)) for one in self._classes)
+        at = np.linspace(max(0.0, low - 0.05 * (high - low) - 1e-3 * low), high * 1.03, 400)
+        rows = np.array([one.sizes.cdf(at) for one in self._classes])
+        curves = []
+        if len(self._classes) <= MAX_CLASSES:
+            curves = [PlotCurve("", self.theme.border, tuple(at), tuple(100 * row)) for row in rows]
+        mixture = 100 * (weights @ rows) / weights.sum()
+        kinds = {one.sizes.weighting for one in self._classes}
+        joint = " " + tr("and") + " "
+        words = tr("all classes, weighted by {kinds}", kinds=joint.join(tr(each) for each in sorted(kinds)))
+        curves.append(PlotCurve(words, self.theme.accent, tuple(at), tuple(mixture)))
+        self.set_curves(curves)
+
+
+def chosen_particles(particles: Sequence[Particle], chosen: ChosenParticles) -> list[GalleryItem]:
+    """Gallery items of the representatives."""
+    classes = chosen.representatives.classes
+    total = sum(one.weight for one in classes)
+    shown = []
+    for place, one in zip(chosen.places, classes, strict=True):
+        particle = particles[place]
+        share = localized(f"{100 * one.weight / total:.1f} %")
+        tip = tr_count(
+            N_("{name} represents 1 particle ({share})"),
+            N_("{name} represents {count} particles ({share})"),
+            one.n_members,
+            name=particle.name,
+            share=share,
+        )
+        shown.append((one.weight, GalleryItem(particle.mesh, f"{share}\n{particle.name}", tip)))
+    return _by_share(shown)
+
+
+def shapes(dataset: Dataset) -> list[GalleryItem]:
+    """Gallery items of the polyhedra of a dataset."""
+    shown = []
+    for one, weight in zip(dataset.representatives, dataset.weights, strict=True):
+        solid = one.shape
+        tip = tr(
+            "{name}: {faces} facets, {vertices} vertices, represents {count} particles",
+            name=one.name,
+            faces=solid.n_facets,
+            vertices=solid.n_vertices,
+            count=one.n_members,
+        )
+        parts = len(solid.part_meshes)
+        facets = (
+            tr("{parts} parts, {count} facets", parts=parts, count=solid.n_facets)
+            if parts > 1
+            else tr("{count} facets", count=solid.n_facets)
+        )
+        words = localized(f"{100 * weight:.1f} %\n") + facets
+        shown.append((float(weight), GalleryItem(solid.mesh, words, tip, coarsened=True)))
+    return _by_share(shown)
+
+
+def dataset_title(dataset: Dataset) -> str:
+    """Name, number of shapes and weighting of a dataset."""
+    counts = tr(str(dataset.weighting))
+    return tr(
+        "{name}: {count} shapes, weighted by {weighting}",
+        name=dataset.name,
+        count=len(dataset),
+        weighting=counts,
+    )
+
+
+SHAPE_FIELDS = ("method", "stop_at", "n_facets", "n_triangles", "n_vertices", "largest_error")
+"""Choices that :func:`coarsening_text` names."""
+
+
+def coarsening_text(choices: Choices) -> str:
+    """Description of how the shapes will be coarsened."""
+    known = METHODS.get(choices.method)
+    return tr(
+        "Each with {fineness}; method: {method} (see Explore).",
+        fineness=facet_limit_text(choices),
+        method=tr(known.label) if known else choices.method,
+    )
+
+
+def _by_share(shown: list[tuple[float, GalleryItem]]) -> list[GalleryItem]:
+    return [each for _, each in sorted(shown, key=lambda pair: -pair[0])]

@@ -1,0 +1,318 @@
+"""Panels beside the views: the harmonic fit, the loss, and the result in one sentence."""
+
+from collections.abc import Mapping
+from dataclasses import fields
+from functools import partial
+from typing import Any
+
+from PySide6.QtCore import QEvent, Signal
+from PySide6.QtWidgets import QFormLayout, QGridLayout, QVBoxLayout, QWidget
+
+from regolith_studio.coarsening.weights import JACCARD, WEIGHT_KEYS, LossWeights, Preset, presets
+from regolith_studio.descriptors.catalogue import CATALOGUE
+from regolith_studio.errors import InputError
+from regolith_studio.harmonics.fit_options import FitOptions
+from regolith_studio.jobs.particle_jobs import FIT_DEGREE
+from regolith_studio.messages import N_
+from regolith_studio.session.choices import Choices
+from regolith_studio.session.preferences import UserPresets
+from regolith_studio.session.results import Results
+from regolith_studio.session.verdict import PolyhedronVerdict, polyhedron_verdict
+from regolith_studio.ui.layout import Collapsible
+from regolith_studio.ui.translation import number_text, tr, translate
+from regolith_studio.ui.widgets.combo_box import ChoiceBox
+from regolith_studio.ui.widgets.fixed_height_text import FixedHeightText
+from regolith_studio.ui.widgets.headline import Headline
+from regolith_studio.ui.widgets.labels import heading, remark, rich_symbol, with_subscripts
+from regolith_studio.ui.widgets.numbers import NumberSlider, NumberSpec, align_labels
+from regolith_studio.ui.widgets.presets import PresetBar, PresetEntry
+from regolith_studio.ui.widgets.table import definition
+
+L_MAX = NumberSpec(
+    "l<sub>max</sub>",
+    N_("Maximum degree"),
+    0,
+    FIT_DEGREE,
+    tip=N_(
+        "Degree at which the series is truncated: 0 is a sphere, 10 keeps the form, 30 nearly all details."
+    ),
+)
+
+
+class FitPanel(QWidget):
+    """Edits l_max and the options of the fit."""
+
+    FIELDS = ("l_max", *(each.name for each in fields(FitOptions)))
+    valueChanged = Signal(dict)  # noqa: N815
+    editingFinished = Signal()  # noqa: N815
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.setObjectName("fit")
+        self.l_max = NumberSlider(L_MAX)
+        self.l_max.slider.setObjectName("l_max_slider")
+        self.l_max.field.setObjectName("l_max")
+        self.ways = {
+            each.name: ChoiceBox(each.name, tr(each.metadata["label"]), each.metadata["choices"])
+            for each in fields(FitOptions)
+        }
+        self.more = Collapsible(tr("Radius function"), self._form())
+        self.more.button.setObjectName("radius_settings")
+        self.findings = remark()
+        self.warnings = remark(role="warning")
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.addWidget(heading(tr("Spherical-harmonics fit")))
+        for widget in (
+            self.l_max,
+            self.more,
+            FixedHeightText((self.warnings, self.findings)),
+        ):
+            layout.addWidget(widget)
+        self.set_findings(None)
+        self.l_max.valueChanged.connect(lambda degree: self.valueChanged.emit({"l_max": int(degree)}))
+        self.l_max.editingFinished.connect(self.editingFinished)
+
+    def value(self) -> dict[str, Any]:
+        """The edited choices."""
+        return {"l_max": int(self.l_max.value()), **{name: box.value() for name, box in self.ways.items()}}
+
+    def setValue(self, value: Mapping[str, Any]) -> None:
+        """Show other choices."""
+        self.l_max.setValue(value["l_max"])
+        for name, box in self.ways.items():
+            box.setValue(value[name])
+
+    def set_findings(self, fit: Any | None) -> None:
+        """Show what the radius function of a ``HarmonicFit`` cannot represent."""
+        if fit is None:
+            self.findings.setText(tr("Not fitted yet."))
+            self.findings.show()
+            self.warnings.hide()
+            return
+        self.findings.setVisible(not fit.warnings)
+        if fit.star_shaped:
+            self.findings.setText(tr("Star-shaped: no part of the surface is hidden from the star point."))
+        else:
+            self.findings.setText(
+                tr(
+                    "{surface:.2%} of the surface is hidden from the star point; "
+                    "{volume:.2%} of the volume cannot be represented.",
+                    surface=fit.hidden_surface_share,
+                    volume=fit.unrepresentable_volume_share,
+                )
+            )
+        self.warnings.setText(with_subscripts(" ".join(map(translate, fit.warnings))))
+        self.warnings.setVisible(bool(fit.warnings))
+
+    def _form(self) -> QWidget:
+        form = QFormLayout(content := QWidget())
+        form.setContentsMargins(14, 0, 0, 0)
+        for each in fields(FitOptions):
+            box = self.ways[each.name]
+            box.setToolTip(tr(each.metadata["tip"]))
+            box.activated.connect(partial(self._announce, each.name))
+            form.addRow(tr(each.metadata["label"]), box)
+        return content
+
+    def _announce(self, name: str, _index: int) -> None:
+        self.valueChanged.emit({name: self.ways[name].value()})
+        self.editingFinished.emit()
+
+
+OWN = "own:"
+"""Prefix of the keys of own presets."""
+SLIDER_END = 2.0
+LARGEST = 100.0
+
+
+def weight_spec(key: str) -> NumberSpec:
+    """Label, range and tool tip of the weight of a term."""
+    if key == JACCARD:
+        label, name, tip = "Jaccard", tr("Jaccard distance"), definition(key)
+    else:
+        row = CATALOGUE[key]
+        label, name = rich_symbol(row.symbol), tr(row.label)
+        tip = tr("Relative error (Eq. 8) of {definition}", definition=definition(key))
+    words = tr("Weight of {name}", name=name)
+    return NumberSpec(label, words, 0.0, SLIDER_END, 0.05, limit=LARGEST, tip=tip)
+
+
+class LossPanel(QWidget):
+    """Edits the weights, and the shipped preset that they come from.
+
+    An own preset is a set of weights with the shipped preset that it is derived from. The rest of the program
+    sees that preset with modified weights, so that recipes and projects do not depend on own presets.
+    """
+
+    FIELDS = ("weights", "preset")
+    valueChanged = Signal(dict)  # noqa: N815
+    editingFinished = Signal()  # noqa: N815
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.setObjectName("loss")
+        self._own = UserPresets("weights")
+        self._preset = self._chosen = next(iter(presets()))
+        self._known: dict[str, Preset] = {}
+        self._keep: frozenset[str] | None = None
+        self.bar = PresetBar("preset", tr("Preset of weights"), heading(tr("Weights of the loss (Eq. 9)")))
+        self.preset, self.reset = self.bar.box, self.bar.reset
+        self.reset.setObjectName("reset_weights")
+        self.sliders = {key: NumberSlider(weight_spec(key)) for key in WEIGHT_KEYS}
+        self.origin = remark()
+        self._arrange()
+        self._connect()
+        self._list()
+        self._show_mark()
+
+    def value(self) -> dict[str, Any]:
+        """Weights and preset."""
+        weights = LossWeights.of(**{key: float(each.value()) for key, each in self.sliders.items()})
+        return {"weights": weights.keeping(self._keep), "preset": self._preset}
+
+    def setValue(self, value: Mapping[str, Any]) -> None:
+        """Show other weights without emitting a signal."""
+        for key, slider in self.sliders.items():
+            slider.setValue(value["weights"][key])
+        self._keep = value["weights"].keep
+        self._preset = value["preset"]
+        self._chosen = self._source(value["weights"])
+        self._show_mark()
+
+    def is_modified(self) -> bool:
+        """Whether the weights differ from those of the selected preset."""
+        return bool(self.value()["weights"] != self._known[self._chosen].weights)
+
+    def save_as(self, name: str) -> None:
+        """Save the present weights as an own preset.
+
+        Raises
+        ------
+        RegolithError
+            If the name cannot be taken or the file cannot be written.
+        """
+        now = self.value()
+        self._own.save(name, {"preset": now["preset"], "weights": dict(now["weights"])})
+        self._list()
+        self._chosen = OWN + name
+        self._show_mark()
+
+    def delete(self, key: str) -> None:
+        """Delete an own preset; the weights stay."""
+        self._own.remove(key.removeprefix(OWN))
+        self._list()
+        self._chosen = self._source(self.value()["weights"])
+        self._show_mark()
+
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() in (QEvent.Type.FontChange, QEvent.Type.StyleChange):
+            align_labels(self.sliders.values())
+
+    def _list(self) -> None:
+        """Read and list shipped and own presets."""
+        found = dict(presets())
+        for name, values in self._own.all().items():
+            try:
+                weights = LossWeights.of(**values["weights"])
+            except (InputError, KeyError, TypeError, ValueError):
+                continue  # of another version, or edited by hand
+            if values.get("preset") in presets():
+                found[OWN + name] = Preset(values["preset"], name, weights, N_("Own preset"))
+        self._known = found
+        self.bar.set_entries(
+            [
+                PresetEntry(key, each.label if key.startswith(OWN) else tr(each.label), tr(each.origin), own)
+                for key, each in found.items()
+                for own in (key.startswith(OWN),)
+            ]
+        )
+
+    def _source(self, weights: LossWeights) -> str:
+        """Key of the preset with these weights, or else of the one that was selected last."""
+        known = self._known
+        now = [key for key, each in known.items() if each.name == self._preset and each.weights == weights]
+        if self._chosen in now or (not now and self._chosen in known):
+            return self._chosen if known[self._chosen].name == self._preset else self._preset
+        return now[0] if now else self._preset
+
+    def _arrange(self) -> None:
+        grid = QGridLayout()
+        grid.setContentsMargins(0, 0, 0, 0)
+        grid.setVerticalSpacing(3)
+        for row, (key, slider) in enumerate(self.sliders.items()):
+            slider.slider.setObjectName(f"weight_{key}_slider")
+            slider.field.setObjectName(f"weight_{key}")
+            grid.addWidget(slider, row, 0)
+        align_labels(self.sliders.values())
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.addWidget(self.bar)
+        layout.addLayout(grid)
+        layout.addWidget(FixedHeightText((self.origin,)))
+
+    def _connect(self) -> None:
+        self.bar.chosen.connect(self._take)
+        self.bar.resetRequested.connect(lambda: self._take(self._chosen))
+        self.bar.saveRequested.connect(self.save_as)
+        self.bar.deleteRequested.connect(self.delete)
+        for slider in self.sliders.values():
+            slider.valueChanged.connect(self._announce)
+            slider.editingFinished.connect(self.editingFinished)
+
+    def _take(self, key: str) -> None:
+        preset = self._known[key]
+        self._chosen = key
+        self.setValue({"weights": preset.weights, "preset": preset.name})
+        self.valueChanged.emit(self.value())
+        self.editingFinished.emit()
+
+    def _announce(self) -> None:
+        self._show_mark()
+        self.valueChanged.emit({"weights": self.value()["weights"]})
+
+    def _show_mark(self) -> None:
+        self.bar.show_state(self._chosen, self.is_modified())
+        preset = self._known[self._chosen]
+        own = self._chosen.startswith(OWN)
+        self.origin.setText(
+            tr("Changed from {preset}.", preset=preset.label if own else tr(preset.label))
+            if self.is_modified()
+            else tr(preset.origin) + "."
+        )
+
+
+class VerdictPanel(Headline):
+    """The result of the page Explore; dimmed while the polyhedron is being replaced."""
+
+    def __init__(self) -> None:
+        super().__init__("verdict", (tr("Loss"), "RMSRE", tr("Jaccard distance")))
+        tips = (
+            tr("Weighted sum of the Jaccard distance and the relative errors (Eq. 9)"),
+            tr("Root mean squared relative error over the descriptors that have a weight (Eq. 10)"),
+            tr("1 - shared volume / united volume (Eq. 7)"),
+        )
+        for place, tip in enumerate(tips):
+            self.caption(place, self.captions[place].text(), tip)
+        self._shown: PolyhedronVerdict | None = None
+        self._particle = ""
+
+    def show_results(self, results: Results, choices: Choices) -> None:
+        """Show the verdict on the finished polyhedron."""
+        done = results.coarsened
+        if done is not None:
+            self._particle = choices.selected
+            self._shown = polyhedron_verdict(
+                done, choices.weights, results.against_particle, results.fewer_facets
+            )
+        elif results.best is None or choices.selected != self._particle:
+            self._shown = None
+        found = self._shown
+        if found is None:
+            why = translate(results.failures.get("coarsening", ""))
+            self.show_values(("–",) * 3, why or tr("The polyhedron is not finished yet."), fresh=False)
+            return
+        error = "–" if found.rmsre != found.rmsre else number_text(found.rmsre, ".2%")
+        figures = (number_text(found.loss, "#.4g"), error, number_text(found.jaccard_distance, ".1%"))
+        self.show_values(figures, translate(found.sentence), fresh=done is not None)

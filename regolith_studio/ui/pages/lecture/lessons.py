@@ -1,0 +1,364 @@
+"""Lessons two and three: the fit degree by degree (Eq. 4), and a random field with its spectrum."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from PySide6.QtCore import Signal
+from PySide6.QtWidgets import QPushButton, QSplitter, QVBoxLayout, QWidget
+
+from regolith_studio.descriptors.catalogue import LOSS_KEYS
+from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.jobs.events import Job
+from regolith_studio.jobs.lecture_jobs import DegreeStep, DrawnField, draw_field_later
+from regolith_studio.messages import N_
+from regolith_studio.scene import surfaces
+from regolith_studio.scene.lecture_scenes import show_field
+from regolith_studio.scene.palette import DESCRIPTOR_COLOURS
+from regolith_studio.shape_models.materials import materials
+from regolith_studio.ui.layout import Splitter, scrolled, side_by_side, stacked
+from regolith_studio.ui.page import PageContext
+from regolith_studio.ui.pages.lecture import texts
+from regolith_studio.ui.pages.lecture.playback_bar import PlaybackBar
+from regolith_studio.ui.theme import Theme, current_theme
+from regolith_studio.ui.translation import Markup, tr, tr_count
+from regolith_studio.ui.views.factory import make_view
+from regolith_studio.ui.views.view import CameraLink
+from regolith_studio.ui.views.view_frame import ViewFrame
+from regolith_studio.ui.widgets.combo_box import ChoiceBox, ComboBoxRow
+from regolith_studio.ui.widgets.formula import FormulaLabel, prepare
+from regolith_studio.ui.widgets.labels import remark
+from regolith_studio.ui.widgets.plots.curves import CurvePlot, PlotCurve
+from regolith_studio.ui.widgets.plots.spectrum_editor import SpectrumEditor
+
+VIEWS, PLOTS = 560, 240
+"""Initial heights in pixels."""
+MIN_PLOT = 150
+"""Least height of a plot below texts that need more."""
+PICTURES, TEXTS = 1000, 560
+"""Initial widths in pixels."""
+
+
+def lesson_columns(
+    name: str,
+    views: Sequence[QWidget],
+    plots: Sequence[QWidget],
+    texts: Sequence[QWidget],
+    under_texts: QWidget | None = None,
+) -> QSplitter:
+    """All plots stay in sight; only texts are scrolled where they are too long.
+
+    Parameters
+    ----------
+    name
+        Of the borders in the preferences.
+    under_texts
+        A plot below the texts.
+    """
+    column_of_texts = QWidget()
+    column = QVBoxLayout(column_of_texts)
+    column.setContentsMargins(10, 6, 6, 6)
+    column.setSpacing(6)
+    for each in texts:
+        column.addWidget(each)
+    column.addStretch(1)
+    pictures = stacked([_row(views), _row(plots)], [VIEWS, PLOTS], stretch=0)
+    right: QWidget = scrolled(column_of_texts)
+    if under_texts is not None:
+        both = right = stacked([right, under_texts], [VIEWS, PLOTS], stretch=0)
+        both.setObjectName(f"{name}_texts")
+        both.fit = _TextsAbovePlot(both, column_of_texts).place
+    pictures.setObjectName(f"{name}_rows")
+    columns = side_by_side([pictures, right], [PICTURES, TEXTS], stretch=0)
+    columns.setObjectName(f"{name}_columns")
+    columns.setStretchFactor(1, 1)
+    return columns
+
+
+class _TextsAbovePlot:
+    """Gives the texts the height of the longest so far, if there is so much, and the plot the rest."""
+
+    def __init__(self, both: Splitter, texts: QWidget) -> None:
+        self._both, self._texts = both, texts
+        self._width, self._longest = 0, 0
+
+    def place(self) -> None:
+        """Place the border between them."""
+        if self._texts.width() != self._width:
+            self._width, self._longest = self._texts.width(), 0
+        height = sum(self._both.sizes())
+        self._longest = max(self._longest, self._texts.minimumSizeHint().height())
+        texts = max(round(height * VIEWS / (VIEWS + PLOTS)), min(self._longest, height - MIN_PLOT))
+        self._both.setSizes([texts, height - texts])
+
+
+def _row(parts: Sequence[QWidget]) -> QSplitter:
+    row = side_by_side(parts, [500] * len(parts), stretch=0)
+    for place in range(row.count()):
+        row.setStretchFactor(place, 1)
+    return row
+
+
+WAIT = N_("Fitting the particle …")
+
+
+class DegreesView(QWidget):
+    """Particle and fit, text and series at a degree, and the errors up to it.
+
+    Parameters
+    ----------
+    kind
+        ``live`` or ``image``, of the views.
+    """
+
+    def __init__(self, kind: str) -> None:
+        super().__init__()
+        self.setObjectName("lesson_degrees")
+        self._theme = current_theme()
+        self._particle: Mesh | None = None
+        self._steps: tuple[DegreeStep, ...] = ()
+        self._kind = kind
+
+    def build(self) -> None:
+        """Make the parts, right after construction."""
+        self.frames: dict[str, ViewFrame] = {}
+        for name in ("particle", "fit"):
+            self.frames[name] = ViewFrame(make_view(self._kind, self._theme.surroundings), f"degrees_{name}")
+        self.link = CameraLink([frame.view for frame in self.frames.values()])
+        self.sentence = remark(tr(WAIT), role="")
+        self.sentence.setObjectName("degrees_sentence")
+        self.formula = FormulaLabel(tr("The series with its numbers"))
+        self.errors = CurvePlot(tr("Degree l<sub>max</sub>"), tr("Error [%]"), tr(WAIT), log_y=True)
+        self.errors.setObjectName("degrees_errors")
+        self.errors.keep_readable()
+        self.playback = PlaybackBar("degrees", N_("degree"), self._is_ready)
+        self.playback.stepChanged.connect(self._show_step)
+        self._arrange()
+
+    def show_particle(self, mesh: Mesh, title: str) -> None:
+        """Show a particle under this title; its steps follow."""
+        self._particle, self._steps = mesh, ()
+        self.playback.pause()
+        self.playback.set_count(0)
+        self.frames["particle"].set_texts(title)
+        self.frames["fit"].set_texts(tr("Spherical-harmonics fit"))
+        self.frames["particle"].view.draw(lambda plotter: surfaces.show_particle(plotter, mesh))
+        self.frames["fit"].view.draw(surfaces.clear)
+        self.sentence.setText(tr(WAIT))
+        self.link.frame(mesh.vertices)
+
+    def show_steps(self, steps: tuple[DegreeStep, ...]) -> None:
+        """Show the degrees that are computed so far."""
+        first = not self._steps
+        self._steps = steps
+        self.playback.extend(len(steps))
+        if first or self.playback.step == len(steps) - 1:
+            self._show_step(self.playback.step)
+        else:
+            self._plot()
+
+    def set_theme(self, theme: Theme) -> None:
+        """Take the colours of a theme."""
+        self._theme = theme
+        for name, frame in self.frames.items():
+            frame.view.set_surroundings(theme.surroundings)
+            frame.set_colour(getattr(theme, name))
+        self.errors.set_theme(theme)
+
+    def release(self) -> None:
+        """Stop, and release graphics memory."""
+        self.playback.pause()
+        for frame in self.frames.values():
+            frame.view.release()
+
+    def _is_ready(self, number: int) -> bool:
+        """Whether the formulas of a degree are set."""
+        return number >= len(self._steps) or prepare(texts.degree_lines(self._steps[number]))
+
+    def _show_step(self, number: int) -> None:
+        if number >= len(self._steps):
+            return
+        step = self._steps[number]
+        mesh = step.mesh
+        self.sentence.setText(texts.degree_sentence(step))
+        self.formula.set_lines(*texts.degree_lines(step))
+        count = (step.l_max + 1) ** 2
+        degree = Markup(f"l<sub>max</sub>&nbsp;=&nbsp;{step.l_max}")
+        self.frames["fit"].set_texts(
+            tr("Spherical-harmonics fit, {degree}", degree=degree),
+            tr_count(N_("1 coefficient"), N_("{count:,} coefficients"), count),
+            tr("Fit, {degree}", degree=degree),
+        )
+        if mesh is None:
+            self.frames["fit"].view.draw(surfaces.clear)
+        else:
+            self.frames["fit"].view.draw(lambda plotter: surfaces.show_fit(plotter, mesh))
+        self._plot()
+
+    def _plot(self) -> None:
+        known = [step for step in self._steps[: self.playback.step + 1] if step.errors]
+        x = tuple(float(step.l_max) for step in known)
+        curves = [
+            PlotCurve(
+                texts.plain(key),
+                DESCRIPTOR_COLOURS[place],
+                x,
+                tuple(max(100 * step.errors[key], 1e-4) for step in known),
+                markers=True,
+            )
+            for place, key in enumerate(LOSS_KEYS)
+        ]
+        radial = tuple(max(100 * step.radial_error, 1e-4) for step in known)
+        curves.append(PlotCurve(tr("radius (rms)"), self._theme.particle, x, radial, markers=True))
+        self.errors.set_curves(curves)
+        self.errors.canvas.setXRange(0, max(len(self._steps) - 1, 1), padding=0.02)
+
+    def _arrange(self) -> None:
+        views, texts = list(self.frames.values()), [self.sentence, self.formula]
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.addWidget(lesson_columns("lecture_degrees", views, [self.errors], texts), 1)
+        layout.addWidget(self.playback)
+
+
+DEGREE = 10
+
+
+class FieldView(QWidget):
+    """Sphere and particle coloured by the field, and the spectrum editor.
+
+    Parameters
+    ----------
+    context
+        Of the page; what the spectrum makes is drawn while it is dragged.
+    """
+
+    seedChanged = Signal(int)  # noqa: N815
+
+    def __init__(self, context: PageContext) -> None:
+        super().__init__()
+        self.setObjectName("lesson_field")
+        self._theme = current_theme()
+        self.seed = 0
+        self.drawn: DrawnField | None = None
+        self._context = context
+        self._unframed = True
+
+    def build(self) -> None:
+        """Make the parts, right after construction."""
+        self.frames: dict[str, ViewFrame] = {}
+        for name in ("sphere", "grain"):
+            self.frames[name] = ViewFrame(
+                make_view(self._context.views, self._theme.surroundings), f"field_{name}"
+            )
+        self.link = CameraLink([frame.view for frame in self.frames.values()])
+        self.sentence = remark("", role="")
+        self.sentence.setObjectName("field_sentence")
+        self.formula = FormulaLabel(tr("The field with its amplitudes"))
+        self.material = ChoiceBox(
+            "field_material", tr("Material"), {key: card.label for key, card in materials().items()}
+        )
+        self.spectrum = SpectrumEditor(tr("No material is chosen."))
+        self.spectrum.setObjectName("field_spectrum")
+        self.spectrum.keep_readable()
+        self.reset, self.another = QPushButton(tr("Reset the spectrum")), QPushButton(tr("Draw again"))
+        self.reset.setObjectName("field_reset")
+        self.another.setObjectName("field_another")
+        self._arrange()
+        self.material.currentIndexChanged.connect(lambda _: self.take_material())
+        self.spectrum.valueChanged.connect(lambda _: self.redraw())
+        self.reset.clicked.connect(self.spectrum.reset)
+        self.another.clicked.connect(self.draw_another)
+
+    def take_material(self) -> None:
+        """Show the spectrum of the selected material."""
+        card = materials()[self.material.value()]
+        self.spectrum.setValue(np.array(card.relative_amplitudes[: min(DEGREE, card.l_max)]))
+        self.redraw(again=True)
+
+    def draw_another(self) -> None:
+        """Use the next seed."""
+        self.seed += 1
+        self.redraw(again=True)
+        self.seedChanged.emit(self.seed)
+
+    def redraw(self, again: bool = False) -> None:
+        """Draw field and particle of the present spectrum; fit the view if it is another particle."""
+        amplitudes = self.spectrum.value()
+        self.reset.setEnabled(self.spectrum.is_changed())
+        if not len(amplitudes):
+            return
+        self.formula.set_lines(*texts.field_lines(amplitudes.tolist()))
+        self._unframed |= again
+        seed = self.seed
+        self._context.start(
+            tr("Drawing particles"),
+            Job(draw_field_later, (self.material.value(), amplitudes, seed)),
+            lambda drawn: self._take(drawn, amplitudes, seed),
+            failed=lambda failure: self.sentence.setText(failure.sentence),
+            lane="field",
+            repeats=True,
+            after_running=True,
+        )
+
+    def set_theme(self, theme: Theme) -> None:
+        """Take the colours of a theme."""
+        self._theme = theme
+        for frame in self.frames.values():
+            frame.view.set_surroundings(theme.surroundings)
+            frame.set_colour(theme.fit)
+        self.spectrum.set_theme(theme)
+        if self.drawn is not None:
+            self._show(self.drawn, False)
+
+    def release(self) -> None:
+        """Release graphics memory."""
+        for frame in self.frames.values():
+            frame.view.release()
+
+    def _take(self, drawn: DrawnField, amplitudes: FloatArray, seed: int) -> None:
+        self.drawn = drawn
+        again, self._unframed = self._unframed, False
+        self._show(drawn, again)
+        self.sentence.setText(_sentence(drawn, amplitudes, seed))
+
+    def _show(self, drawn: DrawnField, again: bool) -> None:
+        span = float(np.abs(drawn.values).max(initial=0.0))
+        ink = self._theme.surroundings
+        radius = float(np.cbrt(3 * drawn.mesh.volume / (4 * np.pi)))
+        sphere = drawn.sphere.moved(scale=radius)
+        self.frames["sphere"].view.draw(
+            lambda plotter: show_field(plotter, sphere, drawn.values, span, ink, "%.2g")
+        )
+        self.frames["grain"].view.draw(
+            lambda plotter: show_field(plotter, drawn.mesh, drawn.values, span, ink)
+        )
+        self.frames["sphere"].set_texts(
+            tr("The field on the sphere"), tr("ln(r / mean), blue inwards, red outwards")
+        )
+        self.frames["grain"].set_texts(
+            tr("The particle"), tr("equivalent radius {radius:.3g} µm", radius=radius)
+        )
+        if again:
+            self.link.frame(drawn.mesh.vertices)
+
+    def _arrange(self) -> None:
+        choices = ComboBoxRow(self.material, (self.reset, self.another), spacing=10)
+        views, texts = list(self.frames.values()), [choices, self.sentence, self.formula]
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.addWidget(lesson_columns("lecture_field", views, [self.spectrum], texts), 1)
+
+
+def _sentence(drawn: DrawnField, amplitudes: FloatArray, seed: int) -> str:
+    loudest = int(amplitudes.argmax()) + 1
+    expected = float(np.sqrt(((2 * np.arange(1, len(amplitudes) + 1) + 1) * amplitudes**2).sum()))
+    return tr(
+        "Draw {number}. The radius deviates by {found:.1%} from its mean; {expected:.1%} is expected"
+        " over many draws. Degree {loudest} is the strongest: {share:.2g} %.",
+        number=seed + 1,
+        found=float(drawn.values.std()),
+        expected=expected,
+        loudest=loudest,
+        share=100 * amplitudes[loudest - 1],
+    )

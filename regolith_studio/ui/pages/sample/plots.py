@@ -1,0 +1,305 @@
+"""Plots of the sample: two descriptors against each other, and their distributions."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import pyqtgraph as pg
+from PySide6.QtCore import QSignalBlocker, Qt, Signal
+from PySide6.QtGui import QColor
+from PySide6.QtWidgets import (
+    QAbstractItemView,
+    QCheckBox,
+    QComboBox,
+    QHeaderView,
+    QLabel,
+    QTableWidget,
+    QTableWidgetItem,
+    QToolButton,
+    QVBoxLayout,
+    QWidget,
+)
+
+from regolith_studio.descriptors.catalogue import CATALOGUE
+from regolith_studio.descriptors.distributions import WEIGHTINGS
+from regolith_studio.descriptors.zingg import THRESHOLD
+from regolith_studio.io.tables import Column, Table
+from regolith_studio.messages import N_
+from regolith_studio.scene.palette import DESCRIPTOR_COLOURS
+from regolith_studio.session.results import ParticleEntry
+from regolith_studio.session.sample_table import has_weights, statistics_table
+from regolith_studio.ui.layout import WrappingRow
+from regolith_studio.ui.theme import Theme
+from regolith_studio.ui.translation import number_text, rich, tr, tr_count
+from regolith_studio.ui.widgets.combo_box import ElidedComboBox
+from regolith_studio.ui.widgets.labels import rich_symbol, short_number
+from regolith_studio.ui.widgets.plots.base import Plot
+from regolith_studio.ui.widgets.table import FontRowHeight, definition
+
+ZINGG = ("flatness", "elongation")
+SYMBOLS = ("o", "s", "t", "d", "star", "p", "h", "+")
+_CORNERS = ((N_("blade"), 0, 0), (N_("rod"), 1, 0), (N_("disc"), 0, 1), (N_("equant"), 1, 1))
+"""Zingg's form classes, and whether flatness and elongation exceed the threshold."""
+
+
+class ScatterPanel(QWidget):
+    """A point per particle; a click selects it, with Ctrl it is added to the selection."""
+
+    pointChosen = Signal(str, bool)  # noqa: N815
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.setObjectName("scatter")
+        self._entries: tuple[ParticleEntry, ...] = ()
+        self._chosen: frozenset[str] = frozenset()
+        self._items: list[Any] = []
+        self._corners: dict[tuple[int, int], pg.TextItem] = {}
+        self.across = _descriptor_box("scatter_x", tr("Horizontal axis"))
+        self.up = _descriptor_box("scatter_y", tr("Vertical axis"))
+        self.log = QCheckBox(tr("Logarithmic"))
+        self.log.setObjectName("scatter_log")
+        self.zingg = QToolButton()
+        self.zingg.setText("Zingg")
+        self.zingg.setObjectName("scatter_zingg")
+        self.zingg.setToolTip(tr("Flatness against elongation, with Zingg's classes of form"))
+        self.plot = Plot("", "", tr("The plot appears when the particles are measured."))
+        self._arrange()
+        self.set_axes(*ZINGG)
+
+    def axes(self) -> tuple[str, str]:
+        """Keys of the two descriptors."""
+        return str(self.across.currentData()), str(self.up.currentData())
+
+    def set_axes(self, x: str, y: str) -> None:
+        """Select two other descriptors."""
+        for box, key in ((self.across, x), (self.up, y)):
+            with QSignalBlocker(box):
+                box.setCurrentIndex(max(0, box.findData(key)))
+        if self.axes() == ZINGG:
+            self.log.setChecked(False)
+        self._draw()
+
+    def show_entries(self, entries: Sequence[ParticleEntry], chosen: Sequence[str]) -> None:
+        """Draw other particles and highlight the selected ones."""
+        self._entries = tuple(entry for entry in entries if entry.descriptors)
+        self._chosen = frozenset(chosen)
+        self._draw()
+
+    def set_theme(self, theme: Theme) -> None:
+        """Take the colours of a theme."""
+        self.plot.set_theme(theme)
+        self._draw()  # the names of Zingg's classes take the font of when they are drawn
+
+    def _arrange(self) -> None:
+        against = QLabel(tr("against"))
+        row = WrappingRow((self.up, against, self.across), (self.log, self.zingg), margins=(8, 6, 8, 0))
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.addWidget(row)
+        layout.addWidget(self.plot, 1)
+        for box in (self.across, self.up):
+            box.currentIndexChanged.connect(lambda _at: self._draw())
+        self.log.toggled.connect(lambda _on: self._draw())
+        self.zingg.clicked.connect(lambda: self.set_axes(*ZINGG))
+        self.plot.canvas.getViewBox().sigResized.connect(self._place_zingg)
+
+    def _draw(self) -> None:
+        canvas = self.plot.canvas
+        for item in self._items:
+            canvas.removeItem(item)
+        self._items, self._corners = [], {}
+        self.plot.set_empty(not self._entries)
+        if not self._entries:
+            return
+        x, y = self.axes()
+        self.plot.set_labels(_axis_label(x), _axis_label(y))
+        logarithmic = self.log.isChecked()
+        canvas.setLogMode(x=logarithmic, y=logarithmic)
+        if (x, y) == ZINGG:
+            self._draw_zingg()
+        groups = list(dict.fromkeys(entry.particle.group for entry in self._entries))
+        for number, group in enumerate(groups):
+            self._draw_group([e for e in self._entries if e.particle.group == group], number)
+        named = [
+            (DESCRIPTOR_COLOURS[n % len(DESCRIPTOR_COLOURS)], str(rich(g))) for n, g in enumerate(groups) if g
+        ]
+        self.plot.set_legend(named if len(groups) > 1 else [])
+        count = len(self._entries)
+        self.plot.set_remark(tr_count(N_("1 particle"), N_("{count} particles"), count))
+        canvas.enableAutoRange()
+        self._place_zingg()
+
+    def _draw_group(self, members: Sequence[ParticleEntry], number: int) -> None:
+        x, y = self.axes()
+        values = [(each.descriptors[x], each.descriptors[y]) for each in members if each.descriptors]
+        members = [each for each, pair in zip(members, values, strict=True) if np.isfinite(pair).all()]
+        at = np.array([pair for pair in values if np.isfinite(pair).all()])
+        if not members:
+            return
+        if self.log.isChecked():
+            at = np.log10(np.maximum(at, 1e-300))
+        colour = QColor(DESCRIPTOR_COLOURS[number % len(DESCRIPTOR_COLOURS)])
+        ring = pg.mkPen(QColor(self.plot.theme.text), width=2)
+        item = pg.ScatterPlotItem(
+            hoverable=True, tip=lambda x, y, data: f"{data}\n{number_text(x, '.4g')}; {number_text(y, '.4g')}"
+        )
+        item.setData(
+            pos=at,
+            data=[entry.id for entry in members],
+            symbol=SYMBOLS[number % len(SYMBOLS)],
+            size=[13 if entry.id in self._chosen else 8 for entry in members],
+            brush=colour,
+            pen=[ring if entry.id in self._chosen else pg.mkPen(None) for entry in members],
+            hoverSize=14,
+        )
+        item.sigClicked.connect(self._clicked)
+        self.plot.canvas.addItem(item)
+        self._items.append(item)
+
+    def _draw_zingg(self) -> None:
+        for angle in (0, 90):
+            line = pg.InfiniteLine(
+                THRESHOLD, angle=angle, pen=self.plot.pen(self.plot.theme.muted, dash=True)
+            )
+            self.plot.canvas.addItem(line, ignoreBounds=True)
+            self._items.append(line)
+        for name, right, upper in _CORNERS:
+            word = pg.TextItem(tr(name), color=self.plot.theme.muted, anchor=(1, 1 - upper))
+            self.plot.canvas.addItem(word, ignoreBounds=True)
+            self._items.append(word)
+            self._corners[right, upper] = word
+
+    def _place_zingg(self, *_: object) -> None:
+        """Give the names of Zingg's classes strips above and below all points."""
+        if not self._corners:
+            return
+        known = [each.descriptors for each in self._entries if each.descriptors]
+        places = [(each["flatness"], each["elongation"]) for each in known]
+        left, bottom = np.nanmin([*places, (THRESHOLD - 0.1, THRESHOLD - 0.1)], axis=0)
+        box = self.plot.canvas.getViewBox()
+        letters = max(word.boundingRect().height() for word in self._corners.values())
+        strip = (1.0 - bottom) * letters / max(box.height() - 2.0 * letters, letters)
+        low, high = bottom - strip - 0.01, 1.0 + strip + 0.01
+        self.plot.canvas.setRange(xRange=(left - 0.02, 1.02), yRange=(low, high), padding=0.0)
+        for (right, upper), word in self._corners.items():
+            word.setPos(1.02 if right else THRESHOLD - 0.01, high if upper else low)
+
+    def _clicked(self, _item: Any, points: Sequence[Any], event: Any) -> None:
+        if len(points):
+            adding = bool(event.modifiers() & Qt.KeyboardModifier.ControlModifier)
+            self.pointChosen.emit(str(points[0].data()), adding)
+
+
+def _descriptor_box(name: str, accessible: str) -> QComboBox:
+    box = ElidedComboBox()
+    box.setObjectName(name)
+    box.setAccessibleName(accessible)
+    box.setMinimumContentsLength(max(len(tr(CATALOGUE[key].label)) for key in ZINGG))
+    for key, row in CATALOGUE.items():
+        if not row.costly:
+            box.addItem(tr(row.label), key)
+            box.setItemData(box.count() - 1, definition(key), Qt.ItemDataRole.ToolTipRole)
+    return box
+
+
+def _axis_label(key: str) -> str:
+    row = CATALOGUE[key]
+    return f"{tr(row.label)} {rich_symbol(row.symbol)}{row.unit_suffix}"
+
+
+_WEIGHTING_LABELS = {"number": N_("each counts once"), "volume": N_("weighted by volume")}
+_SHORT = {
+    "group": N_("group"),
+    "count": N_("count"),
+    "mean": N_("mean"),
+    "standard deviation": N_("std. dev."),
+}
+QUANTILE = " quantile"
+GROUPS = (N_("all"), N_("(no group)"))
+"""Group names that are translated."""
+
+
+class StatisticsPanel(QWidget):
+    """A table with a row per group."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.setObjectName("statistics")
+        self._entries: tuple[ParticleEntry, ...] = ()
+        self.key = QComboBox()
+        self.key.setObjectName("statistics_key")
+        self.key.setAccessibleName(tr("Descriptor of the statistics"))
+        for key, row in CATALOGUE.items():
+            if not row.costly:
+                self.key.addItem(tr(row.label), key)
+                self.key.setItemData(self.key.count() - 1, definition(key), Qt.ItemDataRole.ToolTipRole)
+        self.weighting = QComboBox()
+        self.weighting.setObjectName("statistics_weighting")
+        self.weighting.setAccessibleName(tr("Weighting of the statistics"))
+        for weighting in WEIGHTINGS:
+            self.weighting.addItem(tr(_WEIGHTING_LABELS[weighting]), weighting)
+        self.border = QCheckBox(tr("correct for border grains"))
+        self.border.setObjectName("statistics_border")
+        self.border.setToolTip(
+            tr(
+                "Grains cut by the border of the scan were left out, large ones more often than "
+                "small ones. The others have larger weights in return (Miles-Lantuéjoul)."
+            )
+        )
+        self.border.setChecked(True)
+        self.border.hide()
+        self.table = QTableWidget()
+        self.table.setAccessibleName(tr("Statistics of groups"))
+        self.table.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
+        self.table.setShowGrid(False)
+        self.table.verticalHeader().hide()
+        FontRowHeight(self.table, 8)
+        self.table.horizontalHeader().setSectionResizeMode(QHeaderView.ResizeMode.Stretch)
+        choices = (QLabel(tr("Statistics of")), self.key, self.weighting)
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.addWidget(WrappingRow(choices, (self.border,), margins=(0, 0, 0, 0)))
+        layout.addWidget(self.table, 1)
+        self.key.currentIndexChanged.connect(lambda _at: self._fill())
+        self.weighting.currentIndexChanged.connect(lambda _at: self._fill())
+        self.border.toggled.connect(lambda _on: self._fill())
+
+    def show_entries(self, entries: Sequence[ParticleEntry]) -> None:
+        """Show the statistics of other particles."""
+        self._entries = tuple(entries)
+        self.border.setVisible(has_weights(entries))
+        self._fill()
+
+    def value(self) -> Table:
+        """The statistics."""
+        return statistics_table(
+            self._entries, self.key.currentData(), self.weighting.currentData(), self.border.isChecked()
+        )
+
+    def _fill(self) -> None:
+        shown = self.value()
+        self.table.setColumnCount(len(shown.columns))
+        self.table.setRowCount(len(shown.rows))
+        self.table.setHorizontalHeaderLabels([_two_lines(each) for each in shown.columns])
+        for at, row in enumerate(shown.rows):
+            for column, cell in enumerate(row):
+                item = QTableWidgetItem(short_number(cell) if isinstance(cell, float) else _word(cell))
+                if column:
+                    item.setTextAlignment(Qt.AlignmentFlag.AlignCenter)
+                self.table.setItem(at, column, item)
+
+
+def _word(cell: object) -> str:
+    """The name of a group, translated if it is one of the program."""
+    return tr(str(cell))
+
+
+def _two_lines(column: Column) -> str:
+    """Header with the unit on a second line."""
+    name = tr(_SHORT.get(column.name, column.name))
+    if column.name.endswith(QUANTILE):
+        name = tr("{share} quant.", share=column.name.removesuffix(QUANTILE))
+    unit = column.unit
+    for plain, sign in (("um", "µm"), ("^2", "²"), ("^3", "³"), ("^5", "⁵")):
+        unit = unit.replace(plain, sign)
+    return f"{name}\n[{unit}]" if unit else name

@@ -1,0 +1,454 @@
+"""Panels of the tools on the slices: brush, classes of grains, and edits by hand."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+from PySide6.QtCore import QSignalBlocker, Signal
+from PySide6.QtGui import QColor, QIcon, QPixmap
+from PySide6.QtWidgets import (
+    QButtonGroup,
+    QCheckBox,
+    QFormLayout,
+    QGridLayout,
+    QHBoxLayout,
+    QLabel,
+    QListWidget,
+    QPushButton,
+    QRadioButton,
+    QVBoxLayout,
+    QWidget,
+)
+
+from regolith_studio.errors import InputError
+from regolith_studio.imaging.segmentation.label_edits import LabelEdit
+from regolith_studio.imaging.segmentation.object_classifier import (
+    OBJECT_ACTIONS,
+    OBJECT_CLASSES,
+    ObjectAction,
+)
+from regolith_studio.imaging.segmentation.pixel_classifier import PixelClass
+from regolith_studio.imaging.segmentation.pixel_features import FeatureSettings
+from regolith_studio.imaging.segmentation.strokes import ERASER
+from regolith_studio.messages import N_
+from regolith_studio.ui.pages.scan.controls import choice
+from regolith_studio.ui.translation import tr
+from regolith_studio.ui.widgets.labels import heading, remark
+from regolith_studio.ui.widgets.numbers import NumberSlider, NumbersLine, NumberSpec
+
+CLASSES = (
+    PixelClass("background", False),
+    PixelClass("grain", True),
+    PixelClass("second mineral", True),
+    PixelClass("artefact", False),
+)
+CLASS_COLOURS = ("#3b82f6", "#f59e0b", "#ef4444", "#a855f7")
+_CLASS_NAMES = (N_("Background"), N_("Grain"), N_("Grain of a second mineral"), N_("Artefact"))
+OVERLAYS = (
+    ("probability", N_("Probability of grain")),
+    ("class", N_("Class")),
+    ("uncertainty", N_("Uncertainty")),
+    ("none", N_("Nothing")),
+)
+SIZE = NumberSpec(N_("Size"), N_("Diameter of the brush in voxels"), 1, 30, limit=200)
+
+
+@dataclass(frozen=True)
+class Brush:
+    """What a stroke paints: a class from 0 or the eraser, with a diameter in voxels.
+
+    `shape` says whether the line follows the mouse (``free``), is straight (``line``), or is the diagonal
+    of a rectangle (``box``).
+    """
+
+    label: int
+    diameter: float
+    shape: Literal["free", "line", "box"] = "free"
+
+
+class BrushPanel(QWidget):
+    """Chooses the brush and the overlay. ``paintingChanged`` is emitted when painting begins or ends."""
+
+    paintingChanged = Signal(bool)  # noqa: N815
+    overlayChanged = Signal(str)  # noqa: N815
+    featuresChanged = Signal()  # noqa: N815
+    undoRequested = Signal()  # noqa: N815
+    clearRequested = Signal()  # noqa: N815
+    useRequested = Signal()  # noqa: N815
+    labelsRequested = Signal()  # noqa: N815
+    openRequested = Signal()  # noqa: N815
+    saveRequested = Signal()  # noqa: N815
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.setObjectName("brush")
+        self.paint = QCheckBox(tr("Paint examples"))
+        self.paint.setObjectName("brush_paint")
+        self.paint.setToolTip(tr("Strokes in the slices train a classifier of voxels."))
+        self.kind = choice("brush_class", tr("Class of the brush"), tuple(enumerate(_CLASS_NAMES)))
+        self.eraser = QCheckBox(tr("Eraser"))
+        self.eraser.setObjectName("brush_eraser")
+        self.diameter = NumberSlider(SIZE)
+        self.diameter.field.setObjectName("brush_size")
+        self.diameter.setValue(4)
+        self.overlay = choice("brush_overlay", tr("Prediction shown"), OVERLAYS)
+        self.sigmas = NumbersLine(", ".join(f"{each:g}" for each in FeatureSettings().sigmas))
+        self.sigmas.setObjectName("brush_sigmas")
+        self.sigmas.setAccessibleName(tr("Widths of the features"))
+        self.sigmas.setToolTip(
+            tr(
+                "Standard deviations of the Gaussians that the classifier sees, ascending, in voxels; the "
+                "widest should be about as wide as half a grain."
+            )
+        )
+        self.planar = QCheckBox(tr("Features within slices only"))
+        self.planar.setObjectName("brush_planar")
+        self.planar.setToolTip(tr("For slices that lie far apart: what is above and below does not count."))
+        self._features, self._missing = FeatureSettings(), ""
+        self.undo = button("brush_undo", tr("Undo stroke"), tr("Undo the last stroke (Ctrl+Z)"))
+        self.clear = button("brush_clear", tr("Clear"), tr("Undo all strokes"))
+        self.use = button(
+            "brush_use",
+            tr("Use for the grains"),
+            tr("Use the classifier as the threshold of the segmentation"),
+        )
+        self.labels = button(
+            "brush_labels",
+            tr("Read labels …"),
+            tr(
+                "Read what was painted in another program, such as ilastik or napari, from a volume of labels"
+            ),
+        )
+        self.browse = button("brush_open", tr("Open …"), tr("Open a classifier and use it for the grains"))
+        self.save = button("brush_save", tr("Save …"), tr("Save the classifier for other scans"))
+        self.state = remark()
+        for number, colour in enumerate(CLASS_COLOURS):
+            self.kind.setItemIcon(number, swatch(colour))
+        self.kind.setCurrentIndex(1)
+        self._arrange()
+        self._connect()
+        self.set_state(0, "", trained=False)
+        self._enable()
+
+    @property
+    def brush(self) -> Brush:
+        """Class and diameter of the next stroke."""
+        label = ERASER if self.eraser.isChecked() else int(self.kind.currentData())
+        return Brush(label, float(self.diameter.value()))
+
+    @property
+    def features(self) -> FeatureSettings:
+        """What the classifier sees of a voxel."""
+        return self._features
+
+    def _take_features(self) -> None:
+        """Use the widths that were typed, or say what is wrong with them."""
+        try:
+            sigmas = tuple(float(each) for each in self.sigmas.value().split(","))
+            features = FeatureSettings(sigmas, self.planar.isChecked())
+        except ValueError:
+            self._show_words(tr("Widths are numbers of voxels, such as {example}.", example="1, 2, 4, 8"))
+            return
+        except InputError as error:
+            self._show_words(str(error))
+            return
+        self._show_words(self._missing)
+        if features != self._features:
+            self._features = features
+            self.featuresChanged.emit()
+
+    def set_state(self, n_strokes: int, missing: str, *, trained: bool) -> None:
+        """Show how much is painted, and what is missing for a classifier."""
+        self.undo.setEnabled(n_strokes > 0)
+        self.clear.setEnabled(n_strokes > 0)
+        self.use.setEnabled(trained)
+        self.save.setEnabled(trained)
+        self._missing = missing
+        self._show_words(missing)
+
+    def _show_words(self, words: str) -> None:
+        self.state.setText(words)
+        self.state.setVisible(bool(words))
+
+    def _enable(self) -> None:
+        for part in (self.kind, self.eraser, self.diameter, self.overlay):
+            part.setEnabled(self.paint.isChecked())
+
+    def _connect(self) -> None:
+        self.paint.toggled.connect(lambda _: self._enable())
+        self.paint.toggled.connect(self.paintingChanged)
+        self.overlay.currentIndexChanged.connect(lambda: self.overlayChanged.emit(self.overlay.currentData()))
+        self.sigmas.editingFinished.connect(self._take_features)
+        self.planar.toggled.connect(self._take_features)
+        self.kind.currentIndexChanged.connect(lambda: self.eraser.setChecked(False))
+        for part, signal in (
+            (self.undo, self.undoRequested),
+            (self.clear, self.clearRequested),
+            (self.use, self.useRequested),
+            (self.labels, self.labelsRequested),
+            (self.browse, self.openRequested),
+            (self.save, self.saveRequested),
+        ):
+            part.clicked.connect(signal)
+
+    def _arrange(self) -> None:
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.addWidget(heading(tr("Classifier")))
+        rows: tuple[tuple[QWidget, ...], ...] = (
+            (self.paint, self.eraser),
+            (self.kind,),
+            (self.diameter,),
+            (self.overlay,),
+            (QLabel(tr("Widths")), self.sigmas),
+            (self.planar,),
+            (self.undo, self.clear),
+            (self.use, self.labels),
+            (self.browse, self.save),
+        )
+        for parts in rows:
+            row = QHBoxLayout()
+            for part in parts:
+                row.addWidget(part)
+            layout.addLayout(row)
+        layout.addWidget(self.state)
+        layout.addStretch(1)
+
+
+def button(name: str, words: str, tip: str) -> QPushButton:
+    """A button with its object name and tool tip."""
+    made = QPushButton(words)
+    made.setObjectName(name)
+    made.setToolTip(tip)
+    return made
+
+
+def swatch(colour: str) -> QIcon:
+    """A square of one colour."""
+    pixmap = QPixmap(12, 12)
+    pixmap.fill(QColor(colour))
+    return QIcon(pixmap)
+
+
+OBJECT_COLOURS = ("#22c55e", "#f59e0b", "#d946ef")
+_OBJECT_CLASSES = (N_("Grain"), N_("Several grains"), N_("Artefact"))
+_PLURALS = (N_("Grains"), N_("Several grains"), N_("Artefacts"))
+_ACTION_NAMES = (N_("Keep"), N_("Split again"), N_("Drop"))
+
+
+class ObjectsPanel(QWidget):
+    """Chooses the class of a click and the actions. ``markingChanged`` tells when clicks begin to mark."""
+
+    markingChanged = Signal(bool)  # noqa: N815
+    actionsChanged = Signal()  # noqa: N815
+    applyChanged = Signal(bool)  # noqa: N815
+    undoRequested = Signal()  # noqa: N815
+    clearRequested = Signal()  # noqa: N815
+    openRequested = Signal()  # noqa: N815
+    saveRequested = Signal()  # noqa: N815
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.setObjectName("objects")
+        self.mark = QCheckBox(tr("Mark examples"))
+        self.mark.setObjectName("objects_mark")
+        self.mark.setToolTip(
+            tr("A click on an object makes it an example of a class; all others are classified.")
+        )
+        self.kind = choice(
+            "objects_class", tr("Class of the next example"), tuple(enumerate(_OBJECT_CLASSES))
+        )
+        rows = tuple(zip(OBJECT_ACTIONS, _ACTION_NAMES, strict=True))
+        self.action_boxes = tuple(
+            choice(f"objects_action_{number}", tr("Action on them"), rows)
+            for number in range(len(OBJECT_CLASSES))
+        )
+        self.counts = tuple(QLabel() for _ in OBJECT_CLASSES)
+        for number, colour in enumerate(OBJECT_COLOURS):
+            self.kind.setItemIcon(number, swatch(colour))
+            self.action_boxes[number].setCurrentIndex(number)
+        self.apply = QCheckBox(tr("Apply to the grains"))
+        self.apply.setObjectName("objects_apply")
+        self.apply.setToolTip(tr("Keep, split or drop the grains by their class"))
+        self.undo = button("objects_undo", tr("Undo"), tr("Undo the last step (Ctrl+Z)"))
+        self.clear = button("objects_clear", tr("Clear"), tr("Remove all examples"))
+        self.browse = button("objects_open", tr("Open …"), tr("Open an object classifier and apply it"))
+        self.save = button("objects_save", tr("Save …"), tr("Save the object classifier for other scans"))
+        self.state = remark()
+        self._arrange()
+        self._connect()
+        self.set_state(found=False, trained=False, applied=False, can_undo=False)
+        self.set_counts({}, "")
+
+    def action_of_each(self) -> tuple[ObjectAction, ...]:
+        """What is done with each class."""
+        return tuple(box.currentData() for box in self.action_boxes)
+
+    def set_actions(self, actions: tuple[ObjectAction, ...]) -> None:
+        """Show other actions without emitting a signal."""
+        for box, action in zip(self.action_boxes, actions, strict=True):
+            with QSignalBlocker(box):
+                box.setCurrentIndex(box.findData(action))
+
+    def set_state(self, *, found: bool, trained: bool, applied: bool, can_undo: bool) -> None:
+        """Enable what can be done; `found` says whether there are grains."""
+        self.mark.setEnabled(found)
+        self.kind.setEnabled(found and self.mark.isChecked())
+        self.undo.setEnabled(can_undo)
+        self.clear.setEnabled(trained or can_undo)
+        self.apply.setEnabled(trained)
+        self.save.setEnabled(trained)
+        with QSignalBlocker(self.apply):
+            self.apply.setChecked(applied)
+
+    def set_counts(self, counts: Mapping[str, int], missing: str) -> None:
+        """Show how many objects each class has, and what is missing for a classifier."""
+        for words, name, label in zip(_PLURALS, OBJECT_CLASSES, self.counts, strict=True):
+            count = counts.get(name)
+            label.setText(tr(words) if count is None else f"{tr(words)}: {count}")
+        self.state.setText(missing)
+        self.state.setVisible(bool(missing))
+
+    def _connect(self) -> None:
+        self.mark.toggled.connect(self.kind.setEnabled)
+        self.mark.toggled.connect(self.markingChanged)
+        self.apply.toggled.connect(self.applyChanged)
+        for box in self.action_boxes:
+            box.currentIndexChanged.connect(self.actionsChanged)
+        for part, signal in (
+            (self.undo, self.undoRequested),
+            (self.clear, self.clearRequested),
+            (self.browse, self.openRequested),
+            (self.save, self.saveRequested),
+        ):
+            part.clicked.connect(signal)
+
+    def _arrange(self) -> None:
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.addWidget(heading(tr("Object classifier")))
+        layout.addWidget(self.mark)
+        layout.addWidget(self.kind)
+        layout.addWidget(self.state)
+        form = QFormLayout()
+        form.setFieldGrowthPolicy(QFormLayout.FieldGrowthPolicy.AllNonFixedFieldsGrow)
+        for label, box in zip(self.counts, self.action_boxes, strict=True):
+            form.addRow(label, box)
+        layout.addLayout(form)
+        layout.addWidget(self.apply)
+        for parts in ((self.undo, self.clear), (self.browse, self.save)):
+            row = QHBoxLayout()
+            for part in parts:
+                row.addWidget(part)
+            layout.addLayout(row)
+        layout.addStretch(1)
+
+
+NO_TOOL = ""
+TOOLS = (
+    (NO_TOOL, N_("Inspect"), N_("A click shows the slices through a voxel.")),
+    ("merge", N_("Merge"), N_("Click two grains that are one.")),
+    ("delete", N_("Delete"), N_("Click a grain.")),
+    ("seeds", N_("Split by seeds"), N_("Click two places in a grain that are two grains.")),
+    ("cut", N_("Split by a line"), N_("Draw a line across a grain.")),
+    (
+        "fill",
+        N_("Fill"),
+        N_("Click a grain to fill what it encloses in the slices of that view."),
+    ),
+    ("paint", N_("Paint"), N_("Draw from a grain to extend it, or from a free place for a new grain.")),
+    ("erase", N_("Erase"), N_("Draw over grains to free their voxels.")),
+)
+BALL_SIZE = NumberSpec(
+    N_("Size"), N_("Diameter of the ball that paints and erases, in voxels"), 1, 30, limit=200
+)
+BRUSHED = ("paint", "erase")
+"""Tools whose mouse is a ball."""
+_DONE = {
+    "merge": N_("{number}. Grains merged at {place}"),
+    "delete": N_("{number}. Grain deleted at {place}"),
+    "seeds": N_("{number}. Grain split by seeds at {place}"),
+    "cut": N_("{number}. Grain split by a line at {place}"),
+    "fill": N_("{number}. Grain filled at {place}"),
+    "paint": N_("{number}. Voxels painted at {place}"),
+    "erase": N_("{number}. Voxels erased at {place}"),
+}
+
+
+class EditsPanel(QWidget):
+    """Chooses the tool; ``toolChanged`` tells its kind."""
+
+    toolChanged = Signal(str)  # noqa: N815
+    undoRequested = Signal()  # noqa: N815
+    redoRequested = Signal()  # noqa: N815
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.setObjectName("edits")
+        self._group = QButtonGroup(self)
+        self.tools = {}
+        for kind, words, tip in TOOLS:
+            made = QRadioButton(tr(words))
+            made.setObjectName(f"edit_{kind or 'look'}")
+            made.setToolTip(tr(tip))
+            self._group.addButton(made)
+            self.tools[kind] = made
+        self.tools[NO_TOOL].setChecked(True)
+        self.diameter = NumberSlider(BALL_SIZE)
+        self.diameter.field.setObjectName("edit_size")
+        self.diameter.setValue(6)
+        self.hint = remark()
+        self.list = QListWidget()
+        self.list.setAccessibleName(tr("Corrections so far"))
+        self.list.setMinimumHeight(120)
+        self.undo = button("edit_undo", tr("Undo"), tr("Undo the last step (Ctrl+Z)"))
+        self.redo = button("edit_redo", tr("Redo"), tr("Redo the last step (Ctrl+Shift+Z)"))
+        self._arrange()
+        for made in self.tools.values():
+            made.toggled.connect(self._chosen)
+        self.undo.clicked.connect(self.undoRequested)
+        self.redo.clicked.connect(self.redoRequested)
+        self.set_state(found=False, can_undo=False, can_redo=False)
+        self._chosen(True)
+
+    @property
+    def tool(self) -> str:
+        """Kind of the edit that the mouse makes; empty for none."""
+        return next(kind for kind, made in self.tools.items() if made.isChecked())
+
+    def set_state(self, *, found: bool, can_undo: bool, can_redo: bool) -> None:
+        """Enable what can be done; `found` says whether there are grains."""
+        for kind, made in self.tools.items():
+            made.setEnabled(found or kind == NO_TOOL)
+        self.diameter.setEnabled(found)
+        self.undo.setEnabled(can_undo)
+        self.redo.setEnabled(can_redo)
+
+    def set_edits(self, edits: Sequence[LabelEdit]) -> None:
+        """List the corrections."""
+        self.list.clear()
+        for number, edit in enumerate(edits, start=1):
+            place = ", ".join(str(at) for at in edit.points[0])
+            self.list.addItem(tr(_DONE[edit.kind], number=number, place=place))
+        self.list.scrollToBottom()
+
+    def _chosen(self, on: bool) -> None:
+        if on:
+            self.hint.setText(next(tr(tip) for kind, _, tip in TOOLS if kind == self.tool))
+            self.toolChanged.emit(self.tool)
+
+    def _arrange(self) -> None:
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.addWidget(heading(tr("Corrections by hand")))
+        grid = QGridLayout()
+        for number, made in enumerate(self.tools.values()):
+            grid.addWidget(made, number // 2, number % 2)
+        layout.addLayout(grid)
+        layout.addWidget(self.diameter)
+        layout.addWidget(self.hint)
+        layout.addWidget(self.list, 1)
+        row = QHBoxLayout()
+        row.addWidget(self.undo)
+        row.addWidget(self.redo)
+        layout.addLayout(row)

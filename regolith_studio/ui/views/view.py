@@ -1,0 +1,304 @@
+"""What a three-dimensional view can do, its mouse, and cameras that follow each other."""
+
+from collections.abc import Callable, Sequence
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from PySide6.QtCore import QPointF, Qt
+from PySide6.QtGui import QKeyEvent, QMouseEvent, QWheelEvent
+from PySide6.QtWidgets import QWidget
+
+from regolith_studio.scene.cameras import (
+    CameraPose,
+    Projection,
+    framing_pose,
+    orbited,
+    panned,
+    refitted,
+    rolled,
+    turned,
+    zoomed,
+)
+from regolith_studio.scene.palette import ThemeColors
+
+WHEEL_ZOOM = 1.12
+"""Factor of one notch of the wheel."""
+KEY_STEP = 0.02
+"""What an arrow key moves, as a share of the picture's height."""
+ARROWS = {
+    Qt.Key.Key_Left: (-KEY_STEP, 0.0),
+    Qt.Key.Key_Right: (KEY_STEP, 0.0),
+    Qt.Key.Key_Down: (0.0, -KEY_STEP),
+    Qt.Key.Key_Up: (0.0, KEY_STEP),
+}
+"""To the right and upwards, as if dragged."""
+ZOOMS = {
+    Qt.Key.Key_Plus: WHEEL_ZOOM,
+    Qt.Key.Key_Equal: WHEEL_ZOOM,
+    Qt.Key.Key_Minus: 1.0 / WHEEL_ZOOM,
+}
+
+
+class Grip(Protocol):
+    """A handle in the picture that can be dragged; pixels count from the upper left."""
+
+    cursor: Qt.CursorShape
+
+    def is_under_cursor(self, sight: Projection, x: float, y: float) -> bool:
+        """Whether it is under the mouse."""
+        ...
+
+    def pull(self, sight: Projection, right: float, down: float) -> None:
+        """Follow the mouse by so many pixels."""
+        ...
+
+
+Pointed = Callable[[Projection, float, float], None]
+
+
+class CameraMouse:
+    """Turns mouse events into poses.
+
+    Parameters
+    ----------
+    pose
+        Reads the present pose.
+    move
+        Receives the new one.
+    widget
+        Whose size the picture has, and which gets the cursor.
+    """
+
+    def __init__(
+        self, pose: Callable[[], CameraPose], move: Callable[[CameraPose], None], widget: QWidget
+    ) -> None:
+        self._pose, self._move, self._widget = pose, move, widget
+        self._last: QPointF | None = None
+        self._held: Grip | None = None
+        self.grips: list[Grip] = []
+        self.pointed: list[Pointed] = []
+        self.left: list[Callable[[], None]] = []
+
+    def press(self, event: QMouseEvent) -> None:
+        """A drag begins."""
+        self._last = event.position()
+        self._held = self._under(event.position()) if event.button() == Qt.MouseButton.LeftButton else None
+        self.leave()
+        event.accept()
+
+    def release(self, event: QMouseEvent) -> None:
+        """The drag has ended."""
+        self._last = self._held = None
+        event.accept()
+
+    def drag(self, event: QMouseEvent) -> None:
+        """The mouse moved; with a button down the camera follows, or what was taken hold of."""
+        buttons, last = event.buttons(), self._last
+        if buttons == Qt.MouseButton.NoButton:
+            self._hover(event.position())
+            return
+        if last is None:
+            return
+        here = event.position()
+        self._last = here
+        if self._held is not None:
+            self._held.pull(self._sight(), here.x() - last.x(), here.y() - last.y())
+        else:
+            height = max(self._widget.height(), 1)
+            right, up = (here.x() - last.x()) / height, (last.y() - here.y()) / height
+            self._move(self._moved(buttons, event.modifiers(), right, up))
+        event.accept()
+
+    def wheel(self, event: QWheelEvent) -> None:
+        """Zoom about the middle of the picture."""
+        notches = event.angleDelta().y() / 120.0
+        if notches:
+            self._move(zoomed(self._pose(), WHEEL_ZOOM**notches))
+        event.accept()
+
+    def key(self, event: QKeyEvent) -> None:
+        """Do with arrow keys, plus and minus what dragging and the wheel do; other keys are for others."""
+        key, keys = Qt.Key(event.key()), event.modifiers()
+        if key in ARROWS:
+            self._move(self._moved(Qt.MouseButton.LeftButton, keys, *ARROWS[key]))
+        elif key in ZOOMS and not keys & Qt.KeyboardModifier.ControlModifier:
+            self._move(zoomed(self._pose(), ZOOMS[key]))
+        else:
+            event.ignore()
+            return
+        event.accept()
+
+    def leave(self) -> None:
+        """The mouse is elsewhere, or busy."""
+        for callback in self.left:
+            callback()
+
+    def forget(self) -> None:
+        """Tell nobody any more, and hold nothing."""
+        for each in (self.grips, self.pointed, self.left):
+            each.clear()
+        self._held = None
+
+    def _hover(self, place: QPointF) -> None:
+        grip = self._under(place)
+        self._widget.setCursor(grip.cursor if grip is not None else Qt.CursorShape.ArrowCursor)
+        if grip is None:
+            for callback in self.pointed:
+                callback(self._sight(), place.x(), place.y())
+        else:
+            self.leave()
+
+    def _under(self, place: QPointF) -> Grip | None:
+        sight = self._sight()
+        return next((grip for grip in self.grips if grip.is_under_cursor(sight, place.x(), place.y())), None)
+
+    def _sight(self) -> Projection:
+        return Projection(self._pose(), self._widget.width(), self._widget.height())
+
+    def _moved(
+        self, buttons: Qt.MouseButton, keys: Qt.KeyboardModifier, right: float, up: float
+    ) -> CameraPose:
+        pose = self._pose()
+        shifting = buttons & (Qt.MouseButton.MiddleButton | Qt.MouseButton.RightButton)
+        if shifting or keys & Qt.KeyboardModifier.ShiftModifier:
+            return panned(pose, right, up)
+        if keys & Qt.KeyboardModifier.ControlModifier:
+            return rolled(pose, 3.0 * right)
+        return orbited(pose, right, up)
+
+
+Picture = NDArray[np.uint8]
+
+
+class SceneView(Protocol):
+    """One view. ``draw`` schedules a repaint; calls are coalesced."""
+
+    @property
+    def widget(self) -> QWidget:
+        """What is placed in the window."""
+        ...
+
+    @property
+    def pose(self) -> CameraPose:
+        """Where the camera stands."""
+        ...
+
+    def draw(self, fill: Callable[[Any], None]) -> None:
+        """Let `fill` change what the plotter shows, and ask for a new picture."""
+        ...
+
+    def set_pose(self, pose: CameraPose) -> None:
+        """Move the camera, fit its clipping range, ask for a new picture; tells nobody."""
+        ...
+
+    def when_moved(self, callback: Callable[[CameraPose], None]) -> None:
+        """Call `callback` with the new pose whenever the user moves the camera."""
+        ...
+
+    @property
+    def mouse(self) -> CameraMouse:
+        """Its ``grips`` can be dragged; ``pointed`` are told where the mouse rests, ``left`` when it left."""
+        ...
+
+    def set_surroundings(self, surroundings: ThemeColors) -> None:
+        """Change background and inks."""
+        ...
+
+    def picture(self) -> Picture:
+        """What the view shows now, shape (height, width, 3)."""
+        ...
+
+    def shot(self, scale: int = 1, transparent: bool = False) -> Picture:
+        """What the view shows at a multiple of its size, shape (height, width, 3), or 4 if transparent.
+
+        Without what is laid out in pixels: the scale bar.
+        """
+        ...
+
+    def release(self) -> None:
+        """Give the graphics memory back; the view is of no use afterwards."""
+        ...
+
+
+class KeepFramed:
+    """Adapts the camera to the aspect ratio of its view.
+
+    What is shown along the shorter side is kept, whatever the user has done with the camera: a body that was
+    framed is framed again, and what was looked at closely stays as close.
+
+    Parameters
+    ----------
+    view
+        Tells when its camera was placed and when it was resized.
+    """
+
+    def __init__(self, view: SceneView) -> None:
+        self._view = view
+        self._aspect: float | None = None
+
+    def placed(self) -> None:
+        """The camera stands where it should, for the present size of the view."""
+        size = self._view.widget.size()
+        self._aspect = size.width() / max(size.height(), 1)
+
+    def resized(self) -> None:
+        """The view has another size."""
+        size, before = self._view.widget.size(), self._aspect
+        if before is not None and size.width() and size.height():
+            self._view.set_pose(refitted(self._view.pose, before, size.width() / size.height()))
+
+
+class CameraLink:
+    """Copies the pose of one view to the others while it is on.
+
+    Parameters
+    ----------
+    views
+        All in one frame of coordinates.
+    """
+
+    def __init__(self, views: Sequence[SceneView]) -> None:
+        self._views = tuple(views)
+        self._linked = True
+        self._direction = "isometric"
+        for view in self._views:
+            view.when_moved(self._follower(view))
+
+    @property
+    def linked(self) -> bool:
+        """Whether the cameras move together."""
+        return self._linked
+
+    def set_linked(self, linked: bool) -> None:
+        """Link, to the pose of the first view, or let go."""
+        self._linked = linked
+        if linked:
+            self._spread(self._views[0])
+
+    def frame(self, points: ArrayLike) -> None:
+        """Show points whole in every view, from the direction chosen last."""
+        for view in self._views:
+            width, height = view.widget.width(), view.widget.height()
+            view.set_pose(framing_pose(points, self._direction, width / max(height, 1)))
+
+    def look_from(self, direction: str) -> None:
+        """Look from a standard direction, at the same point and scale."""
+        self._direction = direction
+        for view in self._views:
+            view.set_pose(turned(view.pose, direction))
+
+    def _follower(self, moved: SceneView) -> Callable[[CameraPose], None]:
+        def follow(pose: CameraPose) -> None:
+            if self._linked:
+                for view in self._views:
+                    if view is not moved:
+                        view.set_pose(pose)
+
+        return follow
+
+    def _spread(self, source: SceneView) -> None:
+        pose = source.pose
+        for view in self._views:
+            if view is not source:
+                view.set_pose(pose)

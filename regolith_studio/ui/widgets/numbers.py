@@ -1,0 +1,231 @@
+"""Fields and sliders of numbers, with the decimal sign of the language."""
+
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from PySide6.QtCore import QEvent, QSignalBlocker, Qt, QTimer, Signal
+from PySide6.QtGui import QValidator
+from PySide6.QtWidgets import QDoubleSpinBox, QGridLayout, QLabel, QLineEdit, QSlider, QSpinBox, QWidget
+
+from regolith_studio.ui.translation import tr
+
+
+class DecimalField(QDoubleSpinBox):
+    """Edits a number; ``0.5`` and ``0,5`` are a half in every language.
+
+    Qt's own box takes the other sign for that of thousands and drops it, which makes 5 of it.
+    """
+
+    def validate(self, text: str, pos: int) -> tuple[QValidator.State, str, int]:
+        return super().validate(self._with_own_sign(text), pos)
+
+    def valueFromText(self, text: str) -> float:
+        return super().valueFromText(self._with_own_sign(text))
+
+    def _with_own_sign(self, text: str) -> str:
+        point = self.locale().decimalPoint()
+        return text.replace("," if point == "." else ".", point)
+
+
+class NumbersLine(QLineEdit):
+    """Edits a list of numbers, as ``0.2, 0.4``; shown as ``0,2; 0,4`` where numbers have a decimal comma.
+
+    There a comma with a space behind it separates too, and a list with points is taken as it is.
+    """
+
+    def __init__(self, value: str = "") -> None:
+        super().__init__()
+        self.setValue(value)
+
+    def value(self) -> str:
+        """The list with decimal points, and commas between the numbers."""
+        text = self.text()
+        if self.locale().decimalPoint() == "." or ("." in text and ";" not in text):
+            return text.replace(";", ",")
+        parts = re.split(r";|,\s", text)
+        return ", ".join(part.strip().replace(",", ".") for part in parts)
+
+    def setValue(self, value: str) -> None:
+        """Show a list that is written with decimal points, and commas between the numbers."""
+        if self.locale().decimalPoint() == ",":
+            value = re.sub(r",\s*", "; ", value).replace(".", ",")
+        self.setText(value)
+
+
+THROTTLE = 30
+"""Minimum milliseconds between two ``valueChanged``; the first is emitted at once, the last always."""
+
+
+MIN_TEXT = "0000.00"
+"""Text that every field has room for."""
+ARROWS = 28
+"""Width of arrows and frame of a field in pixels."""
+
+
+@dataclass(frozen=True)
+class NumberSpec:
+    """Range, step and texts of a number; the texts are translated when displayed.
+
+    Parameters
+    ----------
+    label
+        Rich text before the slider; empty for none.
+    name
+        Accessible name.
+    minimum, maximum
+        Range of the slider.
+    step
+        Smallest change; the number is an integer if it is one.
+    limit
+        Largest number that can be typed; `maximum` if not given.
+    suffix
+        Unit, with a leading blank.
+    tip
+        Tool tip.
+    """
+
+    label: str
+    name: str
+    minimum: float
+    maximum: float
+    step: float = 1
+    limit: float | None = None
+    suffix: str = ""
+    tip: str = ""
+
+    @property
+    def whole(self) -> bool:
+        """Whether the number is an integer."""
+        return float(self.step).is_integer()
+
+    @property
+    def decimals(self) -> int:
+        """Decimals of the step."""
+        return 0 if self.whole else len(f"{self.step:.6f}".rstrip("0").split(".")[1])
+
+
+class NumberSlider(QWidget):
+    """Edits one number. ``valueChanged`` is emitted for changes by the user only, and throttled.
+
+    ``editingFinished`` follows when the slider is released or a typed number is confirmed.
+    """
+
+    valueChanged = Signal(object)  # noqa: N815
+    editingFinished = Signal()  # noqa: N815
+
+    def __init__(self, spec: NumberSpec) -> None:
+        super().__init__()
+        self.spec = spec
+        self.label = QLabel(tr(spec.label))
+        self.slider = QSlider(Qt.Orientation.Horizontal)
+        self.field = QSpinBox() if spec.whole else DecimalField()
+        self._timer = QTimer(self, interval=THROTTLE, singleShot=True)
+        self._emitted: float | int | None = None
+        self._configure()
+        self._make_room()
+        layout = QGridLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.setHorizontalSpacing(8)
+        layout.addWidget(self.label, 0, 0)
+        layout.addWidget(self.slider, 0, 1)
+        layout.addWidget(self.field, 0, 2)
+        layout.setColumnStretch(1, 1)
+        self.label.setVisible(bool(spec.label))
+        self.slider.valueChanged.connect(self._on_slider)
+        self.slider.sliderReleased.connect(self._finish)
+        self.field.valueChanged.connect(self._on_field)
+        self.field.editingFinished.connect(self._finish)
+        self._timer.timeout.connect(self._emit_value)
+        self.setValue(spec.minimum)
+
+    def value(self) -> float | int:
+        """The number."""
+        return self.field.value()
+
+    def setValue(self, value: float) -> None:
+        """Set the number without emitting a signal."""
+        self._timer.stop()
+        with QSignalBlocker(self.field), QSignalBlocker(self.slider):
+            self.field.setValue(int(value) if self.spec.whole else float(value))  # type: ignore[arg-type]
+            self.slider.setValue(self._ticks(self.field.value()))
+        self._emitted = self.field.value()
+
+    def set_range(self, minimum: float, maximum: float) -> None:
+        """Set the range of slider and field without emitting a signal."""
+        with QSignalBlocker(self.field), QSignalBlocker(self.slider):
+            self.field.setRange(minimum, maximum)  # type: ignore[arg-type]
+            self.slider.setRange(self._ticks(minimum), self._ticks(maximum))
+            self.slider.setPageStep(max(1, (self.slider.maximum() - self.slider.minimum()) // 10))
+
+    def _configure(self) -> None:
+        spec, field = self.spec, self.field
+        limit = spec.maximum if spec.limit is None else spec.limit
+        if isinstance(field, QDoubleSpinBox):
+            field.setDecimals(spec.decimals)
+            field.setRange(spec.minimum, limit)
+            field.setSingleStep(spec.step)
+        else:
+            field.setRange(int(spec.minimum), int(limit))
+            field.setSingleStep(int(spec.step))
+        field.setSuffix(spec.suffix and tr(spec.suffix))
+        field.setKeyboardTracking(False)
+        field.setAlignment(Qt.AlignmentFlag.AlignRight)
+        field.setAccessibleName(tr(spec.name))
+        self._widest = max(MIN_TEXT, f"-{limit:.{spec.decimals}f}{field.suffix()}", key=len)
+        self.slider.setRange(self._ticks(spec.minimum), self._ticks(spec.maximum))
+        self.slider.setPageStep(max(1, (self.slider.maximum() - self.slider.minimum()) // 10))
+        self.slider.setAccessibleName(tr("{name}, slider", name=tr(spec.name)))
+        self.slider.setMinimumWidth(60)
+        self.label.setBuddy(field)
+        self.setFocusProxy(self.slider)
+        for part in (self.label, self.slider, field):
+            part.setToolTip(tr(spec.tip))
+
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() in (QEvent.Type.FontChange, QEvent.Type.StyleChange):
+            self._make_room()
+
+    def _make_room(self) -> None:
+        """Set the width of the field to that of the longest number in the present font."""
+        self.field.setFixedWidth(self.field.fontMetrics().horizontalAdvance(self._widest) + ARROWS)
+
+    def _ticks(self, value: float) -> int:
+        return round(value / self.spec.step)
+
+    def _on_slider(self, ticks: int) -> None:
+        with QSignalBlocker(self.field):
+            value = ticks * self.spec.step
+            self.field.setValue(int(value) if self.spec.whole else value)  # type: ignore[arg-type]
+        self._throttle()
+
+    def _on_field(self, value: float) -> None:
+        with QSignalBlocker(self.slider):
+            self.slider.setValue(self._ticks(value))
+        self._throttle()
+
+    def _throttle(self) -> None:
+        if not self._timer.isActive():
+            self._emit_value()
+
+    def _emit_value(self) -> None:
+        """Emit the value if it is new, and start the throttle."""
+        value = self.value()
+        if value != self._emitted:
+            self._emitted = value
+            self._timer.start()
+            self.valueChanged.emit(value)
+
+    def _finish(self) -> None:
+        self._emit_value()
+        self._timer.stop()
+        self.editingFinished.emit()
+
+
+def align_labels(sliders: Iterable[NumberSlider], min_width: int = 0) -> None:
+    """Give the labels of several sliders the same width, at least `min_width` pixels."""
+    each = list(sliders)
+    widest = max((slider.label.sizeHint().width() for slider in each), default=0)
+    for slider in each:
+        slider.label.setFixedWidth(max(widest, min_width))
