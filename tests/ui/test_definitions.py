@@ -7,12 +7,11 @@ from PySide6.QtCore import Qt
 from regolith_studio.coarsening.weights import JACCARD
 from regolith_studio.descriptors.catalogue import CATALOGUE, LOSS_KEYS
 from regolith_studio.ui.pages.explore.panels import weight_spec
+from regolith_studio.ui.pages.explore.particle_list import ParticleListPanel
 from regolith_studio.ui.pages.explore.plots import DescriptorTablePanel
-from regolith_studio.ui.pages.sample.table import columns
-from regolith_studio.ui.panels.particle_list import ParticleListPanel
 from regolith_studio.ui.widgets.heat_table import HeatTable
 from regolith_studio.ui.widgets.labels import plain_symbol
-from regolith_studio.ui.widgets.table import definition
+from regolith_studio.ui.widgets.table import definition, particle_columns
 
 pytestmark = pytest.mark.usefixtures("app")
 
@@ -40,7 +39,7 @@ def test_that_tables_bars_and_weights_define_their_symbols(shown):
     table = shown(DescriptorTablePanel())
     for row, key in enumerate(table._keys):
         assert table.table.verticalHeaderItem(row).toolTip() == definition(key)
-    found = {each.key: each.tip for each in columns()}
+    found = {each.key: each.tip for each in particle_columns()}
     assert all(found[key] == definition(key) for key in LOSS_KEYS)
     model = ParticleListPanel()
     shown(model)

@@ -9,18 +9,28 @@ from PySide6.QtTest import QAbstractItemModelTester
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.session.results import ParticleEntry
-from regolith_studio.ui.widgets.table import UNSORTED, ParticleTableModel
+from regolith_studio.ui.widgets.table import (
+    RIGHT,
+    UNSORTED,
+    ParticleColumn,
+    ParticleTableModel,
+    particle_columns,
+)
 
 FALLING = Qt.SortOrder.DescendingOrder
 MESH = icosphere(1)
 
 
-class Rows(ParticleTableModel):
-    def cell(self, entry, column, role):
-        return str(self.value(entry, column)) if role == Qt.ItemDataRole.DisplayRole else None
-
-    def value(self, entry, column):
-        return (entry.id, entry.particle.group, entry.descriptors.get("volume", 0.0))[column]
+COLUMNS = (
+    ParticleColumn("name", "", "", lambda entry: entry.id, lambda entry: entry.id),
+    *(
+        ParticleColumn(key, "", "", value, lambda entry, value=value: str(value(entry)))
+        for key, value in (
+            ("group", lambda entry: entry.particle.group),
+            ("volume", lambda entry: entry.descriptors.get("volume", 0.0)),
+        )
+    ),
+)
 
 
 def entries(groups, **volumes):
@@ -32,7 +42,7 @@ def entries(groups, **volumes):
 
 @pytest.fixture
 def rows(app):
-    made = Rows(3, app)
+    made = ParticleTableModel(COLUMNS, app)
     examiner = QAbstractItemModelTester(made, QAbstractItemModelTester.FailureReportingMode.Fatal)
     made.set_entries(entries("xyxyx"))
     yield made
@@ -102,3 +112,14 @@ def test_that_there_is_no_cell_beyond_the_last_nor_below_another(rows):
         assert not rows.index(row, column).isValid()
     assert not rows.index(0, 0, rows.index(0, 0)).isValid()
     assert rows.index(0, 0).data(Qt.ItemDataRole.FontRole) is None
+
+
+def test_that_numbers_that_are_not_known_yet_stand_below_all_others(app):
+    made = ParticleTableModel(particle_columns("name", "volume"), app)
+    unknown = ParticleEntry("u", Particle("u", MESH), None, {})
+    made.set_entries((unknown, *entries("xyxyx", e=2.0)))
+    made.sort(1)
+    assert listed(made) == "udcbae"
+    assert made.index(0, 1).data() == "…"
+    assert made.index(0, 1).data(Qt.ItemDataRole.TextAlignmentRole) == RIGHT
+    made.deleteLater()

@@ -32,21 +32,21 @@ def window(shown, preferences, wait):
 @pytest.fixture
 def page(window, wait):
     made = window.go("sample")
-    wait(lambda: len(made.table.visible_entries()) == 12)
-    wait(lambda: all(entry.descriptors for entry in made.table.visible_entries()))
+    wait(lambda: len(made.table.particles.rows) == 12)
+    wait(lambda: all(entry.descriptors for entry in made.table.particles.rows))
     return made
 
 
 def choose(page, *names):
     """Choose rows as a user does who holds Ctrl."""
     flags, table = QItemSelectionModel.SelectionFlag, page.table
-    for row, entry in enumerate(table.visible_entries()):
+    for row, entry in enumerate(table.particles.rows):
         if entry.id in names:
             table.selectionModel().select(table.model().index(row, 0), flags.Select | flags.Rows)
 
 
 def test_that_a_click_in_the_table_puts_the_particle_on_screen_everywhere(window, page, wait):
-    row = next(r for r, entry in enumerate(page.table.visible_entries()) if entry.id == "flat-1")
+    row = next(r for r, entry in enumerate(page.table.particles.rows) if entry.id == "flat-1")
     place = page.table.visualRect(page.table.model().index(row, 0)).center()
     QTest.mouseClick(page.table.viewport(), Qt.MouseButton.LeftButton, pos=place)
     assert window.session.choices.selected == "flat-1"
@@ -57,17 +57,17 @@ def test_that_a_click_in_the_table_puts_the_particle_on_screen_everywhere(window
 
 def test_that_the_filter_narrows_table_plot_and_statistics(page):
     QTest.keyClicks(page.filter, "S<0.75 AR>2")
-    names = [entry.id for entry in page.table.visible_entries()]
+    names = [entry.id for entry in page.table.particles.rows]
     assert 0 < len(names) < 12
-    assert all(e.descriptors["sphericity"] < 0.75 for e in page.table.visible_entries())
+    assert all(e.descriptors["sphericity"] < 0.75 for e in page.table.particles.rows)
     assert page.title.text() == f"Sample ({len(names)} of 12)"
     assert page.statistics.value().rows[0][1] == len(names)
     page.filter.setText("S<oops")
     assert page.verdict.isVisible()
-    assert [entry.id for entry in page.table.visible_entries()] == names
+    assert [entry.id for entry in page.table.particles.rows] == names
     page.commands()["clear_filter"]()
     assert not page.verdict.isVisible()
-    assert len(page.table.visible_entries()) == 12
+    assert len(page.table.particles.rows) == 12
 
 
 def test_that_several_rows_are_ringed_in_the_plot_and_counted_alone(page):
@@ -91,9 +91,9 @@ def test_that_a_point_of_the_plot_chooses_its_row(window, page):
 
 
 def test_that_columns_sort_by_number(page):
-    column = [each.key for each in page.table.model_.columns].index("volume")
+    column = [each.key for each in page.table.particles.columns].index("volume")
     page.table.sortByColumn(column, Qt.SortOrder.AscendingOrder)
-    volumes = [entry.descriptors["volume"] for entry in page.table.visible_entries()]
+    volumes = [entry.descriptors["volume"] for entry in page.table.particles.rows]
     assert volumes == sorted(volumes)
 
 
@@ -117,7 +117,7 @@ def test_that_only_the_chosen_particles_can_be_kept(window, page, wait):
     choose(page, "bead-1", "bead-2")
     page.keep_selected_particles()
     assert [entry.id for entry in window.session.particles] == ["bead-1", "bead-2"]
-    wait(lambda: len(page.table.visible_entries()) == 2)
+    wait(lambda: len(page.table.particles.rows) == 2)
 
 
 @pytest.mark.slow

@@ -26,8 +26,8 @@ from regolith_studio.ui.actions import CommandPalette
 from regolith_studio.ui.activity import TaskListPanel, time_left
 from regolith_studio.ui.app import FILLED_CHECK, open_window, show_recovery_and_tour
 from regolith_studio.ui.dialogs.export import ExportDialog
+from regolith_studio.ui.pages.explore.particle_list import ParticleListPanel
 from regolith_studio.ui.pages.lecture.page import LESSONS
-from regolith_studio.ui.panels.particle_list import ParticleListPanel
 from regolith_studio.ui.project_files import autosave_path, needs_confirmation, stale_autosaves
 from regolith_studio.ui.shortcuts import plain
 from regolith_studio.ui.theme import choose_letters

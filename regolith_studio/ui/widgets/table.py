@@ -1,21 +1,34 @@
-"""Tables with columns of descriptors, and the model of those with a row for each particle."""
+"""Tables with a row for each particle: columns, model and view; and what descriptors are, as tool tips."""
 
-from collections.abc import Callable, Sequence
+import math
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
 from typing import Any
 
-from PySide6.QtCore import QAbstractTableModel, QEvent, QModelIndex, QObject, QPersistentModelIndex, Qt
-from PySide6.QtGui import QPixmap, QResizeEvent, QShowEvent
+from PySide6.QtCore import (
+    QAbstractTableModel,
+    QEvent,
+    QItemSelectionModel,
+    QModelIndex,
+    QObject,
+    QPersistentModelIndex,
+    Qt,
+    Signal,
+)
+from PySide6.QtGui import QPixmap, QShowEvent
 from PySide6.QtWidgets import QAbstractItemView, QHeaderView, QTableView
 
 from regolith_studio.coarsening.weights import JACCARD
-from regolith_studio.descriptors.catalogue import CATALOGUE
+from regolith_studio.descriptors.catalogue import CATALOGUE, Descriptor
 from regolith_studio.io.natural_order import natural_key
 from regolith_studio.messages import N_
 from regolith_studio.session.results import ParticleEntry
+from regolith_studio.session.sample_table import Filter, form_of, has_weights, health_sentences, health_word
 from regolith_studio.ui.icons import pixmap
-from regolith_studio.ui.theme import Theme
-from regolith_studio.ui.translation import tr
-from regolith_studio.ui.widgets.labels import plain_symbol
+from regolith_studio.ui.theme import Theme, current_theme
+from regolith_studio.ui.translation import inert, number_text, tr, translate
+from regolith_studio.ui.widgets.labels import plain_symbol, short_number
 
 EQUATIONS = {"sphericity": 1, "aspect_ratio": 2, JACCARD: 7}
 """Numbers in the paper, by key."""
@@ -41,6 +54,10 @@ Index = QModelIndex | QPersistentModelIndex
 NOWHERE = QModelIndex()
 UNSORTED = -1
 RIGHT = int(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
+HEALTH, GROUP, FORM, WEIGHT = "health", "group", "form", "weight"
+"""Keys of columns."""
+HEALTH_WORDS = (*(N_("sound"), N_("coarse"), N_("repaired"), N_("doubtful"), N_("unsound"), N_("unknown")),)
+FORM_WORDS = (N_("equant"), N_("disc"), N_("rod"), N_("blade"))
 HEALTH_ICONS = {
     "sound": "sound",
     "coarse": "doubtful",
@@ -63,26 +80,90 @@ _ROLES = frozenset(
 """Roles that have data; views ask for four more at each paint."""
 
 
+@dataclass(frozen=True)
+class ParticleColumn:
+    """Key, header and tool tip of a column; functions for its sort key and text; numbers stand right."""
+
+    key: str
+    title: str
+    tip: str
+    value: Callable[[ParticleEntry], Any]
+    text: Callable[[ParticleEntry], str]
+    numeric: bool = False
+
+
+def particle_columns(*keys: str) -> tuple[ParticleColumn, ...]:
+    """The columns of these keys, all by default: name, health, group, form, descriptors and weight."""
+    descriptors = {row.key: _descriptor_column(row) for row in CATALOGUE.values() if not row.costly}
+    found = {column.key: column for column in (*_text_columns(), *descriptors.values(), _weight_column())}
+    return tuple(found[key] for key in keys or found)
+
+
+def _text_columns() -> Iterator[ParticleColumn]:
+    name_tip = tr("Name of the file or of the grain")
+    yield ParticleColumn("name", tr("Particle"), name_tip, lambda entry: entry.id, lambda entry: entry.id)
+    health_tip = tr("Of the mesh; the tool tip of a cell lists what was found and repaired")
+    yield ParticleColumn(HEALTH, tr("Health"), health_tip, health_word, lambda entry: tr(health_word(entry)))
+    group: Callable[[ParticleEntry], str] = lambda entry: entry.particle.group  # noqa: E731
+    yield ParticleColumn(GROUP, tr("Group"), tr("Sample or size fraction"), group, group)
+    form_tip = tr("Zingg's class: equant, disc, rod or blade")
+    yield ParticleColumn(FORM, tr("Form"), form_tip, form_of, lambda entry: tr(form_of(entry)))
+
+
+def _descriptor_column(row: Descriptor) -> ParticleColumn:
+    def value(entry: ParticleEntry) -> float:
+        return float(entry.descriptors[row.key]) if entry.descriptors else -math.inf
+
+    def text(entry: ParticleEntry) -> str:
+        return short_number(entry.descriptors[row.key]) if entry.descriptors else "…"
+
+    title = plain_symbol(row.symbol) + row.unit_suffix
+    return ParticleColumn(row.key, title, definition(row.key), value, text, numeric=True)
+
+
+def _weight_column() -> ParticleColumn:
+    return ParticleColumn(
+        WEIGHT,
+        tr("weight"),
+        tr("Number of grains that it represents: large ones are more often cut by the border of the scan"),
+        lambda entry: entry.particle.weight,
+        lambda entry: number_text(entry.particle.weight, ".3g"),
+        numeric=True,
+    )
+
+
 class ParticleTableModel(QAbstractTableModel):
-    """Particles as rows, sorted and filtered; subclasses define the columns.
+    """Particles as rows, sorted and filtered; the column of their health, or else the first, has its icon.
 
     Sorting and filtering is done here because a QSortFilterProxyModel calls three methods of a Python model
     for each of seven roles of a cell at each paint, and two for each comparison.
     """
 
-    def __init__(self, n_columns: int, parent: QObject) -> None:
+    def __init__(self, columns: Sequence[ParticleColumn], parent: QObject) -> None:
         super().__init__(parent)
+        self.columns = tuple(columns)
         self.entries: tuple[ParticleEntry, ...] = ()
         """All particles, in the order given."""
         self.rows: tuple[ParticleEntry, ...] = ()
         """The particles that are listed, from top to bottom."""
-        self._n_columns = n_columns
+        self._icon_column = self.column(HEALTH) if HEALTH in [each.key for each in columns] else 0
+        self._icons: dict[str, QPixmap] = {}
         self._column, self._order = UNSORTED, Qt.SortOrder.AscendingOrder
         self._keeps: Callable[[ParticleEntry], bool] | None = None
 
-    def value(self, entry: ParticleEntry, column: int) -> Any:
-        """Sort key of a column."""
-        raise NotImplementedError
+    def column(self, key: str) -> int:
+        """Number of the column of this key."""
+        return [each.key for each in self.columns].index(key)
+
+    def set_theme(self, theme: Theme) -> None:
+        """Take the colours of a theme."""
+        colours = {
+            "sound": theme.good,
+            "doubtful": theme.doubtful,
+            "unsound": theme.bad,
+            "unknown": theme.muted,
+        }
+        self._icons = {word: pixmap(name, colours[name], ICON_SIZE) for word, name in HEALTH_ICONS.items()}
 
     def set_entries(self, entries: Sequence[ParticleEntry]) -> None:
         """List other particles, or the same ones with new data."""
@@ -92,7 +173,7 @@ class ParticleTableModel(QAbstractTableModel):
             self._reset(rows)
             return
         self._move(rows)
-        self.dataChanged.emit(self.index(0, 0), self.index(len(rows) - 1, self._n_columns - 1))
+        self.dataChanged.emit(self.index(0, 0), self.index(len(rows) - 1, len(self.columns) - 1))
 
     def set_filter(self, keeps: Callable[[ParticleEntry], bool] | None) -> None:
         """List only the particles for which this is true."""
@@ -107,22 +188,50 @@ class ParticleTableModel(QAbstractTableModel):
     def data(self, index: Index, role: int = Qt.ItemDataRole.DisplayRole) -> Any:
         if role not in _ROLES:
             return None
-        return self.cell(self.rows[index.row()], index.column(), role)
+        entry, column = self.rows[index.row()], self.columns[index.column()]
+        has_icon = index.column() == self._icon_column
+        match role:
+            case Qt.ItemDataRole.DisplayRole:
+                return column.text(entry)
+            case Qt.ItemDataRole.DecorationRole if has_icon:
+                return self._icons.get(health_word(entry))
+            case Qt.ItemDataRole.ToolTipRole:
+                return self._health(entry) if has_icon else inert(column.text(entry))
+            case Qt.ItemDataRole.TextAlignmentRole if column.numeric:
+                return RIGHT
+        return None
 
-    def cell(self, entry: ParticleEntry, column: int, role: int) -> Any:
-        """Text, icon, alignment or tool tip of a cell, by role; ``None`` where it has none."""
-        raise NotImplementedError
+    def headerData(
+        self, section: int, orientation: Qt.Orientation, role: int = Qt.ItemDataRole.DisplayRole
+    ) -> Any:
+        column = self.columns[section] if orientation == Qt.Orientation.Horizontal else None
+        match role:
+            case Qt.ItemDataRole.DisplayRole if column:
+                return column.title
+            case Qt.ItemDataRole.ToolTipRole if column:
+                return column.tip
+            case Qt.ItemDataRole.TextAlignmentRole if column and column.numeric:
+                return RIGHT
+        return None
+
+    def _health(self, entry: ParticleEntry) -> str:
+        """Sentences on the mesh; behind the name and the numbers, whose columns may be hidden."""
+        sentences = list(map(translate, health_sentences(entry)))
+        if self.columns[self._icon_column].key == HEALTH:
+            return "\n".join(sentences)
+        numbers = [f"{each.title} {each.text(entry)}" for each in self.columns if each.numeric]
+        return inert("\n".join([entry.id, ", ".join(numbers), *sentences]))
 
     def index(self, row: int, column: int, parent: Index = NOWHERE) -> QModelIndex:
         """As Qt's, which calls `rowCount` and `columnCount` for each cell that is painted or measured."""
-        there = 0 <= row < len(self.rows) and 0 <= column < self._n_columns and not parent.isValid()
+        there = 0 <= row < len(self.rows) and 0 <= column < len(self.columns) and not parent.isValid()
         return self.createIndex(row, column) if there else QModelIndex()
 
     def rowCount(self, parent: Index = NOWHERE) -> int:
         return 0 if parent.isValid() else len(self.rows)
 
     def columnCount(self, parent: Index = NOWHERE) -> int:
-        return 0 if parent.isValid() else self._n_columns
+        return 0 if parent.isValid() else len(self.columns)
 
     def _arranged(self) -> tuple[ParticleEntry, ...]:
         kept = [entry for entry in self.entries if self._keeps is None or self._keeps(entry)]
@@ -132,7 +241,7 @@ class ParticleTableModel(QAbstractTableModel):
         return tuple(kept)
 
     def _sort_key(self, entry: ParticleEntry) -> Any:
-        value = self.value(entry, self._column)
+        value = self.columns[self._column].value(entry)
         return natural_key(value) if isinstance(value, str) else value
 
     def _reset(self, rows: tuple[ParticleEntry, ...]) -> None:
@@ -153,22 +262,6 @@ class ParticleTableModel(QAbstractTableModel):
         new = [self.index(places[before[index.row()]], index.column()) for index in old]
         self.changePersistentIndexList(old, new)
         self.layoutChanged.emit()
-
-
-def health_pixmaps(theme: Theme) -> dict[str, QPixmap]:
-    """The icons in the colours of a theme, by value of health."""
-    colours = {
-        "sound": theme.good,
-        "doubtful": theme.doubtful,
-        "unsound": theme.bad,
-        "unknown": theme.muted,
-    }
-    return {word: pixmap(name, colours[name], ICON_SIZE) for word, name in HEALTH_ICONS.items()}
-
-
-_LEAST = 70
-_NAME = 18
-"""Width in digits that the first column may require before others are hidden; includes an icon."""
 
 
 class FontRowHeight(QObject):
@@ -205,24 +298,31 @@ class FontRowHeight(QObject):
 
 MEASURED = 100
 """Number of visible rows whose contents determine the width of columns."""
+MIN_DIGITS = 7
+"""Smallest width of a column in digits; columns without room are scrolled to."""
 
 
-class ListTable(QTableView):
-    """A table with single row selection, compact rows, without grid and row numbers.
+class ParticleTable(QTableView):
+    """The particles, sorted by a click on a header; emits which rows are selected and which one is current.
+
+    Groups are listed where there are two, weights where one differs from 1.
 
     Parameters
     ----------
-    dispensable
-        Columns that are hidden, in this order, while the names in the first one do not fit.
+    columns
+        See :func:`particle_columns`.
+    name_stretches
+        Whether the first column takes the room that the others leave.
     """
 
-    _unfitted = True
-    """Contents or font have changed while the table was hidden."""
+    chosenChanged = Signal(list)  # noqa: N815
+    currentChosen = Signal(str)  # noqa: N815
 
-    def __init__(self, dispensable: tuple[int, ...] = ()) -> None:
+    def __init__(self, columns: Sequence[ParticleColumn], *, name_stretches: bool = True) -> None:
         super().__init__()
-        self._dispensable = dispensable
-        self._left_out: dict[int, int] = {}
+        self.particles = ParticleTableModel(columns, self)
+        self.setModel(self.particles)
+        self.set_theme(current_theme())
         self.setSelectionBehavior(QAbstractItemView.SelectionBehavior.SelectRows)
         self.setSelectionMode(QAbstractItemView.SelectionMode.SingleSelection)
         self.setShowGrid(False)
@@ -234,65 +334,79 @@ class ListTable(QTableView):
         header = self.horizontalHeader()
         header.setHighlightSections(False)
         header.setResizeContentsPrecision(MEASURED)
-        header.setMinimumSectionSize(30)
+        header.setMinimumSectionSize(MIN_DIGITS * self.fontMetrics().horizontalAdvance("0"))
         header.setDefaultAlignment(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter)
-        header.setSectionResizeMode(QHeaderView.ResizeMode.Interactive)
+        if name_stretches:
+            header.setSectionResizeMode(0, QHeaderView.ResizeMode.Stretch)
+        self.setSortingEnabled(True)
+        self.horizontalHeader().setSortIndicator(UNSORTED, Qt.SortOrder.AscendingOrder)
+        self._quiet = False
+        self.selectionModel().selectionChanged.connect(lambda *_: self._announce())
+        self.selectionModel().currentRowChanged.connect(lambda index, _old: self._announce_current(index))
 
-    def fit_columns(self) -> None:
-        """Fit the columns to their contents and stretch the first one, as soon as the table is visible."""
-        self._unfitted = not self.isVisible()
-        if self.isVisible():
-            self._fit()
+    def set_theme(self, theme: Theme) -> None:
+        """Take the colours of a theme."""
+        self.particles.set_theme(theme)
+        self.viewport().update()
 
-    def _fit(self) -> None:
-        for column in self._left_out:
-            self.setColumnHidden(column, False)
-        self._left_out.clear()
-        for column in self._by_content():
-            self.resizeColumnToContents(column)
-        self.stretch()
+    def set_entries(self, entries: Sequence[ParticleEntry]) -> None:
+        """List other particles, or the same ones with new data, and keep the selection."""
+        with self._kept_selection():
+            self.particles.set_entries(entries)
+            shown = {
+                GROUP: len({entry.particle.group for entry in entries}) > 1,
+                WEIGHT: has_weights(entries),
+            }
+            for number, column in enumerate(self.particles.columns):
+                if column.key in shown:
+                    self.setColumnHidden(number, not shown[column.key])
+        self.resizeColumnsToContents()
 
-    def stretch(self) -> None:
-        """Stretch the first column."""
-        header = self.horizontalHeader()
-        taken = self._make_room()
-        if header.count():
-            header.resizeSection(0, max(_LEAST, self.viewport().width() - taken))
-
-    def _make_room(self) -> int:
-        """Hide or show dispensable columns; returns the width of all but the first."""
-        header = self.horizontalHeader()
-        widths = {column: header.sectionSize(column) for column in self._by_content()} | self._left_out
-        names = min(self.sizeHintForColumn(0), self.fontMetrics().horizontalAdvance("0" * _NAME))
-        for column in self._dispensable:
-            if column not in widths:  # hidden for another reason
-                continue
-            short = self.viewport().width() - sum(widths.values()) < names
-            if short:
-                self._left_out[column] = widths.pop(column)
-            elif column in self._left_out:
-                del self._left_out[column]
-            if self.isColumnHidden(column) != short:
-                self.setColumnHidden(column, short)
-        return sum(widths.values())
-
-    def resizeEvent(self, event: QResizeEvent) -> None:
-        super().resizeEvent(event)
-        if not self._unfitted:
-            self.stretch()
+    def showEvent(self, event: QShowEvent) -> None:
+        super().showEvent(event)
+        self.resizeColumnsToContents()  # the style sheet's font is known only now
 
     def changeEvent(self, event: QEvent) -> None:
         super().changeEvent(event)
         if event.type() == QEvent.Type.FontChange:
-            self.fit_columns()
+            self.resizeColumnsToContents()
 
-    def showEvent(self, event: QShowEvent) -> None:
-        super().showEvent(event)
-        if self._unfitted:
-            self._unfitted = False
-            self._fit()
+    def set_filter(self, keeps: Filter | None) -> None:
+        """List only the particles for which this is true."""
+        with self._kept_selection():
+            self.particles.set_filter(keeps)
+        self._announce()
 
-    def _by_content(self) -> list[int]:
-        """Visible columns but the first."""
-        header = self.horizontalHeader()
-        return [at for at in range(1, header.count()) if not header.isSectionHidden(at)]
+    def chosen(self) -> list[str]:
+        """Ids of the selected rows, from top to bottom."""
+        rows = sorted(index.row() for index in self.selectionModel().selectedRows())
+        return [self.particles.rows[row].id for row in rows]
+
+    def choose(self, ids: Sequence[str], current: str = "") -> None:
+        """Select these rows without emitting a signal."""
+        wanted, flags = set(ids), QItemSelectionModel.SelectionFlag
+        was_quiet, self._quiet = self._quiet, True
+        self.selectionModel().clearSelection()
+        for row, entry in enumerate(self.particles.rows):
+            index = self.particles.index(row, 0)
+            if entry.id == current:
+                self.selectionModel().setCurrentIndex(index, flags.NoUpdate)
+                self.scrollTo(index)
+            if entry.id in wanted:
+                self.selectionModel().select(index, flags.Select | flags.Rows)
+        self._quiet = was_quiet
+
+    @contextmanager
+    def _kept_selection(self) -> Iterator[None]:
+        chosen, self._quiet = self.chosen(), True
+        yield
+        self.choose(chosen)
+        self._quiet = False
+
+    def _announce(self) -> None:
+        if not self._quiet:
+            self.chosenChanged.emit(self.chosen())
+
+    def _announce_current(self, index: QModelIndex) -> None:
+        if not self._quiet and index.isValid():
+            self.currentChosen.emit(self.particles.rows[index.row()].id)

@@ -5,7 +5,15 @@ from pathlib import Path
 from typing import Any
 
 from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QApplication, QFileDialog, QHBoxLayout, QLineEdit, QVBoxLayout, QWidget
+from PySide6.QtWidgets import (
+    QAbstractItemView,
+    QApplication,
+    QFileDialog,
+    QHBoxLayout,
+    QLineEdit,
+    QVBoxLayout,
+    QWidget,
+)
 
 from regolith_studio.errors import RegolithError
 from regolith_studio.geometry.arrays import FloatArray
@@ -21,7 +29,6 @@ from regolith_studio.ui.layout import equal_parts, side_by_side, stacked, tabs
 from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.pages.sample.health import HealthPanel, translated_health
 from regolith_studio.ui.pages.sample.plots import ScatterPanel, StatisticsPanel
-from regolith_studio.ui.pages.sample.table import FORM_WORDS, HEALTH_WORDS, SampleTable
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import rich, tr, with_decimal_point
 from regolith_studio.ui.views.factory import make_view
@@ -29,6 +36,7 @@ from regolith_studio.ui.views.view import CameraLink
 from regolith_studio.ui.views.view_frame import ViewFrame
 from regolith_studio.ui.widgets.fixed_height_text import FixedHeightText
 from regolith_studio.ui.widgets.labels import heading, remark
+from regolith_studio.ui.widgets.table import FORM_WORDS, HEALTH_WORDS, ParticleTable, particle_columns
 
 
 class SamplePage(PageWidget):
@@ -52,7 +60,10 @@ class SamplePage(PageWidget):
         self.filter.setClearButtonEnabled(True)
         self.verdict = remark(role="warning")
         self.verdict.hide()
-        self.table = SampleTable()
+        self.table = ParticleTable(particle_columns(), name_stretches=False)
+        self.table.setObjectName("sample_table")
+        self.table.setAccessibleName(tr("All particles"))
+        self.table.setSelectionMode(QAbstractItemView.SelectionMode.ExtendedSelection)
         self.statistics = StatisticsPanel()
         self.scatter = ScatterPanel()
         self.health = HealthPanel()
@@ -64,7 +75,7 @@ class SamplePage(PageWidget):
         bindings.refresh("choices", self._show_current, ("selected",))
 
     def set_theme(self, theme: Theme) -> None:
-        self.table.model_.set_theme(theme)
+        self.table.set_theme(theme)
         self.scatter.set_theme(theme)
         self.frame.view.set_surroundings(theme.surroundings)
         self.frame.set_colour(theme.particle)
@@ -96,7 +107,7 @@ class SamplePage(PageWidget):
         name, _ = QFileDialog.getSaveFileName(self, tr("Export table"), start, tr("Tables (*.csv)"))
         if not name:
             return
-        entries = self.table.visible_entries()
+        entries = self.table.particles.rows
         try:
             write_bytes(Path(name), csv_text(sample_table(entries)).encode("utf-8"))
         except RegolithError as error:
@@ -106,7 +117,7 @@ class SamplePage(PageWidget):
 
     def copy_table(self) -> None:
         """Copy the visible rows to the clipboard, separated by tabs."""
-        text = csv_text(sample_table(self.table.visible_entries()), separator="\t")
+        text = csv_text(sample_table(self.table.particles.rows), separator="\t")
         QApplication.clipboard().setText(text)
         self._context.toast.note(tr("The table is on the clipboard."))
 
@@ -165,7 +176,7 @@ class SamplePage(PageWidget):
         self._show_current()
 
     def _count(self) -> None:
-        seen, total = len(self.table.visible_entries()), len(self._session.particles)
+        seen, total = len(self.table.particles.rows), len(self._session.particles)
         self.title.setText(
             tr("Sample ({total})", total=total)
             if seen == total
@@ -173,7 +184,7 @@ class SamplePage(PageWidget):
         )
 
     def _show_pictures(self) -> None:
-        seen = self.table.visible_entries()
+        seen = self.table.particles.rows
         chosen = self.table.chosen()
         self.scatter.show_entries(seen, chosen)
         several = [entry for entry in seen if entry.id in set(chosen)]
