@@ -10,8 +10,9 @@ from regolith_studio.dataset.exporters import EXPORTERS
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.harmonics.fit import HarmonicFit
-from regolith_studio.imaging.extraction import ExtractionSettings, extract_particles
+from regolith_studio.imaging.extraction import extract_particles
 from regolith_studio.imaging.segmentation.segment import SegmentationSettings, segment
+from regolith_studio.imaging.settings import ExtractionSettings
 from regolith_studio.imaging.volume import Volume
 from regolith_studio.io.output_lock import output_lock
 from regolith_studio.jobs.events import result_of

@@ -14,6 +14,7 @@ from typing import Annotated, Any, get_type_hints
 import typer
 
 from regolith_studio.errors import InputError
+from regolith_studio.settings import setting_of
 
 
 def with_dataclass_options(command: Callable[..., None]) -> Callable[..., None]:
@@ -50,26 +51,34 @@ def _options(name: str, hint: Any, default: Any) -> Iterator[inspect.Parameter]:
     hints = get_type_hints(hint, include_extras=True)
     for each in fields(hint):
         default = inspect.Parameter.empty if each.default is MISSING else each.default
-        annotation = _annotated(each, hints[each.name]) if "label" in each.metadata else hints[each.name]
+        annotation = hints[each.name]
+        if "label" in each.metadata:
+            annotation = Annotated[annotation, _option(each, each.name)]
         yield from _options(each.name, annotation, default)
 
 
-def _annotated(each: Field[Any], hint: Any) -> Any:
-    """The type of a setting with its option; its tip and its keys are the help, its range is checked."""
+def option_of(kind: type[Any], name: str, **changes: Any) -> Any:
+    """The option of a single setting, for ``Annotated``; `changes` of its metadata, such as ``metavar``."""
+    return _option(setting_of(kind, name, **changes), name)
+
+
+def _option(each: Field[Any], name: str) -> Any:
+    """The option of a setting; its tip and its keys are the help, its range is checked."""
     metadata = each.metadata
-    keys = [key for key in metadata.get("choices", ()) if key]
-    help_ = f"{metadata['tip']} One of: {', '.join(keys)}." if keys else metadata["tip"]
-    metavar = metadata.get("metavar") or ("KEY" if isinstance(each.default, str) else "N")
-    name = f"--{each.name.replace('_', '-')}"
-    option = typer.Option(
-        name,
-        help=help_,
-        metavar=metavar,
-        show_default=bool(each.default),
+    keys = [str(key) for key in metadata.get("choices", ()) if key]
+    help_ = metadata.get("tip") or f"{metadata['label']}."
+    flag = metadata.get("option") or f"--{name.strip('_').replace('_', '-')}"
+    if isinstance(each.default, bool):
+        off = f"/--no-{flag.removeprefix('--')}" if each.default and "/" not in flag else ""
+        return typer.Option(f"{flag}{off}", help=help_)
+    return typer.Option(
+        flag,
+        help=f"{help_} One of: {', '.join(keys)}." if keys else help_,
+        metavar=metadata.get("metavar") or ("KEY" if isinstance(each.default, str) else "N"),
+        show_default=metadata.get("shown_default", bool(each.default)),
         min=metadata.get("minimum"),
         max=metadata.get("maximum"),
     )
-    return Annotated[hint, option]
 
 
 def _make_group(group: Any, values: dict[str, Any]) -> Any:

@@ -6,12 +6,19 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from regolith_studio.imaging.settings import (
+    CleaningSettings,
+    DenoiseSettings,
+    ExtractionSettings,
+    SplittingSettings,
+    ThresholdSettings,
+)
 from regolith_studio.readers.volumes.region import RegionSettings
+from regolith_studio.settings import setting, setting_of
 
 MAX_H = 1e6
 
 if TYPE_CHECKING:
-    from regolith_studio.imaging.segmentation.thresholding import ThresholdSettings
     from regolith_studio.imaging.volume import VolumeKind
     from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput
     from regolith_studio.readers.volumes.header import RawLayout
@@ -102,24 +109,15 @@ class GrainOptions:
     """Where grains are looked for, how they are found and their surfaces taken."""
 
     region: RegionSettings
-    denoise: Annotated[
-        str,
-        typer.Option(
-            "--denoise",
-            help="Denoising of grey volumes: none, gaussian, median or non-local-means.",
-            metavar="METHOD",
-        ),
-    ] = "median"
-    threshold: Annotated[
-        str,
-        typer.Option(
-            "--threshold",
-            help="Threshold of grey volumes: otsu, multi-otsu, multi-otsu:CLASSES:BOUNDARY, a grey value, or "
-            "probability[:P[:LOW]] for a probability map, where voxels from LOW on count if they are "
-            "connected to some from P on.",
-            metavar="HOW",
-        ),
-    ] = "otsu"
+    denoise: str = setting_of(DenoiseSettings, "method", metavar="METHOD")
+    threshold: str = setting(
+        "otsu",
+        "Threshold",
+        "Threshold of grey volumes: otsu, multi-otsu, multi-otsu:CLASSES:BOUNDARY, a grey value, or "
+        "probability[:P[:LOW]] for a probability map, where voxels from LOW on count if they are "
+        "connected to some from P on.",
+        metavar="HOW",
+    )
     classifier: Annotated[
         Path | None,
         typer.Option(
@@ -138,74 +136,24 @@ class GrainOptions:
             metavar="FILE",
         ),
     ] = None
-    dark: Annotated[bool, typer.Option("--dark", help="Grains are darker than the matrix.")] = False
-    opening: Annotated[
-        int,
-        typer.Option(
-            "--opening",
-            min=0,
-            max=10,
-            help="Radius in voxels of the opening, which removes specks and bridges.",
-            metavar="N",
-        ),
-    ] = 0
-    closing: Annotated[
-        int,
-        typer.Option(
-            "--closing",
-            min=0,
-            max=10,
-            help="Radius in voxels of the closing, which fills cracks.",
-            metavar="N",
-        ),
-    ] = 0
-    h_maxima: Annotated[
-        float,
-        typer.Option(
-            "--h-maxima",
-            min=0.0,
-            max=MAX_H,
-            help="Height in voxels of the maxima of the distance map that count as separate grains; "
-            "larger values give fewer grains.",
-            metavar="H",
-        ),
-    ] = 0.8
-    split: Annotated[bool, typer.Option("--split/--no-split", help="Separate touching grains.")] = True
-    min_voxels: Annotated[
-        int,
-        typer.Option(
-            "--min-voxels", min=0, max=2**63 - 1, help="Minimum number of voxels of a grain.", metavar="N"
-        ),
-    ] = 268
-    border: Annotated[
-        str,
-        typer.Option(
-            "--border",
-            help="Grains cut by the border: exclude (and weight the others) or keep.",
-            metavar="HOW",
-        ),
-    ] = "exclude"
-    surface: Annotated[
-        str,
-        typer.Option(
-            "--surface",
-            help="Source of the surfaces of grey volumes: grey (values) or mask.",
-            metavar="FROM",
-        ),
-    ] = "grey"
+    dark: bool = setting_of(ThresholdSettings, "dark")
+    opening: int = setting_of(CleaningSettings, "opening")
+    closing: int = setting_of(CleaningSettings, "closing")
+    fill_pores: bool = setting_of(CleaningSettings, "fill_pores")
+    h_maxima: float = setting_of(SplittingSettings, "h_maxima")
+    split: bool = setting_of(SplittingSettings, "enabled")
+    min_voxels: int = setting_of(ExtractionSettings, "min_voxels")
+    exclude_border: bool = setting_of(
+        ExtractionSettings, "exclude_border", option="--exclude-border/--keep-border"
+    )
+    surface: str = setting_of(ExtractionSettings, "surface", metavar="FROM")
 
     @property
     def recipe(self) -> "GrainSettings":
         """The settings that the options define; a wrong one is a usage error."""
-        from regolith_studio.imaging.extraction import ExtractionSettings
-        from regolith_studio.imaging.segmentation.denoising import DenoiseSettings
-        from regolith_studio.imaging.segmentation.morphology import CleaningSettings
         from regolith_studio.imaging.segmentation.segment import SegmentationSettings
-        from regolith_studio.imaging.segmentation.splitting import SplittingSettings
         from regolith_studio.jobs.extraction_settings import GrainSettings, read_classifier, read_objects
 
-        if self.border not in ("exclude", "keep"):
-            raise typer.BadParameter(f"Grains at the border are to exclude or to keep, not {self.border!r}.")
         least = min(self.min_voxels, CleaningSettings.min_voxels)
         trained = read_classifier(self.classifier) if self.classifier else None
         how = "probability" if trained and self.threshold == "otsu" else self.threshold
@@ -213,14 +161,15 @@ class GrainOptions:
             SegmentationSettings(
                 DenoiseSettings(self.denoise),  # type: ignore[arg-type]  # checked by the settings
                 threshold_from(how, self.dark),
-                CleaningSettings(self.opening, self.closing, min_voxels=least),
+                CleaningSettings(self.opening, self.closing, self.fill_pores, least),
                 SplittingSettings(self.split, self.h_maxima),
                 classifier=trained,
                 objects=read_objects(self.objects) if self.objects else None,
             ),
             ExtractionSettings(
-                exclude_border=self.border == "exclude",
+                exclude_border=self.exclude_border,
                 min_voxels=self.min_voxels,
+                fill_pores=self.fill_pores,
                 surface=self.surface,  # type: ignore[arg-type]  # checked by the settings
             ),
             self.region,
@@ -238,10 +187,8 @@ def volume_kind(text: str) -> "VolumeKind | None":
             raise typer.BadParameter(f"A volume holds labels or grey values, not {text!r}.")
 
 
-def threshold_from(text: str, dark: bool) -> "ThresholdSettings":
+def threshold_from(text: str, dark: bool) -> ThresholdSettings:
     """The threshold that ``otsu``, ``multi-otsu:4:2``, ``probability:0.6:0.3`` or ``87.5`` denotes."""
-    from regolith_studio.imaging.segmentation.thresholding import ThresholdSettings
-
     name, _, rest = text.partition(":")
     try:
         match name:

@@ -12,11 +12,10 @@ The volume is seen slab by slab for the sizes and boxes of the labels; each is c
 from collections.abc import Callable, Generator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property, partial
-from typing import Any, Literal, get_args
+from typing import Any
 
 import numpy as np
 
-from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import BoolArray, FloatArray
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle, Source
@@ -31,12 +30,10 @@ from regolith_studio.imaging.grain_surface import (
 )
 from regolith_studio.imaging.label_table import contact_areas, find_padding, grain_crop, label_table
 from regolith_studio.imaging.scan_circle import ScanCircle
+from regolith_studio.imaging.settings import ExtractionSettings, Surface
 from regolith_studio.imaging.volume import Origin, Volume
 from regolith_studio.imaging.volume_slabs import BATCH_VOXELS, ParallelMap, SharedArray, in_batches
 from regolith_studio.messages import N_, count_message
-
-Surface = Literal["mask", "grey"]
-SURFACES: tuple[Surface, ...] = get_args(Surface)
 
 WIDE_NECK, WIDE_NECK_OF_SMALL = 0.6, 0.65
 """Diameter of the contact of two labels, over that of the ball of the smaller one's volume, from which on
@@ -50,50 +47,6 @@ _MAX_CLIPPED = 0.05
 """Share of a grain's voxels at the end of the range of grey values from which on it is said."""
 _BATCH_SHARE = 8
 """Of the smallest batch of voxels: a surface takes long however small its grain is."""
-
-
-@dataclass(frozen=True)
-class ExtractionSettings:
-    """Which labels become particles, and how they are contoured.
-
-    Parameters
-    ----------
-    exclude_border
-        Leave out what touches the border of the volume, and so is cut.
-    min_voxels
-        Leave out what has fewer voxels; 268 are those of a ball of 8 voxels in diameter.
-    warn_diameter
-        Note on particles below this diameter, in voxels, that their shape is coarse; thin ones by their
-        shortest axis.
-    fill_pores
-        Close pores that have no way out.
-    iterations, pass_band
-        Of the smoothing (:func:`~regolith_studio.imaging.smoothing.LowPass`).
-    surface
-        What surfaces are taken from: the ``grey`` values about each label where they are at hand
-        (:mod:`~regolith_studio.imaging.grain_surface`), or its ``mask`` always.
-    """
-
-    exclude_border: bool = True
-    min_voxels: int = 268
-    warn_diameter: float = 12.0
-    fill_pores: bool = True
-    iterations: int = 20
-    pass_band: float = 0.13
-    surface: Surface = "grey"
-
-    def __post_init__(self) -> None:
-        if self.min_voxels < 0:
-            raise InputError(f"The smallest number of voxels must not be negative, got {self.min_voxels}.")
-        if self.iterations < 0 or not 0.0 < self.pass_band <= 2.0:
-            raise InputError(
-                f"Smoothing takes 0 or more iterations and a pass band up to 2, got {self.iterations} "
-                f"and {self.pass_band}."
-            )
-        if self.surface not in SURFACES:
-            raise InputError(
-                f"Surfaces are taken from the {' or the '.join(SURFACES)}, not {self.surface!r}."
-            )
 
 
 @dataclass(frozen=True)

@@ -27,7 +27,7 @@ from regolith_studio.imaging.segmentation.pixel_classifier import (
 from regolith_studio.imaging.segmentation.pixel_features import FeatureSettings, features_at, features_in
 from regolith_studio.imaging.segmentation.scan_outside import background_filled, find_outside
 from regolith_studio.imaging.segmentation.strokes import ERASER, Stroke, painted_rows
-from regolith_studio.imaging.segmentation.thresholding import ThresholdSettings
+from regolith_studio.imaging.settings import ThresholdSettings
 from regolith_studio.imaging.volume import Volume
 from regolith_studio.imaging.volume_slabs import ScratchArrays, SliceSource
 from regolith_studio.io.atomic import write_bytes

@@ -140,8 +140,9 @@ def _draw_particles() -> None:
 
 def _extract_two_balls() -> None:
     """Segment two touching balls, and extract them from their labels and from their grey values."""
-    from regolith_studio.imaging.extraction import ExtractionSettings, extract_particles
+    from regolith_studio.imaging.extraction import extract_particles
     from regolith_studio.imaging.segmentation.segment import segment
+    from regolith_studio.imaging.settings import ExtractionSettings
     from regolith_studio.imaging.volume import Volume
 
     places = np.indices((68, 44, 44)) - 21.5

@@ -16,7 +16,6 @@ from regolith_studio.imaging.extraction import (
     ExtractedParticle,
     Extraction,
     ExtractionProgress,
-    ExtractionSettings,
     LabelSelection,
     extraction_steps,
     select_labels,
@@ -24,7 +23,8 @@ from regolith_studio.imaging.extraction import (
 from regolith_studio.imaging.label_files import write_label_file
 from regolith_studio.imaging.segmentation.scan_outside import find_outside
 from regolith_studio.imaging.segmentation.segment import Segmentation
-from regolith_studio.imaging.segmentation.thresholding import ThresholdSettings, hidden_class
+from regolith_studio.imaging.segmentation.thresholding import hidden_class
+from regolith_studio.imaging.settings import ExtractionSettings, ThresholdSettings
 from regolith_studio.imaging.volume import Volume, VolumeKind
 from regolith_studio.imaging.volume_slabs import ScratchArrays, SliceSource
 from regolith_studio.io.atomic import write_bytes

@@ -7,23 +7,24 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from regolith_studio.errors import FileError, InputError
-from regolith_studio.imaging.extraction import (
-    ExtractionSettings,
-)
 from regolith_studio.imaging.segmentation.classifier_document import (
     objects_document,
     objects_from,
     training_document,
     training_from,
 )
-from regolith_studio.imaging.segmentation.denoising import DenoiseSettings
 from regolith_studio.imaging.segmentation.label_edits import edits_document, edits_from
-from regolith_studio.imaging.segmentation.morphology import CleaningSettings
 from regolith_studio.imaging.segmentation.object_classifier import ObjectTraining
 from regolith_studio.imaging.segmentation.pixel_classifier import TrainingSet
 from regolith_studio.imaging.segmentation.segment import SegmentationSettings
-from regolith_studio.imaging.segmentation.splitting import SplittingSettings, TileSettings
-from regolith_studio.imaging.segmentation.thresholding import ThresholdSettings
+from regolith_studio.imaging.settings import (
+    CleaningSettings,
+    DenoiseSettings,
+    ExtractionSettings,
+    SplittingSettings,
+    ThresholdSettings,
+    TileSettings,
+)
 from regolith_studio.imaging.volume import VolumeKind
 from regolith_studio.readers.file_bytes import read_bytes
 from regolith_studio.readers.volumes.header import RawLayout

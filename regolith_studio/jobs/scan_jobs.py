@@ -31,12 +31,8 @@ from regolith_studio.imaging.segmentation.segment import (
     preview,
     segmentation_steps,
 )
-from regolith_studio.imaging.segmentation.thresholding import (
-    Histogram,
-    ThresholdSettings,
-    histogram,
-    level_of,
-)
+from regolith_studio.imaging.segmentation.thresholding import Histogram, histogram, level_of
+from regolith_studio.imaging.settings import ThresholdSettings
 from regolith_studio.imaging.slice_images import SliceImages, coarse_copy
 from regolith_studio.imaging.sparse_slices import sparse_slices
 from regolith_studio.imaging.volume import Volume, VolumeKind

@@ -2552,6 +2552,10 @@
         <translation>Wie viele Einzelheiten: l_max</translation>
     </message>
     <message>
+        <source>Hysteresis</source>
+        <translation>Hysterese</translation>
+    </message>
+    <message>
         <source>Hysteresis: voxels from this probability on belong to a grain if they are connected to some from the level on; 0 for none.</source>
         <translation>Hysterese: Voxel ab dieser Wahrscheinlichkeit gehören zu einem Korn, wenn sie mit Voxeln ab der Schwelle zusammenhängen; 0 für keine.</translation>
     </message>
@@ -5190,6 +5194,10 @@
     <message>
         <source>Smallest moment of inertia</source>
         <translation>Kleinstes Trägheitsmoment</translation>
+    </message>
+    <message>
+        <source>Smoothing of the grey values.</source>
+        <translation>Glättung der Grauwerte.</translation>
     </message>
     <message>
         <source>Snapshots</source>

@@ -176,7 +176,7 @@ def test_that_labels_of_an_unknown_format_are_bad_use(command, tmp_path: Path) -
 
 def test_that_keeping_the_border_of_labels_gives_all_grains(command, tmp_path: Path) -> None:
     scan, x = part_of_scan(tmp_path, "labels"), tmp_path / "x"
-    result = command("extract", scan, "-o", x, "--border", "keep", "--voxel-size", 1, "--min-voxels", 600)
+    result = command("extract", scan, "-o", x, "--keep-border", "--voxel-size", 1, "--min-voxels", 600)
     assert result.code == 0
     sizes = np.bincount(sample_volume("labels").array[PART].ravel())[1:]
     assert [int(row["voxels"]) for row in rows_of(x)] == sizes[sizes >= 600].tolist()
@@ -222,8 +222,7 @@ def test_that_a_probability_map_of_an_hdf5_file_is_taken(command, tmp_path: Path
     ("options", "sentence"),
     [
         (("--threshold", "bright"), "A threshold is otsu"),
-        (("--denoise", "wavelets"), "Denoise by one of"),
-        (("--border", "cut"), "Grains at the border are to exclude or to keep"),
+        (("--denoise", "wavelets"), "method must be one of"),
         (("--kind", "colour"), "labels or grey values"),
         (("--voxel-size", "1,2"), "three as X,Y,Z"),
         (("--voxel-size", "-1"), "from 1e-12 to 1e+12"),

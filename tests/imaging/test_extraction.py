@@ -12,7 +12,6 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.imaging import volume_slabs
 from regolith_studio.imaging.bounding_boxes import touches
 from regolith_studio.imaging.extraction import (
-    ExtractionSettings,
     border_weight,
     extract_particles,
     extraction_steps,
@@ -21,6 +20,7 @@ from regolith_studio.imaging.extraction import (
 )
 from regolith_studio.imaging.label_table import contact_areas, label_table
 from regolith_studio.imaging.sample_volumes import sample_volume
+from regolith_studio.imaging.settings import ExtractionSettings
 from regolith_studio.imaging.volume import Volume
 from tools.make_samples.grains import even_sphere, random_rotation
 

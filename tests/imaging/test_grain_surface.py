@@ -10,9 +10,10 @@ from scipy.spatial import ConvexHull, HalfspaceIntersection
 from regolith_studio.errors import InputError
 from regolith_studio.imaging import volume_slabs
 from regolith_studio.imaging.contours import MAX_DEPTH, depth
-from regolith_studio.imaging.extraction import ExtractedParticle, ExtractionSettings, extract_particles
+from regolith_studio.imaging.extraction import ExtractedParticle, extract_particles
 from regolith_studio.imaging.sample_volumes import sample_volume
 from regolith_studio.imaging.segmentation.segment import segment
+from regolith_studio.imaging.settings import ExtractionSettings
 from regolith_studio.imaging.volume import Volume
 from tools.make_samples.grains import even_sphere, random_rotation
 

@@ -17,9 +17,9 @@ import json, resource, sys
 from pathlib import Path
 import numpy as np
 from regolith_studio.imaging.extraction import extraction_steps
-from regolith_studio.imaging.segmentation.denoising import DenoiseSettings
+from regolith_studio.imaging.settings import DenoiseSettings
 from regolith_studio.imaging.segmentation.segment import SegmentationSettings, segmentation_steps
-from regolith_studio.imaging.segmentation.thresholding import ThresholdSettings
+from regolith_studio.imaging.settings import ThresholdSettings
 from regolith_studio.imaging.volume_slabs import ScratchArrays, unpacked
 from regolith_studio.jobs.extraction_settings import VolumeInput
 

@@ -7,7 +7,8 @@ import pytest
 from scipy import ndimage
 
 from regolith_studio.descriptors.describe import describe
-from regolith_studio.imaging.extraction import ExtractionSettings, extract_particles
+from regolith_studio.imaging.extraction import extract_particles
+from regolith_studio.imaging.settings import ExtractionSettings
 from regolith_studio.imaging.volume import Volume
 
 EDGE, RADIUS, BLUR = 41, 12.0, 0.8

@@ -8,11 +8,10 @@ import numpy as np
 import pytest
 
 from regolith_studio.errors import InputError
-from regolith_studio.imaging.extraction import ExtractedParticle, ExtractionSettings
+from regolith_studio.imaging.extraction import ExtractedParticle
 from regolith_studio.imaging.sample_volumes import sample_file, sample_volume
-from regolith_studio.imaging.segmentation.denoising import DenoiseSettings
 from regolith_studio.imaging.segmentation.segment import SegmentationSettings
-from regolith_studio.imaging.segmentation.thresholding import ThresholdSettings
+from regolith_studio.imaging.settings import DenoiseSettings, ExtractionSettings, ThresholdSettings
 from regolith_studio.jobs import scan_jobs
 from regolith_studio.jobs.events import Progress, Started, Step, Steps
 from regolith_studio.jobs.extraction_jobs import extract_file, extract_labels, extract_measured, volume_sha256
@@ -171,7 +170,7 @@ def test_that_a_recipe_survives_being_written_and_read(tmp_path: Path) -> None:
         ('{"extraction": 3}', "group of settings"),
         ('{"extraction": {"min_voxels": "many"}}', "of the kind of 268"),
         ('{"extraction": {"min_voxels": true}}', "of the kind of 268"),
-        ('{"segmentation": {"denoise": {"method": "wavelets"}}}', "Denoise by one of"),
+        ('{"segmentation": {"denoise": {"method": "wavelets"}}}', "method must be one of"),
     ],
 )
 def test_that_a_bad_recipe_is_one_sentence(tmp_path: Path, text: str, sentence: str) -> None:

@@ -9,7 +9,7 @@ import pytest
 from regolith_studio.imaging.segmentation import pixel_classifier
 from regolith_studio.imaging.segmentation.pixel_classifier import ClassifierSettings, PixelClass, TrainingSet
 from regolith_studio.imaging.segmentation.segment import SegmentationSettings
-from regolith_studio.imaging.segmentation.thresholding import ThresholdSettings
+from regolith_studio.imaging.settings import ThresholdSettings
 from regolith_studio.jobs import unfinished_maps
 from regolith_studio.jobs.classifier_jobs import map_probabilities, train_on_labels
 from regolith_studio.jobs.events import Steps

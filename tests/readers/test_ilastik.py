@@ -14,9 +14,8 @@ import pytest
 from scipy import ndimage
 
 from regolith_studio.imaging.extraction import extract_particles
-from regolith_studio.imaging.segmentation.denoising import DenoiseSettings
 from regolith_studio.imaging.segmentation.segment import SegmentationSettings, segment
-from regolith_studio.imaging.segmentation.thresholding import ThresholdSettings
+from regolith_studio.imaging.settings import DenoiseSettings, ThresholdSettings
 from regolith_studio.readers.volumes.read import describe_volume, read_volume
 
 RADII = (9.0, 8.0, 7.0, 9.5)

@@ -11,9 +11,8 @@ from regolith_studio.errors import InputError
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
-from regolith_studio.imaging.extraction import ExtractionSettings
 from regolith_studio.imaging.segmentation.segment import SegmentationSettings
-from regolith_studio.imaging.segmentation.splitting import SplittingSettings
+from regolith_studio.imaging.settings import ExtractionSettings, SplittingSettings
 from regolith_studio.io.atomic import write_files
 from regolith_studio.io.stl import stl_bytes
 from regolith_studio.jobs.extraction_jobs import extract_file, extract_labels

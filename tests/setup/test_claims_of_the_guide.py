@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 from regolith_studio.imaging.extraction import CLOSED_GAP, WIDE_NECK, WIDE_NECK_OF_SMALL
-from regolith_studio.imaging.segmentation.morphology import CleaningSettings
-from regolith_studio.imaging.segmentation.splitting import SplittingSettings
+from regolith_studio.imaging.settings import CleaningSettings, SplittingSettings
 
 ROOT = Path(__file__).parents[2]
 

@@ -117,14 +117,14 @@ def watch_moments(page, monkeypatch):
 
 def test_that_tables_are_edited_in_the_paper_s_units_and_missing_values_are_marked(shown):
     form = shown(ParameterForm(ContactParameters, "contact"))
-    assert form._editors["youngs_modulus"].value() == pytest.approx(30.0)
-    assert form._editors["youngs_modulus"].suffix() == " GPa"
+    assert form.editors["youngs_modulus"].value() == pytest.approx(30.0)
+    assert form.editors["youngs_modulus"].suffix() == " GPa"
     assert form.value() == ContactParameters()
-    form._editors["surface_energy"].setValue(25.0)
+    form.editors["surface_energy"].setValue(25.0)
     assert form.value().surface_energy == pytest.approx(0.025)
     assert set(form.changes()) == {"surface_energy"}
-    assert "not given" in form._editors["restitution"].toolTip()
-    assert "Table 1" in form._editors["density"].toolTip()
+    assert "not given" in form.editors["restitution"].toolTip()
+    assert "Table 1" in form.editors["density"].toolTip()
 
 
 def test_that_a_dataset_is_previewed_with_the_consequences(page, dataset, wait):
@@ -368,7 +368,7 @@ def test_that_gravity_can_be_chosen_by_name_and_the_state_comes_back(page, datas
     page.setup.gravity.setCurrentIndex(1)
     assert page.setup.request().case.test.gravity == 1.62
     page.setup.test.setValue(replace(page.setup.test.value(), gravity=5.0))
-    page.setup.test.valueChanged.emit()
+    page.setup.test.valueChanged.emit({})
     assert page.setup.gravity.currentText() == "Other"
     page.setup.set_dataset(dataset)
     page.setup.seed.setValue(7)

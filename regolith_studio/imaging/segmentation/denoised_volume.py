@@ -7,7 +7,7 @@ from functools import partial
 import numpy as np
 
 from regolith_studio.geometry.arrays import FloatArray
-from regolith_studio.imaging.segmentation.denoising import DenoiseSettings, denoised, noise_of
+from regolith_studio.imaging.segmentation.denoising import denoised, noise_of
 from regolith_studio.imaging.segmentation.scan_outside import Padding
 from regolith_studio.imaging.segmentation.thresholding import (
     Histogram,
@@ -16,6 +16,7 @@ from regolith_studio.imaging.segmentation.thresholding import (
     histogram,
     span,
 )
+from regolith_studio.imaging.settings import DenoiseSettings
 from regolith_studio.imaging.volume import Volume
 from regolith_studio.imaging.volume_slabs import ParallelMap, ScratchArrays, SharedArray, slab_ranges
 

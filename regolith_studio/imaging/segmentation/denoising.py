@@ -1,73 +1,15 @@
 """Noise out of grey values, edges kept."""
 
-from dataclasses import dataclass
-from typing import Any, Literal, get_args
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 from skimage import restoration
 
-from regolith_studio.errors import InputError
-
-DenoiseMethod = Literal["none", "gaussian", "median", "non-local-means"]
-DENOISE_METHODS: tuple[DenoiseMethod, ...] = get_args(DenoiseMethod)
+from regolith_studio.imaging.settings import DenoiseSettings
 
 _denoise_nl_means: Any = restoration.denoise_nl_means
-
-
-@dataclass(frozen=True)
-class DenoiseSettings:
-    """How grey values are smoothed before they are thresholded; lengths in voxels.
-
-    Parameters
-    ----------
-    method
-        ``gaussian`` is fast and rounds edges a little; ``median`` keeps edges and removes single
-        outliers; ``non-local-means`` averages similar patches, keeps edges and fine cracks best and
-        takes longest.
-    sigma
-        Standard deviation of the Gaussian.
-    size
-        Edge of the median's cube; odd.
-    strength
-        Of the non-local means: patches count as similar up to this many standard deviations of the noise.
-    patch, reach
-        Of the non-local means: edge of a patch (odd), and how far away patches are searched.
-    """
-
-    method: DenoiseMethod = "median"
-    sigma: float = 0.8
-    size: int = 3
-    strength: float = 0.8
-    patch: int = 3
-    reach: int = 3
-
-    def __post_init__(self) -> None:
-        if self.method not in DENOISE_METHODS:
-            raise InputError(f"Denoise by one of {', '.join(DENOISE_METHODS)}, not {self.method!r}.")
-        if not 0.0 < self.sigma <= 10.0:
-            raise InputError(f"The Gaussian's sigma lies between 0 and 10 voxels, got {self.sigma}.")
-        if not 0.0 < self.strength <= 10.0:
-            raise InputError(f"The strength of non-local means lies between 0 and 10, got {self.strength}.")
-        for name, value, high in (("median's size", self.size, 9), ("patch", self.patch, 9)):
-            if value not in range(3, high + 1, 2):
-                raise InputError(f"The {name} is an odd number from 3 to {high}, got {value}.")
-        if self.reach not in range(1, 11):
-            raise InputError(f"Patches are searched 1 to 10 voxels away, got {self.reach}.")
-
-    @property
-    def margin(self) -> int:
-        """Slices beyond a slab that the result in the slab depends on."""
-        match self.method:
-            case "gaussian":
-                return int(4.0 * self.sigma + 0.5)
-            case "median":
-                return self.size // 2
-            case "non-local-means":
-                return self.reach + self.patch // 2 + 1
-            case _:
-                return 0
 
 
 def noise_of(slices: NDArray[Any]) -> float:

@@ -23,9 +23,8 @@ from regolith_studio.imaging.connected_components import (
     components_of_slab,
 )
 from regolith_studio.imaging.segmentation.denoised_volume import denoised_volume
-from regolith_studio.imaging.segmentation.denoising import DenoiseSettings
 from regolith_studio.imaging.segmentation.label_edits import LabelEdit, apply_edits
-from regolith_studio.imaging.segmentation.morphology import CleaningSettings, cleaned
+from regolith_studio.imaging.segmentation.morphology import cleaned
 from regolith_studio.imaging.segmentation.object_classifier import (
     ObjectTable,
     ObjectTraining,
@@ -41,14 +40,20 @@ from regolith_studio.imaging.segmentation.pixel_classifier import (
     train,
 )
 from regolith_studio.imaging.segmentation.scan_outside import OUTSIDE, Padding, ScanOutside, background_filled
-from regolith_studio.imaging.segmentation.splitting import GrainSplitter, SplittingSettings, TileSettings
+from regolith_studio.imaging.segmentation.splitting import GrainSplitter
 from regolith_studio.imaging.segmentation.thresholding import (
     Histogram,
-    ThresholdSettings,
     grain_voxels,
     level_of,
     threshold_words,
     weak_level,
+)
+from regolith_studio.imaging.settings import (
+    CleaningSettings,
+    DenoiseSettings,
+    SplittingSettings,
+    ThresholdSettings,
+    TileSettings,
 )
 from regolith_studio.imaging.volume import Volume
 from regolith_studio.imaging.volume_slabs import (

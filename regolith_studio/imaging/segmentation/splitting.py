@@ -18,11 +18,11 @@ from scipy import ndimage, sparse
 from scipy.sparse import csgraph
 from skimage import segmentation
 
-from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray
 from regolith_studio.imaging.bounding_boxes import Box, box_between, grown, n_voxels, within
 from regolith_studio.imaging.connected_components import ConnectedComponents, pores_filled
 from regolith_studio.imaging.segmentation.watershed import WatershedBasins, find_basins
+from regolith_studio.imaging.settings import SplittingSettings, TileSettings
 from regolith_studio.imaging.volume_slabs import ParallelMap, SharedArray, in_batches
 
 OpenEnds = tuple[tuple[bool, bool], ...]
@@ -30,32 +30,6 @@ OpenEnds = tuple[tuple[bool, bool], ...]
 _CLOSED: OpenEnds = ((False, False),) * 3
 _ATTEMPTS = 3
 _expand_labels: Any = segmentation.expand_labels
-
-
-@dataclass(frozen=True)
-class SplittingSettings:
-    """How touching grains are parted.
-
-    Parameters
-    ----------
-    enabled
-        Otherwise each connected body is one grain.
-    h_maxima
-        Persistence up to which a peak of the distance map is no grain of its own, in voxels.
-    relative
-        The same as a share of the peak's height, 0 to 1; the larger of the two counts. Large grains
-        have larger bumps, so that a mixture of sizes is parted better with some of both.
-    """
-
-    enabled: bool = True
-    h_maxima: float = 0.8
-    relative: float = 0.1
-
-    def __post_init__(self) -> None:
-        if not 0.0 <= self.h_maxima < np.inf:
-            raise InputError(f"The h of the h-maxima must not be negative, got {self.h_maxima}.")
-        if not 0.0 <= self.relative <= 1.0:
-            raise InputError(f"The relative h of the h-maxima is a share, 0 to 1, got {self.relative}.")
 
 
 def joined(flooded: WatershedBasins, settings: SplittingSettings) -> IntArray:
@@ -102,25 +76,6 @@ def split(
 def in_mean_edges(edges: FloatArray) -> FloatArray:
     """Voxel edges divided by their geometric mean."""
     return np.asarray(edges / np.prod(edges) ** (1 / 3), dtype=np.float64)
-
-
-@dataclass(frozen=True)
-class TileSettings:
-    """When and how a body is cut into tiles, in voxels.
-
-    Parameters
-    ----------
-    largest
-        Voxels of the box of a body that is not cut.
-    core
-        Edge of a tile.
-    margin
-        Looked at around a tile at first; doubled, at most twice, where it cuts a grain.
-    """
-
-    largest: int = 2**23
-    core: int = 128
-    margin: int = 40
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,7 +1,7 @@
 """Where grains end: a level on the histogram of grey values."""
 
 from dataclasses import dataclass
-from typing import Any, Literal, get_args
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,10 +10,9 @@ from skimage import filters
 
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats, locked_integers
+from regolith_studio.imaging.settings import ThresholdSettings
 from regolith_studio.messages import N_, Message, Number
 
-ThresholdMethod = Literal["otsu", "multi-otsu", "manual", "probability"]
-THRESHOLD_METHODS: tuple[ThresholdMethod, ...] = get_args(ThresholdMethod)
 N_BINS = 256
 _PEAK_WIDTH, _GAP, _HIDDEN_SHARE = 2.0, 0.6, 0.005
 """Standard deviation in bins by which a histogram is smoothed before its peaks are looked for, depth of the
@@ -21,59 +20,6 @@ gap beside a peak over its height, and least share of the voxels in a peak."""
 
 _otsu: Any = filters.threshold_otsu
 _multi_otsu: Any = filters.threshold_multiotsu
-
-
-@dataclass(frozen=True)
-class ThresholdSettings:
-    """Which voxels are grains.
-
-    Parameters
-    ----------
-    method
-        ``otsu`` parts the histogram in two, ``multi-otsu`` in `classes` (pores, resin and minerals of
-        different brightness), ``manual`` takes `value`, and ``probability`` reads the volume as the
-        probability of a voxel to be grain, as ilastik exports it: 0 to 1, or over the range of its type.
-    value
-        Level of ``manual`` in grey values, of ``probability`` from 0 to 1.
-    classes, boundary
-        Of ``multi-otsu``: parts of the histogram, 3 to 5, and which boundary between them is taken,
-        counted from the dark end from 1.
-    dark
-        Whether grains are what lies below the level.
-    low
-        Of ``probability``: the lower threshold of a hysteresis. Voxels from there on belong to a grain if
-        they are connected to some from `value` on (Canny 1986); 0 for no hysteresis.
-    """
-
-    method: ThresholdMethod = "otsu"
-    value: float = 0.5
-    classes: int = 3
-    boundary: int = 1
-    dark: bool = False
-    low: float = 0.0
-
-    def __post_init__(self) -> None:
-        if self.method not in THRESHOLD_METHODS:
-            raise InputError(f"Threshold by one of {', '.join(THRESHOLD_METHODS)}, not {self.method!r}.")
-        if not np.isfinite(self.value):
-            raise InputError(f"The threshold is a finite number, got {self.value}.")
-        if self.method == "probability" and not 0.0 < self.value < 1.0:
-            raise InputError(f"The threshold of a probability lies between 0 and 1, got {self.value}.")
-        if self.low and (self.method != "probability" or self.dark or not 0.0 < self.low < self.value):
-            raise InputError(
-                f"The lower threshold of a hysteresis lies between 0 and the threshold, {self.value:g}, of a "
-                f"probability to be grain, got {self.low:g}."
-            )
-        if self.classes not in (3, 4, 5) or self.boundary not in range(1, self.classes):
-            raise InputError(
-                f"Multi-Otsu takes 3 to 5 classes and a boundary from 1 to one less than that, got "
-                f"{self.classes} and {self.boundary}."
-            )
-
-    @property
-    def is_automatic(self) -> bool:
-        """Whether the level follows from the histogram."""
-        return self.method in ("otsu", "multi-otsu")
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,7 +1,7 @@
-"""Forms built from the fields of a dataclass: settings of a method, and physical parameters with units."""
+"""Forms made from the fields of a dataclass: a row each, by its label, unit, range and help."""
 
 import dataclasses
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import Any
 
 from PySide6.QtCore import QSignalBlocker, Signal
@@ -18,92 +18,189 @@ from PySide6.QtWidgets import (
 
 from regolith_studio.dataset.parameters import NOT_GIVEN
 from regolith_studio.ui.translation import tr
+from regolith_studio.ui.widgets.combo_box import ChoiceBox
 from regolith_studio.ui.widgets.labels import rich_symbol
-from regolith_studio.ui.widgets.numbers import DecimalField
+from regolith_studio.ui.widgets.numbers import DecimalField, NumberSlider, NumberSpec
 
 Scalar = bool | int | float | str
 LARGEST_NUMBER = 2**31 - 1
 """Of a whole number in a box of Qt."""
+DECIMALS = 4
 
 
 class SettingsForm(QWidget):
     """Edits the settings of one dataclass; its value holds those that differ from their defaults.
 
-    A field's ``metadata`` may have ``label``, ``minimum``, ``maximum``, ``step``, ``decimals``, ``tip`` and
-    ``choices``.
+    A field's ``metadata`` is what :func:`~regolith_studio.settings.setting` makes of its arguments.
 
     Parameters
     ----------
     choices
         Label of each key of further texts, by the name of the field.
+    names
+        Fields to edit, in this order; all by default.
+    prefix
+        Begins the object names of the editors.
+    rows
+        Takes the rows, so that those of several dataclasses are aligned; a layout of its own by default.
     """
 
     valueChanged = Signal(dict)  # noqa: N815
+    editingFinished = Signal()  # noqa: N815
 
-    def __init__(self, kind: type[Any], choices: Mapping[str, Mapping[str, str]] | None = None) -> None:
+    def __init__(
+        self,
+        kind: type[Any],
+        choices: Mapping[str, Mapping[Any, str]] | None = None,
+        names: Collection[str] = (),
+        prefix: str = "setting_",
+        rows: QFormLayout | None = None,
+    ) -> None:
         super().__init__()
-        self._defaults: dict[str, Scalar] = {}
-        self._editors: dict[str, QWidget] = {}
-        form = QFormLayout(self)
-        form.setContentsMargins(0, 0, 0, 0)
-        for each in dataclasses.fields(kind):
-            if each.default is dataclasses.MISSING or not isinstance(each.default, Scalar):
-                continue
-            self._defaults[each.name] = each.default
-            label = tr(str(each.metadata.get("label", each.name.replace("_", " ").capitalize())))
-            known = {"choices": choices[each.name]} if choices and each.name in choices else {}
-            editor = self._editors[each.name] = _setting_editor(each.default, {**each.metadata, **known})
-            editor.setObjectName(f"setting_{each.name}")
-            editor.setAccessibleName(label)
-            editor.setToolTip(tr(str(each.metadata.get("tip", ""))))
-            _signal(editor).connect(lambda *_: self.valueChanged.emit(self.value()))
-            if isinstance(editor, QCheckBox):
-                editor.setText(label)
-                form.addRow(editor)
-            else:
-                form.addRow(rich_symbol(label), editor)
-        self.setValue({})
+        known = {each.name: each for each in dataclasses.fields(kind) if isinstance(each.default, Scalar)}
+        self._kind = kind
+        self._settings = {name: known[name] for name in names or known}
+        self.editors: dict[str, Any] = {}
+        self.rows = form_layout(self) if rows is None else rows
+        for name, each in self._settings.items():
+            metadata = dict(each.metadata)
+            if choices and name in choices:
+                metadata["choices"] = choices[name]
+            self._add_row(each, setting_editor(each.default, metadata, f"{prefix}{name}"))
+        SettingsForm.setValue(self, {})
 
-    def value(self) -> dict[str, Scalar]:
+    def value(self) -> Any:
         """Settings that differ from their defaults, by name."""
-        now = {name: _read(editor) for name, editor in self._editors.items()}
-        return {name: value for name, value in now.items() if value != self._defaults[name]}
+        return {name: value for name, value in self.values().items() if value != self._default(name)}
 
-    def setValue(self, value: Mapping[str, Scalar]) -> None:
+    def values(self) -> dict[str, Any]:
+        """All edited settings, by name."""
+        return {name: self._read(name) for name in self.editors}
+
+    def setValue(self, value: Any) -> None:
         """Show these settings, the others at their defaults; announces nothing."""
-        for name, editor in self._editors.items():
-            with QSignalBlocker(editor):
-                _write(editor, value.get(name, self._defaults[name]))
+        for name, editor in self.editors.items():
+            _write(editor, _shown(self._settings[name], value.get(name, self._default(name))))
 
     def is_empty(self) -> bool:
         """Whether the dataclass has no settings that can be edited."""
-        return not self._editors
+        return not self.editors
+
+    def _add_row(self, each: "dataclasses.Field[Any]", editor: QWidget) -> None:
+        words = tr(str(each.metadata.get("label", each.name.replace("_", " ").capitalize())))
+        self.editors[each.name] = editor
+        _signal(editor).connect(lambda *_: self.valueChanged.emit(SettingsForm.value(self)))
+        if isinstance(editor, NumberSlider):
+            editor.editingFinished.connect(self.editingFinished)
+        if isinstance(editor, QCheckBox):
+            editor.setText(words)
+            self.rows.addRow(editor)
+        else:
+            label = QLabel(rich_symbol(tr(str(each.metadata.get("symbol", words)))))
+            label.setBuddy(editor)
+            label.setToolTip(editor.toolTip())
+            self.rows.addRow(label, editor)
+
+    def _default(self, name: str) -> Any:
+        return self._settings[name].default
+
+    def _read(self, name: str) -> Any:
+        """The value of a setting; one that is shown as its rounded default keeps the exact one."""
+        editor, each = self.editors[name], self._settings[name]
+        shown = _value(editor)
+        if isinstance(each.default, bool | str) or "choices" in each.metadata:
+            return shown
+        decimals = editor.decimals() if isinstance(editor, QDoubleSpinBox) else DECIMALS
+        if shown == round(_shown(each, each.default), decimals):
+            return each.default
+        factor = each.metadata.get("factor", 1.0)
+        return shown if factor == 1.0 else round(shown / factor, 12)
 
 
-def _setting_editor(default: Scalar, metadata: Mapping[str, Any]) -> QWidget:
-    if isinstance(default, bool):
-        return QCheckBox()
-    if isinstance(default, str):
-        if "choices" not in metadata:
-            return QLineEdit()
-        combo = QComboBox()
+def form_layout(parent: QWidget | None = None) -> QFormLayout:
+    """A layout for the rows of forms, without margins."""
+    rows = QFormLayout() if parent is None else QFormLayout(parent)
+    rows.setContentsMargins(0, 0, 0, 0)
+    rows.setVerticalSpacing(4)
+    rows.setFieldGrowthPolicy(QFormLayout.FieldGrowthPolicy.AllNonFixedFieldsGrow)
+    return rows
+
+
+def setting_editor(default: Any, metadata: Mapping[str, Any], name: str) -> QWidget:
+    """An editor by the default and the metadata of a setting; the owner adds its label."""
+    words, tip = tr(str(metadata.get("label", ""))), tr(str(metadata.get("tip", "")))
+    editor: QWidget
+    if "choices" in metadata:
         choices = metadata["choices"]
         labels = choices if isinstance(choices, Mapping) else dict(zip(choices, choices, strict=True))
-        for key, label in labels.items():
-            combo.addItem(tr(str(label)), str(key))
-        return combo
-    if isinstance(default, int):
-        whole = QSpinBox()
-        highest = min(int(metadata.get("maximum", 1_000_000)), LARGEST_NUMBER)
-        whole.setRange(int(metadata.get("minimum", 0)), highest)
-        whole.setKeyboardTracking(False)
-        return whole
-    number = DecimalField()
-    number.setDecimals(int(metadata.get("decimals", 4)))
-    number.setRange(float(metadata.get("minimum", 0.0)), float(metadata.get("maximum", 1e6)))
-    number.setSingleStep(float(metadata.get("step", 0.01)))
-    number.setKeyboardTracking(False)
-    return number
+        editor = ChoiceBox(name, words, labels)
+    elif "slider" in metadata:
+        editor = NumberSlider(_spec(default, metadata))
+        editor.field.setObjectName(name)
+        editor.slider.setObjectName(f"{name}_slider")
+        return editor
+    elif isinstance(default, bool):
+        editor = QCheckBox()
+    elif isinstance(default, str):
+        editor = QLineEdit()
+    elif isinstance(default, int):
+        editor = _whole_field(metadata)
+    else:
+        editor = _decimal_field(metadata)
+    editor.setObjectName(name)
+    editor.setAccessibleName(words)
+    editor.setToolTip(tip)
+    return editor
+
+
+def _spec(default: Any, metadata: Mapping[str, Any]) -> NumberSpec:
+    (low, high), factor = metadata["slider"], metadata.get("factor", 1.0)
+    step = metadata.get("step", 1 if isinstance(default, int) else 0.01)
+    limit = metadata.get("maximum", LARGEST_NUMBER)
+    return NumberSpec(
+        "",
+        metadata["label"],
+        low * factor,
+        high * factor,
+        step * factor,
+        limit=min(limit * factor, LARGEST_NUMBER),
+        suffix=f" {metadata['unit']}" if "unit" in metadata else "",
+        tip=metadata.get("tip", ""),
+    )
+
+
+def _whole_field(metadata: Mapping[str, Any]) -> QSpinBox:
+    field = QSpinBox()
+    field.setRange(
+        int(metadata.get("minimum", 0)), min(int(metadata.get("maximum", 1_000_000)), LARGEST_NUMBER)
+    )
+    field.setKeyboardTracking(False)
+    return field
+
+
+def _decimal_field(metadata: Mapping[str, Any]) -> DecimalField:
+    field, factor = DecimalField(), metadata.get("factor", 1.0)
+    decimals = int(metadata.get("decimals", DECIMALS))
+    low = float(metadata.get("minimum", 0.0)) * factor
+    field.setDecimals(decimals)
+    # a positive minimum that would be rounded to 0 is the smallest number that can be shown
+    field.setRange(
+        max(10.0**-decimals, low) if low > 0.0 else low, float(metadata.get("maximum", 1e6)) * factor
+    )
+    field.setSuffix(f" {metadata['unit']}" if metadata.get("unit") else "")
+    if "step" in metadata:
+        field.setSingleStep(float(metadata["step"]) * factor)
+    else:
+        field.setStepType(QDoubleSpinBox.StepType.AdaptiveDecimalStepType)
+    field.setKeyboardTracking(False)
+    field.setMinimumWidth(80)
+    return field
+
+
+def _shown(each: "dataclasses.Field[Any]", value: Any) -> Any:
+    """A value in the unit that the form shows."""
+    factor = each.metadata.get("factor", 1.0)
+    return value if factor == 1.0 else value * factor
 
 
 def _signal(editor: QWidget) -> Any:
@@ -111,45 +208,42 @@ def _signal(editor: QWidget) -> Any:
         case QCheckBox():
             return editor.toggled
         case QComboBox():
-            return editor.currentTextChanged
+            return editor.currentIndexChanged
         case QLineEdit():
             return editor.editingFinished
-        case QSpinBox() | QDoubleSpinBox():
+        case QSpinBox() | QDoubleSpinBox() | NumberSlider():
             return editor.valueChanged
     raise AssertionError("every editor is one of these")
 
 
-def _read(editor: QWidget) -> Scalar:
+def _value(editor: QWidget) -> Any:
     match editor:
         case QCheckBox():
             return editor.isChecked()
-        case QComboBox():
-            return str(editor.currentData())
         case QLineEdit():
             return editor.text()
-        case QSpinBox() | QDoubleSpinBox():
+        case ChoiceBox() | QSpinBox() | QDoubleSpinBox() | NumberSlider():
             return editor.value()
     raise AssertionError("every editor is one of these")
 
 
-def _write(editor: QWidget, value: Scalar) -> None:
-    match editor:
-        case QCheckBox():
-            editor.setChecked(bool(value))
-        case QComboBox():
-            editor.setCurrentIndex(editor.findData(str(value)))
-        case QLineEdit():
-            editor.setText(str(value))
-        case QSpinBox():
-            editor.setValue(int(value))
-        case QDoubleSpinBox():
-            editor.setValue(float(value))
+def _write(editor: QWidget, value: Any) -> None:
+    with QSignalBlocker(editor):
+        match editor:
+            case QCheckBox():
+                editor.setChecked(bool(value))
+            case QLineEdit():
+                editor.setText(str(value))
+            case QSpinBox():
+                editor.setValue(int(value))
+            case ChoiceBox() | QDoubleSpinBox() | NumberSlider():
+                editor.setValue(value)
 
 
-class ParameterForm(QWidget):
+class ParameterForm(SettingsForm):
     """Edits a frozen dataclass of numbers in the units of the paper; a star marks those that it omits.
 
-    Each field's ``metadata`` has ``label``, ``unit``, ``factor``, ``minimum``, ``maximum`` and ``source``.
+    Each field's ``metadata`` has a ``source`` too.
 
     Parameters
     ----------
@@ -159,74 +253,33 @@ class ParameterForm(QWidget):
         Begins the object names of the editors.
     """
 
-    valueChanged = Signal()  # noqa: N815
-
     def __init__(self, kind: type[Any], name: str) -> None:
-        super().__init__()
-        self._kind = kind
-        self._editors: dict[str, QDoubleSpinBox] = {}
-        form = QFormLayout(self)
-        form.setContentsMargins(0, 0, 0, 0)
-        form.setVerticalSpacing(4)
+        super().__init__(kind, prefix=f"{name}_")
         for each in dataclasses.fields(kind):
-            editor = self._editors[each.name] = _number_editor(each.metadata)
-            editor.setObjectName(f"{name}_{each.name}")
-            words = tr(str(each.metadata["label"]))
-            label = QLabel(words)
-            missing = each.metadata["source"] == NOT_GIVEN
-            if missing:
+            editor, source = self.editors[each.name], str(each.metadata["source"])
+            label = self.rows.labelForField(editor)
+            assert isinstance(label, QLabel), "every number has one"
+            if source == NOT_GIVEN:
                 label.setText(f"{label.text()} *")
-            tip = f"{words}: {tr(str(each.metadata['source']))}"
+            tip = f"{tr(str(each.metadata['label']))}: {tr(source)}"
             label.setToolTip(tip)
             editor.setToolTip(tip)
             editor.setAccessibleName(tip)
-            label.setBuddy(editor)
-            form.addRow(label, editor)
-            editor.valueChanged.connect(lambda *_: self.valueChanged.emit())
-        self.setValue(kind())
 
     def value(self) -> Any:
         """The dataclass in SI; unchanged values keep their exact default."""
-        return self._kind(**{name: self._read(name) for name in self._editors})
+        return self._kind(**self.values())
 
     def setValue(self, value: Any) -> None:
         """Show these values; announces nothing."""
-        for each in dataclasses.fields(self._kind):
-            with QSignalBlocker(self._editors[each.name]):
-                self._editors[each.name].setValue(getattr(value, each.name) * each.metadata["factor"])
+        super().setValue(dataclasses.asdict(value))
 
     def changes(self) -> dict[str, float]:
         """Values that are not the defaults, in SI, by name."""
-        return {
-            each.name: number
-            for each in dataclasses.fields(self._kind)
-            if (number := self._read(each.name)) != each.default
-        }
+        found: dict[str, float] = SettingsForm.value(self)
+        return found
 
     def restore(self, changes: Mapping[str, Any]) -> None:
         """Show the defaults with these changes; unknown names are ignored."""
-        known = {each.name for each in dataclasses.fields(self._kind)}
-        kept = {key: float(value) for key, value in changes.items() if key in known}
+        kept = {key: float(value) for key, value in changes.items() if key in self._settings}
         self.setValue(self._kind(**kept))
-
-    def _read(self, name: str) -> float:
-        each = next(one for one in dataclasses.fields(self._kind) if one.name == name)
-        shown = self._editors[name].value()
-        default = float(each.default)  # type: ignore[arg-type]
-        factor = float(each.metadata["factor"])
-        digits = self._editors[name].decimals()
-        return default if shown == round(default * factor, digits) else shown / factor
-
-
-def _number_editor(metadata: Mapping[str, Any]) -> DecimalField:
-    editor = DecimalField()
-    editor.setDecimals(3)
-    factor = float(metadata["factor"])
-    editor.setRange(
-        max(0.001, metadata["minimum"] * factor) if metadata["minimum"] else 0.0, metadata["maximum"] * factor
-    )
-    editor.setSuffix(f" {metadata['unit']}" if metadata["unit"] else "")
-    editor.setStepType(QDoubleSpinBox.StepType.AdaptiveDecimalStepType)
-    editor.setKeyboardTracking(False)
-    editor.setMinimumWidth(80)
-    return editor

@@ -233,7 +233,7 @@ class PresetForm(ParameterForm):
     def _take(self, key: str) -> None:
         self._chosen = key
         self.restore(self._known[key])
-        self.valueChanged.emit()
+        self.valueChanged.emit(self.changes())
 
     def _show_mark(self) -> None:
         self.bar.show_state(self._chosen, self.is_modified())

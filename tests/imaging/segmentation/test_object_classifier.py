@@ -15,7 +15,7 @@ from regolith_studio.imaging.segmentation.object_classifier import (
     train_on_examples,
 )
 from regolith_studio.imaging.segmentation.segment import SegmentationSettings, segment, segmentation_steps
-from regolith_studio.imaging.segmentation.splitting import SplittingSettings
+from regolith_studio.imaging.settings import SplittingSettings
 from regolith_studio.imaging.volume import Volume
 
 GRAIN, SEVERAL, ARTEFACT = range(3)

@@ -17,7 +17,7 @@ from regolith_studio.imaging.segmentation.pixel_classifier import PixelClass, Tr
 from regolith_studio.imaging.segmentation.pixel_features import FeatureSettings, features_at
 from regolith_studio.imaging.segmentation.segment import SegmentationSettings, segment
 from regolith_studio.imaging.segmentation.strokes import draw_stroke, painted_rows
-from regolith_studio.imaging.segmentation.thresholding import ThresholdSettings
+from regolith_studio.imaging.settings import ThresholdSettings
 from regolith_studio.imaging.volume import Volume
 
 STROKES = Path(__file__).with_name("strokes.json")

@@ -12,8 +12,6 @@ from regolith_studio.errors import FileError, InputError, MissingRequirement
 from regolith_studio.imaging.bounding_boxes import box_between
 from regolith_studio.imaging.segmentation import pixel_classifier
 from regolith_studio.imaging.segmentation.classifier_document import training_document, training_from
-from regolith_studio.imaging.segmentation.denoising import DenoiseSettings
-from regolith_studio.imaging.segmentation.morphology import CleaningSettings
 from regolith_studio.imaging.segmentation.pixel_classifier import (
     USUAL_CLASSES,
     ClassifierSettings,
@@ -26,7 +24,7 @@ from regolith_studio.imaging.segmentation.pixel_classifier import (
 )
 from regolith_studio.imaging.segmentation.pixel_features import FeatureSettings, features_at, features_in
 from regolith_studio.imaging.segmentation.segment import SegmentationSettings, preview, segment
-from regolith_studio.imaging.segmentation.thresholding import ThresholdSettings
+from regolith_studio.imaging.settings import CleaningSettings, DenoiseSettings, ThresholdSettings
 from regolith_studio.imaging.volume import Volume
 from regolith_studio.imaging.volume_slabs import ScratchArrays, SharedArray
 

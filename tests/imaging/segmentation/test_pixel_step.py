@@ -7,19 +7,14 @@ from skimage import filters
 
 from regolith_studio.errors import InputError
 from regolith_studio.imaging.sample_volumes import sample_volume
-from regolith_studio.imaging.segmentation.denoising import (
+from regolith_studio.imaging.segmentation.denoising import denoised, noise_of
+from regolith_studio.imaging.segmentation.morphology import cleaned
+from regolith_studio.imaging.segmentation.thresholding import Histogram, grain_voxels, histogram, level_of
+from regolith_studio.imaging.settings import (
     DENOISE_METHODS,
+    CleaningSettings,
     DenoiseSettings,
-    denoised,
-    noise_of,
-)
-from regolith_studio.imaging.segmentation.morphology import CleaningSettings, cleaned
-from regolith_studio.imaging.segmentation.thresholding import (
-    Histogram,
     ThresholdSettings,
-    grain_voxels,
-    histogram,
-    level_of,
 )
 
 
@@ -142,17 +137,17 @@ def test_that_cleaning_does_not_nibble_at_grains_that_the_border_cuts() -> None:
 @pytest.mark.parametrize(
     ("make", "message"),
     [
-        (lambda: DenoiseSettings("mean"), "Denoise by one of"),
+        (lambda: DenoiseSettings("mean"), "method must be one of median"),
         (lambda: DenoiseSettings(size=4), "odd number"),
         (lambda: DenoiseSettings(sigma=-1), "sigma"),
         (lambda: DenoiseSettings(strength=0), "strength"),
-        (lambda: DenoiseSettings(reach=0), "Patches"),
-        (lambda: ThresholdSettings("li"), "Threshold by one of"),
-        (lambda: ThresholdSettings(value=np.nan), "finite"),
+        (lambda: DenoiseSettings(reach=0), "reach"),
+        (lambda: ThresholdSettings("li"), "method must be one of otsu"),
+        (lambda: ThresholdSettings(value=np.nan), "value must be a number"),
         (lambda: ThresholdSettings("probability", 1.5), "between 0 and 1"),
         (lambda: ThresholdSettings("multi-otsu", boundary=3), "3 to 5 classes"),
-        (lambda: CleaningSettings(opening=-1), "Opening takes"),
-        (lambda: CleaningSettings(min_voxels=-1), "negative"),
+        (lambda: CleaningSettings(opening=-1), "opening must be a whole number from 0 to 10"),
+        (lambda: CleaningSettings(min_voxels=-1), "min_voxels"),
     ],
 )
 def test_that_settings_without_meaning_are_refused(make, message) -> None:

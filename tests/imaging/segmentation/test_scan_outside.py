@@ -4,11 +4,12 @@ import numpy as np
 import pytest
 
 from regolith_studio.errors import InputError
-from regolith_studio.imaging.extraction import ExtractionSettings, Surface, extract_particles
+from regolith_studio.imaging.extraction import extract_particles
 from regolith_studio.imaging.scan_circle import ScanCircle
 from regolith_studio.imaging.segmentation.scan_outside import background_filled, find_outside
 from regolith_studio.imaging.segmentation.segment import SegmentationSettings, preview, segment
-from regolith_studio.imaging.segmentation.thresholding import ThresholdSettings, hidden_class
+from regolith_studio.imaging.segmentation.thresholding import hidden_class
+from regolith_studio.imaging.settings import ExtractionSettings, Surface, ThresholdSettings
 from regolith_studio.imaging.volume import Volume
 from regolith_studio.imaging.volume_slabs import ScratchArrays
 from regolith_studio.jobs.scan_jobs import scan_of

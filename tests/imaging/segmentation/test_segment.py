@@ -15,8 +15,6 @@ from regolith_studio.imaging.connected_components import (
     pores_filled,
 )
 from regolith_studio.imaging.sample_volumes import sample_volume
-from regolith_studio.imaging.segmentation.denoising import DENOISE_METHODS, DenoiseSettings
-from regolith_studio.imaging.segmentation.morphology import CleaningSettings
 from regolith_studio.imaging.segmentation.segment import (
     SegmentationSettings,
     grains_over_heights,
@@ -25,8 +23,14 @@ from regolith_studio.imaging.segmentation.segment import (
     segment,
     segmentation_steps,
 )
-from regolith_studio.imaging.segmentation.splitting import SplittingSettings, TileSettings
-from regolith_studio.imaging.segmentation.thresholding import ThresholdSettings
+from regolith_studio.imaging.settings import (
+    DENOISE_METHODS,
+    CleaningSettings,
+    DenoiseSettings,
+    SplittingSettings,
+    ThresholdSettings,
+    TileSettings,
+)
 from regolith_studio.imaging.volume import Volume
 from regolith_studio.imaging.volume_slabs import ScratchArrays
 

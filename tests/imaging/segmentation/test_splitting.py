@@ -8,7 +8,8 @@ import pytest
 from scipy import ndimage
 
 from regolith_studio.imaging.connected_components import ConnectedComponents, components_of_slab
-from regolith_studio.imaging.segmentation.splitting import GrainSplitter, SplittingSettings, TileSettings
+from regolith_studio.imaging.segmentation.splitting import GrainSplitter
+from regolith_studio.imaging.settings import SplittingSettings, TileSettings
 from regolith_studio.imaging.volume_slabs import ParallelMap, SharedArray
 
 SPONGE = ndimage.gaussian_filter(np.random.default_rng(7).standard_normal((44, 46, 48)), 2.0) > -0.02

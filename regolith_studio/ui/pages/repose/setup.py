@@ -143,7 +143,7 @@ class SetupPanel(QWidget):
         InputError
             If values are inconsistent.
         """
-        return EvaluationSettings(**self.evaluation.value())  # type: ignore[arg-type]
+        return EvaluationSettings(**self.evaluation.value())
 
     def set_evaluation(self, **changes: Any) -> None:
         """Change settings of the evaluation."""
