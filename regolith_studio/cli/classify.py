@@ -9,6 +9,7 @@ from regolith_studio.cli.dataclass_options import with_dataclass_options
 from regolith_studio.cli.options import Json, Seed, claim_json, claim_labels, output_path, usage_errors
 from regolith_studio.cli.terminal import CommandGroup, print_json, run_with_progress
 from regolith_studio.cli.volume_options import GrainOptions, VolumeOptions
+from regolith_studio.readers.volumes.region import RegionSettings
 
 if TYPE_CHECKING:
     from regolith_studio.imaging.segmentation.pixel_classifier import PixelClass, TrainingSet
@@ -23,6 +24,8 @@ ClassifierFile = Annotated[
     Path, typer.Argument(metavar="CLASSIFIER", help="File of `classify train` or of the window.")
 ]
 Scan = Annotated[Path, typer.Argument(metavar="SCAN", help="Volume of grey values.")]
+_OUTSIDE = RegionSettings.__dataclass_fields__["outside"].metadata
+Outside = Annotated[str, typer.Option("--outside", help=_OUTSIDE["tip"], metavar=_OUTSIDE["metavar"])]
 
 
 @app.command("train")
@@ -75,6 +78,7 @@ def train(
             "--hessian/--no-hessian", help="Take the eigenvalues of the second derivatives as features."
         ),
     ] = True,
+    outside: Outside = "auto",
     json: Json = False,
     seed: Seed = 0,
 ) -> None:
@@ -87,13 +91,13 @@ def train(
     from regolith_studio.jobs.extraction_settings import VolumeInput
 
     with usage_errors():
-        given = contents.of(scan)
+        given, region = contents.of(scan), RegionSettings(outside=outside)
         features = FeatureSettings(_numbers(sigmas, "--sigmas"), planar, hessian)
         settings = ClassifierSettings(features, model, seed=seed)  # type: ignore[arg-type]  # checked there
         classes = _classes(grain)
     edges = tuple(np.ravel(np.asarray(given.opened().voxel_size, dtype=float)).tolist())
     painted = VolumeInput(labels, edges, "um", "labels", labels_dataset or None, axes=given.axes)
-    training: TrainingSet = run_with_progress(train_on_labels(given, painted, classes, settings))
+    training: TrainingSet = run_with_progress(train_on_labels(given, painted, classes, settings, region.outside))
     write_classifier(output, training)
     counts = {
         each.name: int(np.count_nonzero(training.labels == k)) for k, each in enumerate(training.classes)
@@ -123,6 +127,7 @@ def map_scan(
         ),
     ],
     contents: VolumeOptions,
+    outside: Outside = "auto",
     json: Json = False,
 ) -> None:
     """Write the map of probabilities that a classifier makes of a scan."""
@@ -131,7 +136,8 @@ def map_scan(
 
     with usage_errors():
         given, training = contents.of(scan), read_classifier(classifier)
-    run_with_progress(map_probabilities(given, training, output, output.parent))
+        region = RegionSettings(outside=outside)
+    run_with_progress(map_probabilities(given, training, output, output.parent, region.outside))
     if json:
         print_json({"probabilities": str(output)})
     else:

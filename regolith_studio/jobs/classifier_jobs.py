@@ -25,7 +25,7 @@ from regolith_studio.imaging.segmentation.pixel_classifier import (
     train,
 )
 from regolith_studio.imaging.segmentation.pixel_features import FeatureSettings, features_at, features_in
-from regolith_studio.imaging.segmentation.scan_outside import background_filled, find_outside
+from regolith_studio.imaging.segmentation.scan_outside import AUTO, background_filled, find_outside
 from regolith_studio.imaging.segmentation.strokes import ERASER, Stroke, painted_rows
 from regolith_studio.imaging.settings import ThresholdSettings
 from regolith_studio.imaging.volume import Volume
@@ -44,7 +44,11 @@ S = TypeVar("S", bound=SliceSource)
 
 
 def train_on_labels(
-    scan: VolumeInput, painted: VolumeInput, classes: tuple[PixelClass, ...], settings: ClassifierSettings
+    scan: VolumeInput,
+    painted: VolumeInput,
+    classes: tuple[PixelClass, ...],
+    settings: ClassifierSettings,
+    outside: str = AUTO,
 ) -> Steps:
     """Train a classifier on painted voxels; returns its :class:`TrainingSet`.
 
@@ -52,13 +56,15 @@ def train_on_labels(
     ----------
     painted
         A volume of labels: 0 where nothing is painted, 1 for the first of `classes`, and so on.
+    outside
+        Grey value outside of the scanner's circle, as :func:`find_outside` takes it.
 
     Raises
     ------
     FileError
         If a file is no volume.
     InputError
-        If the volumes differ in size, or a class is not painted.
+        If the volumes differ in size, a class is not painted, or nothing lies outside that has the value.
     MissingRequirement
         If scikit-learn is not installed.
     """
@@ -68,19 +74,21 @@ def train_on_labels(
         raise InputError(f"{scan.path.name} holds labels; a classifier is trained on grey values.")
     yield Started(N_("Training the classifier"))
     with scratch_arrays(source, scratch_folder()) as arrays:
-        inside = _background_outside(source, arrays)
+        inside = _background_outside(source, arrays, outside)
         training = paint_from_labels(inside, labels, classes, settings, volume_sha256(scan.path))
     train(training)
     return training
 
 
-def _background_outside(source: S, arrays: ScratchArrays) -> S | Volume:
+def _background_outside(source: S, arrays: ScratchArrays, choice: str) -> S | Volume:
     """A scan with background outside of the scanner's circle, if there is such."""
-    outside = find_outside(source)
+    outside = find_outside(source, choice)
     return source if outside is None else background_filled(source, outside, ThresholdSettings(), arrays)
 
 
-def map_probabilities(scan: VolumeInput, training: TrainingSet, path: Path, scratch: Path) -> Steps:
+def map_probabilities(
+    scan: VolumeInput, training: TrainingSet, path: Path, scratch: Path, outside: str = AUTO
+) -> Steps:
     """Write the probability of each voxel of a scan to be grain, 0 to 255; returns the path.
 
     The map of a large scan goes on where an earlier call for the same file was interrupted.
@@ -91,13 +99,16 @@ def map_probabilities(scan: VolumeInput, training: TrainingSet, path: Path, scra
         TIFF, NRRD, HDF5 or OME-Zarr by its suffix.
     scratch
         Folder for temporary files where the volume is too large for the memory.
+    outside
+        Grey value outside of the scanner's circle, as :func:`find_outside` takes it.
 
     Raises
     ------
     FileError
         If the scan is no volume, or the file cannot be written.
     InputError
-        If the voxels have another size than those that the classifier was trained on.
+        If the voxels have another size than those that the classifier was trained on, or nothing lies
+        outside that has the value.
     """
     yield Started(Message(N_("Reading {name}"), name=scan.path.name))
     source = scan.opened()
@@ -105,10 +116,10 @@ def map_probabilities(scan: VolumeInput, training: TrainingSet, path: Path, scra
         arrays = stack.enter_context(scratch_arrays(source, scratch))
         whole, place = (source, volume_sha256(scan.path)), unfinished_file(path)
         arrays.checkpoint = stack.enter_context(
-            finished_slabs(place, scan, RegionSettings(), whole, training)
+            finished_slabs(place, scan, RegionSettings(outside=outside), whole, training)
         )
         volume: Volume = yield from read_all(source, arrays)
-        steps = probability_map(train(training), _background_outside(volume, arrays), arrays)
+        steps = probability_map(train(training), _background_outside(volume, arrays, outside), arrays)
         yield Started(N_("Predicting grains"))
         while True:
             try:

@@ -62,6 +62,28 @@ def test_that_the_map_of_probabilities_is_taken_as_one(command, tmp_path: Path) 
     assert len(result.json["particles"]) == 2
 
 
+def test_that_what_lies_outside_of_the_scanners_circle_is_found_or_stated(command, tmp_path: Path) -> None:
+    scan, painted, _ = scan_of_two_minerals(tmp_path)
+    values = np.load(scan)
+    y, x = np.indices(values.shape[1:])
+    values[:, np.hypot((y - 15.5) / 16, (x - 27.5) / 28) > 1.1] = 0
+    np.save(scan, values)
+    files = ["-o", tmp_path / "strokes.json", "--grain", "2,3", "--voxel-size", 2]
+    for value, code, sentence in (("5", 1, "No part of scan.npy is filled with 5"), ("far", 2, "is a number")):
+        wrong = command("classify", "train", scan, painted, *files, "--outside", value)
+        assert wrong.code == code
+        assert sentence in " ".join(wrong.err.replace("│", "").split())
+    assert command("classify", "train", scan, painted, *files).code == 0
+    maps = {}
+    for value in ("auto", "0", "none"):
+        words = ("-o", tmp_path / f"{value}.tif", "--voxel-size", 2, "--outside", value)
+        made = command("classify", "map", scan, tmp_path / "strokes.json", *words)
+        assert made.code == 0, made.err
+        maps[value] = read_volume(tmp_path / f"{value}.tif").array
+    assert np.array_equal(maps["auto"], maps["0"])
+    assert not np.array_equal(maps["auto"], maps["none"])
+
+
 @pytest.mark.slow
 def test_that_painted_voxels_go_out_as_the_labels_that_came_in(command, tmp_path: Path) -> None:
     scan, painted, balls = scan_of_two_minerals(tmp_path)
