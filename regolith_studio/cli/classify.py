@@ -97,7 +97,9 @@ def train(
         classes = _classes(grain)
     edges = tuple(np.ravel(np.asarray(given.opened().voxel_size, dtype=float)).tolist())
     painted = VolumeInput(labels, edges, "um", "labels", labels_dataset or None, axes=given.axes)
-    training: TrainingSet = run_with_progress(train_on_labels(given, painted, classes, settings, region.outside))
+    training: TrainingSet = run_with_progress(
+        train_on_labels(given, painted, classes, settings, region.outside)
+    )
     write_classifier(output, training)
     counts = {
         each.name: int(np.count_nonzero(training.labels == k)) for k, each in enumerate(training.classes)

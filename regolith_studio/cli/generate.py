@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from regolith_studio.cli.dataclass_options import with_dataclass_options
-from regolith_studio.cli.inputs import ReadingOptions
+from regolith_studio.cli.inputs import ReadingOptions, exit_code
 from regolith_studio.cli.options import (
     Folder,
     Jobs,
@@ -140,7 +140,7 @@ def generate(
         request = GenerationRequest(model, tuple(values(set_, "setting").items()), l_max, n, seed, size_range)
         if format_ not in ("stl", "npz"):
             raise typer.BadParameter(f"The format must be stl or npz, got {format_!r}.")
-    source = shape_source(sources, reading, request, jobs)
+    source, code = shape_source(sources, reading, request, jobs)
     print_errors(source.notes)
     fitted = _named(run_with_progress(fit_model(source, request)), names)
     draws = run_with_progress(draw(fitted, request))
@@ -163,6 +163,7 @@ def generate(
                 f"{draws.rejected} draws thrown away, which biases those kept: mean radius "
                 f"{100 * bias['mean_radius']:+.1f} %, A_2 {100 * bias['second_degree']:+.1f} %."
             )
+    raise typer.Exit(code)
 
 
 def shape_source(
@@ -170,8 +171,10 @@ def shape_source(
     reading: ReadingOptions,
     request: "GenerationRequest | None" = None,
     jobs: int = 1,
-) -> "ShapeSource":
-    """What the arguments of a command name: one fit, card or model, or meshes, which are expanded.
+) -> tuple["ShapeSource", int]:
+    """What the arguments of a command name, and its exit code: one fit, card or model, or meshes.
+
+    Meshes are expanded; the code is 1 where some could not be read or expanded.
 
     Raises
     ------
@@ -185,10 +188,10 @@ def shape_source(
     if named and len(sources) > 1:
         raise typer.BadParameter(f"Give one fit, card or model, or meshes only; {named[0]} is not a mesh.")
     if named:
-        return read_shape_source(named[0])
+        return read_shape_source(named[0]), 0
     loaded = reading.read([Path(source) for source in sources])
     found: ShapeSource = run_with_progress(sample_of_meshes(loaded.particles, fit_request_for(request), jobs))
-    return found
+    return found, exit_code(loaded, len(found.notes))
 
 
 def _named(fitted: Any, names: str) -> Any:

@@ -284,7 +284,7 @@ def population(
 
     with usage_errors():
         request = GenerationRequest(l_max=l_max, seed=run.seed)
-    source = shape_source(sources, run.reading, request, run.jobs)
+    source, code = shape_source(sources, run.reading, request, run.jobs)
     print_errors(source.notes)
     if not isinstance(source.content, Sample):
         raise InputError(
@@ -305,6 +305,7 @@ def population(
     if not run.json:
         typer.echo()
         print_table(target_table(study))
+    raise typer.Exit(code)
 
 
 def _rows(

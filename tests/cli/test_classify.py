@@ -69,7 +69,10 @@ def test_that_what_lies_outside_of_the_scanners_circle_is_found_or_stated(comman
     values[:, np.hypot((y - 15.5) / 16, (x - 27.5) / 28) > 1.1] = 0
     np.save(scan, values)
     files = ["-o", tmp_path / "strokes.json", "--grain", "2,3", "--voxel-size", 2]
-    for value, code, sentence in (("5", 1, "No part of scan.npy is filled with 5"), ("far", 2, "is a number")):
+    for value, code, sentence in (
+        ("5", 1, "No part of scan.npy is filled with 5"),
+        ("far", 2, "is a number"),
+    ):
         wrong = command("classify", "train", scan, painted, *files, "--outside", value)
         assert wrong.code == code
         assert sentence in " ".join(wrong.err.replace("│", "").split())

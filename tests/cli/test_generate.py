@@ -63,6 +63,18 @@ def test_that_each_virtual_particle_is_a_closed_mesh_inside_the_range(
         assert row["sound"] == "true"
 
 
+def test_that_a_mesh_of_the_sample_that_cannot_be_read_is_named_and_makes_the_exit_code_1(
+    command, ellipsoids: Path, tmp_path: Path
+) -> None:
+    (tmp_path / "broken.stl").write_bytes(b"solid nothing")
+    meshes = [*sorted(ellipsoids.glob("grain-0[0-3].stl")), tmp_path / "broken.stl"]
+    asked = ("-n", 2, "--model", "gaussian_field", "--l-max", 2, "--level", 1)
+    result = command("generate", *meshes, *asked, "-o", tmp_path / "drawn")
+    assert result.code == 1
+    assert "broken.stl" in result.err
+    assert len(rows_of(tmp_path / "drawn" / "particles.csv")) == 2
+
+
 @pytest.mark.slow
 def test_that_workers_and_repetition_do_not_change_a_byte(command, fit: Path, tmp_path: Path) -> None:
     for place, jobs in (("one", 1), ("two", 2)):
