@@ -280,7 +280,7 @@ def run_program(words: Sequence[str]) -> None:
 @contextmanager
 def shorten_demo() -> Iterator[None]:
     """One particle, three representatives, polyhedra by quadrics and a heap of 40 particles in ``demo``."""
-    from regolith_studio.cli import demo
+    from regolith_studio.cli import recipe
     from regolith_studio.dataset.parameters import LiftingCylinderTest
     from regolith_studio.dem.evaluation.settings import EvaluationSettings
     from regolith_studio.jobs import repose_jobs
@@ -299,9 +299,9 @@ def shorten_demo() -> Iterator[None]:
 
     with ExitStack() as stack:
         for name, value in few.items():
-            stack.enter_context(patch.object(demo, name, value))
-        quick = partial(demo._run_recipe, method="quadric", n_facets=12)
-        stack.enter_context(patch.object(demo, "_run_recipe", quick))
+            stack.enter_context(patch.object(recipe, name, value))
+        quick = partial(recipe._run_recipe, method="quadric", n_facets=12)
+        stack.enter_context(patch.object(recipe, "_run_recipe", quick))
         stack.enter_context(patch.object(inputs, "sample_particles", lambda: first))
         stack.enter_context(patch.object(repose_jobs, "ReposeRequest", quick_heap))
         yield

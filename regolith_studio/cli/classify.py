@@ -210,7 +210,7 @@ def train_objects(
 ) -> None:
     """Train a classifier of segmented objects on a few examples, for `extract --objects`."""
     from regolith_studio.imaging.segmentation.object_classifier import OBJECT_CLASSES
-    from regolith_studio.jobs.object_jobs import ClassifiedObjects, train_on_objects, write_objects
+    from regolith_studio.jobs.classifier_jobs import ClassifiedObjects, train_on_objects, write_objects
     from regolith_studio.jobs.scan_jobs import scratch_folder
     from regolith_studio.readers.object_examples import read_object_examples
 

@@ -8,16 +8,10 @@ import typer
 from regolith_studio.cli import (
     check,
     classify,
-    coarsen,
     dataset,
-    demo,
-    describe,
     extract,
-    fit,
-    forget,
-    gallery,
     generate,
-    install_desktop,
+    particles,
     recipe,
     report,
     repose,
@@ -74,19 +68,19 @@ def _without_command(
 
 
 app.command("open")(open_files)
-app.command("describe")(describe.describe)
-app.command("fit")(fit.fit)
-app.command("gallery")(gallery.gallery)
+app.command("describe")(particles.describe)
+app.command("fit")(particles.fit)
+app.command("gallery")(report.gallery)
 app.command("generate")(generate.generate)
-app.command("coarsen")(coarsen.coarsen)
+app.command("coarsen")(particles.coarsen)
 app.command("extract")(extract.extract)
 app.command("run")(recipe.run)
-app.command("demo")(demo.demo)
+app.command("demo")(recipe.demo)
 app.command("report")(report.report)
 app.command("serve")(serve.serve)
 app.command("check")(check.check)
-app.command("forget")(forget.forget)
-app.command("install-desktop")(install_desktop.install_desktop)
+app.command("forget")(check.forget)
+app.command("install-desktop")(check.install_desktop)
 app.command("warm-up")(check.warm_up)
 app.add_typer(classify.app, name="classify")
 app.add_typer(study.app, name="study")

@@ -1,16 +1,20 @@
 """Jobs that make particles of volumes (section 2.1): read, segment, contour, measure, write their labels."""
 
 import hashlib
-from collections.abc import Callable, Generator
-from contextlib import ExitStack
+import math
+import shutil
+from collections.abc import Callable, Generator, Iterator
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from functools import partial
+from importlib.metadata import version
 from pathlib import Path
 from typing import Any, TypeVar
 
 import numpy as np
 
-from regolith_studio.errors import InputError
+from regolith_studio.dataset.build import software_versions
+from regolith_studio.errors import FileError, InputError
 from regolith_studio.geometry.particle import Source
 from regolith_studio.imaging.extraction import (
     ExtractedParticle,
@@ -21,6 +25,8 @@ from regolith_studio.imaging.extraction import (
     select_labels,
 )
 from regolith_studio.imaging.label_files import write_label_file
+from regolith_studio.imaging.segmentation.classifier_document import training_document
+from regolith_studio.imaging.segmentation.pixel_classifier import TrainingSet, train
 from regolith_studio.imaging.segmentation.scan_outside import find_outside
 from regolith_studio.imaging.segmentation.segment import Segmentation
 from regolith_studio.imaging.segmentation.thresholding import hidden_class
@@ -28,6 +34,8 @@ from regolith_studio.imaging.settings import ExtractionSettings, ThresholdSettin
 from regolith_studio.imaging.volume import Volume, VolumeKind
 from regolith_studio.imaging.volume_slabs import ScratchArrays, SliceSource
 from regolith_studio.io.atomic import write_bytes
+from regolith_studio.io.checkpoint import Checkpoint
+from regolith_studio.io.json_text import canonical_json
 from regolith_studio.io.tables import Column, Table, csv_text
 from regolith_studio.jobs.compile_kernels import compile_first
 from regolith_studio.jobs.events import Progress, Started, Step, Steps
@@ -35,10 +43,10 @@ from regolith_studio.jobs.executor import Executor, open_executor
 from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput
 from regolith_studio.jobs.particle_jobs import MeasuredParticle, measure_particle
 from regolith_studio.jobs.scan_jobs import read_all, scratch_arrays, scratch_folder, segment_volume
-from regolith_studio.jobs.unfinished_maps import finished_slabs
 from regolith_studio.messages import N_, Message
 from regolith_studio.readers.file_bytes import sha256_of
 from regolith_studio.readers.volumes.files import member_folder, member_names
+from regolith_studio.readers.volumes.region import RegionSettings
 
 
 def write_labels(labels: Volume, settings: ExtractionSettings, path: Path, segmented: bool) -> Steps:
@@ -333,3 +341,61 @@ def _no_particle_message(path: Path, extraction: Extraction) -> str:
         f"None of the grains of {path.name} became a particle ({counts}); keep grains at the border, "
         "take smaller ones, or say whether the volume holds labels or grey values."
     )
+
+
+RESUMABLE_VOXELS = 2**26
+"""Voxels of a scan from which on finished slabs of its map are kept: half a minute of work."""
+
+
+def unfinished_file(output: Path) -> Path:
+    """Where finished slabs are kept until a file or folder is complete: in a folder beside it."""
+    return output.with_name(f"{output.name}.unfinished") / "map.sqlite"
+
+
+@contextmanager
+def finished_slabs(
+    path: Path | None,
+    scan: VolumeInput,
+    region: RegionSettings,
+    source: tuple[SliceSource, str],
+    training: TrainingSet | None,
+) -> Iterator[Checkpoint | None]:
+    """The finished slabs of a map, or none of a small scan or where nothing is kept or classified.
+
+    The folder of the file is removed when the block ends without an exception. A file about another scan,
+    region, classifier or version of the libraries is begun anew, and so is a damaged one.
+
+    Parameters
+    ----------
+    path
+        As :func:`unfinished_file` gives it; none where nothing is kept.
+    source
+        The region of the scan, and the SHA-256 of the scan.
+    training
+        Of the classifier, if there is one.
+
+    Raises
+    ------
+    FileError
+        If the file cannot be written, or another process has it open.
+    MissingRequirement
+        If scikit-learn is not installed.
+    """
+    volume, sha256 = source
+    if path is None or training is None or math.prod(volume.shape) < RESUMABLE_VOXELS:
+        yield None
+        return
+    train(training)
+    subject = {
+        "scan": sha256,
+        "part of the scan": repr((scan.dataset, scan.axes, scan.raw, region, volume.shape)),
+        "classifier": hashlib.sha256(canonical_json(training_document(training)).encode()).hexdigest(),
+        "set of program versions": software_versions() | {"scikit-learn": version("scikit-learn")},
+    }
+    try:
+        checkpoint = Checkpoint.resume(path, subject) if path.exists() else Checkpoint.create(path, subject)
+    except FileError:
+        checkpoint = Checkpoint.create(path, subject)
+    with checkpoint:
+        yield checkpoint
+    shutil.rmtree(path.parent, ignore_errors=True)

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from regolith_studio.cli import demo
+from regolith_studio.cli import recipe
 from regolith_studio.cli.entry import run
 from regolith_studio.dataset.folder_io import read_dataset
 from regolith_studio.jobs.events import Progress, Started, Steps
@@ -98,8 +98,8 @@ def test_that_the_heap_is_simulated_during_the_other_steps_if_there_are_processe
         done.append("heap done")
 
     for step in ("_shipped_scan", "_shipped_particles", "_draw_population"):
-        monkeypatch.setattr(demo, step, lambda *_, name=step: done.append(name.rpartition("_")[2]))
-    monkeypatch.setattr(demo, "_heap", heap)
+        monkeypatch.setattr(recipe, step, lambda *_, name=step: done.append(name.rpartition("_")[2]))
+    monkeypatch.setattr(recipe, "_heap", heap)
     monkeypatch.setattr(demo_page, "demo_page", lambda *_: "")
     assert command("demo", "-o", tmp_path / "demo", "--jobs", jobs).code == 0
     assert done == steps

@@ -9,8 +9,7 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.jobs.events import Steps
-from regolith_studio.jobs.fit_checks import TOLERANCE, check_fits
-from regolith_studio.jobs.particle_jobs import FitRequest, fit_sample
+from regolith_studio.jobs.particle_jobs import TOLERANCE, FitRequest, check_fits, fit_sample
 
 
 def result_of(steps: Steps) -> Any:

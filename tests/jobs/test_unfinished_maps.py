@@ -10,12 +10,11 @@ from regolith_studio.imaging.segmentation import pixel_classifier
 from regolith_studio.imaging.segmentation.pixel_classifier import ClassifierSettings, PixelClass, TrainingSet
 from regolith_studio.imaging.segmentation.segment import SegmentationSettings
 from regolith_studio.imaging.settings import ThresholdSettings
-from regolith_studio.jobs import unfinished_maps
+from regolith_studio.jobs import extraction_jobs
 from regolith_studio.jobs.classifier_jobs import map_probabilities, train_on_labels
 from regolith_studio.jobs.events import Steps
-from regolith_studio.jobs.extraction_jobs import extract_measured
+from regolith_studio.jobs.extraction_jobs import extract_measured, unfinished_file
 from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput
-from regolith_studio.jobs.unfinished_maps import unfinished_file
 from tests.cli.test_classify import scan_of_two_minerals
 from tests.jobs.small_jobs import name_and_numbers
 from tests.jobs.test_extraction_jobs import played
@@ -39,7 +38,7 @@ def case(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Case:
         lambda *given: predicted.append(given[1].first) or predict(*given),
     )
     monkeypatch.setattr(pixel_classifier, "_SLAB_VOXELS", 1)
-    monkeypatch.setattr(unfinished_maps, "RESUMABLE_VOXELS", 1)
+    monkeypatch.setattr(extraction_jobs, "RESUMABLE_VOXELS", 1)
     return given, training, predicted
 
 

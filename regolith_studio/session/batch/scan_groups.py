@@ -25,9 +25,8 @@ from regolith_studio.io.own_files import read_json
 from regolith_studio.io.tables import Column, Table, csv_bytes, csv_text, read_csv
 from regolith_studio.jobs.events import Started, Steps
 from regolith_studio.jobs.executor import Executor
-from regolith_studio.jobs.extraction_jobs import volume_sha256
+from regolith_studio.jobs.extraction_jobs import unfinished_file, volume_sha256
 from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput
-from regolith_studio.jobs.unfinished_maps import unfinished_file
 from regolith_studio.messages import N_, Message
 from regolith_studio.readers.volumes.files import volume_files
 from regolith_studio.session.outputs.particles import LISTED, RECIPE, TABLE, ExtractionFolder, input_document

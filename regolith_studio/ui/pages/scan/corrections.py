@@ -21,14 +21,14 @@ from regolith_studio.imaging.segmentation.object_classifier import (
 from regolith_studio.imaging.segmentation.segment import Segmentation, SegmentationSettings
 from regolith_studio.imaging.segmentation.strokes import ERASER
 from regolith_studio.imaging.volume import Volume
-from regolith_studio.jobs.events import Failed, Job
-from regolith_studio.jobs.object_jobs import (
+from regolith_studio.jobs.classifier_jobs import (
     ClassifiedObjects,
     classify_grains,
     correct_grains,
     describe_grains,
     save_objects,
 )
+from regolith_studio.jobs.events import Failed, Job
 from regolith_studio.jobs.scan_jobs import GrainSegmentation
 from regolith_studio.session.history import History
 from regolith_studio.ui.page import PageContext
