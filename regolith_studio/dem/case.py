@@ -1,7 +1,7 @@
 """A simulated test: particles drawn from a dataset, coarse-grained to the mass of the test."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, Literal
 
@@ -186,6 +186,19 @@ class PreparedCase:
         given = self.case.contact.surface_energy
         ratio = self.coarse_graining / PAPER_COARSE_GRAINING
         return {"none": 0.0, "given": given, "scaled": given * ratio**2}[self.case.cohesion]
+
+
+def with_number(prepared: PreparedCase, n_particles: int) -> PreparedCase:
+    """The same mass in another number of particles, for estimates: particles are repeated or left out."""
+    picks = np.resize(np.arange(len(prepared)), n_particles)
+    factor = (len(prepared) / n_particles) ** (1 / 3)
+    return replace(
+        prepared,
+        case=replace(prepared.case, n_particles=n_particles),
+        class_index=prepared.class_index[picks],
+        diameters=prepared.diameters[picks] * factor,
+        coarse_graining=prepared.coarse_graining * factor,
+    )
 
 
 def prepare(dataset: Dataset, case: ReposeCase, dataset_hash: str = "") -> PreparedCase:

@@ -7,7 +7,6 @@ from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import (
     QBoxLayout,
     QComboBox,
-    QFormLayout,
     QHBoxLayout,
     QScrollArea,
     QSizePolicy,
@@ -210,27 +209,6 @@ def equal_parts(direction: Qt.Orientation, parts: Sequence[QWidget]) -> Splitter
     made = Splitter(direction, parts, [1000] * len(parts), 0)
     for number in range(len(parts)):
         made.setStretchFactor(number, 1)
-    return made
-
-
-def task_columns(
-    form: QFormLayout, buttons: Sequence[QWidget], status: QWidget, views: Sequence[QWidget], name: str
-) -> Splitter:
-    """A form with buttons and a status below, and what the task shows beside it, as equal parts."""
-    form.setContentsMargins(8, 6, 0, 0)
-    row = QHBoxLayout()
-    for button in buttons:
-        row.addWidget(button)
-    row.addStretch(1)
-    form.addRow(row)
-    form.addRow(status)
-    left = QWidget()
-    column = QVBoxLayout(left)
-    column.setContentsMargins(0, 0, 0, 0)
-    column.addLayout(form)
-    column.addStretch(1)
-    made = equal_parts(Qt.Orientation.Horizontal, (left, *views))
-    made.setObjectName(name)
     return made
 
 

@@ -336,6 +336,10 @@
         <translation>1 Repräsentant</translation>
     </message>
     <message>
+        <source>1 run</source>
+        <translation>1 Lauf</translation>
+    </message>
+    <message>
         <source>1 worker</source>
         <translation>1 Arbeitsprozess</translation>
     </message>
@@ -480,6 +484,14 @@
         <translation>Eine Rezeptdatei</translation>
     </message>
     <message>
+        <source>A run is under way: stop it first.</source>
+        <translation>Ein Lauf ist im Gang: erst anhalten.</translation>
+    </message>
+    <message>
+        <source>A run with {count} particles, with all other values as in the set-up</source>
+        <translation>Ein Lauf mit {count} Partikeln, alle anderen Werte wie eingestellt</translation>
+    </message>
+    <message>
         <source>A script that does the same</source>
         <translation>Ein Skript, das dasselbe tut</translation>
     </message>
@@ -502,10 +514,6 @@
     <message>
         <source>About Regolith Studio</source>
         <translation>Über Regolith Studio</translation>
-    </message>
-    <message>
-        <source>About {time} on one core, up to {longer} while other work runs.</source>
-        <translation>Etwa {time} auf einem Kern, bis zu {longer}, wenn anderes läuft.</translation>
     </message>
     <message>
         <source>Accuracy of a classifier of drawn and measured particles: at 0.5 they are indistinguishable</source>
@@ -634,6 +642,10 @@
     <message>
         <source>Angle of repose: study</source>
         <translation>Schüttwinkel: Studie</translation>
+    </message>
+    <message>
+        <source>Angles</source>
+        <translation>Winkel</translation>
     </message>
     <message>
         <source>Angularity</source>
@@ -1664,6 +1676,10 @@
         <translation>Partikel werden gezogen</translation>
     </message>
     <message>
+        <source>Drawing particles …</source>
+        <translation>Partikel werden gezogen …</translation>
+    </message>
+    <message>
         <source>Drawing the animation</source>
         <translation>Animation wird gezeichnet</translation>
     </message>
@@ -1984,6 +2000,10 @@
         <translation>Faktoren auf die Überdeckung</translation>
     </message>
     <message>
+        <source>Failed</source>
+        <translation>Fehlgeschlagen</translation>
+    </message>
+    <message>
         <source>Features within slices only</source>
         <translation>Merkmale nur in Schichten</translation>
     </message>
@@ -2076,10 +2096,6 @@
         <translation>Geschlossene Poren füllen</translation>
     </message>
     <message>
-        <source>Fill, lift, measure</source>
-        <translation>Füllen, heben, messen</translation>
-    </message>
-    <message>
         <source>Filled 1 hole with {share} of the surface.</source>
         <translation>1 Loch wurde mit {share} der Oberfläche gefüllt.</translation>
     </message>
@@ -2152,8 +2168,8 @@
         <translation>Fein</translation>
     </message>
     <message>
-        <source>Finished runs are not repeated</source>
-        <translation>Fertige Läufe werden nicht wiederholt</translation>
+        <source>Finished runs are kept, and the button resumes.</source>
+        <translation>Fertige Läufe bleiben erhalten; der Knopf setzt fort.</translation>
     </message>
     <message>
         <source>First</source>
@@ -2230,6 +2246,10 @@
     <message>
         <source>Fitting the particle …</source>
         <translation>Das Partikel wird angepasst …</translation>
+    </message>
+    <message>
+        <source>Flanks: top | toe</source>
+        <translation>Flanken: oben | Fuß</translation>
     </message>
     <message>
         <source>Flatness</source>
@@ -2558,10 +2578,6 @@
     <message>
         <source>Hysteresis: voxels from this probability on belong to a grain if they are connected to some from the level on; 0 for none.</source>
         <translation>Hysterese: Voxel ab dieser Wahrscheinlichkeit gehören zu einem Korn, wenn sie mit Voxeln ab der Schwelle zusammenhängen; 0 für keine.</translation>
-    </message>
-    <message>
-        <source>Imported particles</source>
-        <translation>Importierte Partikel</translation>
     </message>
     <message>
         <source>In size classes</source>
@@ -3096,8 +3112,8 @@
         <translation>Mittlerer Fehler der Deskriptoren gegen mittlere Jaccard-Distanz: links unten ist besser.</translation>
     </message>
     <message>
-        <source>Mean of {count} sections. Two perpendicular sections give {asymmetric:.1f}° (one angle per flank) and {symmetric:.1f}° (one angle for both).</source>
-        <translation>Mittel von {count} Schnitten. Zwei senkrechte Schnitte geben {asymmetric:.1f}° (ein Winkel je Flanke) und {symmetric:.1f}° (ein Winkel für beide).</translation>
+        <source>Mean of {count} sections; x-z and y-z alone: {asymmetric:.1f}°, with one angle for both flanks {symmetric:.1f}°.</source>
+        <translation>Mittel aus {count} Schnitten; x-z und y-z allein: {asymmetric:.1f}°, mit einem Winkel für beide Flanken {symmetric:.1f}°.</translation>
     </message>
     <message>
         <source>Mean rotation of a round particle; elongated ones are rotated less.</source>
@@ -3136,8 +3152,8 @@
         <translation>Messe die Anpassungen</translation>
     </message>
     <message>
-        <source>Measuring the pile</source>
-        <translation>Schüttkegel wird vermessen</translation>
+        <source>Measuring the heap</source>
+        <translation>Haufen messen</translation>
     </message>
     <message>
         <source>Measuring …</source>
@@ -3260,6 +3276,10 @@
         <translation>Mehr Facetten helfen hier nicht: {count} Facetten hatten einen Verlust von {loss}.</translation>
     </message>
     <message>
+        <source>More than can be simulated here: take a smaller mass, or larger particles.</source>
+        <translation>Mehr, als hier simuliert werden kann: eine kleinere Masse oder größere Partikel nehmen.</translation>
+    </message>
+    <message>
         <source>More than {limit} are too many:</source>
         <translation>Mehr als {limit} sind zu viele:</translation>
     </message>
@@ -3290,10 +3310,6 @@
     <message>
         <source>Name</source>
         <translation>Name</translation>
-    </message>
-    <message>
-        <source>Name and health of the mesh</source>
-        <translation>Name und Zustand des Netzes</translation>
     </message>
     <message>
         <source>Name of the dataset</source>
@@ -3364,16 +3380,16 @@
         <translation>Weiter</translation>
     </message>
     <message>
-        <source>Next run at {next:.3g}.</source>
-        <translation>Nächster Lauf bei {next:.3g}.</translation>
-    </message>
-    <message>
         <source>Next seed</source>
         <translation>Nächster Startwert</translation>
     </message>
     <message>
         <source>Next seed: the same method with other random numbers</source>
         <translation>Nächster Startwert: dasselbe Verfahren mit anderen Zufallszahlen</translation>
+    </message>
+    <message>
+        <source>No angle of repose: {reason}</source>
+        <translation>Kein Schüttwinkel: {reason}</translation>
     </message>
     <message>
         <source>No compound of {parts} parts with {faces} facets was found that meets all descriptors; this one misses {missed}. More parts or facets, or a weight of 0 for a descriptor, may help.</source>
@@ -3436,10 +3452,6 @@
         <translation>Keine Partikel sind geöffnet; öffnen Sie welche oder die mitgelieferte Probe.</translation>
     </message>
     <message>
-        <source>No pile yet.</source>
-        <translation>Noch kein Schüttkegel.</translation>
-    </message>
-    <message>
         <source>No polyhedron was found whose errors are all below {limit} %, with up to {faces} facets: the least is {error} %, with {count} facets.</source>
         <translation>Es wurde kein Polyeder gefunden, dessen Fehler alle unter {limit} % liegen, mit bis zu {faces} Facetten: Der kleinste ist {error} %, mit {count} Facetten.</translation>
     </message>
@@ -3488,8 +3500,8 @@
         <translation>Nicht abgebildet</translation>
     </message>
     <message>
-        <source>Not run yet with these values.</source>
-        <translation>Mit diesen Werten noch nicht gerechnet.</translation>
+        <source>Not run yet with these values: about {time} on one core, up to {longer} while other work runs.</source>
+        <translation>Mit diesen Werten noch nicht gelaufen: etwa {time} auf einem Kern, bis zu {longer}, solange anderes läuft.</translation>
     </message>
     <message>
         <source>Not significant.</source>
@@ -3888,6 +3900,10 @@
         <translation>Otsu</translation>
     </message>
     <message>
+        <source>Outdated</source>
+        <translation>Veraltet</translation>
+    </message>
+    <message>
         <source>Outside</source>
         <translation>Außerhalb</translation>
     </message>
@@ -4214,6 +4230,10 @@
     <message>
         <source>Projects (*.regolith)</source>
         <translation>Projekte (*.regolith)</translation>
+    </message>
+    <message>
+        <source>Property</source>
+        <translation>Eigenschaft</translation>
     </message>
     <message>
         <source>Published contact parameters</source>
@@ -4644,6 +4664,10 @@
         <translation>Führen Sie einen Versuch durch oder öffnen Sie Positionen, um den Schnitt zu sehen.</translation>
     </message>
     <message>
+        <source>Run again</source>
+        <translation>Erneut ausführen</translation>
+    </message>
+    <message>
         <source>Run as a &amp;batch …</source>
         <translation>Als S&amp;tapel ausführen …</translation>
     </message>
@@ -4664,6 +4688,10 @@
         <translation>Versuch durchführen</translation>
     </message>
     <message>
+        <source>Run with {count}: {time}</source>
+        <translation>Mit {count}: {time}</translation>
+    </message>
+    <message>
         <source>Running</source>
         <translation>In Arbeit</translation>
     </message>
@@ -4674,10 +4702,6 @@
     <message>
         <source>Running the recipe</source>
         <translation>Rezept wird ausgeführt</translation>
-    </message>
-    <message>
-        <source>Running …</source>
-        <translation>In Arbeit …</translation>
     </message>
     <message>
         <source>Runs</source>
@@ -4702,6 +4726,10 @@
     <message>
         <source>Runs that ended in a pile are compared here.</source>
         <translation>Hier werden Läufe verglichen, die mit einer Schüttung endeten.</translation>
+    </message>
+    <message>
+        <source>Runs, tables and figure are kept in {folder}.</source>
+        <translation>Läufe, Tabellen und Bild sind in {folder}.</translation>
     </message>
     <message>
         <source>S&amp;maller letters</source>
@@ -5032,6 +5060,10 @@
         <translation>Satz SACCI 425 (synthetisch)</translation>
     </message>
     <message>
+        <source>Set-up</source>
+        <translation>Aufbau</translation>
+    </message>
+    <message>
         <source>Settings</source>
         <translation>Einstellungen</translation>
     </message>
@@ -5328,8 +5360,8 @@
         <translation>Sternförmig: kein Teil der Oberfläche ist vom Sternpunkt aus verdeckt.</translation>
     </message>
     <message>
-        <source>Start or resume</source>
-        <translation>Beginnen oder fortsetzen</translation>
+        <source>Start</source>
+        <translation>Start</translation>
     </message>
     <message>
         <source>Start temperature T₀</source>
@@ -5450,10 +5482,6 @@
     <message>
         <source>Stopped. Finished parts are kept: run again into the same folder to resume.</source>
         <translation>Abgebrochen. Fertige Teile bleiben erhalten: ein neuer Lauf in denselben Ordner setzt fort.</translation>
-    </message>
-    <message>
-        <source>Stopped; finished runs are kept, and the start button resumes.</source>
-        <translation>Abgebrochen; fertige Läufe bleiben erhalten, und der Startknopf setzt fort.</translation>
     </message>
     <message>
         <source>Stopped; nothing was written.</source>
@@ -5772,6 +5800,10 @@
         <translation>Die Grauwerte um ein Korn geben sein Volumen genauer an als seine Maske, auch in unscharfen Scans.</translation>
     </message>
     <message>
+        <source>The heap is being measured.</source>
+        <translation>Der Haufen wird gemessen.</translation>
+    </message>
+    <message>
         <source>The heap is {angle} degrees steep: the column still stands and has not become a pile.</source>
         <translation>Die Schüttung ist {angle} Grad steil: Die Säule steht noch und ist nicht zum Schüttkegel geworden.</translation>
     </message>
@@ -5912,6 +5944,10 @@
         <translation>Die Ergebnisse hängen nicht von der Anzahl der Prozesse ab, und ein abgebrochener Lauf lässt sich fortsetzen.</translation>
     </message>
     <message>
+        <source>The run in {folder} is not the one that was shown when the project was saved.</source>
+        <translation>Der Lauf in {folder} ist nicht der, der beim Speichern des Projekts zu sehen war.</translation>
+    </message>
+    <message>
         <source>The run is in {name}; README.txt says how to open it.</source>
         <translation>Der Lauf liegt in {name}; README.txt sagt, wie man ihn öffnet.</translation>
     </message>
@@ -6044,10 +6080,6 @@
         <translation>Den Ordner {folder} gibt es schon. Den Datensatz darin ersetzen?</translation>
     </message>
     <message>
-        <source>There is no angle of repose.</source>
-        <translation>Es gibt keinen Schüttwinkel.</translation>
-    </message>
-    <message>
         <source>There is no dataset below this folder.</source>
         <translation>Unter diesem Ordner gibt es keinen Datensatz.</translation>
     </message>
@@ -6064,8 +6096,8 @@
         <translation>Es gibt noch keinen Datensatz: öffnen oder bauen Sie zuerst einen.</translation>
     </message>
     <message>
-        <source>There is no measured pile to export yet.</source>
-        <translation>Es gibt noch keinen vermessenen Schüttkegel zu exportieren.</translation>
+        <source>There is no measured heap to export yet.</source>
+        <translation>Es gibt noch keinen gemessenen Haufen zum Exportieren.</translation>
     </message>
     <message>
         <source>There is no model to draw from: fit one first.</source>
@@ -6102,10 +6134,6 @@
     <message>
         <source>This run was not finished: {state}.</source>
         <translation>Dieser Lauf wurde nicht beendet: {state}.</translation>
-    </message>
-    <message>
-        <source>This section has no two straight flanks and is not measured.</source>
-        <translation>Dieser Schnitt hat keine zwei geraden Flanken und wird nicht gemessen.</translation>
     </message>
     <message>
         <source>Three-dimensional views: {how}</source>
@@ -6278,6 +6306,10 @@
     <message>
         <source>Use the model</source>
         <translation>Modell übernehmen</translation>
+    </message>
+    <message>
+        <source>Use the open particles</source>
+        <translation>Geöffnete Partikel verwenden</translation>
     </message>
     <message>
         <source>Use this dataset</source>
@@ -6672,6 +6704,10 @@
         <translation>entlang z</translation>
     </message>
     <message>
+        <source>along {azimuth:g}° [mm]</source>
+        <translation>entlang {azimuth:g}° [mm]</translation>
+    </message>
+    <message>
         <source>amplitude [%]</source>
         <translation>Amplitude [%]</translation>
     </message>
@@ -6694,6 +6730,10 @@
     <message>
         <source>as fitted [%]</source>
         <translation>wie angepasst [%]</translation>
+    </message>
+    <message>
+        <source>as recommended</source>
+        <translation>wie empfohlen</translation>
     </message>
     <message>
         <source>as scanned</source>
@@ -7008,6 +7048,10 @@
         <translation>fehlgeschlagen</translation>
     </message>
     <message>
+        <source>far from what is recommended</source>
+        <translation>weit von der Empfehlung</translation>
+    </message>
+    <message>
         <source>fast</source>
         <translation>schnell</translation>
     </message>
@@ -7082,10 +7126,6 @@
     <message>
         <source>glTF (Blender)</source>
         <translation>glTF (Blender)</translation>
-    </message>
-    <message>
-        <source>grain {number}: {size:.3g} mm at {x:.3g}, {z:.3g} mm</source>
-        <translation>Korn {number}: {size:.3g} mm bei {x:.3g}; {z:.3g} mm</translation>
     </message>
     <message>
         <source>greatest distance of two points</source>
@@ -7312,6 +7352,10 @@
         <translation>fast ein Ellipsoid</translation>
     </message>
     <message>
+        <source>next run at {next:.3g}</source>
+        <translation>nächster Lauf bei {next:.3g}</translation>
+    </message>
+    <message>
         <source>no</source>
         <translation>nein</translation>
     </message>
@@ -7406,6 +7450,10 @@
     <message>
         <source>part {part}, facet {number} of {count}: {area:,.4g} µm² exposed ({share:.1%}), normal ({x:.2f}, {y:.2f}, {z:.2f}), {offset:.4g} µm from the centre</source>
         <translation>Teil {part}, Facette {number} von {count}: {area:,.4g} µm² frei liegend ({share:.1%}), Normale ({x:.2f}; {y:.2f}; {z:.2f}), {offset:.4g} µm von der Mitte</translation>
+    </message>
+    <message>
+        <source>particle {number}: {size:.3g} mm at {x:.3g}, {z:.3g} mm</source>
+        <translation>Partikel {number}: {size:.3g} mm bei {x:.3g}, {z:.3g} mm</translation>
     </message>
     <message>
         <source>parts left out</source>
@@ -7972,6 +8020,10 @@
         <translation>{count:,} Partikel des Datensatzes „{name}“</translation>
     </message>
     <message>
+        <source>{count:,} particles of {name}</source>
+        <translation>{count:,} Partikel aus {name}</translation>
+    </message>
+    <message>
         <source>{count:,} virtual particles are open now.</source>
         <translation>{count:,} virtuelle Partikel sind jetzt geöffnet.</translation>
     </message>
@@ -8026,6 +8078,10 @@
     <message>
         <source>{count} measured particles with degrees up to {degree}, {left} left out; fitted to one half, evaluated on the other; {splits} {split}, {draws} draws {repeats} times from each fit, seed {seed}.</source>
         <translation>{count} gemessene Partikel mit Graden bis {degree}, {left} ausgelassen; angepasst an eine Hälfte, ausgewertet an der anderen; {splits} {split}, je Anpassung {repeats} Mal {draws} gezogen, Startwert {seed}.</translation>
+    </message>
+    <message>
+        <source>{count} needed</source>
+        <translation>{count} nötig</translation>
     </message>
     <message>
         <source>{count} of the open particles come from no file and cannot be part of a batch.</source>
@@ -8092,8 +8148,8 @@
         <translation>{count} Repräsentanten</translation>
     </message>
     <message>
-        <source>{count} runs; tables and figure are in {folder}.</source>
-        <translation>{count} Läufe; Tabellen und Abbildung sind in {folder}.</translation>
+        <source>{count} runs</source>
+        <translation>{count} Läufe</translation>
     </message>
     <message>
         <source>{count} shapes in {folder}.</source>
@@ -8134,6 +8190,10 @@
     <message>
         <source>{edges} µm</source>
         <translation>{edges} µm</translation>
+    </message>
+    <message>
+        <source>{engine}, static friction {friction:g}, seed {seed}</source>
+        <translation>{engine}, Haftreibung {friction:g}, Startwert {seed}</translation>
     </message>
     <message>
         <source>{folder}: left out 1 file that no reader of meshes takes: {names}.</source>
@@ -8190,6 +8250,10 @@
     <message>
         <source>{low:.1f}° to {high:.1f}°</source>
         <translation>{low:.1f}° bis {high:.1f}°</translation>
+    </message>
+    <message>
+        <source>{low:.3g} to {high:.3g}</source>
+        <translation>{low:.3g} bis {high:.3g}</translation>
     </message>
     <message>
         <source>{method}, seed {seed}</source>
@@ -8290,10 +8354,6 @@
     <message>
         <source>{name}, split {split}, fit</source>
         <translation>{name}, Teilung {split}, Fit</translation>
-    </message>
-    <message>
-        <source>{name}: {best:.3g} ({low:.3g} to {high:.3g}, {share:.0%} interval) after {count} runs; next run at {next:.3g}.</source>
-        <translation>{name}: {best:.3g} ({low:.3g} bis {high:.3g}, {share:.0%}-Intervall) nach {count} Läufen; nächster Lauf bei {next:.3g}.</translation>
     </message>
     <message>
         <source>{name}: {count} shapes, weighted by {weighting}</source>
@@ -8420,12 +8480,28 @@
         <translation>In Arbeit: {task}.</translation>
     </message>
     <message>
+        <source>{top:.0f}° | {toe:.0f}°</source>
+        <translation>{top:.0f}° | {toe:.0f}°</translation>
+    </message>
+    <message>
         <source>{unmet} of {total} requests not met exactly</source>
         <translation>{unmet} von {total} Anforderungen nicht genau erfüllt</translation>
     </message>
     <message>
         <source>{value:+.3g} percentage points ({low:+.3g} to {high:+.3g})</source>
         <translation>{value:+.3g} Prozentpunkte ({low:+.3g} bis {high:+.3g})</translation>
+    </message>
+    <message>
+        <source>{value} across the cylinder (≥ {limit})</source>
+        <translation>{value} quer im Zylinder (≥ {limit})</translation>
+    </message>
+    <message>
+        <source>{value} particles (≥ {limit})</source>
+        <translation>{value} Partikel (≥ {limit})</translation>
+    </message>
+    <message>
+        <source>{value} × particle size (paper: {limit})</source>
+        <translation>{value} × Partikelgröße (Artikel: {limit})</translation>
     </message>
     <message>
         <source>{who}, dashboard at {link}</source>

@@ -31,7 +31,7 @@ from regolith_studio.ui.theme import (
     choose_theme,
     current_theme,
 )
-from regolith_studio.ui.widgets.headline import MAGNIFICATION, Headline
+from regolith_studio.ui.widgets.result_view import MAGNIFICATION, ResultView
 
 
 @pytest.fixture
@@ -56,7 +56,7 @@ def test_that_only_another_look_is_applied(shown, preferences):
 
 def sizes_of_letters(window):
     """In points, of all that is in a window, neither a large figure nor on a canvas of pyqtgraph."""
-    large = {figure for headline in window.findChildren(Headline) for figure in headline.figures}
+    large = {figure for card in window.findChildren(ResultView) for figure in card.figures}
     return {round(each.font().pointSizeF(), 1) for each in window.findChildren(QWidget) if each not in large}
 
 
@@ -71,7 +71,7 @@ def test_that_letters_of_another_size_reach_every_widget_at_the_start_and_later(
     window = shown(MainWindow(Session(InlineRunner()), preferences, "image"))
     assert sizes_of_letters(window) == {round(of_system * first / 100, 1)}
     slider = window.page.loss.sliders["min_diameter"]
-    figure = window.findChild(Headline).figures[0]
+    figure = window.findChild(ResultView).figures[0]
     for percent in (200, 80, 150):
         window.appearance.choose(**{LETTERS: percent})
         app.processEvents()

@@ -8,7 +8,6 @@ from PySide6.QtWidgets import QDialog, QLabel, QVBoxLayout, QWidget
 from regolith_studio.jobs.runners import InlineRunner
 from regolith_studio.session.session import Session
 from regolith_studio.ui.main_window import MainWindow
-from regolith_studio.ui.widgets.headline import Headline
 from regolith_studio.ui.widgets.labels import (
     CITATION,
     ElidedLabel,
@@ -17,6 +16,7 @@ from regolith_studio.ui.widgets.labels import (
     with_citations,
     with_subscripts,
 )
+from regolith_studio.ui.widgets.result_view import ResultRecord, ResultView
 
 WORDS = "In each step one plane is moved at random, and the move is accepted or rejected. " * 3
 
@@ -55,19 +55,21 @@ SIZES = [(1000, 900, False), (500, 900, True), (500, 400, False)]
 def test_that_a_sentence_goes_below_its_figures_where_it_is_narrow_and_high(width, height, below, shown, app):
     window = QWidget()
     column = QVBoxLayout(window)
-    headline = Headline("answer", ("Loss", "RMSRE", "Jaccard distance"))
-    column.addWidget(headline)
+    card = ResultView("answer", ("Loss", "RMSRE", "Jaccard distance"))
+    column.addWidget(card)
     column.addStretch(1)
-    headline.show_values(("–",) * 3, "")
+    card.show_record(ResultRecord())
     window.resize(width, height)
     shown(window)
     app.processEvents()
-    tops = [each.mapTo(window, QPoint()).y() for each in (headline.sentence, headline.captions[0])]
+    tops = [each.mapTo(window, QPoint()).y() for each in (card.sentence, card.captions[0])]
     assert (tops[0] > tops[1]) == below
-    before = headline.height()
-    headline.show_values(("0.4583", "9.32 %", "23.0 %"), "All weighted descriptors are met but CH. " * 4)
+    before = card.height()
+    card.show_record(
+        ResultRecord(("0.4583", "9.32 %", "23.0 %"), note="All weighted descriptors are met but CH. " * 4)
+    )
     app.processEvents()
-    assert headline.height() == before
+    assert card.height() == before
 
 
 def test_that_references_to_the_paper_are_links_to_its_citation(shown, preferences, wait):

@@ -285,9 +285,9 @@ def test_that_a_scan_becomes_grains_in_a_table(newcomer):
 def test_that_a_heap_has_an_angle_with_an_interval(newcomer, tmp_path, monkeypatch):
     monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path))
     newcomer.click(QWidget, "page_repose")
-    newcomer.click(QPushButton, "repose_sample")
+    newcomer.click(QPushButton, "repose_angle_button")  # builds a dataset of the open particles
     newcomer.rest()
-    newcomer.click(QPushButton, "repose_run")
+    newcomer.click(QPushButton, "repose_angle_button")
     newcomer.rest()
     angle, interval = (figure.text() for figure in newcomer.window.page.angle.figures)
     assert 10.0 < float(angle.rstrip("°")) < 60.0

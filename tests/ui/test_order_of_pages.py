@@ -13,11 +13,11 @@ from regolith_studio.ui.main_window import MainWindow
 from regolith_studio.ui.pages.dataset.views import CELL
 from regolith_studio.ui.widgets.formula import BREAK, LOWEST_LINE, MIN_LINE_HEIGHT, FormulaLabel
 
-WITH_CHOICES = ("explore", "scan", "model", "studies", "dataset", "repose")
+WITH_CHOICES = ("explore", "scan", "model", "studies", "dataset")
+"""On the page Angle of repose the choices are behind its answer, in a tab."""
 BUTTONS = {
     "model": ("model_fit", "model_half"),
     "dataset": ("dataset_find", "dataset_count"),
-    "repose": ("repose_run", "repose_engine"),
 }
 """A button of each page, and a setting that it uses."""
 

@@ -56,7 +56,7 @@ from regolith_studio.ui.pages.dataset.views import (
     shapes,
 )
 from regolith_studio.ui.translation import inert, tr, tr_count
-from regolith_studio.ui.widgets.headline import Headline
+from regolith_studio.ui.widgets.result_view import ResultRecord, ResultState, ResultView
 
 FIND, BUILD, EXPORT = "find", "build", "export"
 SETTINGS = (*SHAPE_FIELDS, *("weights", "settings", "seed", "target", "l_max", "level", "fit_options"))
@@ -86,7 +86,7 @@ class DatasetPage(PageWidget):
     def build(self) -> None:
         self.representatives, self.sizes = RepresentativesPanel(), SizesPanel()
         self.folder, self.targets = FolderPanel(), ExportPanel()
-        self.result = Headline("dataset_result", (tr("Representatives"), tr("Formats written")))
+        self.result = ResultView("dataset_result", (tr("Representatives"), tr("Formats written")))
         self.open_written = QPushButton(tr("Open the folder"))
         self.open_written.setObjectName("dataset_open_written")
         self.open_written.setEnabled(False)
@@ -314,7 +314,7 @@ class DatasetPage(PageWidget):
         self._exports = []
         self.exports.show_exports(())
         self.folder.show_dataset("")
-        self.result.show_values(("–", "–"), tr("No dataset of these particles has been written yet."))
+        self.result.show_record(ResultRecord(note=tr("No dataset of these particles has been written yet.")))
         self.open_written.setEnabled(False)
         self.targets.show_filling(None)
         self.targets.set_ready(False)
@@ -407,7 +407,9 @@ class DatasetPage(PageWidget):
         current = self._made_with in (None, self._settings())
         if not current:
             written = tr("Built with other settings than those shown.") + " " + written
-        self.result.show_values((str(len(self._dataset)), str(len(self._exports))), written, fresh=current)
+        values = (str(len(self._dataset)), str(len(self._exports)))
+        state = ResultState.CURRENT if current else ResultState.STALE
+        self.result.show_record(ResultRecord(values, state=state, note=written))
         self.open_written.setEnabled(True)
 
     def _open_written(self) -> None:

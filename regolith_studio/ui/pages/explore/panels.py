@@ -22,10 +22,10 @@ from regolith_studio.ui.layout import Collapsible
 from regolith_studio.ui.translation import number_text, tr, translate
 from regolith_studio.ui.widgets.combo_box import ChoiceBox
 from regolith_studio.ui.widgets.fixed_height_text import FixedHeightText
-from regolith_studio.ui.widgets.headline import Headline
 from regolith_studio.ui.widgets.labels import heading, remark, rich_symbol, with_subscripts
 from regolith_studio.ui.widgets.numbers import NumberSlider, NumberSpec, align_labels
 from regolith_studio.ui.widgets.presets import PresetBar, PresetEntry
+from regolith_studio.ui.widgets.result_view import ResultRecord, ResultState, ResultView
 from regolith_studio.ui.widgets.table import definition
 
 L_MAX = NumberSpec(
@@ -283,7 +283,7 @@ class LossPanel(QWidget):
         )
 
 
-class VerdictPanel(Headline):
+class VerdictPanel(ResultView):
     """The result of the page Explore; dimmed while the polyhedron is being replaced."""
 
     def __init__(self) -> None:
@@ -311,8 +311,11 @@ class VerdictPanel(Headline):
         found = self._shown
         if found is None:
             why = translate(results.failures.get("coarsening", ""))
-            self.show_values(("–",) * 3, why or tr("The polyhedron is not finished yet."), fresh=False)
+            state = ResultState.FAILED if why else ResultState.NONE
+            note = why or tr("The polyhedron is not finished yet.")
+            self.show_record(ResultRecord(state=state, note=note))
             return
         error = "–" if found.rmsre != found.rmsre else number_text(found.rmsre, ".2%")
         figures = (number_text(found.loss, "#.4g"), error, number_text(found.jaccard_distance, ".1%"))
-        self.show_values(figures, translate(found.sentence), fresh=done is not None)
+        state = ResultState.NONE if done is None else ResultState.CURRENT
+        self.show_record(ResultRecord(figures, state=state, note=translate(found.sentence)))

@@ -34,10 +34,10 @@ from regolith_studio.studies.population_tables import distance_table, pair_table
 from regolith_studio.ui.layout import scrolled, tabs
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import localized, number_text, tr, translate
-from regolith_studio.ui.widgets.headline import Headline
 from regolith_studio.ui.widgets.heat_table import centred_remark
 from regolith_studio.ui.widgets.labels import plain_symbol, remark, unbroken, with_subscripts
 from regolith_studio.ui.widgets.plots.curves import CurvePlot, PlotCurve
+from regolith_studio.ui.widgets.result_view import ResultRecord, ResultState, ResultView
 from regolith_studio.ui.widgets.study_frame import StudyFrame
 
 MIN_WIDTH, MIN_HEIGHT = 190, 180
@@ -295,7 +295,7 @@ class EvaluationPanel(QWidget):
         self.splits, self.repeats = QSpinBox(), QSpinBox()
         self.ranking = QTableWidget(0, len(HEADERS))
         self.notes = remark()
-        self.verdict = Headline("model_verdict", (tr("W / noise"), tr("Classifier accuracy")))
+        self.verdict = ResultView("model_verdict", (tr("W / noise"), tr("Classifier accuracy")))
         for place, tip in enumerate((TIPS[1], TIPS[4])):
             self.verdict.caption(place, self.verdict.captions[place].text(), tr(tip))
         self.figures = {name: PanelGrid(name) for name in FIGURES}
@@ -403,9 +403,8 @@ class EvaluationPanel(QWidget):
                 model=model,
                 near=float(str(near)),
             )
-        self.verdict.show_values(
-            (number_text(float(str(near)), ".2f"), number_text(float(str(told)), ".0%")), sentence
-        )
+        values = (number_text(float(str(near)), ".2f"), number_text(float(str(told)), ".0%"))
+        self.verdict.show_record(ResultRecord(values, state=ResultState.CURRENT, note=sentence))
 
     def _options(self) -> QHBoxLayout:
         row = QHBoxLayout()

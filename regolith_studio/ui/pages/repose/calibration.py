@@ -1,22 +1,17 @@
 """Panel of a calibration: what is wanted, start and stop, the prediction and the posterior as it narrows."""
 
+import hashlib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from PySide6.QtCore import Signal
-from PySide6.QtWidgets import (
-    QComboBox,
-    QFormLayout,
-    QHBoxLayout,
-    QPushButton,
-    QSpinBox,
-    QWidget,
-)
 
 from regolith_studio.errors import InputError
-from regolith_studio.jobs.repose_calibration import ReposeCalibrationRequest
+from regolith_studio.io.file_names import MAX_NAME_BYTES, cut_name, file_stem
+from regolith_studio.io.output_lock import output_lock
+from regolith_studio.jobs.events import Steps
+from regolith_studio.jobs.repose_calibration import ReposeCalibrationRequest, calibration_steps
 from regolith_studio.jobs.repose_jobs import ReposeRequest
 from regolith_studio.jobs.repose_study import values_in
 from regolith_studio.messages import N_
@@ -27,12 +22,12 @@ from regolith_studio.studies.repose_calibration import (
     angle_target,
     density_target,
 )
-from regolith_studio.ui.layout import task_columns
+from regolith_studio.ui.pages.repose.controller import Field, RunPanel, count_box, keys_box
 from regolith_studio.ui.theme import Theme
-from regolith_studio.ui.translation import tr, translate
-from regolith_studio.ui.widgets.labels import remark
+from regolith_studio.ui.translation import number_text, tr, tr_count, translate
 from regolith_studio.ui.widgets.numbers import DecimalField, NumbersLine
 from regolith_studio.ui.widgets.plots.curves import CurvePlot, PlotCurve
+from regolith_studio.ui.widgets.result_view import ResultRecord, ResultView
 
 PARAMETERS: Mapping[str, tuple[str, str]] = {
     "static_friction": (N_("Static friction"), "0.05, 1.2"),
@@ -44,15 +39,10 @@ DENSITY_ERROR = 0.01
 """Standard error of a wanted bulk density relative to its value."""
 
 
-class CalibrationPanel(QWidget):
+class CalibrationPanel(RunPanel):
     """Edits the request of a calibration and shows what is known so far."""
 
-    startWanted = Signal()  # noqa: N815
-    stopWanted = Signal()  # noqa: N815
-
     def __init__(self) -> None:
-        super().__init__()
-        self.setObjectName("repose_calibration")
         self._calibration: ReposeCalibration | None = None
         self.angle = _number("repose_wanted_angle", tr("Wanted angle of repose"), 1.0, 80.0, 30.0, " °")
         self.error = _number(
@@ -61,34 +51,33 @@ class CalibrationPanel(QWidget):
         self.density = _number("repose_wanted_density", tr("Wanted bulk density"), 0.0, 30.0, 0.0, " g/cm³")
         self.density.setSpecialValueText(tr("not given"))
         self.density.setToolTip(tr("Of the filled cylinder; its standard error is taken as 1 %"))
-        self.key = QComboBox()
-        self.key.setObjectName("repose_calibration_key")
-        self.key.setAccessibleName(tr("Parameter"))
-        for name, (label, _) in PARAMETERS.items():
-            self.key.addItem(tr(label), name)
+        self.key = keys_box(PARAMETERS, "repose_calibration_key", tr("Parameter"))
         self.range = NumbersLine(PARAMETERS["static_friction"][1])
         self.range.setObjectName("repose_calibration_range")
         self.range.setAccessibleName(tr("Lowest and highest value, with a comma between them"))
-        self.runs = QSpinBox()
-        self.runs.setObjectName("repose_calibration_runs")
-        self.runs.setAccessibleName(tr("Number of runs"))
-        self.runs.setRange(1, 99)
+        self.runs = count_box("repose_calibration_runs", tr("Number of runs"), 99)
         self.runs.setValue(12)
-        self.start, self.stop = QPushButton(tr("Start or resume")), QPushButton(tr("Stop"))
-        self.start.setObjectName("repose_calibration_start")
-        self.start.setToolTip(tr("Finished runs are not repeated"))
-        self.stop.setObjectName("repose_calibration_stop")
         self.prediction = CurvePlot(tr("Static friction"), tr("Angle [°]"), tr("Each run adds a point."))
         self.posterior = CurvePlot(
             tr("Static friction"),
             tr("Posterior / prior"),
             tr("The probability density of the parameter appears after the first usable run."),
         )
-        self.status = remark()
-        self.status.setObjectName("repose_calibration_status")
-        self._place()
-        self._connect()
-        self.set_running(False)
+        interval = tr("{share:.0%} interval", share=CONFIDENCE)
+        captions = (tr("Static friction"), interval)
+        card = ResultView("repose_calibration_result", captions, tr("Start"), tr("Resume"))
+        fields: dict[str, tuple[str, Field]] = {
+            "angle": (tr("Wanted angle"), self.angle),
+            "error": (tr("Standard error"), self.error),
+            "density": (tr("Bulk density"), self.density),
+            "key": (tr("Parameter"), self.key),
+            "range": (tr("Range"), self.range),
+            "runs": (tr("Runs"), self.runs),
+        }
+        super().__init__("repose_calibration", card, fields, (self.prediction, self.posterior))
+        self.key.currentIndexChanged.connect(
+            lambda *_: self.range.setValue(PARAMETERS[str(self.key.currentData())][1])
+        )
 
     def set_theme(self, theme: Theme) -> None:
         """Take the colours of a theme."""
@@ -119,46 +108,14 @@ class CalibrationPanel(QWidget):
             (dataset,), {key: (ends[0], ends[1])}, tuple(targets), request, self.runs.value()
         )
 
-    def set_running(self, running: bool) -> None:
-        """Set whether a calibration is running."""
-        self.start.setVisible(not running)
-        self.stop.setVisible(running)
-        for each in (self.angle, self.error, self.density, self.key, self.range, self.runs):
-            each.setEnabled(not running)
-
-    def show_status(self, text: str) -> None:
-        """Show a status text."""
-        self.status.setText(text)
-
-    def show_calibration(self, calibration: ReposeCalibration | None) -> None:
-        """Show what is known after other runs."""
+    def show_calibration(self, calibration: ReposeCalibration | None) -> ResultRecord:
+        """Show what is known after other runs; returns the record of the card."""
         self._calibration = calibration
-        if calibration is not None and calibration.runs:
-            self.show_status(_in_words(calibration))
         self._draw()
-
-    def state(self) -> dict[str, Any]:
-        """The values as plain JSON."""
-        return {
-            "angle": self.angle.value(),
-            "error": self.error.value(),
-            "density": self.density.value(),
-            "key": self.key.currentData(),
-            "range": self.range.value(),
-            "runs": self.runs.value(),
-        }
-
-    def restore(self, state: Mapping[str, Any]) -> None:
-        """Show what :meth:`state` returned; unknown values are ignored."""
-        at = self.key.findData(state.get("key"))
-        if at >= 0:
-            self.key.setCurrentIndex(at)
-            self.range.setValue(str(state.get("range", PARAMETERS[self.key.currentData()][1])))
-        for name, field in (("angle", self.angle), ("error", self.error), ("density", self.density)):
-            if isinstance(state.get(name), int | float):
-                field.setValue(state[name])
-        if isinstance(state.get("runs"), int):
-            self.runs.setValue(state["runs"])
+        if calibration is None:
+            return ResultRecord()
+        self.card.caption(0, tr(PARAMETERS[calibration.parameters[0].name][0]))
+        return _record(calibration)
 
     def _draw(self) -> None:
         calibration = self._calibration
@@ -174,33 +131,6 @@ class CalibrationPanel(QWidget):
         self.posterior.set_curves(_posterior_curves(calibration, self.posterior.theme))
         self.posterior.set_marker(calibration.next_values[0])
 
-    def _place(self) -> None:
-        form = QFormLayout()
-        form.addRow(tr("Wanted angle"), self.angle)
-        form.addRow(tr("Standard error"), self.error)
-        form.addRow(tr("Bulk density"), self.density)
-        form.addRow(tr("Parameter"), self.key)
-        form.addRow(tr("Range"), self.range)
-        form.addRow(tr("Runs"), self.runs)
-        row = QHBoxLayout(self)
-        row.setContentsMargins(0, 0, 0, 0)
-        row.addWidget(
-            task_columns(
-                form,
-                (self.start, self.stop),
-                self.status,
-                (self.prediction, self.posterior),
-                "repose_calibration_parts",
-            )
-        )
-
-    def _connect(self) -> None:
-        self.key.currentIndexChanged.connect(
-            lambda *_: self.range.setValue(PARAMETERS[str(self.key.currentData())][1])
-        )
-        self.start.clicked.connect(self.startWanted)
-        self.stop.clicked.connect(self.stopWanted)
-
 
 def _number(name: str, accessible: str, low: float, high: float, value: float, unit: str) -> DecimalField:
     field = DecimalField()
@@ -213,25 +143,17 @@ def _number(name: str, accessible: str, low: float, high: float, value: float, u
     return field
 
 
-def _in_words(calibration: ReposeCalibration) -> str:
+def _record(calibration: ReposeCalibration) -> ResultRecord:
     """What is known of the parameter, the next run, and warnings."""
-    warnings = list(map(translate, calibration.warnings))
-    if not calibration.usable_runs:
-        return "\n".join([*warnings, tr("Next run at {next:.3g}.", next=calibration.next_values[0])])
-    posterior, parameter = calibration.posterior, calibration.parameters[0]
-    low, high = posterior.intervals[0]
-    found = tr(
-        "{name}: {best:.3g} ({low:.3g} to {high:.3g}, {share:.0%} interval) after {count} runs; next run "
-        "at {next:.3g}.",
-        name=tr(PARAMETERS[parameter.name][0]),
-        best=float(posterior.best[0]),
-        low=float(low),
-        high=float(high),
-        share=CONFIDENCE,
-        count=len(calibration.usable_runs),
-        next=calibration.next_values[0],
-    )
-    return "\n".join([found, *warnings])
+    usable, runs = len(calibration.usable_runs), len(calibration.runs)
+    following = tr("next run at {next:.3g}", next=calibration.next_values[0])
+    made_from = f"{tr_count(N_('1 run'), N_('{count} runs'), runs)}; {following}" if runs else ""
+    values: tuple[str, ...] = ()
+    if usable:
+        low, high = calibration.posterior.intervals[0]
+        interval = tr("{low:.3g} to {high:.3g}", low=float(low), high=float(high))
+        values = (number_text(float(calibration.posterior.best[0]), ".3g"), interval)
+    return ResultRecord(values, made_from, note="\n".join(map(translate, calibration.warnings)))
 
 
 def _prediction_curves(calibration: ReposeCalibration, theme: Theme) -> list[PlotCurve]:
@@ -268,3 +190,16 @@ def _numbers(array: Any) -> tuple[float, ...]:
 
 def _numbers_of(points: list[tuple[float, float]]) -> tuple[tuple[float, ...], tuple[float, ...]]:
     return tuple(x for x, _ in points), tuple(y for _, y in points)
+
+
+def folder_name(request: ReposeCalibrationRequest) -> str:
+    """One name for all calibrations whose runs can serve each other."""
+    same = repr((request.datasets, sorted(request.ranges), request.request))
+    name = cut_name(request.datasets[0].name, MAX_NAME_BYTES - 21)
+    return f"calibration-{file_stem(name)}-{hashlib.sha256(same.encode()).hexdigest()[:8]}"
+
+
+def locked_calibration(request: ReposeCalibrationRequest, folder: Path) -> Steps:
+    """The job in a folder that no other process writes to."""
+    with output_lock(folder):
+        return (yield from calibration_steps(request, folder))

@@ -42,14 +42,14 @@ def export_measurement(
     toast.note(tr("Figure and JSON are in {name}.", name=name))
 
 
-def read_other(parent: QWidget, toast: Toast) -> ParticleState | None:
+def read_other(parent: QWidget, toast: Toast) -> tuple[Path, ParticleState] | None:
     """Ask for a file of positions, its unit, and a diameter if it has none; or ``None``."""
     name, _ = QFileDialog.getOpenFileName(parent, tr("Measure positions"), "", tr(POSITIONS))
     if not name:
         return None
     try:
         if name.endswith(".npz"):
-            return read_final_state(Path(name))
+            return Path(name), read_final_state(Path(name))
         unit, sure = QInputDialog.getItem(parent, tr("Unit"), tr("Length unit of the file:"), UNITS, 0, False)
         if not sure:
             return None
@@ -77,9 +77,9 @@ def read_other(parent: QWidget, toast: Toast) -> ParticleState | None:
         toast.note(note)
     n = len(found)
     still = np.tile([1.0, 0.0, 0.0, 0.0], (n, 1))
-    return ParticleState(
-        found.points, diameters, still, np.zeros(n, dtype=np.int64), 0.0, float("inf"), N_("imported")
-    )
+    numbers = np.zeros(n, dtype=np.int64)
+    state = ParticleState(found.points, diameters, still, numbers, 0.0, float("inf"), N_("imported"))
+    return Path(name), state
 
 
 def _read_with_columns(parent: QWidget, name: str, unit: str) -> ParticlePositions | None:

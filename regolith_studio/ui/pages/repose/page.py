@@ -1,23 +1,27 @@
-"""Page "Angle of repose": set-up, player, sections, runs, study and engines."""
+"""Page "Angle of repose": the angle, what limits it, section, set-up, runs, study, calibration, player."""
 
+import hashlib
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from platformdirs import user_data_path
 from PySide6.QtCore import QTimer
-from PySide6.QtWidgets import QFileDialog, QHBoxLayout, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QFileDialog, QVBoxLayout
 
 from regolith_studio.dataset.parameters import LiftingCylinderTest
-from regolith_studio.dem.angle_of_repose import PAPER_AZIMUTHS, ReposeMeasurement
-from regolith_studio.dem.case import PreparedCase
+from regolith_studio.dem.angle_of_repose import ReposeMeasurement
+from regolith_studio.dem.case import PreparedCase, with_number
 from regolith_studio.dem.engines import engine_named
 from regolith_studio.dem.evaluation.section import NotAPileError
 from regolith_studio.dem.run_io import (
+    DOCUMENT,
     FINAL,
     RunSummary,
     find_runs,
     read_final_state,
+    read_run,
     read_shapes,
     snapshot_files,
 )
@@ -26,7 +30,7 @@ from regolith_studio.dem.snapshot import ParticleState, Snapshot
 from regolith_studio.errors import RegolithError
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.jobs.dataset_jobs import DatasetOptions, build_dataset_folder
-from regolith_studio.jobs.events import Failed, Job
+from regolith_studio.jobs.events import Job
 from regolith_studio.jobs.repose_jobs import (
     ReposeRequest,
     ReposeRun,
@@ -34,25 +38,35 @@ from regolith_studio.jobs.repose_jobs import (
     remeasure,
     repose_steps,
 )
+from regolith_studio.jobs.repose_study import SHAPE_KEYS, ReposeStudyRequest, run_repose_study, study_place
 from regolith_studio.messages import N_
 from regolith_studio.scene.repose_export import ReposeExport, repose_export_steps
+from regolith_studio.studies.repose import ReposeStudyRun
 from regolith_studio.ui.dialogs.folder import FolderDialog
-from regolith_studio.ui.layout import padded, scrolled_column, side_by_side, stacked, tabs
+from regolith_studio.ui.layout import scrolled_column, side_by_side, tabs
 from regolith_studio.ui.page import PageContext, PageWidget
-from regolith_studio.ui.pages.repose.calibration import CalibrationPanel
-from regolith_studio.ui.pages.repose.calibration_controller import CalibrationController
+from regolith_studio.ui.pages.repose.calibration import CalibrationPanel, folder_name, locked_calibration
+from regolith_studio.ui.pages.repose.controller import RunController
 from regolith_studio.ui.pages.repose.export import export_measurement, read_other
+from regolith_studio.ui.pages.repose.heap import (
+    HeapSections,
+    heap_record,
+    interval_caption,
+    run_origin,
+    scale_of_run,
+)
+from regolith_studio.ui.pages.repose.limits import CaseScale, LimitsStrip
 from regolith_studio.ui.pages.repose.player import RunPlayer
-from regolith_studio.ui.pages.repose.runs import RunsPanel, angle_text, checks_text, duration_text
-from regolith_studio.ui.pages.repose.section_plot import SectionPlot
-from regolith_studio.ui.pages.repose.setup import EnginePanel, SetupPanel
+from regolith_studio.ui.pages.repose.runs import RunsPanel, checks_text, duration_text
+from regolith_studio.ui.pages.repose.setup import SetupPanel, engine_table
 from regolith_studio.ui.pages.repose.study import StudyPanel
-from regolith_studio.ui.pages.repose.study_controller import ReposeStudyController
-from regolith_studio.ui.translation import localized, tr, translate
-from regolith_studio.ui.widgets.headline import Headline
+from regolith_studio.ui.translation import tr, translate
+from regolith_studio.ui.widgets.result_view import ResultRecord, ResultState, ResultView
 
 PREVIEW_DELAY = 250
 """Milliseconds from the last change to the preview."""
+ANGLE_SIZE, ANGLE_LINES = 4.5, 5
+"""Size of the angle in units of the letters, and lines of text beside it."""
 RUN, PREVIEW, MEASURE, BUILD, EXPORT = "run", "preview", "measure", "build", "export"
 
 
@@ -67,30 +81,62 @@ class ReposePage(PageWidget):
         self._pile: ParticleState | None = None
         self._measured: ReposeMeasurement | None = None
         self._shown_run: Path | None = None
-        self._running = False
+        self._origin = ("", "")
+        self._prepared: tuple[PreparedCase, ReposeRequest] | None = None
         self._live_scene: tuple[Sequence[Sequence[FloatArray]], bool, LiftingCylinderTest] | None = None
         self._live_pile: ParticleState | None = None
 
     def build(self) -> None:
         self.setup = SetupPanel()
         self.player = RunPlayer(self._context.views)
-        self.x_z, self.y_z = SectionPlot("x"), SectionPlot("y")
-        self.angle = Headline("repose_angle", (tr("Angle of repose"), tr("Interval")))
-        self.verdict = self.angle.sentence
-        self._show_answer(tr("No pile yet."))
+        captions = (tr("Angle of repose"), interval_caption(None))
+        self.angle = ResultView(
+            "repose_angle", captions, tr("Run the test"), tr("Run again"), ANGLE_SIZE, ANGLE_LINES
+        )
+        self.limits = LimitsStrip()
+        self.sections = HeapSections()
         self.runs = RunsPanel()
         self.study = StudyPanel()
         self.calibration = CalibrationPanel()
-        self.engines = EnginePanel()
-        self.studies = ReposeStudyController(self._context, self.study, self.setup, self._show_study_run)
-        self.calibrations = CalibrationController(self._context, self.calibration, self.setup)
         self._later = QTimer(self, singleShot=True, interval=PREVIEW_DELAY)
         self._later.timeout.connect(self._preview)
+        self._make_controllers()
         self._place()
         self._connect()
+        self._show_nothing(tr("Open a dataset, or build one from the open particles."))
         self._context.bindings.refresh("dataset_folder", self._take_dataset)
-        self.setup.show_consequences([tr("Open a dataset, or build one from the open particles.")])
+        self._offer_run()
         self._list_runs()
+
+    def _make_controllers(self) -> None:
+        resumed = tr("Finished runs are kept, and the button resumes.")
+        self.run = RunController(
+            self._context,
+            self.angle,
+            RUN,
+            tr("A simulation of the angle of repose would be stopped."),
+            tr("The run was stopped before it was measured."),
+            self.run_or_build,
+            lambda _running: self._offer_run(),
+        )
+        self.study_run = RunController(
+            self._context,
+            self.study.card,
+            "study",
+            tr("A study of the angle of repose would be stopped; it can be resumed later."),
+            resumed,
+            self.start_study,
+            self.study.set_running,
+        )
+        self.calibration_run = RunController(
+            self._context,
+            self.calibration.card,
+            "calibration",
+            tr("A calibration would be stopped; it can be resumed later."),
+            resumed,
+            self.start_calibration,
+            self.calibration.set_running,
+        )
 
     # --- the page of the window ----------------------------------------------------------------
 
@@ -109,24 +155,39 @@ class ReposePage(PageWidget):
         }
 
     def busy(self) -> str:
-        if self._running:
-            return tr("A simulation of the angle of repose would be stopped.")
-        return self.studies.busy() or self.calibrations.busy()
+        return self.run.busy() or self.study_run.busy() or self.calibration_run.busy()
 
     def state(self) -> dict[str, Any]:
+        shown = self._shown_run
         return {
             "setup": self.setup.state(),
             "study": self.study.state(),
             "calibration": self.calibration.state(),
+            "shown": {"folder": str(shown), "sha256": _hash_of_run(shown)} if shown else None,
         }
 
     def restore(self, state: Mapping[str, Any]) -> None:
-        if isinstance(state.get("setup"), Mapping):
-            self.setup.restore(state["setup"])
-        if isinstance(state.get("study"), Mapping):
-            self.study.restore(state["study"])
-        if isinstance(state.get("calibration"), Mapping):
-            self.calibration.restore(state["calibration"])
+        for name, panel in (("setup", self.setup), ("study", self.study), ("calibration", self.calibration)):
+            if isinstance(state.get(name), Mapping):
+                panel.restore(state[name])
+        if isinstance(shown := state.get("shown"), Mapping):
+            self._restore_run(Path(str(shown.get("folder"))), shown.get("sha256"))
+
+    def _restore_run(self, folder: Path, sha256: object) -> None:
+        """Show the run of a project, which the project names but does not hold."""
+        try:
+            run = read_run(folder)
+        except RegolithError as error:
+            self._show_nothing(str(error), ResultState.FAILED)
+            return
+        if _hash_of_run(folder) != sha256:
+            note = tr(
+                "The run in {folder} is not the one that was shown when the project was saved.", folder=folder
+            )
+            self._context.toast.problem(note)
+        self._later.stop()  # the preview of the set-up would take the place of the run
+        self._show_run(run)
+        self.runs.select(folder)
 
     def on_hide(self) -> None:
         self.player.stop()
@@ -158,11 +219,24 @@ class ReposePage(PageWidget):
             tr("Building a dataset"), job, lambda built: self.setup.set_dataset(built.folder), lane=BUILD
         )
 
+    def run_or_build(self) -> None:
+        """What the button of the card starts: the test, or a dataset of the open particles for it."""
+        if self.setup.dataset is None:
+            self.make_dataset()
+        else:
+            self.run_test()
+
+    def run_with(self, count: int) -> None:
+        """Simulate the case of the set-up panel with another number of particles."""
+        self.setup.particles.setValue(count)
+        self.run_test()
+
     def run_test(self) -> None:
         """Simulate the case of the set-up panel."""
         dataset = self.setup.dataset
-        if dataset is None:
-            self._context.toast.problem(tr("There is no dataset yet: open or build one first."))
+        if dataset is None or self.run.running:
+            note = tr("There is no dataset yet: open or build one first.")
+            self._context.toast.problem(note if dataset is None else tr("A run is under way: stop it first."))
             return
         try:
             request = self.setup.request()
@@ -171,44 +245,83 @@ class ReposePage(PageWidget):
             return
         self._later.stop()
         self._live_scene = self._live_pile = None
-        self._show_nothing(tr("The angle is measured when the particles have come to rest."))
+        note = tr("The angle is measured when the particles have come to rest.")
+        self._show_nothing(note)
+        self.tabs.setCurrentIndex(0)
         folder = self._new_folder(f"{dataset.name}-{request.case.n_particles}")
-        self._set_running(True)
         self._start_preview(dataset, request)
-        self._context.start(
+        self.run.start(
             tr("Angle of repose, {count:,} particles", count=request.case.n_particles),
             Job(repose_steps, (dataset, folder, request)),
-            self._finished,
-            partial=self._show_moment,
-            failed=self._failed,
-            stopped=self._stopped,
-            lane=RUN,
+            self._show_progress,
+            note,
+            self._end_run,
         )
 
     def start_study(self) -> None:
         """Start or resume the study."""
-        self.studies.start(self._folder)
+        if self.study_run.running:
+            return
+        try:
+            request = self._study_request()
+        except RegolithError as error:
+            self._context.toast.problem(str(error))
+            return
+        name = "open-particles" if request.dataset is None else request.dataset.name
+        folder = self._studies_folder = self._folder / "studies" / f"{request.key}-{name}"
+        note = tr("Runs, tables and figure are kept in {folder}.", folder=folder)
+        self.study.show_study(None)
+        self.study_run.start(
+            tr("Angle of repose: study"),
+            Job(run_repose_study, (request, folder)),
+            lambda study: replace(self.study.show_study(study), note=note),
+            note,
+        )
+
+    def _study_request(self) -> ReposeStudyRequest:
+        key, values, repeats, workers = self.study.request()
+        session, request = self._context.session, self.setup.request()
+        if key not in SHAPE_KEYS:
+            return ReposeStudyRequest(key, values, request, self.setup.dataset, repeats, workers=workers)
+        particles = tuple(entry.particle for entry in session.particles)
+        coarsening = session.choices.coarsening_request
+        return ReposeStudyRequest(key, values, request, None, repeats, particles, coarsening, workers)
 
     def start_calibration(self) -> None:
         """Start or resume the calibration."""
-        self.calibrations.start(self._folder)
+        if self.calibration_run.running:
+            return
+        try:
+            request = self.calibration.request(self.setup.dataset, self.setup.request())
+        except RegolithError as error:
+            self._context.toast.problem(tr(str(error)))
+            return
+        folder = self._folder / "studies" / folder_name(request)
+        self.calibration.show_calibration(None)
+        self.calibration_run.start(
+            tr("Angle of repose: calibration"),
+            Job(locked_calibration, (request, folder)),
+            self.calibration.show_calibration,
+            tr("Every run is kept in {folder}.", folder=folder),
+        )
 
     def open_positions(self) -> None:
         """Measure the pile of another program from a file of positions."""
-        pile = read_other(self, self._context.toast)
-        if pile is not None:
-            self._shown_run = None
-            ball = ((self.player_ball(),),)
-            self.player.set_scene(ball, True, LiftingCylinderTest())
-            self.player.show_moment(
-                pile, tr("Imported particles"), tr("{count:,} particles", count=len(pile))
-            )
-            self._measure(pile)
+        if (read := read_other(self, self._context.toast)) is None:
+            return
+        path, pile = read
+        self._shown_run = None
+        self.runs.select(None)
+        self._origin = (tr("{count:,} particles of {name}", count=len(pile), name=path.name), "")
+        self.player.set_scene(((self.player_ball(),),), True, LiftingCylinderTest())
+        self.player.show_moment(pile, path.name, tr("{count:,} particles", count=len(pile)))
+        self.limits.show_scale(CaseScale(len(pile)))
+        self._measure(pile)
 
     def export_run(self) -> None:
         """Ask for a folder and write Fig. 9 and the measurement."""
         if self._pile is None or self._measured is None:
-            self._context.toast.problem(tr("There is no measured pile to export yet."))
+            self._context.toast.problem(tr("There is no measured heap to export yet."))
             return
         export_measurement(self, self._context.toast, self._pile, self._measured)
 
@@ -255,6 +368,10 @@ class ReposePage(PageWidget):
             self.setup.set_dataset(written)
 
     def _ask_preview(self) -> None:
+        self._prepared = None
+        if not self.run.running and self.setup.dataset is not None:
+            self._show_nothing(tr("Drawing particles …"))
+        self._offer_run()
         self._later.start()
 
     def _preview(self) -> None:
@@ -264,7 +381,7 @@ class ReposePage(PageWidget):
         try:
             request = self.setup.request()
         except RegolithError as error:
-            self.setup.show_consequences([], str(error))
+            self._refuse(str(error))
             return
         self._start_preview(dataset, request)
 
@@ -279,24 +396,42 @@ class ReposePage(PageWidget):
             tr("Drawing particles"),
             job,
             show,
-            failed=lambda each: self.setup.show_consequences([], each.sentence),
+            failed=lambda each: self._refuse(each.sentence),
             lane=PREVIEW,
             repeats=True,
         )
 
+    def _refuse(self, problem: str) -> None:
+        """Show why the case of the set-up cannot be run."""
+        self.setup.show_consequences([], problem)
+        if not self.run.running:
+            self._show_nothing(translate(problem), ResultState.FAILED)
+        self._offer_run()
+
+    def _offer_run(self) -> None:
+        """Let the button of the card start what can be started, or say in its tool tip why nothing can."""
+        has_dataset = self.setup.dataset is not None
+        self.angle.set_start(tr("Run the test") if has_dataset else tr("Use the open particles"))
+        self.angle.set_startable(self.setup.problem_of_run() if has_dataset else "")
+
     def _show_preview(self, request: ReposeRequest, prepared: PreparedCase, pile: ParticleState) -> None:
-        seconds = engine_named(request.engine).seconds(prepared, request.settings)
-        time = tr(
-            "About {time} on one core, up to {longer} while other work runs.",
+        self._prepared = (prepared, request)
+        report = scaling_report(prepared)
+        self.setup.show_consequences([*map(translate, report.sentences)])
+        self._offer_run()
+        scene = (prepared.part_vertices, request.case.shapes == "spheres", request.case.test)
+        self._show_limits(CaseScale(len(prepared), report.diameters_across, report.coarse_graining))
+        if self.run.running:
+            self._live_scene = self._live_scene or scene
+            return
+        self._live_scene = scene
+        seconds = self._seconds(len(prepared))
+        note = tr(
+            "Not run yet with these values: about {time} on one core, up to {longer} while other work runs.",
             time=duration_text(seconds),
             longer=duration_text(2 * seconds),
         )
-        self.setup.show_consequences([time, *map(translate, scaling_report(prepared).sentences)])
-        scene = (prepared.part_vertices, request.case.shapes == "spheres", request.case.test)
-        if self._running:
-            self._live_scene = self._live_scene or scene
-            return
-        self._show_nothing(tr("Not run yet with these values."))
+        self._show_nothing(note)
         self.player.set_scene(*scene)
         self.player.show_moment(
             pile,
@@ -308,39 +443,35 @@ class ReposePage(PageWidget):
             ),
         )
 
+    def _seconds(self, count: int) -> float:
+        """Estimated time of a run of the set-up with so many particles."""
+        assert self._prepared is not None, "it is asked of drawn particles"
+        prepared, request = self._prepared
+        return engine_named(request.engine).seconds(with_number(prepared, count), request.settings)
+
+    def _show_limits(self, scale: CaseScale) -> None:
+        self.limits.show_scale(scale, None if self._prepared is None else self._seconds)
+
     # --- a run ---------------------------------------------------------------------------------
 
-    def _show_moment(self, moment: Any) -> None:
-        if isinstance(moment, Snapshot) and self._live_scene is not None:
-            self._live_pile = moment.particles
+    def _show_progress(self, event: Any) -> None:
+        if isinstance(event, Snapshot) and self._live_scene is not None:
+            self._live_pile = event.particles
             self.player.set_scene(*self._live_scene)
-            self.player.show_moment(moment.particles, tr("Running"), translate(moment.message))
+            self.player.show_moment(event.particles, tr("Running"), translate(event.message))
+        elif isinstance(event, ReposeRun):
+            self._list_runs(event.folder)
+            summary = RunSummary(event.folder, event.document)
+            self._show_run(summary)
+            for problem in event.document["checks"]["problems"]:
+                self._context.toast.problem(translate(summary.message(problem)))
 
-    def _finished(self, run: ReposeRun) -> None:
-        self._set_running(False)
-        self._list_runs(run.folder)
-        summary = RunSummary(run.folder, run.document)
-        self._show_run(summary)
-        for problem in run.document["checks"]["problems"]:
-            self._context.toast.problem(translate(summary.message(problem)))
-
-    def _failed(self, failure: Failed) -> None:
-        self._set_running(False)
+    def _end_run(self) -> None:
+        """Show the particles of a run that has failed or was stopped."""
         self._list_runs()
-        self._show_nothing(failure.sentence)
-        self._context.toast.problem(failure.sentence, failure.details)
-
-    def _stopped(self) -> None:
-        self._set_running(False)
-        self._list_runs()
-        self._show_nothing(tr("The run was stopped before it was measured."))
         if self._live_pile is not None and self._live_scene is not None:
             self.player.set_scene(*self._live_scene)
             self.player.show_moment(self._live_pile, tr("Stopped"), tr("the particles when it was stopped"))
-
-    def _set_running(self, running: bool) -> None:
-        self._running = running
-        self.setup.set_running(running)
 
     # --- what a run left -----------------------------------------------------------------------
 
@@ -348,9 +479,9 @@ class ReposePage(PageWidget):
         self._context.session.runs_folder = self._folder
         self.runs.set_runs(find_runs(self._folder) if self._folder.is_dir() else [], chosen)
 
-    def _show_study_run(self, run: RunSummary) -> None:
-        if not self._running:
-            self._show_run(run)
+    def _show_study_run(self, run: ReposeStudyRun) -> None:
+        if not self.run.running:
+            self._show_run(RunSummary(study_place(self._studies_folder, run.folder), run.document))
 
     def _show_run(self, run: RunSummary) -> None:
         case = run.document["case"]
@@ -367,17 +498,20 @@ class ReposePage(PageWidget):
         except (RegolithError, TypeError) as error:
             self._context.toast.problem(str(error))
             return
-        self._shown_run = run.folder
+        self._origin = run_origin(run.document)
         if pile is not None:
             self._measure(pile)
         else:
-            self._show_measurement(
-                NotAPileError(tr("This run was not finished: {state}.", state=tr(run.document["state"])))
-            )
+            state = run.document["state"]
+            failed = ResultState.FAILED if state == "failed" else ResultState.STOPPED
+            self._show_nothing(tr("This run was not finished: {state}.", state=tr(state)), failed)
+        self._shown_run = run.folder
+        self._show_limits(scale_of_run(run.document))
 
     def _measure(self, pile: ParticleState) -> None:
         self._pile = pile
         self.player.frame_heap(pile)
+        self._show_card(ResultRecord((), *self._origin, note=tr("The heap is being measured.")))
         self._measure_again()
 
     def _measure_again(self) -> None:
@@ -388,38 +522,27 @@ class ReposePage(PageWidget):
         except RegolithError as error:
             self._context.toast.problem(str(error))
             return
-        self._context.start(tr("Measuring the pile"), job, self._show_measurement, lane=MEASURE)
+        self._context.start(tr("Measuring the heap"), job, self._show_measurement, lane=MEASURE)
 
     def _show_measurement(self, measured: ReposeMeasurement | NotAPileError) -> None:
-        if isinstance(measured, NotAPileError) or self._pile is None:
-            self._measured = None
-            self._show_answer(tr("There is no angle of repose."))
-            for plot in (self.x_z, self.y_z):
-                plot.show_nothing(translate(getattr(measured, "sentence", "")))
+        if self._pile is None:
             return
-        self._measured = measured
-        low, high = measured.interval
-        interval = tr("{low:.1f}° to {high:.1f}°", low=low, high=high)
-        self.angle.caption(1, tr("{share:.0%} interval", share=measured.settings.confidence))
-        self.angle.show_values((localized(f"{measured.angle:.1f}°"), interval), angle_text(measured))
-        for plot, azimuth in zip((self.x_z, self.y_z), PAPER_AZIMUTHS, strict=True):
-            section = measured.section_at(azimuth)
-            if section is None:
-                plot.show_nothing(tr("This section has no two straight flanks and is not measured."))
-            else:
-                plot.show_section(self._pile, section)
+        self._measured = measured if isinstance(measured, ReposeMeasurement) else None
+        self.angle.caption(1, interval_caption(measured))
+        self._show_card(heap_record(measured, *self._origin))
+        self.sections.show_heap(self._pile, measured)
 
-    def _show_nothing(self, sentence: str) -> None:
+    def _show_nothing(self, sentence: str, state: ResultState = ResultState.NONE) -> None:
         """Show that there is no measurement of what is seen, and why."""
         self._context.stop(MEASURE)
         self._pile = self._measured = self._shown_run = None
-        self._show_answer(sentence)
-        for plot in (self.x_z, self.y_z):
-            plot.show_nothing(sentence)
+        self.angle.caption(1, interval_caption(None))
+        self._show_card(ResultRecord(state=state, note=sentence))
+        self.sections.show_nothing(sentence)
 
-    def _show_answer(self, sentence: str) -> None:
-        """Show why there is no angle."""
-        self.angle.show_values(("–", "–"), sentence, fresh=False)
+    def _show_card(self, record: ResultRecord) -> None:
+        self.angle.show_record(record)
+        self._offer_run()
 
     def _take_cut(self, name: str, share: float) -> None:
         if name == "low":
@@ -430,47 +553,43 @@ class ReposePage(PageWidget):
     # --- layout --------------------------------------------------------------------------------
 
     def _place(self) -> None:
-        sections = QWidget()
-        row = QHBoxLayout(sections)
-        row.setContentsMargins(0, 0, 0, 0)
-        row.addWidget(self.x_z)
-        row.addWidget(self.y_z)
         pages = [
-            (sections, tr("Sections")),
+            (self.sections, tr("Section")),
+            (scrolled_column([self.setup]), tr("Set-up")),
             (self.runs, tr("Runs")),
             (self.study, tr("Study")),
             (self.calibration, tr("Calibration")),
-            (self.engines, tr("Engines")),
+            (engine_table(), tr("Engines")),
         ]
-        below = tabs("repose_tabs", pages)
-        results = QWidget()
-        column = QVBoxLayout(results)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.addWidget(self.angle)
-        column.addWidget(below, 1)
-        pictures = stacked([self.player, results], [480, 380], stretch=0)
+        self.tabs = tabs("repose_tabs", pages)
+        pictures = side_by_side([self.tabs, self.player], [700, 520], stretch=0)
         pictures.setObjectName("repose_pictures")
-        parts = [padded(pictures, 10, 10, 2, 8), scrolled_column([self.setup])]
-        columns = side_by_side(parts, [1180, 350], stretch=0)
-        columns.setObjectName("repose_columns")
-        layout = QHBoxLayout(self)
-        layout.setContentsMargins(0, 0, 0, 0)
-        layout.addWidget(columns)
+        column = QVBoxLayout(self)
+        column.setContentsMargins(10, 10, 10, 8)
+        column.addWidget(self.angle)
+        column.addWidget(self.limits)
+        column.addWidget(pictures, 1)
 
     def _connect(self) -> None:
         self.setup.valueChanged.connect(self._ask_preview)
         self.setup.evaluationChanged.connect(self._measure_again)
         self.setup.datasetWanted.connect(self.open_dataset)
         self.setup.sampleWanted.connect(self.make_dataset)
-        self.setup.runWanted.connect(self.run_test)
+        self.limits.runRequested.connect(self.run_with)
         self.runs.chosen.connect(self._show_run)
-        self.study.startWanted.connect(self.start_study)
-        self.calibration.startWanted.connect(self.start_calibration)
-        for plot in (self.x_z, self.y_z):
-            plot.cutDragged.connect(self._take_cut)
+        self.study.chosen.connect(self._show_study_run)
+        self.sections.plot.cutDragged.connect(self._take_cut)
 
     def _new_folder(self, stem: str) -> Path:
         number = 1
         while (self._folder / f"{stem}-{number:03d}").exists():
             number += 1
         return self._folder / f"{stem}-{number:03d}"
+
+
+def _hash_of_run(folder: Path) -> str:
+    """Of the document of a run; empty if it cannot be read."""
+    try:
+        return hashlib.sha256((folder / DOCUMENT).read_bytes()).hexdigest()
+    except OSError:
+        return ""

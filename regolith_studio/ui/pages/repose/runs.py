@@ -1,26 +1,18 @@
 """Table of the runs, a plot of their angles against a varied parameter, and the texts of a result."""
 
+import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from PySide6.QtCore import QSignalBlocker, Qt, Signal
-from PySide6.QtWidgets import (
-    QAbstractItemView,
-    QComboBox,
-    QHBoxLayout,
-    QHeaderView,
-    QTableWidget,
-    QTableWidgetItem,
-    QVBoxLayout,
-    QWidget,
-)
+from PySide6.QtCore import Signal
+from PySide6.QtWidgets import QComboBox, QVBoxLayout, QWidget
 
-from regolith_studio.dem.angle_of_repose import ReposeMeasurement
 from regolith_studio.dem.run_io import RunSummary
 from regolith_studio.messages import N_
 from regolith_studio.ui.translation import localized, number_text, tr, translate
 from regolith_studio.ui.widgets.plots.curves import CurvePlot, PlotCurve
+from regolith_studio.ui.widgets.text_table import TextTable
 
 AGAINST: Mapping[str, tuple[str, ...]] = {
     N_("Static friction"): ("case", "contact", "static_friction"),
@@ -62,16 +54,7 @@ class RunsPanel(QWidget):
     def __init__(self) -> None:
         super().__init__()
         self._runs: list[RunSummary] = []
-        self.table = QTableWidget(0, len(HEADINGS))
-        self.table.setObjectName("repose_runs")
-        self.table.setAccessibleName(tr("Runs"))
-        self.table.setHorizontalHeaderLabels([tr(each) for each in HEADINGS])
-        self.table.setSelectionBehavior(QAbstractItemView.SelectionBehavior.SelectRows)
-        self.table.setSelectionMode(QAbstractItemView.SelectionMode.SingleSelection)
-        self.table.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
-        self.table.setShowGrid(False)
-        self.table.verticalHeader().hide()
-        self.table.horizontalHeader().setSectionResizeMode(QHeaderView.ResizeMode.ResizeToContents)
+        self.table = TextTable("repose_runs", tr("Runs"), [tr(each) for each in HEADINGS])
         self.against = QComboBox()
         self.against.setObjectName("repose_against")
         self.against.setAccessibleName(tr("Compare the angle against"))
@@ -85,60 +68,56 @@ class RunsPanel(QWidget):
         column.setContentsMargins(0, 4, 0, 0)
         column.addWidget(self.against)
         column.addWidget(self.plot, 1)
-        row = QHBoxLayout(self)
+        row = QVBoxLayout(self)
         row.setContentsMargins(0, 0, 0, 0)
-        row.addWidget(self.table, 3)
-        row.addWidget(right, 2)
-        self.table.itemSelectionChanged.connect(self._announce)
+        row.addWidget(self.table, 1)
+        row.addWidget(right, 1)
+        self.table.chosen.connect(lambda row: self.chosen.emit(self._runs[row]))
         self.against.currentIndexChanged.connect(lambda *_: self._compare())
 
     def set_runs(self, runs: Sequence[RunSummary], chosen: Path | None = None) -> None:
         """List other runs and select one, without emitting a signal."""
         self._runs = list(runs)
-        with QSignalBlocker(self.table):
-            self.table.setRowCount(len(runs))
-            for row, run in enumerate(runs):
-                for column, text in enumerate(_cells(run)):
-                    item = QTableWidgetItem(text)
-                    item.setToolTip(explanation(run))
-                    if column:
-                        item.setTextAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
-                    self.table.setItem(row, column, item)
-                if run.folder == chosen:
-                    self.table.selectRow(row)
+        self.table.set_rows([_cells(run) for run in runs], [explanation(run) for run in runs])
+        self.select(chosen)
         self._compare()
+
+    def select(self, folder: Path | None) -> None:
+        """Select a run, or none, without emitting a signal."""
+        self.table.select(next((row for row, run in enumerate(self._runs) if run.folder == folder), None))
 
     def current(self) -> RunSummary | None:
         """The selected run."""
-        rows = self.table.selectionModel().selectedRows()
-        return self._runs[rows[0].row()] if rows else None
-
-    def _announce(self) -> None:
-        if run := self.current():
-            self.chosen.emit(run)
+        row = self.table.selected()
+        return None if row is None else self._runs[row]
 
     def _compare(self) -> None:
         path = tuple(self.against.currentData())
         points = sorted(
-            (float(value), run.angle, run.document["case"]["shapes"])
+            (
+                float(value),
+                run.angle,
+                *run.document["measurement"]["interval_deg"],
+                run.document["case"]["shapes"],
+            )
             for run in self._runs
             if run.angle is not None and (value := _at(run.document, path)) is not None
         )
         colours = {"polyhedra": self.plot.theme.polyhedron, "spheres": self.plot.theme.fit}
         self.plot.set_labels(self.against.currentText(), tr("Angle [°]"))
-        self.plot.set_curves(
-            [
-                PlotCurve(
-                    tr(shapes),
-                    colour,
-                    tuple(x for x, _, kind in points if kind == shapes),
-                    tuple(angle for _, angle, kind in points if kind == shapes),
-                    markers=True,
-                )
-                for shapes, colour in colours.items()
-                if any(kind == shapes for _, _, kind in points)
-            ]
-        )
+        curves = []
+        for shapes, colour in colours.items():
+            chosen = [each for each in points if each[-1] == shapes]
+            x, angles = tuple(each[0] for each in chosen), tuple(each[1] for each in chosen)
+            curves.append(PlotCurve(tr(shapes) if chosen else "", colour, x, angles, markers=True))
+            curves.append(interval_bars(colour, [(each[0], each[2], each[3]) for each in chosen]))
+        self.plot.set_curves([each for each in curves if each.x])
+
+
+def interval_bars(colour: str, intervals: Sequence[tuple[float, float, float]]) -> PlotCurve:
+    """Vertical bars: place, lower and upper end of each."""
+    x = tuple(place for place, _, _ in intervals for _ in range(3))
+    return PlotCurve("", colour, x, tuple(y for _, low, high in intervals for y in (low, high, math.nan)))
 
 
 def _cells(run: RunSummary) -> tuple[str, ...]:
@@ -212,19 +191,4 @@ def duration_text(seconds: float) -> str:
         else f"{seconds / 60:.0f} min"
         if seconds < 6000
         else f"{seconds / 3600:.0f} h"
-    )
-
-
-def angle_text(measured: ReposeMeasurement) -> str:
-    """What the angle of repose is the mean of, and what to know about it."""
-    return (
-        tr(
-            "Mean of {count} sections. Two perpendicular sections give {asymmetric:.1f}° (one "
-            "angle per flank) and {symmetric:.1f}° (one angle for both).",
-            count=len(measured.sections),
-            asymmetric=measured.paper_asymmetric.mean,
-            symmetric=measured.paper_symmetric.mean,
-        )
-        + " "
-        + " ".join(map(translate, measured.warnings[:2]))
     )

@@ -1,10 +1,12 @@
 """A section of the pile as in Fig. 9, with draggable limits of the regression."""
 
+from dataclasses import dataclass
+
 import numpy as np
 import pyqtgraph as pg
 from PySide6.QtCore import QPointF, Signal
 
-from regolith_studio.dem.evaluation.profile import Discs, project
+from regolith_studio.dem.evaluation.profile import Discs, Profile, project
 from regolith_studio.dem.evaluation.section import Section
 from regolith_studio.dem.snapshot import ParticleState
 from regolith_studio.geometry.arrays import IntArray
@@ -24,65 +26,101 @@ LEFT_SIDE = N_("left flank: {z:.3g} mm, {angle:.1f}°")
 RIGHT_SIDE = N_("right flank: {z:.3g} mm, {angle:.1f}°")
 
 
+@dataclass(frozen=True, eq=False)
+class HeapSection:
+    """A vertical section of particles at rest.
+
+    Parameters
+    ----------
+    pile
+        The particles.
+    azimuth
+        Degrees from the x axis.
+    base
+        Level of the plate.
+    profile, section
+        The surface and what was fitted to it, where there is any.
+    half_width
+        Of the interval of the angle in degrees; 0 for none.
+    """
+
+    pile: ParticleState
+    azimuth: float
+    base: float = 0.0
+    profile: Profile | None = None
+    section: Section | None = None
+    half_width: float = 0.0
+
+    def frame(self) -> tuple[float, float]:
+        """Half width and height of its picture in metres."""
+        if self.section is not None:
+            return framed(self.section)
+        if self.profile is not None:
+            ends = self.profile.u[[self.profile.first, self.profile.last]]
+            return 1.15 * float(np.abs(ends).max()), 1.1 * self.profile.top
+        flat = self.pile.points[:, :2] - np.median(self.pile.points[:, :2], axis=0)
+        reach = np.quantile(np.abs(flat), 0.97) + self.pile.diameters.mean()
+        return 1.15 * float(reach), 1.1 * float((self.pile.points[:, 2] - self.base).max())
+
+
 class SectionPlot(Plot):
-    """Projected particles, surface points used in the regression, and both models.
+    """Projected particles, surface points used in the regression, and both models with their interval.
 
     ``cutDragged`` carries the cut (``low`` or ``high``) that the user has moved and its share of the height.
     """
 
     cutDragged = Signal(str, float)  # noqa: N815
 
-    def __init__(self, axis: str) -> None:
-        self._pile: ParticleState | None = None
-        self._section: Section | None = None
+    def __init__(self) -> None:
+        self._heap: HeapSection | None = None
         self._items: list[pg.GraphicsObject] = []
         self._cuts: dict[str, pg.InfiniteLine] = {}
         self._discs: Discs | None = None
-        super().__init__(f"{axis} [mm]", "z [mm]", tr("Run a test or open positions to see its section."))
+        super().__init__("x [mm]", "z [mm]", tr("Run a test or open positions to see its section."))
         self.canvas.setAspectLocked(True)
+        self.canvas.getViewBox().sigResized.connect(lambda *_: self._frame())
 
     @property
     def section(self) -> Section | None:
-        """The section."""
-        return self._section
+        """The section, if anything was fitted."""
+        return None if self._heap is None else self._heap.section
 
     def cut(self, name: str) -> pg.InfiniteLine:
         """The line of a cut, ``low`` or ``high``."""
         return self._cuts[name]
 
-    def show_section(self, pile: ParticleState, section: Section) -> None:
-        """Draw a section of a pile."""
-        self._pile, self._section = pile, section
-        two, one = section.asymmetric, section.symmetric
-        self.set_legend(
-            [
-                (LEFT, tr("left {angle:.1f}°", angle=two.left.angle)),
-                (RIGHT, tr("right {angle:.1f}°", angle=two.right.angle)),
-                (BOTH, tr("symmetric {angle:.1f}°", angle=one.angle)),
-            ]
+    def show_heap(self, heap: HeapSection) -> None:
+        """Draw a section, with what was fitted."""
+        self._heap = heap
+        plane = {0.0: "x", 90.0: "y"}.get(heap.azimuth)
+        self.set_labels(
+            f"{plane} [mm]" if plane else tr("along {azimuth:g}° [mm]", azimuth=heap.azimuth), "z [mm]"
         )
+        self.set_legend(_legend(heap.section))
         self.set_empty(False)
         self.redraw()
 
     def show_nothing(self, sentence: str) -> None:
         """Show why there is no section."""
-        self._pile = self._section = self._discs = None
+        self._heap = self._discs = None
         self.set_empty(True, sentence)
         self.redraw()
 
     def value_at(self, place: QPointF) -> str:
         """The nearest surface point with both models, or the particle at a position."""
-        if self._pile is None or self._section is None:
+        if self._heap is None:
             return ""
         here = self.canvas.getViewBox().mapSceneToView(place)
         u, z = here.x() / MILLIMETRE, here.y() / MILLIMETRE
         reach = HOVER_DISTANCE / MILLIMETRE * self.canvas.getViewBox().viewPixelSize()[0]
-        return surface_text(self._section, u, z, reach) or particle_text(self._discs, u, z)
+        surface = "" if self.section is None else surface_text(self.section, u, z, reach)
+        return surface or particle_text(self._discs, u, z)
 
     def numbers(self) -> Numbers:
-        if self._section is None:
+        if self._heap is None or self._heap.profile is None:
             return (), []
-        profile, used = self._section.profile, self._section.used
+        profile, section = self._heap.profile, self._heap.section
+        used = np.zeros(len(profile.u), dtype=bool) if section is None else section.used
         rows = zip(MILLIMETRE * profile.u, MILLIMETRE * profile.height, used, strict=True)
         columns = (self._labels[0], tr("surface z [mm]"), tr("in the regression"))
         return columns, [(float(u), float(z), "yes" if taken else "no") for u, z, taken in rows if z == z]
@@ -91,21 +129,32 @@ class SectionPlot(Plot):
         for item in (*self._items, *self._cuts.values()):
             self.canvas.removeItem(item)
         self._items, self._cuts = [], {}
-        if self._pile is None or self._section is None:
+        if self._heap is None:
             return
-        self._draw_particles(self._pile, self._section)
-        self._draw_models(self._section)
-        self._draw_cuts(self._section)
-        reach, top = framed(self._section)
-        box = self.canvas.getViewBox()
-        box.setRange(
-            xRange=(-MILLIMETRE * reach, MILLIMETRE * reach), yRange=(0.0, MILLIMETRE * top), padding=0.02
-        )
+        self._draw_particles(self._heap)
+        if self._heap.section is not None:
+            self._draw_band(self._heap.section, self._heap.half_width)
+            self._draw_models(self._heap.section)
+            self._draw_cuts(self._heap.section)
+        self._frame()
 
-    def _draw_particles(self, pile: ParticleState, section: Section) -> None:
-        discs = self._discs = project(pile.points, pile.diameters, 0.0, np.radians(section.azimuth))
+    def _frame(self) -> None:
+        """Show the heap as large as it can be, with the plate at the bottom and equal axes."""
+        if self._heap is None:
+            return
+        box = self.canvas.getViewBox()
+        width, height = max(1.0, box.width()), max(1.0, box.height())
+        reach, top = self._heap.frame()
+        pixel = MILLIMETRE * max(2 * reach / width, 1.04 * top / height)
+        low = -0.02 * pixel * height
+        half = pixel * width / 2
+        box.setRange(xRange=(-half, half), yRange=(low, low + pixel * height), padding=0.0)
+
+    def _draw_particles(self, heap: HeapSection) -> None:
+        pile = heap.pile
+        discs = self._discs = project(pile.points, pile.diameters, heap.base, np.radians(heap.azimuth))
         drawn = drawn_discs(discs)
-        grains = pg.ScatterPlotItem(
+        particles = pg.ScatterPlotItem(
             x=MILLIMETRE * discs.u[drawn],
             y=MILLIMETRE * discs.z[drawn],
             size=2 * MILLIMETRE * discs.radius[drawn],
@@ -113,16 +162,38 @@ class SectionPlot(Plot):
             pen=pg.mkPen(self.theme.border),
             brush=pg.mkBrush(self.theme.raised if self.theme.dark else "#dcdfe3"),
         )
-        used, profile = section.used, section.profile
+        self._add(particles)
+        if heap.profile is None:
+            return
+        seen = heap.profile.height > 0.0 if heap.section is None else heap.section.used
         surface = pg.ScatterPlotItem(
-            x=MILLIMETRE * profile.u[used],
-            y=MILLIMETRE * profile.height[used],
+            x=MILLIMETRE * heap.profile.u[seen],
+            y=MILLIMETRE * heap.profile.height[seen],
             size=5,
             pen=None,
             brush=pg.mkBrush(self.theme.text),
         )
-        self._add(grains)
         self._add(surface)
+
+    def _draw_band(self, section: Section, half_width: float) -> None:
+        """The flanks turned about their middle by the interval of the angle."""
+        two, profile = section.asymmetric, section.profile
+        for line, side, colour in (
+            (two.left, profile.u < two.break_point, LEFT),
+            (two.right, profile.u >= two.break_point, RIGHT),
+        ):
+            u = profile.u[side & section.used]
+            ends = np.array([u.min(), u.max()])
+            height = line.slope * u.mean() + line.intercept
+            edges = []
+            for turn in (-half_width, half_width):
+                slope = np.sign(line.slope) * np.tan(np.radians(line.angle + turn))
+                edges.append(
+                    pg.PlotCurveItem(MILLIMETRE * ends, MILLIMETRE * (height + slope * (ends - u.mean())))
+                )
+            brush = pg.mkColor(colour)
+            brush.setAlpha(70)
+            self._add(pg.FillBetweenItem(*edges, brush=brush))
 
     def _draw_models(self, section: Section) -> None:
         two, one = section.asymmetric, section.symmetric
@@ -156,6 +227,17 @@ class SectionPlot(Plot):
     def _add(self, item: pg.GraphicsObject) -> None:
         self.canvas.addItem(item)
         self._items.append(item)
+
+
+def _legend(section: Section | None) -> list[tuple[str, str]]:
+    if section is None:
+        return []
+    two, one = section.asymmetric, section.symmetric
+    return [
+        (LEFT, tr("left {angle:.1f}°", angle=two.left.angle)),
+        (RIGHT, tr("right {angle:.1f}°", angle=two.right.angle)),
+        (BOTH, tr("symmetric {angle:.1f}°", angle=one.angle)),
+    ]
 
 
 def drawn_discs(discs: Discs) -> IntArray:
@@ -201,11 +283,11 @@ def particle_text(discs: Discs | None, u: float, z: float) -> str:
     over = np.flatnonzero(np.hypot(discs.u - u, discs.z - z) <= discs.radius)
     if not len(over):
         return ""
-    grain = over[np.argmin(discs.radius[over])]
-    size = 2 * MILLIMETRE * discs.radius[grain]
+    nearest = over[np.argmin(discs.radius[over])]
+    size = 2 * MILLIMETRE * discs.radius[nearest]
     return tr(
-        "grain {number}: {size:.3g} mm at {x:.3g}, {z:.3g} mm",
-        number=grain + 1,
+        "particle {number}: {size:.3g} mm at {x:.3g}, {z:.3g} mm",
+        number=nearest + 1,
         size=size,
         x=MILLIMETRE * u,
         z=MILLIMETRE * z,

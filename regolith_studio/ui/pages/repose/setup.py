@@ -6,15 +6,12 @@ from typing import Any
 
 from PySide6.QtCore import QSignalBlocker, Qt, Signal
 from PySide6.QtWidgets import (
-    QAbstractItemView,
     QComboBox,
     QFormLayout,
     QHBoxLayout,
-    QHeaderView,
+    QLayout,
     QPushButton,
     QSpinBox,
-    QTableWidget,
-    QTableWidgetItem,
     QVBoxLayout,
     QWidget,
 )
@@ -28,12 +25,12 @@ from regolith_studio.jobs.repose_jobs import ReposeRequest
 from regolith_studio.jobs.runners.process_pool import cores
 from regolith_studio.messages import N_
 from regolith_studio.ui.layout import Collapsible
-from regolith_studio.ui.translation import Markup, inert, number_text, rich, tr, translate
+from regolith_studio.ui.translation import Markup, number_text, rich, tr, translate
 from regolith_studio.ui.widgets.combo_box import ElidedComboBox
-from regolith_studio.ui.widgets.fixed_height_text import FixedHeightText
 from regolith_studio.ui.widgets.forms import SettingsForm
 from regolith_studio.ui.widgets.labels import ElidedLabel, heading, remark
 from regolith_studio.ui.widgets.presets import PresetForm
+from regolith_studio.ui.widgets.text_table import TextTable
 
 MAX_PARTICLES = 400_000
 PRESETS = {N_("Teaching"): 300, N_("Standard"): 1000, N_("Fine"): 5000}
@@ -52,13 +49,11 @@ class SetupPanel(QWidget):
     evaluationChanged = Signal()  # noqa: N815
     datasetWanted = Signal()  # noqa: N815
     sampleWanted = Signal()  # noqa: N815
-    runWanted = Signal()  # noqa: N815
 
     def __init__(self) -> None:
         super().__init__()
         self.setObjectName("repose_setup")
         self._dataset: Path | None = None
-        self._running = False
         self.dataset_label = ElidedLabel(tr("No dataset yet"), elide=Qt.TextElideMode.ElideMiddle)
         self.open_button = _button(tr("Open …"), "repose_open", tr("Choose a dataset folder"))
         self.sample_button = _button(
@@ -94,8 +89,6 @@ class SetupPanel(QWidget):
         self.scaling_report.setObjectName("repose_consequences")
         self.problem = remark(role="warning")
         self.problem.hide()
-        self.run = _button(tr("Run the test"), "repose_run", tr("Fill, lift, measure"))
-        self.run.setDefault(True)
         self._place()
         self._connect()
 
@@ -155,19 +148,12 @@ class SetupPanel(QWidget):
         self.scaling_report.setText(Markup("<br>".join(map(rich, sentences))))
         self.problem.setText(translate(problem))
         self.problem.setVisible(bool(problem))
-        self._enable_run()
 
-    def set_running(self, running: bool) -> None:
-        """Whether a run is under way, so that no other can be started."""
-        self._running = running
-        self.run.setText(tr("Running …") if running else tr("Run the test"))
-        self._enable_run()
-
-    def _enable_run(self) -> None:
-        """Let the test be run, or say at the button why it cannot."""
-        problem = self.problem.text() if not self.problem.isHidden() else ""
-        self.run.setEnabled(self._dataset is not None and not problem and not self._running)
-        self.run.setToolTip(inert(problem) or tr("Fill, lift, measure"))
+    def problem_of_run(self) -> str:
+        """Why no run can be started with these values; empty if one can."""
+        if self._dataset is None:
+            return tr("There is no dataset yet: open or build one first.")
+        return "" if self.problem.isHidden() else self.problem.text()
 
     def state(self) -> dict[str, Any]:
         """The values as plain JSON."""
@@ -204,20 +190,12 @@ class SetupPanel(QWidget):
             self.set_dataset(Path(str(folder)))
 
     def _place(self) -> None:
-        column = QVBoxLayout(self)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.setSpacing(8)
-        column.addWidget(heading(tr("Dataset")))
-        column.addWidget(self.dataset_label)
-        column.addLayout(_row(self.open_button, self.sample_button))
-        column.addWidget(heading(tr("Particles")))
         presets = [
             _button(tr(name), f"repose_preset_{count}", tr("{count:,} particles", count=count))
             for name, count in PRESETS.items()
         ]
         for button, count in zip(presets, PRESETS.values(), strict=True):
             button.clicked.connect(lambda _=False, count=count: self.particles.setValue(count))
-        column.addLayout(_row(*presets))
         form = QFormLayout()
         form.setRowWrapPolicy(QFormLayout.RowWrapPolicy.WrapLongRows)
         form.addRow(tr("Number"), self.particles)
@@ -226,19 +204,32 @@ class SetupPanel(QWidget):
         form.addRow(tr("Cohesion"), self.cohesion)
         form.addRow(tr("Engine"), self.engine)
         form.addRow(tr("Gravity of"), self.gravity)
-        column.addLayout(form)
-        column.addWidget(Collapsible(tr("Test"), self.test))
-        column.addWidget(Collapsible(tr("Contact"), self.contact))
-        column.addWidget(Collapsible(tr("Evaluation of the heap"), self.evaluation))
-        column.addWidget(Collapsible(tr("Numerics of the engine"), *self._numerics.values()))
-        column.addWidget(remark(tr("* not given in the paper: an assumption that can be changed")))
-        column.addWidget(self.run)
-        column.addWidget(FixedHeightText((self.problem, self.scaling_report)))
+        case = _column(
+            heading(tr("Dataset")),
+            self.dataset_label,
+            _row(self.open_button, self.sample_button),
+            heading(tr("Particles")),
+            _row(*presets),
+            form,
+            self.problem,
+            self.scaling_report,
+        )
+        values = _column(
+            Collapsible(tr("Test"), self.test),
+            Collapsible(tr("Contact"), self.contact),
+            Collapsible(tr("Evaluation of the heap"), self.evaluation),
+            Collapsible(tr("Numerics of the engine"), *self._numerics.values()),
+            remark(tr("* not given in the paper: an assumption that can be changed")),
+        )
+        row = QHBoxLayout(self)
+        row.setSpacing(24)
+        for column in (case, values):
+            column.addStretch(1)
+            row.addLayout(column, 1)
 
     def _connect(self) -> None:
         self.open_button.clicked.connect(self.datasetWanted)
         self.sample_button.clicked.connect(self.sampleWanted)
-        self.run.clicked.connect(self.runWanted)
         for signal in (
             self.particles.valueChanged,
             self.seed.valueChanged,
@@ -298,6 +289,17 @@ def _choice(entries: Mapping[str, str], name: str, spoken: str) -> QComboBox:
     return box
 
 
+def _column(*parts: QWidget | QLayout) -> QVBoxLayout:
+    column = QVBoxLayout()
+    column.setSpacing(8)
+    for part in parts:
+        if isinstance(part, QLayout):
+            column.addLayout(part)
+        else:
+            column.addWidget(part)
+    return column
+
+
 def _row(*widgets: QWidget) -> QHBoxLayout:
     row = QHBoxLayout()
     row.setSpacing(6)
@@ -306,27 +308,12 @@ def _row(*widgets: QWidget) -> QHBoxLayout:
     return row
 
 
-class EnginePanel(QTableWidget):
-    """A column per engine, a row per property."""
-
-    def __init__(self) -> None:
-        rows = engine_rows()
-        super().__init__(len(CAPABILITY_LABELS) + 1, len(rows))
-        self.setObjectName("repose_engines")
-        self.setAccessibleName(tr("Engines"))
-        self.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
-        self.setSelectionMode(QAbstractItemView.SelectionMode.NoSelection)
-        self.setShowGrid(False)
-        self.setHorizontalHeaderLabels([row["label"] for row in rows])
-        self.setVerticalHeaderLabels([tr("Found"), *map(tr, CAPABILITY_LABELS.values())])
-        for column, row in enumerate(rows):
-            found = row["version"] or translate(row["problem"])
-            texts = [found, *(tr(row[key]) for key in CAPABILITY_LABELS)]
-            for at, text in enumerate(texts):
-                item = QTableWidgetItem(text)
-                item.setTextAlignment(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignTop)
-                item.setToolTip(text)
-                self.setItem(at, column, item)
-        self.horizontalHeader().setSectionResizeMode(QHeaderView.ResizeMode.Stretch)
-        self.verticalHeader().setSectionResizeMode(QHeaderView.ResizeMode.ResizeToContents)
-        self.setWordWrap(True)
+def engine_table() -> TextTable:
+    """A row per property, a column per engine."""
+    rows = engine_rows()
+    table = TextTable("repose_engines", tr("Engines"), [tr("Property"), *(row["label"] for row in rows)])
+    found = [row["version"] or translate(row["problem"]) for row in rows]
+    texts = [[tr("Found"), *found]]
+    texts += [[tr(label), *(tr(row[key]) for row in rows)] for key, label in CAPABILITY_LABELS.items()]
+    table.set_rows(texts, ["\n".join(line[1:]) for line in texts])
+    return table

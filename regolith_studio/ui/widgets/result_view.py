@@ -1,0 +1,221 @@
+"""The card of a result: its values in large figures, what they were made of, their state and its button."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import Enum
+
+from PySide6.QtCore import QEvent, QSize, Qt, Signal
+from PySide6.QtGui import QResizeEvent
+from PySide6.QtWidgets import QBoxLayout, QFrame, QGridLayout, QHBoxLayout, QLabel, QPushButton, QWidget
+
+from regolith_studio.messages import N_
+from regolith_studio.ui.translation import tr
+from regolith_studio.ui.widgets.fixed_height_text import FixedHeightText
+from regolith_studio.ui.widgets.labels import remark
+
+MAGNIFICATION = 1.75
+"""Size of the figures in units of the widget's font."""
+LINES = 3
+"""Visible lines of the sentence."""
+WIDEST_FIGURE, SENTENCE_DIGITS = "0.0000", 40
+"""What a figure has room for, and digits of room beside the figures without which the sentence goes below."""
+MIN_LINES = 34
+"""Lines of text that a window must be high enough for if the sentence is to go below the figures."""
+
+
+class ResultState(Enum):
+    """Whether there is a result, and whether it belongs to the present choices."""
+
+    NONE = ""
+    RUNNING = N_("Running")
+    CURRENT = "current"
+    STALE = N_("Outdated")
+    STOPPED = N_("Stopped")
+    FAILED = N_("Failed")
+
+
+@dataclass(frozen=True)
+class ResultRecord:
+    """A result as its card shows it.
+
+    Parameters
+    ----------
+    values
+        As text, one for each caption; empty where there is no value.
+    made_from
+        Sample and number of particles.
+    made_with
+        Method and its settings.
+    state
+        Values are dimmed unless it is ``CURRENT``.
+    note
+        What the values mean, or why there are none.
+    """
+
+    values: tuple[str, ...] = ()
+    made_from: str = ""
+    made_with: str = ""
+    state: ResultState = ResultState.NONE
+    note: str = ""
+
+    @property
+    def sentences(self) -> str:
+        """State, origin and note as a text."""
+        state = "" if self.state in (ResultState.NONE, ResultState.CURRENT) else tr(self.state.value)
+        origin = ", ".join(each for each in (self.made_from, self.made_with) if each)
+        return "\n".join(each for each in (": ".join(filter(None, (state, origin))), self.note) if each)
+
+
+class ResultView(QFrame):
+    """Large figures with captions, and sentences beside them, or below where there is little room.
+
+    Its height does not change with what it shows.
+
+    Parameters
+    ----------
+    name
+        Object name.
+    captions
+        One below each figure.
+    start, again
+        Text of the button without and with a result; without `start` there is no button.
+    lead
+        Size of the first figure in units of the widget's font.
+    lines
+        Visible lines of the sentences.
+    """
+
+    startRequested = Signal()  # noqa: N815
+    stopRequested = Signal()  # noqa: N815
+
+    def __init__(
+        self,
+        name: str,
+        captions: Sequence[str],
+        start: str = "",
+        again: str = "",
+        lead: float = MAGNIFICATION,
+        lines: int = LINES,
+    ) -> None:
+        super().__init__()
+        self.setObjectName(name)
+        self.setProperty("role", "card")
+        self._texts, self._lead, self._record = (start, again or start), lead, ResultRecord()
+        self.figures = tuple(QLabel("–") for _ in captions)
+        self.captions = tuple(remark(caption) for caption in captions)
+        self.sentence = remark()
+        self.sentence.setObjectName(f"{name}_sentence")
+        self.button = QPushButton(start)
+        self.button.setObjectName(f"{name}_button")
+        self.button.clicked.connect(self._act)
+        self._ends: list[QWidget] = []
+        self._place(lines)
+        self._enlarge()
+        if start:
+            self.add(self.button)
+
+    def _place(self, lines: int) -> None:
+        grid = self._grid = QGridLayout()
+        grid.setHorizontalSpacing(16)
+        grid.setVerticalSpacing(0)
+        bottom = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignBottom
+        for column, (figure, caption) in enumerate(zip(self.figures, self.captions, strict=True)):
+            caption.setWordWrap(False)
+            figure.setAccessibleName(caption.text())
+            grid.addWidget(figure, 0, column, bottom)
+            grid.addWidget(caption, 1, column)
+        self._parts = QBoxLayout(QBoxLayout.Direction.LeftToRight)
+        self._parts.addLayout(grid)
+        self._words = FixedHeightText((self.sentence,), lines)
+        self._parts.addWidget(self._words, 1)
+        row = self._row = QHBoxLayout(self)
+        row.setContentsMargins(12, 5, 10, 5)
+        row.addLayout(self._parts, 1)
+        self._parts.setSpacing(16)
+        row.setSpacing(16)
+
+    @property
+    def record(self) -> ResultRecord:
+        """What is shown."""
+        return self._record
+
+    def show_record(self, record: ResultRecord) -> None:
+        """Show another result, or another state of it."""
+        self._record = record
+        values = record.values or ("–",) * len(self.figures)
+        for label, text in zip(self.figures, values, strict=True):
+            label.setText(text)
+            label.setEnabled(record.state is ResultState.CURRENT)
+        self.sentence.setText(record.sentences)
+        self._name_button()
+
+    def set_start(self, text: str) -> None:
+        """Set the text of the button without a result."""
+        self._texts = (text, self._texts[1])
+        self._name_button()
+
+    def _name_button(self) -> None:
+        state = self._record.state
+        start = self._texts[0 if state in (ResultState.NONE, ResultState.FAILED) else 1]
+        self.button.setText(tr("Stop") if state is ResultState.RUNNING else start)
+
+    def set_startable(self, problem: str = "") -> None:
+        """Let the button start something, unless there is a problem, which is its tool tip then."""
+        self.button.setEnabled(not problem or self._record.state is ResultState.RUNNING)
+        self.button.setToolTip(problem)
+
+    def add(self, part: QWidget) -> None:
+        """Put a button at the end."""
+        self._ends.append(part)
+        self._row.addWidget(part)
+
+    def caption(self, place: int, text: str, tip: str = "") -> None:
+        """Set the caption of a figure, and what it means."""
+        self.captions[place].setText(text)
+        for part in (self.captions[place], self.figures[place]):
+            part.setToolTip(tip)
+
+    def _act(self) -> None:
+        running = self._record.state is ResultState.RUNNING
+        (self.stopRequested if running else self.startRequested).emit()
+
+    def minimumSizeHint(self) -> QSize:
+        """As narrow as the figures, or the sentence where it is below them."""
+        inside = max(self._grid.minimumSize().width(), self._words.minimumSizeHint().width())
+        return QSize(self._outer_width() + inside, super().minimumSizeHint().height())
+
+    def _outer_width(self) -> int:
+        """Width of the margins, and of the buttons at the end with the space before them."""
+        margins = self._row.contentsMargins()
+        ends = sum(each.minimumSizeHint().width() + self._row.spacing() for each in self._ends)
+        return margins.left() + margins.right() + ends
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self.place_sentence(self.width())
+
+    def place_sentence(self, width: int) -> None:
+        """Put the sentence beside the figures, or below where a card of this width has no room for it."""
+        figure = self.figures[0].fontMetrics().horizontalAdvance(WIDEST_FIGURE) + 16
+        words = self.fontMetrics().horizontalAdvance("0" * SENTENCE_DIGITS)
+        high = self.window().height() >= MIN_LINES * self.fontMetrics().height()
+        cramped = width < self._outer_width() + self._grid.minimumSize().width() + words // 2
+        below = cramped or (high and width < len(self.figures) * figure + words)
+        direction = QBoxLayout.Direction.TopToBottom if below else QBoxLayout.Direction.LeftToRight
+        if direction != self._parts.direction():
+            self._parts.setDirection(direction)
+            self._parts.setSpacing(4 if below else 16)
+            self._row.invalidate()
+            self.updateGeometry()
+
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.FontChange:
+            self._enlarge()
+
+    def _enlarge(self) -> None:
+        for place, figure in enumerate(self.figures):
+            font = self.font()
+            font.setPointSizeF((MAGNIFICATION if place else self._lead) * font.pointSizeF())
+            font.setBold(True)
+            figure.setFont(font)

@@ -1,0 +1,161 @@
+"""Runs of the page "Angle of repose": started, stopped, listed, compared, exported."""
+
+import json
+
+import numpy as np
+import pytest
+
+from regolith_studio.dem.run_checks import check_run
+from regolith_studio.dem.run_io import FORMAT, RunSummary, read_run, save_result
+from regolith_studio.dem.snapshot import Snapshot
+from regolith_studio.errors import JobCancelled
+from regolith_studio.jobs.events import Partial
+from regolith_studio.messages import to_json
+from regolith_studio.ui.dialogs.folder import FolderDialog
+from regolith_studio.ui.pages.repose.runs import checks_text
+from regolith_studio.ui.widgets.result_view import ResultState
+from tests.ui.repose.conftest import import_positions, pile_of, small, watch_moments
+
+STOPPED = {
+    "format": FORMAT,
+    "state": "stopped",
+    "engine": {"label": "MuJoCo"},
+    "case": {
+        "shapes": "spheres",
+        "test": {},
+        "n_particles": 700,
+        "seed": 0,
+        "contact": {"static_friction": 0.8},
+    },
+}
+
+
+def test_that_a_test_is_run_listed_and_replayed(page, dataset, wait, monkeypatch, tmp_path):
+    small(page, dataset)
+    import_positions(page, monkeypatch, tmp_path, pile_of(30.0))
+    wait(lambda: page._measured is not None)
+    drawn = watch_moments(page, monkeypatch)
+    page.run_test()
+    wait(lambda: page.runs.table.rows.rowCount() == 1)
+    running = [scene for title, *scene in drawn if title == "Running"]
+    assert running
+    assert all(
+        scene == [False, 8] for scene in running
+    )  # the boxes of the dataset, not the spheres of the file
+    run = page.runs.current()
+    assert run.document["state"] == "finished"
+    assert run.document["case"]["n_particles"] == 40
+    assert "No angle" in page.angle.sentence.text()
+    assert page.player.slider.maximum() >= 4
+    last = page.player.pile.points.copy()
+    page.player.slider.setValue(0)
+    assert page.player.pile.phase == "fill"
+    page.player.toggle()
+    wait(lambda: page.player.slider.value() >= 2)
+    page.player.stop()
+    page.player.slider.setValue(page.player.slider.maximum())
+    np.testing.assert_array_equal(page.player.pile.points, last)
+    assert not page.busy()
+
+
+def test_that_a_stopped_run_and_changed_values_leave_no_earlier_angle(
+    page, dataset, wait, monkeypatch, tmp_path
+):
+    small(page, dataset)
+    import_positions(page, monkeypatch, tmp_path, pile_of(30.0))
+    wait(lambda: page._measured is not None)
+    assert "°" in page.angle.figures[0].text()
+
+    def stopped(*_):
+        yield Partial(Snapshot(pile_of(20.0, 40), 0.5, "lift"))
+        raise JobCancelled("stopped")
+
+    monkeypatch.setattr("regolith_studio.ui.pages.repose.page.repose_steps", stopped)
+    page.run_test()
+    wait(lambda: not page.busy())
+    assert "stopped" in page.angle.sentence.text()
+    assert "°" not in page.angle.figures[0].text()
+    assert page.sections.plot.is_empty()
+    assert "Stopped" in page.player.frame.title
+    assert page.angle.button.isEnabled()
+    page.setup.particles.setValue(60)
+    wait(lambda: len(page.player.pile) == 60)
+    assert "Not run yet" in page.angle.sentence.text()
+
+
+def test_that_the_shown_run_is_exported_for_other_programs(page, tmp_path, monkeypatch, wait):
+    out = tmp_path / "out"
+    monkeypatch.setattr(FolderDialog, "ask", lambda *_: str(out))
+    page.export_heap()
+    assert "no run to export" in page._context.toast.sentence.text()
+    run = tmp_path / "run"
+    run.mkdir()
+    save_result(run, STOPPED, pile_of(30.0), 1.0)
+    np.savez(run / "shapes.npz", **{"shape_00000.part_00": np.eye(3)})
+    page._show_run(read_run(run))
+    page.export_heap()
+    wait((out / "export.json").is_file)
+    wait(lambda: str(out) in page._context.toast.sentence.text())
+    assert {"particles.pvd", "heap.glb", "README.txt"} <= {path.name for path in out.iterdir()}
+
+
+@pytest.mark.slow
+def test_that_runs_are_compared(page, dataset, wait):
+    small(page, dataset)
+    page.run_test()
+    wait(lambda: page.runs.table.rows.rowCount() == 1)
+    run = read_run(page.runs.current().folder)
+    for value, angle in ((0.2, 18.0), (0.8, 26.0)):
+        document = json.loads(json.dumps(run.document))
+        document["case"]["contact"]["static_friction"] = value
+        document["measurement"] = {
+            "status": "pile",
+            "angle_deg": angle,
+            "interval_deg": [angle - 1, angle + 1],
+        }
+        folder = run.folder.with_name(f"friction-{value}")
+        folder.mkdir()
+        (folder / "repose.json").write_text(json.dumps(document))
+    page.set_runs_folder(run.folder.parent)
+    (curve,) = page.runs.plot.curves
+    assert (curve.x, curve.y) == ((0.2, 0.8), (18.0, 26.0))
+
+
+def test_that_the_problems_of_a_saved_run_are_shown_in_the_language_of_the_window(speaking, tmp_path):
+    checks = check_run(
+        np.array([-5.0, 1.0]),
+        np.array([0.134]),
+        energy_gain=0.0,
+        kinetic_energy=0.0,
+        at_rest=True,
+        filling=(0, 0),
+    )
+    document = {"checks": {"problems": [str(each) for each in checks.problems], "passed": False}}
+    document["messages"] = [to_json(each) for each in checks.problems]
+    run = RunSummary(tmp_path, json.loads(json.dumps(document)))
+    assert checks_text(run) == " ".join(checks.problems)
+    speaking("de")
+    assert checks_text(run) == (
+        "1 von 2 Partikeln fielen durch die Platte. "
+        "100,0 % der Kontakte sind tiefer als 2 % des mittleren Durchmessers. "
+        "Partikel überlappen um bis zu 13,4 % des mittleren Durchmessers."
+    )
+
+
+def test_that_a_project_shows_its_run_again_or_says_that_it_is_gone(page, tmp_path, wait):
+    run = tmp_path / "run"
+    run.mkdir()
+    save_result(run, STOPPED, pile_of(30.0), 1.0)
+    np.savez(run / "shapes.npz", **{"shape_00000.part_00": np.eye(3)})
+    page._show_run(read_run(run))
+    wait(lambda: page._measured is not None)
+    kept = json.loads(json.dumps(page.state()))
+    figures = [each.text() for each in page.angle.figures]
+    page._show_nothing("")
+    page.restore(kept)
+    wait(lambda: page._measured is not None)
+    assert [each.text() for each in page.angle.figures] == figures
+    run.rename(tmp_path / "moved")
+    page.restore(kept)
+    assert page.angle.record.state is ResultState.FAILED
+    assert str(run) in page.angle.sentence.text()

@@ -1,0 +1,153 @@
+"""Studies and calibrations of the page "Angle of repose"."""
+
+import json
+import time
+
+import numpy as np
+import pytest
+
+from regolith_studio.jobs.events import Progress
+from regolith_studio.studies.calibration import CalibrationParameter
+from regolith_studio.studies.repose import runs_from
+from regolith_studio.studies.repose_calibration import CalibrationRun, ReposeCalibration, angle_target
+from regolith_studio.ui.widgets.result_view import ResultState
+from tests.ui.repose.conftest import small
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("workers", [1, 2])
+def test_that_a_study_grows_is_stopped_and_goes_on(page, dataset, wait, workers):
+    small(page, dataset)
+    panel = page.study
+    panel.workers.setMaximum(2)  # also on a machine of one core
+    panel.restore({"key": "static_friction", "values": "0.2, 0.8", "repeats": 1, "workers": workers})
+    page.start_study()
+    wait(lambda: panel.table.rows.rowCount() == 2)
+    wait(lambda: panel.card.record.state is ResultState.CURRENT)
+    assert [panel.table.text(row, 0) for row in (0, 1)] == ["0.2", "0.8"]
+    folder = page._folder / "studies" / f"static_friction-{dataset.name}"
+    assert (folder / "repose_study.csv").exists()
+    assert not page.busy()
+    before = {path: path.stat().st_mtime_ns for path in folder.glob("*/repose.json")}
+    assert len(before) == 2
+    page.start_study()
+    wait(lambda: panel.card.record.state is ResultState.CURRENT)
+    assert {path: path.stat().st_mtime_ns for path in before} == before
+    panel.table.selectRow(1)
+    wait(lambda: page.player.slider.maximum() >= 4)
+    assert "No angle" in page.angle.sentence.text()
+    assert page.state()["study"]["values"] == "0.2, 0.8"
+    assert page.state()["study"]["workers"] == workers
+
+
+def test_that_a_study_of_names_and_piles_is_drawn(page):
+    document = {"state": "finished", "case": {"seed": 0}, "problem": None}
+    runs = [
+        ("cohesion", name, name, document | {"measurement": {"angle_deg": angle, "interval_deg": [20, 30]}})
+        for name, angle in (("none", 22.0), ("scaled", 30.0))
+    ]
+    page.study.show_study(runs_from(runs))
+    mean, dots, bars = page.study.plot.curves
+    assert bars.y[:2] == (20, 30)
+    assert (dots.x, dots.y) == ((1.0, 2.0), (22.0, 30.0))
+    assert mean.y == dots.y
+    assert not mean.line
+
+
+def test_that_a_study_says_what_it_lacks(page, dataset):
+    page.start_study()
+    assert "no dataset yet" in page._context.toast.sentence.text()
+    page.study.key.setCurrentIndex(page.study.key.findData("n_facets"))
+    assert page.study.values.text() == "8, 20, 60"
+    page.start_study()
+    assert "open particles" in page._context.toast.sentence.text()
+    small(page, dataset)
+    page.study.restore({"key": "gravity", "values": "moon", "repeats": 2})
+    page.start_study()
+    assert "numbers with commas" in page._context.toast.sentence.text()
+
+
+def test_that_a_calibration_shows_runs_density_and_the_next_run(page):
+    """Heaps on the line 10 + 20 x; the wanted angle is that of a friction of 0.6."""
+    calibration = ReposeCalibration.begin(
+        [CalibrationParameter("static_friction", 0.05, 1.2)], [angle_target(22.0, 0.5)]
+    )
+    page.calibration.show_calibration(calibration)
+    assert page.calibration.prediction.curves == ()
+    for number, friction in enumerate((0.2, 0.6, 1.0, 0.5), 1):
+        measured = {"status": "pile", "angle_deg": 10 + 20 * friction, "interval_deg": None}
+        document = {"state": "finished", "measurement": measured}
+        calibration = calibration.with_run(CalibrationRun(f"run_{number:02d}", (friction,), document))
+    record = page.calibration.show_calibration(calibration)
+    *_, wanted, runs = page.calibration.prediction.curves
+    assert set(wanted.y) == {22.0}
+    assert (runs.x, runs.y) == ((0.2, 0.6, 1.0, 0.5), (14.0, 22.0, 30.0, 20.0))
+    last, half = page.calibration.posterior.curves
+    assert (last.label, half.label) == ("runs: 4", "runs: 2")
+    assert last.x[int(np.argmax(last.y))] == pytest.approx(0.6, abs=0.1)
+    assert float(record.values[0]) == pytest.approx(0.6, abs=0.1)
+    assert record.made_from.startswith("4 runs; next run at")
+
+
+def test_that_a_calibration_without_a_usable_run_shows_no_value(page):
+    """Without a result the posterior is the prior, whose middle is no measurement of the friction."""
+    calibration = ReposeCalibration.begin(
+        [CalibrationParameter("static_friction", 0.3, 0.9)], [angle_target(30.0, 1.0)]
+    )
+    for friction in (0.6, 0.4):
+        document = {"state": "finished", "measurement": {"status": "no flanks"}}
+        calibration = calibration.with_run(CalibrationRun("run", (friction,), document))
+    record = page.calibration.show_calibration(calibration)
+    text = record.sentences
+    assert "2 of 2 runs formed a heap without a measurable angle" in text
+    assert record.values == ()
+    assert page.calibration.posterior.curves == ()
+
+
+@pytest.mark.parametrize(
+    ("name", "job"), [("study", "run_repose_study"), ("calibration", "locked_calibration")]
+)
+@pytest.mark.usefixtures("threads")
+def test_that_its_button_stops_a_study_and_frees_the_form(page, dataset, wait, monkeypatch, name, job):
+    def endless(*_):
+        while True:
+            time.sleep(0.01)
+            yield Progress(1, 2)
+
+    monkeypatch.setattr(f"regolith_studio.ui.pages.repose.page.{job}", endless)
+    small(page, dataset)
+    panel = getattr(page, name)
+    getattr(page, f"start_{name}")()
+    assert page.busy()
+    panel.card.button.click()
+    wait(lambda: not page.busy(), 5.0)
+    assert panel.card.button.text() == "Resume"
+    assert panel.card.sentence.text().startswith("Stopped")
+
+
+@pytest.mark.slow
+def test_that_a_calibration_runs_and_goes_on_in_its_folder(page, dataset, wait):
+    small(page, dataset)
+    page.calibration.restore({"angle": 25.0, "runs": 2})
+    page.start_calibration()
+    wait(lambda: "2 runs;" in page.calibration.card.sentence.text() and not page.busy())
+    (folder,) = (page._folder / "studies").iterdir()
+    before = (folder / "run_01" / "repose.json").stat().st_mtime_ns
+    page.calibration.restore(page.state()["calibration"] | {"angle": 27.0})
+    page.start_calibration()
+    wait(lambda: "2 runs;" in page.calibration.card.sentence.text() and not page.busy())
+    assert (folder / "run_01" / "repose.json").stat().st_mtime_ns == before
+    assert json.loads((folder / "calibration.json").read_text())["targets"][0]["value"] == 27.0
+
+
+def test_that_a_calibration_says_what_it_lacks(page, dataset):
+    page.start_calibration()
+    assert "no dataset yet" in page._context.toast.sentence.text()
+    small(page, dataset)
+    for words, sentence in (
+        ("0.2", "lowest and highest value"),
+        ("1, 0.2", "from a lower to a higher value"),
+    ):
+        page.calibration.restore({"key": "static_friction", "range": words})
+        page.start_calibration()
+        assert sentence in page._context.toast.sentence.text()

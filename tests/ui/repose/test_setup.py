@@ -1,0 +1,162 @@
+"""The set-up of the page "Angle of repose", its preview and what limits the answer."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from regolith_studio.dataset.parameters import ContactParameters, LiftingCylinderTest
+from regolith_studio.dem.angle_of_repose import check_number
+from regolith_studio.dem.evaluation.settings import EvaluationSettings
+from regolith_studio.errors import RegolithError
+from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.particle import Particle
+from regolith_studio.geometry.sphere_points import icosphere
+from regolith_studio.ui.pages.repose.limits import CaseScale
+from regolith_studio.ui.pages.repose.setup import SetupPanel
+from regolith_studio.ui.widgets.forms import ParameterForm
+
+
+def test_that_tables_are_edited_in_the_paper_s_units_and_missing_values_are_marked(shown):
+    form = shown(ParameterForm(ContactParameters, "contact"))
+    assert form.editors["youngs_modulus"].value() == pytest.approx(30.0)
+    assert form.editors["youngs_modulus"].suffix() == " GPa"
+    assert form.value() == ContactParameters()
+    form.editors["surface_energy"].setValue(25.0)
+    assert form.value().surface_energy == pytest.approx(0.025)
+    assert set(form.changes()) == {"surface_energy"}
+    assert "not given" in form.editors["restitution"].toolTip()
+    assert "Table 1" in form.editors["density"].toolTip()
+
+
+def test_that_a_dataset_is_previewed_with_the_consequences(page, dataset, wait):
+    page.setup.set_dataset(dataset)
+    wait(lambda: page.player.pile is not None)
+    assert len(page.player.pile) == 300
+    assert "300 particles" in page.setup.scaling_report.text()
+    assert "on one core" in page.angle.sentence.text()
+    picture = page.player.frame.view.picture()
+    assert picture.std() > 5.0
+    page.setup.test.setValue(LiftingCylinderTest(diameter=0.004))
+    page.setup.valueChanged.emit()
+    wait(lambda: page.setup.problem.text() != "")
+    assert "wider cylinder" in page.setup.problem.text()
+    assert not page.angle.button.isEnabled()
+
+
+def test_that_a_hundred_thousand_particles_may_be_simulated_and_are_not_placed_before(page, dataset, wait):
+    page.setup.set_dataset(dataset)
+    wait(lambda: page.player.pile is not None)
+    filled = page.player.frame.view.picture()
+    page.setup.particles.setValue(100_000)
+    wait(lambda: "100,000 particles" in page.setup.scaling_report.text())
+    assert page.angle.button.isEnabled()
+    assert len(page.player.pile) == 0
+    assert np.abs(page.player.frame.view.picture().astype(int) - filled).max() > 50
+
+
+def test_that_values_that_cannot_be_run_are_refused_in_the_form(page, dataset, wait):
+    page.setup.set_dataset(dataset)
+    page.setup.set_evaluation(median_window=4)
+    page.setup.particles.setValue(301)
+    wait(lambda: page.setup.problem.text() != "")
+    assert not page.angle.button.isEnabled()
+    assert page.angle.button.toolTip() == page.setup.problem.text()
+    page.setup.set_evaluation(median_window=5)
+    page.setup.particles.setValue(300)
+    wait(lambda: page.setup.problem.text() == "")
+    assert page.angle.button.isEnabled()
+
+
+def test_that_wishes_without_a_dataset_are_one_sentence(page):
+    page.run_test()
+    assert "no dataset yet" in page._context.toast.sentence.text()
+    page.make_dataset()
+    assert "No particles are open" in page._context.toast.sentence.text()
+
+
+def test_that_gravity_can_be_chosen_by_name_and_the_state_comes_back(page, dataset):
+    page.setup.gravity.setCurrentIndex(1)
+    assert page.setup.request().case.test.gravity == 1.62
+    page.setup.test.setValue(replace(page.setup.test.value(), gravity=5.0))
+    page.setup.test.valueChanged.emit({})
+    assert page.setup.gravity.currentText() == "Other"
+    page.setup.set_dataset(dataset)
+    page.setup.seed.setValue(7)
+    kept = json.loads(json.dumps(page.state()))
+    page.setup.seed.setValue(0)
+    page.setup.test.setValue(LiftingCylinderTest())
+    page.restore(kept)
+    request = page.setup.request()
+    assert (request.case.seed, request.case.test.gravity) == (7, 5.0)
+    page.restore({"setup": {"test": {"gravity": "heavy"}, "unknown": 1}})
+    page.restore({"setup": 3})
+
+
+def test_that_each_engine_has_its_own_numerics(page):
+    page.setup.numerics.setValue({"time_step": 0.01})
+    page.setup.engine.setCurrentIndex(page.setup.engine.findData("lammps"))
+    assert page.setup.request().engine == "lammps"
+    page.setup.numerics.setValue({"spheres": 3})
+    assert page.setup.request().settings.spheres == 3
+    kept = page.state()
+    page.setup.engine.setCurrentIndex(page.setup.engine.findData("mujoco"))
+    page.setup.numerics.setValue({})
+    page.restore(kept)
+    assert page.setup.request().settings.spheres == 3
+    page.setup.engine.setCurrentIndex(page.setup.engine.findData("mujoco"))
+    assert page.setup.request().settings.time_step == 0.01
+
+
+def test_that_the_open_particles_become_a_dataset(page, wait):
+    session = page._context.session
+    session.choose(method="quadric", target="particle")
+    session.adopt([Particle("ball", Mesh(40.0 * icosphere(2).vertices, icosphere(2).faces))])
+    page.make_dataset()
+    wait(lambda: page.setup.dataset is not None)
+    assert page.setup.dataset.name == "open-particles"
+    wait(lambda: page.player.pile is not None)
+    assert page.angle.button.isEnabled()
+    assert not page._context.toast.sentence.text()
+
+
+def test_that_a_number_too_small_for_a_pile_is_refused_in_german(shown, speaking):
+    speaking("de")
+    with pytest.raises(RegolithError) as caught:
+        check_number(120, EvaluationSettings())
+    panel = shown(SetupPanel())
+    panel.show_consequences([], str(caught.value))
+    assert panel.problem.text().startswith("120 Partikel")
+    assert "150" in panel.problem.text()
+
+
+def test_that_no_run_can_be_set_up_with_fewer_particles_than_its_evaluation_accepts(page):
+    assert page.setup.particles.minimum() == EvaluationSettings().min_particles
+    page.setup.set_evaluation(min_particles=60)
+    page.setup.particles.setValue(10)
+    assert page.setup.request().case.n_particles == 60
+
+
+def test_that_the_lights_say_how_far_a_case_is_from_what_is_recommended(page, dataset, wait, monkeypatch):
+    """300 particles, 6.8 across, 137 times too large: the mass stays, so that N grows with the cube."""
+    scale = CaseScale(300, 6.8, 137.0)
+    assert [scale.sufficient_number(place) for place in range(3)] == [7700, 1000, 780_000]
+    page.limits.show_scale(scale, lambda count: 0.6 * count)
+    assert [page.limits._level(place) for place in range(3)] == [2, 2, 2]
+    assert [each.text() for each in page.limits.buttons[:2]] == [
+        "Run with 7,700: 77 min",
+        "Run with 1,000: 10 min",
+    ]
+    assert not page.limits.buttons[2].isEnabled()
+    page.limits.show_scale(CaseScale(1000, 20.0, 10.0), lambda _: 1.0)
+    assert all(each.isHidden() for each in page.limits.buttons)
+    page.limits.show_scale(CaseScale(700))
+    assert page.limits.texts[0].text() == "–"
+    page.setup.set_dataset(dataset)
+    wait(lambda: page._prepared is not None)
+    assert page._seconds(1000) > page._seconds(300)
+    started = []
+    monkeypatch.setattr(page, "run_test", lambda: started.append(page.setup.particles.value()))
+    page.limits.buttons[1].click()
+    assert started == [1000]
