@@ -409,6 +409,7 @@ def run_in_words(document: dict[str, Any]) -> str:
         f"particles            {checks['particles_out']} of {checks['particles_in']}",
         f"overlap at rest      {100 * checks['max_overlap']:.2f} % of the mean diameter at most, "
         f"above 2 % in {100 * checks['deep_contacts']:.2f} % of the contacts",
+        f"in the plate         {100 * checks['plate_depth']:.2f} % of the mean diameter at most",
         f"energy gained        {checks['energy_gain']:.1e} m g d a particle",
     ]
     if heap is not None:

@@ -62,6 +62,8 @@ class RunChecks:
         Of the settled filling in metres.
     solid_fraction
         Of the settled filling.
+    plate_depth
+        Of the lowest corner below the plate, at rest, in mean diameters.
     problems
         A sentence for each check that failed.
     """
@@ -76,6 +78,7 @@ class RunChecks:
     at_rest: bool
     fill_height: float
     solid_fraction: float
+    plate_depth: float
     problems: tuple[str, ...] = ()
 
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from regolith_studio.dem.case import PreparedCase
 from regolith_studio.dem.engine import RunChecks, SimulationResult
-from regolith_studio.dem.run_checks import check_run, measure_filling
+from regolith_studio.dem.run_checks import check_run, lowest_corners, measure_filling
 from regolith_studio.dem.snapshot import PHASES, EngineState, ParticleState, Snapshot, progress_message
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.messages import N_
@@ -389,5 +389,6 @@ def _checks(run: LiftingRun) -> RunChecks:
         kinetic_energy=run.solver.energies()[1] / len(run.prepared),
         at_rest=rested,
         filling=run.fill,
+        lowest=lowest_corners(run.prepared, particles_of(run)) / run.prepared.mean_diameter,
         problems=run.solver.problems(),
     )

@@ -29,6 +29,7 @@ def check_run(
     kinetic_energy: float,
     at_rest: bool,
     filling: tuple[float, float],
+    lowest: FloatArray,
     problems: Sequence[str] = (),
 ) -> RunChecks:
     """Results of the checks, with a sentence for each check that failed.
@@ -41,6 +42,8 @@ def check_run(
         Depths at rest in mean diameters, shape (m,).
     filling
         Height in metres and solid fraction before the lift.
+    lowest
+        Height of each particle's lowest point above the plate in mean diameters, shape (n,).
     problems
         Sentences of the engine, which come first.
     """
@@ -66,6 +69,7 @@ def check_run(
         at_rest=at_rest,
         fill_height=filling[0],
         solid_fraction=filling[1],
+        plate_depth=float(np.max(-lowest[heights > -1.0], initial=0.0)),
         problems=tuple(sentences),
     )
 

@@ -28,5 +28,5 @@ def cone_engine(
     heap = ParticleState(points, column.diameters, column.orientations, column.class_index)
     save_snapshot(folder, 0, heap)
     yield Snapshot(heap, 0.5, "half")
-    checks = RunChecks(count, count, 0.0, 0.0, 0.0, 0.0, 0.0, True, 0.02, 0.60 - 0.1 * friction)
+    checks = RunChecks(count, count, 0.0, 0.0, 0.0, 0.0, 0.0, True, 0.02, 0.60 - 0.1 * friction, 0.0)
     return SimulationResult(heap, checks, 1, 1.0)

@@ -90,7 +90,7 @@ def instant_engine(
     yield Snapshot(flat, 0.5, "half")
     yield None
     n = len(flat.points)
-    return SimulationResult(flat, RunChecks(n, n, 0.0, 0.0, 0.0, 0.0, 0.0, True, 0.02, 0.55), 1, 1.0)
+    return SimulationResult(flat, RunChecks(n, n, 0.0, 0.0, 0.0, 0.0, 0.0, True, 0.02, 0.55, 0.0), 1, 1.0)
 
 
 def write_figure(figure: Any, folder: Path, stem: str) -> tuple[Path, Path]:

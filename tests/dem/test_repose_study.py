@@ -172,7 +172,7 @@ def heap_by_aspect_ratio(
     save_snapshot(folder, 0, heap)
     yield Snapshot(heap, 0.5, "half")
     n = len(prepared)
-    return SimulationResult(heap, RunChecks(n, n, 0.0, 0.0, 0.0, 0.0, 0.0, True, 0.02, 0.55), 1, 1.0)
+    return SimulationResult(heap, RunChecks(n, n, 0.0, 0.0, 0.0, 0.0, 0.0, True, 0.02, 0.55, 0.0), 1, 1.0)
 
 
 def dataset_of_cuboids(folder: Path, aspect_ratio: float, boxes: Dataset) -> str:

@@ -107,7 +107,7 @@ def test_that_a_run_and_a_measurement_of_its_file_are_one_answer(
     points = 2e-3 * (cone(30, 400, 2) - [0.0, 0.0, 0.25])
     unturned, cubes = np.tile([1.0, 0, 0, 0], (400, 1)), np.zeros(400, dtype=int)
     pile = ParticleState(points, np.full(400, 2e-3), unturned, cubes)
-    checks = RunChecks(400, 400, 0.0, 0.0, 0.0, 0.0, 0.0, True, 0.02, 0.55)
+    checks = RunChecks(400, 400, 0.0, 0.0, 0.0, 0.0, 0.0, True, 0.02, 0.55, 0.0)
     own = measure_result(SimulationResult(pile, checks, 1, 1.0), EvaluationSettings())
     assert isinstance(own, ReposeMeasurement)
     (tmp_path / "final.npz").write_bytes(particle_state_bytes(pile))

@@ -8,11 +8,18 @@ from regolith_studio.dem.case import ReposeCase, prepare
 from regolith_studio.dem.run_checks import check_run, measure_filling
 from regolith_studio.dem.snapshot import ParticleState
 
-SOUND = {"energy_gain": 0.0, "kinetic_energy": 1e-5, "at_rest": True, "filling": (0.03, 0.55)}
+SOUND = {
+    "energy_gain": 0.0,
+    "kinetic_energy": 1e-5,
+    "at_rest": True,
+    "filling": (0.03, 0.55),
+    "lowest": np.zeros(1),
+}
+PAIR = SOUND | {"lowest": np.zeros(2)}
 
 
 def test_that_a_sound_run_has_nothing_to_say() -> None:
-    checks = check_run(np.array([0.5, 1.4]), np.array([0.001, 0.003]), **SOUND)
+    checks = check_run(np.array([0.5, 1.4]), np.array([0.001, 0.003]), **PAIR)
     assert checks.problems == ()
     assert (checks.particles_in, checks.particles_out) == (2, 2)
     assert (checks.mean_overlap, checks.max_overlap) == pytest.approx((0.002, 0.003))
@@ -20,7 +27,7 @@ def test_that_a_sound_run_has_nothing_to_say() -> None:
 
 
 def test_that_every_failed_check_is_a_sentence() -> None:
-    wrong = SOUND | {"energy_gain": 0.2, "at_rest": False}
+    wrong = PAIR | {"energy_gain": 0.2, "at_rest": False}
     checks = check_run(np.array([0.5, -3.0]), np.array([0.15]), **wrong, problems=["The solver was hot."])
     first, lost, deep, overlap, energy, moving = checks.problems
     assert first == "The solver was hot."
@@ -29,6 +36,13 @@ def test_that_every_failed_check_is_a_sentence() -> None:
     assert overlap == "Particles overlap by up to 15.0 % of the mean diameter."
     assert "0.2 m g d" in energy
     assert "still moving" in moving
+
+
+def test_that_the_depth_in_the_plate_is_that_of_the_lowest_particle_that_has_not_fallen_through() -> None:
+    heights, lowest = np.array([0.4, 0.5, -3.0, 1.5]), np.array([-0.006, -0.012, -3.4, 1.0])
+    assert check_run(heights, np.empty(0), **SOUND | {"lowest": lowest}).plate_depth == 0.012
+    above = SOUND | {"lowest": np.array([0.1])}
+    assert check_run(np.array([0.6]), np.empty(0), **above).plate_depth == 0.0
 
 
 @pytest.mark.parametrize("copies", [1, 100])

@@ -129,6 +129,7 @@ def test_that_the_problems_of_a_saved_run_are_shown_in_the_language_of_the_windo
         kinetic_energy=0.0,
         at_rest=True,
         filling=(0, 0),
+        lowest=np.zeros(2),
     )
     document = {"checks": {"problems": [str(each) for each in checks.problems], "passed": False}}
     document["messages"] = [to_json(each) for each in checks.problems]

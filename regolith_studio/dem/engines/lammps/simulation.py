@@ -297,7 +297,10 @@ def _checks(run: _Run) -> RunChecks:
     length, _ = run.units
     points = run.last.points / length
     turns = Rotation.from_quat(run.last.orientations, scalar_first=True)
-    bodies, depths = _neighbours(*run.clumps.atoms(points, turns))
+    body, places, radius = run.clumps.atoms(points, turns)
+    bodies, depths = _neighbours(body, places, radius)
+    lowest = np.full(len(points), np.inf)
+    np.minimum.at(lowest, body, places[:, 2] - radius)
     heap = np.unique(bodies)
     kinetic = float(_kinetic_energies(run.clumps, run.states[-1])[heap].sum()) / len(points)
     return check_run(
@@ -307,6 +310,7 @@ def _checks(run: _Run) -> RunChecks:
         kinetic_energy=kinetic,
         at_rest=bool(kinetic < REST_ENERGY),
         filling=run.fill,
+        lowest=lowest,
     )
 
 

@@ -23,7 +23,7 @@ from regolith_studio.dem.engines.yade.program import YadeSettings, command
 from regolith_studio.dem.external_program import printed_lines, running_program, written_files
 from regolith_studio.dem.initial_packing import enclosing_radii, loose_column
 from regolith_studio.dem.lifting_cylinder import expected_duration
-from regolith_studio.dem.run_checks import check_run, measure_filling
+from regolith_studio.dem.run_checks import check_run, lowest_corners, measure_filling
 from regolith_studio.dem.separation import overlap_depths
 from regolith_studio.dem.snapshot import ParticleState, Snapshot, progress_message
 from regolith_studio.errors import RegolithError
@@ -315,4 +315,5 @@ def _checks(run: _Run) -> RunChecks:
         kinetic_energy=run.last.kinetic,
         at_rest=run.last.at_rest,
         filling=run.fill,
+        lowest=lowest_corners(run.prepared, run.particles) / length,
     )
