@@ -31,7 +31,14 @@ if TYPE_CHECKING:
     from regolith_studio.jobs.events import result_of
     from regolith_studio.jobs.repose_calibration import calibrate_repose
     from regolith_studio.jobs.repose_jobs import ReposeRequest
-    from regolith_studio.pipeline import draw_particles, export_dataset, extract, fit_model, simulate_repose
+    from regolith_studio.pipeline import (
+        compare_draws,
+        draw_particles,
+        export_dataset,
+        extract,
+        fit_model,
+        simulate_repose,
+    )
     from regolith_studio.readers.particles import read_mesh, read_particles, sample_particles
     from regolith_studio.readers.volumes.read import read_volume
     from regolith_studio.scene.repose_export import export_repose
@@ -46,6 +53,7 @@ __all__ = [
     "build_dataset",
     "calibrate_repose",
     "coarsen",
+    "compare_draws",
     "describe",
     "draw_particles",
     "export_dataset",
@@ -74,6 +82,7 @@ _MODULES = {
     "build_dataset": "dataset.build",
     "calibrate_repose": "jobs.repose_calibration",
     "coarsen": "coarsening.coarsen",
+    "compare_draws": "pipeline",
     "describe": "descriptors.describe",
     "draw_particles": "pipeline",
     "export_dataset": "pipeline",

@@ -16,12 +16,14 @@ from regolith_studio.imaging.settings import ExtractionSettings
 from regolith_studio.imaging.volume import Volume
 from regolith_studio.io.output_lock import output_lock
 from regolith_studio.jobs.events import result_of
+from regolith_studio.jobs.model_evaluation import compare_distributions
 from regolith_studio.jobs.model_jobs import make_particles
 from regolith_studio.jobs.repose_jobs import ReposeRequest, ReposeRun, repose_steps
 from regolith_studio.readers.shape_files import radius_of
 from regolith_studio.shape_models.models import DEFAULT_MODEL, MODELS, model_settings
 from regolith_studio.shape_models.protocol import FittedModel, SizeRange
 from regolith_studio.shape_models.sample import Sample
+from regolith_studio.studies.population_distances import DistributionComparison
 
 
 def extract(
@@ -113,6 +115,37 @@ def draw_particles(
     """
     draws = model.draw(n, seed, size_range)
     return list(result_of(make_particles(draws, model, "virtual")))
+
+
+def compare_draws(
+    model: FittedModel,
+    fits: Iterable[HarmonicFit],
+    n: int = 300,
+    seed: int = 0,
+    size_range: SizeRange | None = None,
+) -> DistributionComparison:
+    """Descriptors of drawn particles against those of a sample, in units of sampling noise.
+
+    Parameters
+    ----------
+    model
+        Of :func:`fit_model`.
+    fits
+        Of the sample, with all their degrees.
+    n, seed, size_range
+        Of the draws, as in :func:`draw_particles`; 300 are measured at most.
+
+    Returns
+    -------
+    With ``table()``, what is farthest first, and ``verdict()``, a sentence.
+
+    Examples
+    --------
+    >>> print(rs.compare_draws(model, fits).verdict())
+    """
+    sample = Sample.of([radius_of(fit) for fit in fits])
+    steps = compare_distributions(sample, model.draw(n, seed, size_range), size_range)
+    return cast("DistributionComparison", result_of(steps))
 
 
 def export_dataset(

@@ -17,13 +17,15 @@ from regolith_studio.cli.options import (
     usage_errors,
     values,
 )
-from regolith_studio.cli.terminal import print_errors, print_json, run_with_progress
+from regolith_studio.cli.terminal import print_errors, print_json, print_table, run_with_progress
 
 if TYPE_CHECKING:
     from regolith_studio.jobs.executor import Executor
     from regolith_studio.jobs.model_jobs import GenerationRequest
     from regolith_studio.readers.shape_files import ShapeSource
     from regolith_studio.session.outputs.particles import GeneratedParticles
+    from regolith_studio.shape_models.realizations import Realizations
+    from regolith_studio.studies.population_distances import DistributionComparison
 
 Sources = Annotated[
     list[str],
@@ -54,7 +56,7 @@ Degree = Annotated[
         max=30,
         help="Maximum degree of the particles' surfaces.",
         metavar="L",
-        show_default="all that the sample has; 10 for others than recombined and sample_matched",
+        show_default="all that the sample has; 10 for fields other than hull_field",
     ),
 ]
 SizeRange = Annotated[
@@ -144,7 +146,8 @@ def generate(
     print_errors(source.notes)
     fitted = _named(run_with_progress(fit_model(source, request)), names)
     draws = run_with_progress(draw(fitted, request))
-    made = GeneratedParticles(source, request, fitted, draws, groups_of(draws, fitted))
+    compared = compared_with(source, draws, size_range, jobs)
+    made = GeneratedParticles(source, request, fitted, draws, groups_of(draws, fitted), compared)
     if save_model is None:
         with staged_folder(output, "generate") as stage:
             document = write_particles(stage, made, format_, level, jobs)
@@ -158,12 +161,31 @@ def generate(
         typer.echo(f"{len(draws)} particles by {fitted.key}, l_max = {fitted.l_max}, in {output}")
         if judged := getattr(source.content, "judged", ""):
             typer.echo(judged)
+        if compared is not None:
+            if compared.comparable:
+                print_table(compared.table())
+            typer.echo(compared.verdict())
         if bias := document.get("rejection_bias"):
             typer.echo(
                 f"{draws.rejected} draws thrown away, which biases those kept: mean radius "
                 f"{100 * bias['mean_radius']:+.1f} %, A_2 {100 * bias['second_degree']:+.1f} %."
             )
     raise typer.Exit(code)
+
+
+def compared_with(
+    source: "ShapeSource", draws: "Realizations", size_range: tuple[float, float] | None, jobs: int
+) -> "DistributionComparison | None":
+    """Draws beside the particles of their source, if it has any."""
+    from regolith_studio.jobs.model_evaluation import compare_distributions
+    from regolith_studio.shape_models.sample import Sample
+
+    if not isinstance(source.content, Sample):
+        return None
+    found: DistributionComparison = run_with_progress(
+        compare_distributions(source.content, draws, size_range, jobs)
+    )
+    return found
 
 
 def shape_source(

@@ -1,23 +1,25 @@
 """Evaluates shape models against a sample: studies with their figures, distributions side by side."""
 
-from collections.abc import Generator, Mapping, Sequence
+from collections.abc import Generator, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
-from regolith_studio.descriptors.distributions import Distribution
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.jobs.compile_kernels import compile_first
-from regolith_studio.jobs.events import Partial, Progress, Started, Step, Steps
+from regolith_studio.jobs.events import Job, Partial, Progress, Started, Step, Steps
+from regolith_studio.jobs.executor import Executor, open_executor, value_of
 from regolith_studio.jobs.study_jobs import study_population
 from regolith_studio.messages import N_
 from regolith_studio.shape_models.models import MODELS
+from regolith_studio.shape_models.protocol import SizeRange
 from regolith_studio.shape_models.realizations import Realizations
 from regolith_studio.shape_models.sample import Sample
 from regolith_studio.studies.population import (
     KEYS,
     MEASURE_BATCH,
+    MESH_LEVEL,
     PopulationStudy,
     default_draws,
     descriptors_of,
@@ -29,7 +31,7 @@ from regolith_studio.studies.population_curves import (
     pair_panels,
     quantile_panels,
 )
-from regolith_studio.studies.population_distances import WEIGHTINGS
+from regolith_studio.studies.population_distances import WEIGHTINGS, DistributionComparison
 
 MIN_FOR_PROCESSES = 400
 """Particles to be measured beyond which processes are started: some seconds of work, and fits that this
@@ -83,66 +85,68 @@ def evaluation_panels(
         yield at_figures
 
 
-MAX_COMPARED = 1000
-"""Particles of either kind that are measured at most."""
+MAX_COMPARED = 300
+"""Particles of either kind that are measured at most: ten seconds of work for rough ones."""
+_SMOOTH_DEGREE = 10
+"""Up to this degree meshes one level coarser are measured: boxes of fine smooth ones take a second each."""
 
 
-@dataclass(frozen=True, eq=False)
-class DistributionComparison:
-    """Descriptors of both kinds.
+def compare_distributions(
+    sample: Sample | None,
+    draws: Realizations,
+    size_range: SizeRange | None = None,
+    workers: int | Executor = 1,
+) -> Steps:
+    """Measure drawn and measured particles, these with all their degrees and at that of the draws. A job.
 
-    Parameters
-    ----------
-    keys
-        Of the columns.
-    measured, drawn
-        Shape (n, keys), without particles that bound no solid; `measured` is empty where the source of a
-        model holds no particles.
+    Measured particles are taken from all over the sample, those of the range of sizes. Returns
+    :class:`~regolith_studio.studies.population_distances.DistributionComparison`.
     """
-
-    keys: tuple[str, ...]
-    measured: FloatArray
-    drawn: FloatArray
-
-    def distributions(self, key: str, weighting: str = "number") -> tuple[Distribution | None, Distribution]:
-        """One descriptor of the measured, if there are any, and of the drawn particles.
-
-        Parameters
-        ----------
-        weighting
-            ``number``, or ``volume``: each particle counts by its volume.
-        """
-        drawn = self._distribution(self.drawn, key, weighting)
-        return (self._distribution(self.measured, key, weighting) if len(self.measured) else None), drawn
-
-    def _distribution(self, table: FloatArray, key: str, weighting: str) -> Distribution:
-        sizes = table[:, self.keys.index("equivalent_radius")]
-        weights = sizes**3 if weighting == "volume" else np.ones(len(table))
-        return Distribution(table[:, self.keys.index(key)], weights)
-
-
-def compare_distributions(sample: Sample | None, draws: Realizations) -> Steps:
-    """Measure both, the sample with all its degrees; returns :class:`DistributionComparison`. A job."""
     kinds = [draws.chosen(range(min(len(draws), MAX_COMPARED)))]
     if sample is not None:
-        rows = sample.coefficients[:MAX_COMPARED]
-        kinds.append(Realizations(rows, "radius", "measured", draws.seed, sample.unit))
+        kinds += _measured_kinds(sample, draws, size_range)
     total = sum(len(each) for each in kinds)
+    level = MESH_LEVEL - (max(each.l_max for each in kinds) <= _SMOOTH_DEGREE)
     yield from compile_first("describe")
     yield Started(N_("Comparing distributions"), total)
     tables, done = [], 0
-    for each in kinds:
-        tables.append((yield from _descriptor_table(each, done, total)))
-        done += len(each)
-    drawn, measured = tables[0], tables[1] if len(tables) > 1 else np.empty((0, len(KEYS)))
-    return DistributionComparison(KEYS, measured, drawn)
+    with open_executor(workers) as executor:
+        for each in kinds:
+            tables.append((yield from _descriptor_table(each, level, (done, total), executor)))
+            done += len(each)
+    drawn, measured, cut = (*tables, *(np.empty((0, len(KEYS))),) * 2)[:3]
+    degree = draws.l_max if sample is None else sample.l_max
+    return DistributionComparison(KEYS, measured, drawn, cut, draws.model, draws.l_max, degree)
 
 
-def _descriptor_table(draws: Realizations, done: int, total: int) -> Generator[Progress, None, FloatArray]:
-    tables = []
-    for first in range(0, len(draws), MEASURE_BATCH):
-        last = min(first + MEASURE_BATCH, len(draws))
-        tables.append(descriptors_of(draws.chosen(range(first, last)), KEYS))
-        yield Progress(done + last, total)
+def _measured_kinds(
+    sample: Sample, draws: Realizations, size_range: SizeRange | None
+) -> Iterator[Realizations]:
+    """The sample's particles, and cut at the degree of the draws where that is lower."""
+    low, high = size_range or (0.0, np.inf)
+    inside = np.flatnonzero((sample.equivalent_radii >= low) & (sample.equivalent_radii <= high))
+    places = np.linspace(0, len(inside) - 1, min(len(inside), MAX_COMPARED)).astype(np.int64)
+    rows = sample.coefficients[inside[np.unique(places)]]
+    yield Realizations(rows, "radius", "measured", draws.seed, sample.unit)
+    if draws.l_max < sample.l_max:
+        cut = rows[:, : (draws.l_max + 1) ** 2]
+        yield Realizations(cut, "radius", "measured", draws.seed, sample.unit)
+
+
+def _descriptor_table(
+    draws: Realizations, level: int, place: tuple[int, int], executor: Executor
+) -> Generator[Step, None, FloatArray]:
+    batches = (range(i, min(i + MEASURE_BATCH, len(draws))) for i in range(0, len(draws), MEASURE_BATCH))
+    jobs = (Job(_measure_batch, (draws.chosen(batch), level)) for batch in batches)
+    tables = [np.empty((0, len(KEYS)))]
+    for result in executor.results(jobs):
+        if result is not None:
+            tables.append(value_of(result))
+        yield Progress(place[0] + sum(map(len, tables)), place[1])
     table = np.concatenate(tables)
     return table[np.isfinite(table).all(axis=1)]
+
+
+def _measure_batch(draws: Realizations, level: int) -> Steps:
+    yield Started(N_("Comparing distributions"), len(draws))
+    return descriptors_of(draws, KEYS, level)

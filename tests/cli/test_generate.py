@@ -117,6 +117,21 @@ def test_that_meshes_can_be_given_in_place_of_their_fit(command, ellipsoids: Pat
     assert result.json["l_max"] == 3
 
 
+def test_that_draws_are_compared_with_their_sample(command, fit: Path, tmp_path: Path) -> None:
+    wanted = ("-n", 30, "--format", "npz", "--model", "gaussian_field", "--l-max", 2)
+    result = command("generate", fit, "-o", tmp_path / "v", *wanted)
+    assert result.code == 0, result.err
+    compared = json.loads((tmp_path / "v" / "generation.json").read_text())["comparison"]
+    assert (compared["measured"], compared["drawn"]) == (24, 30)
+    ratios = [
+        max(row["wasserstein_in_floors"], row["kolmogorov_smirnov_in_floors"]) for row in compared["rows"]
+    ]
+    assert ratios == sorted(ratios, reverse=True)
+    lines = result.out.splitlines()
+    assert compared["verdict"] in lines
+    assert sum(line.startswith(("sphericity", "convexity")) for line in lines) == 4
+
+
 def test_that_a_saved_model_draws_the_same_particles_again(command, fit: Path, tmp_path: Path) -> None:
     wanted = ("-n", 4, "--format", "npz", "--l-max", 4)
     made = command("generate", fit, "-o", tmp_path / "a", *wanted, "--save-model", tmp_path / "m.json")

@@ -22,12 +22,13 @@ from regolith_studio.session.tasks import Task
 from regolith_studio.shape_models.models import MODELS
 from regolith_studio.shape_models.sample import Sample
 from regolith_studio.studies.population import KEYS
+from regolith_studio.studies.population_distances import DistributionComparison
 from regolith_studio.ui.bindings import Bindings
 from regolith_studio.ui.commands import Commands
 from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.pages.model import PAGE
 from regolith_studio.ui.pages.model.evaluation import EvaluationPanel
-from regolith_studio.ui.pages.model.views import distance_text
+from regolith_studio.ui.pages.model.views import DistributionsPanel, distance_text
 from regolith_studio.ui.translation import translate
 from regolith_studio.ui.widgets.plots.spectrum_editor import SpectrumEditor
 from regolith_studio.ui.widgets.toast import Toast
@@ -396,3 +397,18 @@ def test_that_the_means_of_distributions_have_units_and_the_same_digits():
     assert words.endswith("means 41.28 µm measured, 40.90 µm drawn")
     ratios = Distribution(np.array([0.25, 0.75]), halves)
     assert distance_text(ratios, ratios).endswith("means 0.5000 measured, 0.5000 drawn")
+
+
+def test_that_draws_are_shown_in_units_of_noise_the_farthest_first(shown):
+    rng = np.random.default_rng(0)
+    measured, drawn = (1.0 + 0.1 * rng.normal(size=(n, len(KEYS))) for n in (100, 60))
+    drawn[:, KEYS.index("convexity")] += 0.3
+    panel = shown(DistributionsPanel())
+    panel.show_compared(
+        DistributionComparison(KEYS, measured, drawn, np.empty((0, len(KEYS))), "log_field", 10, 10)
+    )
+    assert panel.table.item(0, 0).text() == CATALOGUE["convexity"].label
+    assert "times the sampling noise" in panel.verdict.text()
+    panel.show_compared(None)
+    assert panel.verdict.text() == ""
+    assert not panel.table.isVisible()

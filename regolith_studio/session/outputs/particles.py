@@ -33,6 +33,7 @@ from regolith_studio.shape_models.materials import MaterialCard
 from regolith_studio.shape_models.protocol import FittedModel
 from regolith_studio.shape_models.realizations import Realizations
 from regolith_studio.shape_models.sample import Sample
+from regolith_studio.studies.population_distances import DistributionComparison
 from regolith_studio.version import __version__
 
 STL_HEADER = "Regolith Studio, particle, micrometres"
@@ -169,6 +170,8 @@ class GeneratedParticles:
         Source and request, the fitted model and the drawn particles.
     groups
         Name of the part of the mixture each came from, or empty.
+    comparison
+        With the particles of the sample, where there are any.
     """
 
     source: ShapeSource
@@ -176,6 +179,7 @@ class GeneratedParticles:
     model: FittedModel
     draws: Realizations
     groups: tuple[str, ...]
+    comparison: DistributionComparison | None = None
 
 
 def write_table_of_meshes(
@@ -240,7 +244,19 @@ def generation_document(generated: GeneratedParticles) -> dict[str, Any]:
         "components": _components(generated),
         "rejection_bias": _rejection_bias(generated),
         "judgement": content.judgement if isinstance(content, MaterialCard) else None,
+        "comparison": _comparison(generated.comparison),
     }
+
+
+def _comparison(compared: DistributionComparison | None) -> dict[str, Any] | None:
+    """The table and its verdict; nothing where there are too few particles."""
+    if compared is None or not compared.comparable:
+        return None
+    table = compared.table()
+    names = [column.name for column in table.columns]
+    rows = [dict(zip(names, row, strict=True)) for row in table.rows]
+    counts = {"measured": len(compared.measured), "drawn": len(compared.drawn)}
+    return counts | {"limit": compared.noise.limit, "verdict": str(compared.verdict()), "rows": rows}
 
 
 def _rejection_bias(generated: GeneratedParticles) -> dict[str, float] | None:

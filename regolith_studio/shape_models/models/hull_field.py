@@ -79,7 +79,7 @@ class HullFieldSettings:
         Key of ``SIZE_LAWS``.
     """
 
-    l_max: int = 10
+    l_max: int = 30
     size_law: str = field(
         default="kernel", metadata={"label": N_("Size distribution"), "choices": tuple(SIZE_LAWS)}
     )
@@ -253,7 +253,7 @@ class HullFieldModel:
             If a setting is out of range, the sample is not expanded so far, or fewer than two particles have
             a positive radius.
         """
-        chosen = settings or HullFieldSettings()
+        chosen = settings or HullFieldSettings(min(DEGREES[1], sample.l_max))
         if chosen.size_law not in SIZE_LAWS:
             raise InputError(f"The size law must be one of {', '.join(SIZE_LAWS)}, got {chosen.size_law!r}.")
         cut = sample.truncated(chosen.l_max)

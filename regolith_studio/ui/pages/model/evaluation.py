@@ -183,12 +183,12 @@ WORDS = {
 """Short headers; tool tips have the long ones."""
 OTHER_WORDS = (
     *(N_("Model"), N_("Weighting"), N_("Descriptor"), N_("First"), N_("Second")),
-    *(N_("Target"), N_("Value"), N_("Requested"), N_("Reached")),
+    *(N_("Target"), N_("Value"), N_("Requested"), N_("Reached"), N_("Measured"), N_("Drawn")),
 )
 """Headers that equal the names of their columns, marked for translation."""
 COLUMN_NAMES = (
     *(N_("model"), N_("weighting"), N_("descriptor"), N_("first"), N_("second")),
-    *(N_("target"), N_("value"), N_("wanted"), N_("reached")),
+    *(N_("target"), N_("value"), N_("wanted"), N_("reached"), N_("measured"), N_("drawn")),
     *(N_("wasserstein"), N_("wasserstein low"), N_("wasserstein high")),
     *(N_("floor"), N_("floor p5"), N_("floor p95")),
     *(N_("kolmogorov smirnov"), N_("kolmogorov smirnov low"), N_("kolmogorov smirnov high")),

@@ -419,7 +419,7 @@ class ModelPage(PageWidget):
             words += "; " + tr("{count:,} draws rejected", count=drawn.draws.rejected)
         self.drawing.findings.setText(rich_symbol(f"{words}."))
         self.gallery.show_shapes(self._fitted.examples if self._fitted else (), drawn.examples)
-        job = Job(compare_distributions, (self._sample(), drawn.draws))
+        job = Job(compare_distributions, (self._sample(), drawn.draws, drawn.request.size_range))
         show = self.distributions.show_compared
         self._context.start(tr("Comparing distributions"), job, show, lane="compare", repeats=True)
         self._show_state()

@@ -7,14 +7,16 @@ from PySide6.QtWidgets import QHBoxLayout, QPushButton, QVBoxLayout, QWidget
 from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.descriptors.distributions import Distribution, kolmogorov_smirnov_distance, wasserstein_1
 from regolith_studio.geometry.mesh import Mesh
-from regolith_studio.jobs.model_evaluation import DistributionComparison
 from regolith_studio.messages import N_
 from regolith_studio.scene import surfaces
 from regolith_studio.scene.cameras import framing_pose
 from regolith_studio.scene.gallery import gallery_pose, show_gallery
 from regolith_studio.studies.population import KEYS
+from regolith_studio.studies.population_distances import DistributionComparison
+from regolith_studio.ui.layout import side_by_side
+from regolith_studio.ui.pages.model.evaluation import StudyTableView
 from regolith_studio.ui.theme import Theme
-from regolith_studio.ui.translation import tr
+from regolith_studio.ui.translation import tr, translate
 from regolith_studio.ui.views.view import SceneView
 from regolith_studio.ui.views.view_frame import ViewFrame
 from regolith_studio.ui.widgets.combo_box import ChoiceBox
@@ -41,7 +43,8 @@ class DistributionsPanel(QWidget):
             "model_distribution_weighting", tr("Weighting of the particles"), WEIGHTINGS
         )
         self.plot = CurvePlot("", tr(SHARE), tr(WAITING))
-        self.words = ElidedLabel(role="remark")
+        self.words, self.verdict = ElidedLabel(role="remark"), ElidedLabel(role="remark")
+        self.table = StudyTableView("model_draws_in_noise", tr("Distances of the draws"))
         self.weighting.setMinimumContentsLength(26)
         self._compared: DistributionComparison | None = None
         row = QHBoxLayout()
@@ -53,18 +56,27 @@ class DistributionsPanel(QWidget):
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addLayout(row)
-        below = QHBoxLayout()
-        below.setContentsMargins(8, 0, 8, 0)
-        below.addWidget(self.words)
-        layout.addLayout(below)
-        layout.addWidget(self.plot, 1)
+        for label in (self.words, self.verdict):
+            below = QHBoxLayout()
+            below.setContentsMargins(8, 0, 8, 0)
+            below.addWidget(label)
+            layout.addLayout(below)
+        parts = side_by_side([self.plot, self.table], [500, 400], stretch=0)
+        parts.setObjectName("model_distribution_parts")
+        layout.addWidget(parts, 1)
         for box in (self.key, self.weighting):
             box.currentIndexChanged.connect(lambda _: self._show())
-        self._show()
+        self.show_compared(None)
 
     def show_compared(self, compared: DistributionComparison | None) -> None:
         """Draw other distributions, or none."""
-        self._compared = compared if compared is not None and len(compared.drawn) else None
+        self._compared = compared = compared if compared is not None and len(compared.drawn) else None
+        measured = compared is not None and len(compared.measured) > 0
+        self.verdict.setText(translate(compared.verdict()) if compared is not None and measured else "")
+        comparable = compared is not None and compared.comparable
+        self.table.setVisible(comparable)
+        if compared is not None and comparable:
+            self.table.show_table(compared.table())
         self._show()
 
     def set_theme(self, theme: Theme) -> None:
