@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from regolith_studio.descriptors.catalogue import DEFAULT_KEYS, LOSS_KEYS
+from regolith_studio.descriptors.catalogue import CATALOGUE, DEFAULT_KEYS, LOSS_KEYS
 from regolith_studio.descriptors.comparison import relative_errors
 from regolith_studio.descriptors.describe import Descriptors, describe, description_steps
 from regolith_studio.errors import RegolithError
@@ -23,7 +23,7 @@ from regolith_studio.harmonics.visibility import StarPointVisibility, hidden_fac
 from regolith_studio.jobs.compile_kernels import compile_first
 from regolith_studio.jobs.events import Failed, Job, Partial, Progress, Started, Steps, result_of
 from regolith_studio.jobs.executor import Executor, open_executor, value_of
-from regolith_studio.messages import N_
+from regolith_studio.messages import N_, Message, Number, join_messages
 from regolith_studio.readers.coefficient_tables import DEFAULT_TABLE_READING, TableConvention, TableReading
 from regolith_studio.readers.particles import (
     FileProblem,
@@ -262,9 +262,13 @@ def fit_sample(
 
 TOLERANCE = 0.05
 """Relative error of a descriptor beyond which a fit is far off."""
-_CHECKED = (*LOSS_KEYS, "convexity", "elongation", "flatness")
-_DEGREES, _LEVEL = (10, 15, 20, 30, 40), 5
-"""Degrees that are tried, and the level of the surfaces that are measured."""
+_NEARLY = 0.8
+CHECKED = (*LOSS_KEYS, "convexity", "elongation", "flatness")
+_DEGREES = (10, 15, 20, 30, 40)
+"""Degrees that are tried."""
+_SMOOTH_DEGREE, _LEVELS = 10, (3, 4)
+"""Levels of the surfaces that are measured, up to this degree and above: fine enough for the tolerance.
+The box of a smooth surface takes twenty times as long at the next level."""
 
 
 def check_fits(
@@ -290,12 +294,27 @@ def check_fit(mesh: Mesh, fit: HarmonicFit, request: FitRequest) -> Steps:
     far = sorted((key for key in errors if errors[key] > TOLERANCE), key=errors.__getitem__, reverse=True)
     if not far:
         return ""
-    words = ", ".join(f"{key} {100 * errors[key]:.0f} %" for key in far)
-    remedy = _remedy(mesh, fit, request)
-    return f"The fit up to l = {fit.l_max} is off by more than {100 * TOLERANCE:.0f} % in {words}; {remedy}"
+    parts = [
+        Message(
+            "{label} {error} %", label=Message(CATALOGUE[key].label), error=Number(100 * errors[key], ".0f")
+        )
+        for key in far
+    ]
+    return Message(
+        N_("The fit up to l = {degree} is off by more than {limit} % in {descriptors}; {remedy}"),
+        degree=fit.l_max,
+        limit=Number(100 * TOLERANCE, ".0f"),
+        descriptors=join_messages(parts, ", "),
+        remedy=_remedy(mesh, fit, request),
+    )
 
 
-def _remedy(mesh: Mesh, fit: HarmonicFit, request: FitRequest) -> str:
+def may_be_far(reference: Descriptors, found: Descriptors) -> bool:
+    """Whether descriptors of particle and fit, on whatever meshes, are near :data:`TOLERANCE` or beyond."""
+    return max(relative_errors(reference, found, CHECKED).values()) > _NEARLY * TOLERANCE
+
+
+def _remedy(mesh: Mesh, fit: HarmonicFit, request: FitRequest) -> Message:
     for degree in _DEGREES:
         if degree <= fit.l_max:
             continue
@@ -304,10 +323,11 @@ def _remedy(mesh: Mesh, fit: HarmonicFit, request: FitRequest) -> str:
         except RegolithError:
             break
         if max(_errors(mesh, finer).values()) <= TOLERANCE:
-            return f"l_max {degree} would do."
-    return f"no degree up to {_DEGREES[-1]} would do."
+            return Message(N_("l_max {degree} would do."), degree=degree)
+    return Message(N_("no degree up to {degree} would do."), degree=_DEGREES[-1])
 
 
 def _errors(mesh: Mesh, fit: HarmonicFit) -> dict[str, float]:
-    reference, found = (describe(each, keys=_CHECKED) for each in (mesh, reconstruct(fit, level=_LEVEL)))
-    return relative_errors(reference, found, _CHECKED)
+    surface = reconstruct(fit, level=_LEVELS[fit.l_max > _SMOOTH_DEGREE])
+    reference, found = (describe(each, keys=CHECKED) for each in (mesh, surface))
+    return relative_errors(reference, found, CHECKED)

@@ -67,6 +67,16 @@ def test_that_the_overlap_that_descriptors_cost_is_told_beside_the_choices(windo
 
 
 @pytest.mark.slow
+def test_that_a_fit_far_from_its_particle_says_so_and_no_longer_once_another_is_shown(window, wait):
+    window.session.choose(l_max=2)
+    warnings = window.page.fit.warnings
+    wait(lambda: "The fit up to l = 2 is off by more than 5 % in" in warnings.text(), SECONDS)
+    assert warnings.text().endswith("would do.")
+    window.session.choose(l_max=3)
+    wait(lambda: "up to l = 2" not in warnings.text(), SECONDS)
+
+
+@pytest.mark.slow
 def test_that_the_picture_is_written_at_its_scale_and_without_background(window, tmp_path, monkeypatch, wait):
     target = tmp_path / "views"
     monkeypatch.setattr(ASKED, lambda *_: (str(target), ""))

@@ -11,6 +11,7 @@ from PySide6.QtWidgets import QHBoxLayout, QMainWindow, QVBoxLayout, QWidget
 from regolith_studio.coarsening.progress import CoarseningProgress
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.jobs.events import Job
+from regolith_studio.jobs.particle_jobs import FitRequest, check_fit, may_be_far
 from regolith_studio.jobs.study_jobs import study_coarsening
 from regolith_studio.messages import join_messages
 from regolith_studio.scene.cameras import DIRECTIONS
@@ -176,7 +177,7 @@ class ExplorePage(PageWidget):
 
     def __init__(self, context: PageContext) -> None:
         super().__init__()
-        self._start = context.start
+        self._start, self._context = context.start, context
         self.setObjectName("explore")
         self._session, self._commands = context.session, context.commands
         self.particles, self.fit = ParticleListPanel(), FitPanel()
@@ -284,6 +285,7 @@ class ExplorePage(PageWidget):
         )
         bindings.refresh("fit", self._show_star_point)
         bindings.refresh("fit choices", self._show_findings, ("l_max",), slow=True)
+        bindings.refresh("descriptors", self._check_fit, slow=True)
         bindings.refresh("surface", self._show_fit)
         bindings.listen("coarsening", lambda: self.replay.follow(session.results, session.choices.method))
         self.replay.shown.connect(self._show_step)
@@ -306,9 +308,28 @@ class ExplorePage(PageWidget):
         if isinstance(window, QMainWindow):
             window.statusBar().showMessage(words)
 
-    def _show_findings(self) -> None:
+    def _show_findings(self, check: str = "") -> None:
         fit = self._session.results.fit
-        self.fit.set_findings(fit.truncated(self._session.choices.l_max) if fit else None)
+        self.fit.set_findings(fit.truncated(self._session.choices.l_max) if fit else None, check)
+
+    def _check_fit(self) -> None:
+        """Find out which degree would do, where descriptors of the fit are far from the particle's."""
+        results, choices, entry = self._session.results, self._session.choices, self._session.selected
+        fit, known, found = results.fit, results.particle_descriptors, results.fit_descriptors
+        if fit is None or entry is None or known is None or found is None:
+            return
+        if results.surface_l_max != choices.l_max or not may_be_far(known, found):
+            self._context.stop("check_fit")
+            return
+        request = FitRequest(fit_options=choices.fit_options)
+        self._start(
+            tr("Checking the fit"),
+            Job(check_fit, (entry.particle.mesh, fit.truncated(choices.l_max), request)),
+            lambda said: self._show_findings(said) if self._session.choices is choices else None,
+            failed=lambda _: None,
+            lane="check_fit",
+            repeats=True,
+        )
 
     def _show_star_point(self) -> None:
         fit = self._session.results.fit

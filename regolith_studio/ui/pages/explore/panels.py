@@ -83,14 +83,15 @@ class FitPanel(QWidget):
         for name, box in self.ways.items():
             box.setValue(value[name])
 
-    def set_findings(self, fit: Any | None) -> None:
-        """Show what the radius function of a ``HarmonicFit`` cannot represent."""
+    def set_findings(self, fit: Any | None, check: str = "") -> None:
+        """Show what the radius function of a ``HarmonicFit`` cannot represent, and what a check found."""
         if fit is None:
             self.findings.setText(tr("Not fitted yet."))
             self.findings.show()
             self.warnings.hide()
             return
-        self.findings.setVisible(not fit.warnings)
+        warnings = [each for each in (check, *fit.warnings) if each]
+        self.findings.setVisible(not warnings)
         if fit.star_shaped:
             self.findings.setText(tr("Star-shaped: no part of the surface is hidden from the star point."))
         else:
@@ -102,8 +103,8 @@ class FitPanel(QWidget):
                     volume=fit.unrepresentable_volume_share,
                 )
             )
-        self.warnings.setText(with_subscripts(" ".join(map(translate, fit.warnings))))
-        self.warnings.setVisible(bool(fit.warnings))
+        self.warnings.setText(with_subscripts(" ".join(map(translate, warnings))))
+        self.warnings.setVisible(bool(warnings))
 
     def _form(self) -> QWidget:
         form = QFormLayout(content := QWidget())
