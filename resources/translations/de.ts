@@ -948,12 +948,16 @@
         <translation>Änderungen der Fehler in Prozentpunkten</translation>
     </message>
     <message>
-        <source>Checked: {count:,} particles, overlap at most {overlap:.1f} % of d</source>
-        <translation>Geprüft: {count:,} Partikel, Überlappung höchstens {overlap:.1f} % von d</translation>
+        <source>Checked: {count:,} particles, overlap at most {overlap:.1f} % of d, of the plate {plate:.1f} %</source>
+        <translation>Geprüft: {count:,} Partikel, Überlappung höchstens {overlap:.1f} % von d, mit der Platte {plate:.1f} %</translation>
     </message>
     <message>
         <source>Checking the dataset</source>
         <translation>Datensatz wird geprüft</translation>
+    </message>
+    <message>
+        <source>Checking the fit</source>
+        <translation>Anpassung wird geprüft</translation>
     </message>
     <message>
         <source>Checking the mesh</source>
@@ -1584,6 +1588,10 @@
         <translation>Abstände</translation>
     </message>
     <message>
+        <source>Distances of the draws</source>
+        <translation>Abstände der Ziehungen</translation>
+    </message>
+    <message>
         <source>Distributions</source>
         <translation>Verteilungen</translation>
     </message>
@@ -1706,6 +1714,10 @@
     <message>
         <source>Draws differ from their material, those of a card of cement by about 6 % in AR, 9 % in S and 4 % in V/CH (l_max = 10): the card has a power spectrum and no phases.</source>
         <translation>Gezogene weichen von ihrem Material ab, die einer Karte von Zement um etwa 6 % in AR, 9 % in S und 4 % in V/CH (l_max = 10): Die Karte hat ein Leistungsspektrum und keine Phasen.</translation>
+    </message>
+    <message>
+        <source>Draws of recombined and sample_matched, which keep measured surfaces, are nearer as a rule.</source>
+        <translation>Ziehungen von recombined und sample_matched, die gemessene Oberflächen behalten, sind in der Regel näher.</translation>
     </message>
     <message>
         <source>Drop</source>
@@ -2014,6 +2026,10 @@
     <message>
         <source>Fewer than {count} particles: the cut at the toe changes the angle by some degrees, included in the interval.</source>
         <translation>Weniger als {count} Partikel: Der Schnitt am Fuß ändert den Winkel um einige Grad; das Intervall enthält das.</translation>
+    </message>
+    <message>
+        <source>Fewer than {least} drawn or measured particles of these sizes: they are not compared.</source>
+        <translation>Weniger als {least} gezogene oder gemessene Partikel dieser Größen: Sie werden nicht verglichen.</translation>
     </message>
     <message>
         <source>Field drawn to its hull</source>
@@ -3128,6 +3144,14 @@
         <translation>Den Schüttkegel eines anderen Programms vermessen</translation>
     </message>
     <message>
+        <source>Measured</source>
+        <translation>Gemessen</translation>
+    </message>
+    <message>
+        <source>Measured particles cut at l_max = {degree} are off by {ratio}: {remedy}</source>
+        <translation>Gemessene Partikel, bei l_max = {degree} abgeschnitten, weichen um das {ratio}-Fache ab: {remedy}</translation>
+    </message>
+    <message>
         <source>Measured {quantity}</source>
         <translation>Gemessen: {quantity}</translation>
     </message>
@@ -3430,6 +3454,10 @@
     <message>
         <source>No open particle comes from a file: open some, or choose a recipe file.</source>
         <translation>Kein geöffnetes Partikel stammt aus einer Datei: öffnen Sie welche oder wählen Sie eine Rezeptdatei.</translation>
+    </message>
+    <message>
+        <source>No other model is known to be nearer.</source>
+        <translation>Ein näheres Modell ist nicht bekannt.</translation>
     </message>
     <message>
         <source>No particle is open to report on: open one first.</source>
@@ -5692,6 +5720,10 @@
         <translation>Polyeder des Datensatzes</translation>
     </message>
     <message>
+        <source>The draws are off: {descriptor} by {ratio} times the sampling noise. {remedy}</source>
+        <translation>Die Ziehungen weichen ab: {descriptor} um das {ratio}-Fache des Stichprobenrauschens. {remedy}</translation>
+    </message>
+    <message>
         <source>The energy rose by {gain} m g d per particle without external work.</source>
         <translation>Die Energie stieg um {gain} m g d je Partikel ohne äußere Arbeit.</translation>
     </message>
@@ -5770,6 +5802,10 @@
     <message>
         <source>The filling will be about {height} cm high (the paper: 2.5 to 3 cm).</source>
         <translation>Die Füllung wird etwa {height} cm hoch (im Artikel: 2,5 bis 3 cm).</translation>
+    </message>
+    <message>
+        <source>The fit up to l = {degree} is off by more than {limit} % in {descriptors}; {remedy}</source>
+        <translation>Die Anpassung bis l = {degree} weicht um mehr als {limit} % ab: {descriptors}; {remedy}</translation>
     </message>
     <message>
         <source>The folder contains an unfinished run: resume it, or choose another folder.</source>
@@ -6952,6 +6988,18 @@
         <translation>Balken ziehen</translation>
     </message>
     <message>
+        <source>draw with l_max {whole}, from recombined or sample_matched.</source>
+        <translation>mit l_max {whole} ziehen, aus recombined oder sample_matched.</translation>
+    </message>
+    <message>
+        <source>draw with l_max {whole}.</source>
+        <translation>mit l_max {whole} ziehen.</translation>
+    </message>
+    <message>
+        <source>drawn</source>
+        <translation>gezogen</translation>
+    </message>
+    <message>
         <source>drawn by OpenGL in the window</source>
         <translation>von OpenGL im Fenster gezeichnet</translation>
     </message>
@@ -7192,6 +7240,10 @@
         <translation>Kolmogorow-Smirnow-Distanz, unteres Ende</translation>
     </message>
     <message>
+        <source>l_max {degree} would do.</source>
+        <translation>l_max {degree} würde genügen.</translation>
+    </message>
+    <message>
         <source>labels</source>
         <translation>Labels</translation>
     </message>
@@ -7358,6 +7410,10 @@
     <message>
         <source>no</source>
         <translation>nein</translation>
+    </message>
+    <message>
+        <source>no degree up to {degree} would do.</source>
+        <translation>kein Grad bis {degree} würde genügen.</translation>
     </message>
     <message>
         <source>no flanks</source>
@@ -8178,6 +8234,10 @@
     <message>
         <source>{count}, as unit-volume STL files, {size:,.0f} KiB in all</source>
         <translation>{count}, als STL-Dateien mit Einheitsvolumen, zusammen {size:,.0f} KiB</translation>
+    </message>
+    <message>
+        <source>{drawn} draws differ from {measured} measured particles by no more than sampling noise.</source>
+        <translation>{drawn} Ziehungen unterscheiden sich von {measured} gemessenen Partikeln nicht stärker als durch Stichprobenrauschen.</translation>
     </message>
     <message>
         <source>{duration} left</source>
