@@ -4,7 +4,7 @@ import os
 import signal
 import sys
 
-from regolith_studio.cli.stop_signals import STOPPED, StopSignals, remove_unfinished
+from regolith_studio.cli.entry import STOPPED, StopSignals, remove_unfinished, run
 from regolith_studio.errors import stop_requests
 
 
@@ -23,8 +23,6 @@ def main() -> None:
             signals.install()
         elif signal.getsignal(signal.SIGINT) is signal.default_int_handler:
             signal.signal(signal.SIGINT, signal.SIG_DFL)
-        from regolith_studio.cli.entry import run
-
         code = run(sys.argv[1:])
     except KeyboardInterrupt:  # while modules were loaded
         print(STOPPED, file=sys.stderr)  # noqa: T201

@@ -183,7 +183,6 @@ def fit(
     reading: ReadingOptions,
     json: Json = False,
     jobs: Jobs = 1,
-    seed: Seed = 0,
 ) -> None:
     """Fit spherical harmonics to meshes; write coefficients and spectrum."""
     from regolith_studio.jobs.particle_jobs import FitRequest, fit_sample
@@ -191,7 +190,7 @@ def fit(
     from regolith_studio.session.outputs.fits import FittedSample, fits_document, write_fits
 
     with usage_errors():
-        Choices(l_max=l_max, seed=seed, level=level)
+        Choices(l_max=l_max, level=level)
         request = FitRequest(l_max, radii)
     loaded = reading.read(meshes)
     fitted = run_with_progress(fit_sample(loaded.particles, request, jobs))

@@ -83,13 +83,13 @@ def gallery(
 
 
 def _draw_picture(particle: "Mesh", fit: "HarmonicFit", degrees: tuple[int, ...], path: Path) -> None:
-    from regolith_studio.scene.degrees import degree_picture
+    from regolith_studio.scene.animation import degree_picture
 
     degree_picture(particle, fit, degrees, path)
 
 
 def _draw_animation(particle: "Mesh", fit: "HarmonicFit", degrees: range, path: Path) -> None:
-    from regolith_studio.scene.degrees import degree_animation
+    from regolith_studio.scene.animation import degree_animation
 
     degree_animation(particle, fit, degrees, path)
 

@@ -12,7 +12,6 @@ import pickle
 import queue
 import signal
 import subprocess
-import sys
 import tempfile
 import threading
 import time
@@ -34,12 +33,12 @@ from regolith_studio.dem.run_io import (
 )
 from regolith_studio.dem.snapshot import Snapshot, engine_state_bytes, read_engine_state
 from regolith_studio.errors import MissingRequirement, RegolithError
+from regolith_studio.io.child_process import end_with_parent, private_pipes, start_module
 
 POLL_INTERVAL = 0.2
 """Seconds without a message after which ``None`` is yielded, so that the caller can cancel."""
 STATE_INTERVAL = 60.0
 """Seconds between two states that are saved, and at least 20 times as long as saving one takes."""
-_THREAD_LIMITS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
 
 
 class EngineError(RegolithError):
@@ -116,28 +115,17 @@ def _start(task: tuple[Any, ...], threads: int, scratch: str) -> subprocess.Pope
 
     It leads a process group, so that everything in it can be ended together.
     """
-    limits = dict.fromkeys(_THREAD_LIMITS, "1") | {ENGINE_THREADS: str(threads)}
-    limits |= dict.fromkeys(("TMPDIR", "TEMP", "TMP"), scratch)
-    child = subprocess.Popen(
-        [sys.executable, "-P", "-m", "regolith_studio.dem.engine_process"],
-        stdin=subprocess.PIPE,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.DEVNULL,
-        env=os.environ | limits | {"PYTHONPATH": _path()},
+    places = dict.fromkeys(("TMPDIR", "TEMP", "TMP"), scratch)
+    child = start_module(
+        "regolith_studio.dem.engine_process",
+        environment={ENGINE_THREADS: str(threads), **places},
         start_new_session=True,
-        creationflags=getattr(subprocess, "CREATE_NO_WINDOW", 0),
     )
     assert child.stdin is not None
     with contextlib.suppress(OSError):  # it died at once: the reader thread reports it
         pickle.dump(task, child.stdin, protocol=pickle.HIGHEST_PROTOCOL)
         child.stdin.flush()
     return child
-
-
-def _path() -> str:
-    """Where the child finds this program, also in a checkout that is not installed."""
-    own = str(Path(__file__).resolve().parents[2])
-    return os.pathsep.join(part for part in (own, os.environ.get("PYTHONPATH", "")) if part)
 
 
 def _listen(source: BinaryIO, messages: "queue.SimpleQueue[Any]") -> None:
@@ -169,10 +157,10 @@ def _exit_message(label: str, code: int, last: str) -> str:
 
 def main() -> None:
     """Read the task and run it."""
-    source, target = _private_pipes()
+    source, target = private_pipes()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     key, prepared, settings, folder = pickle.load(source)
-    threading.Thread(target=_end_with_parent, args=(source,), name="parent", daemon=True).start()
+    end_with_parent(source)
     run_task(target, key, prepared, settings, folder)
 
 
@@ -220,24 +208,6 @@ def _begin(
 def _send(target: BinaryIO, message: Any) -> None:
     pickle.dump(message, target, protocol=pickle.HIGHEST_PROTOCOL)
     target.flush()
-
-
-def _end_with_parent(source: BinaryIO) -> None:
-    with contextlib.suppress(OSError):
-        source.read(1)
-    if hasattr(os, "killpg") and os.getpgrp() == os.getpid():
-        os.killpg(os.getpid(), signal.SIGKILL)
-    os._exit(1)
-
-
-def _private_pipes() -> tuple[BinaryIO, BinaryIO]:
-    """The pipes to the parent; what an engine prints goes to the null device."""
-    source, target = os.dup(0), os.dup(1)
-    nothing = os.open(os.devnull, os.O_RDWR)
-    for number in (0, 1, 2):
-        os.dup2(nothing, number)
-    os.close(nothing)
-    return os.fdopen(source, "rb"), os.fdopen(target, "wb")
 
 
 if __name__ == "__main__":

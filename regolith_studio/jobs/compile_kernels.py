@@ -7,7 +7,6 @@ it, so that no two processes compile the same; while the interpreter of the wind
 import os
 import subprocess
 import sys
-import threading
 import time
 from dataclasses import replace
 from pathlib import Path
@@ -16,6 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from regolith_studio.geometry.kernels import machine_code_folder
+from regolith_studio.io.child_process import end_with_parent, start_module
 from regolith_studio.io.output_lock import lock_file
 from regolith_studio.jobs.events import Progress, ProgressRate, Started, Steps, format_duration
 from regolith_studio.messages import N_, Message
@@ -185,26 +185,16 @@ def _lock() -> int:
 
 def _compile_in_process(tasks: list[str]) -> "subprocess.Popen[bytes]":
     """A process that compiles these tasks and marks them; it ends when this one does."""
-    return subprocess.Popen(
-        [sys.executable, "-m", __name__, *tasks],
-        stdin=subprocess.PIPE,
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.DEVNULL,
-        start_new_session=True,  # Ctrl+C is for this process, which then ends that one
-    )
+    # a session of its own: Ctrl+C is for this process, which then ends that one
+    return start_module(__name__, *tasks, stdout=subprocess.DEVNULL, start_new_session=True)
 
 
 def _compile_and_mark(tasks: list[str]) -> None:
-    threading.Thread(target=_exit_with_parent, daemon=True).start()
+    end_with_parent(sys.stdin.buffer)
     for task in tasks:
         run_task(task)
         if mark := _mark(task):
             mark.touch()
-
-
-def _exit_with_parent() -> None:
-    sys.stdin.read()  # ends when the other end of the pipe is closed
-    os._exit(1)
 
 
 if __name__ == "__main__":

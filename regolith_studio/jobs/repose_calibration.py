@@ -112,6 +112,12 @@ def calibration_steps(request: ReposeCalibrationRequest, folder: Path) -> Steps:
     return calibration
 
 
+def locked_calibration(request: ReposeCalibrationRequest, folder: Path) -> Steps:
+    """:func:`calibration_steps` in a folder that no other process writes to meanwhile."""
+    with output_lock(folder):
+        return (yield from calibration_steps(request, folder))
+
+
 def calibrate_repose(
     dataset: Path | str,
     folder: Path | str,
@@ -142,8 +148,7 @@ def calibrate_repose(
     """
     targets = (angle_target(angle, angle_error),)
     wanted = ReposeCalibrationRequest((Path(dataset),), ranges, targets, request or ReposeRequest(), max_runs)
-    with output_lock(Path(folder)):
-        return cast("ReposeCalibration", result_of(calibration_steps(wanted, Path(folder))))
+    return cast("ReposeCalibration", result_of(locked_calibration(wanted, Path(folder))))
 
 
 def write_calibration(calibration: ReposeCalibration, folder: Path) -> list[str]:

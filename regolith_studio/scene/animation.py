@@ -1,13 +1,19 @@
-"""Animated files: GIF, WebP or a sequence of PNG files from frames, and the turntable of several shapes."""
+"""Pictures of one particle at several degrees (Fig. 2), and animated files: GIF, WebP, several PNG files."""
 
 from collections.abc import Iterator, Sequence
+from math import ceil
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pyvista as pv
 from PIL import Image
 
 from regolith_studio.errors import InputError
+from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.harmonics.fit import HarmonicFit
+from regolith_studio.harmonics.surface import gallery
+from regolith_studio.messages import N_
 from regolith_studio.scene import annotations, cameras, palette, plotter_setup, surfaces
 from regolith_studio.scene.cameras import TURN, CameraPose, orbited
 from regolith_studio.scene.figure import Picture
@@ -113,3 +119,121 @@ def _about(pose: CameraPose, whole: CameraPose) -> CameraPose:
     reach = np.linalg.norm(np.asarray(whole.position) - whole.focal_point) / np.linalg.norm(step)
     x, y, z = (float(each) for each in np.asarray(whole.focal_point) + reach * step)
     return CameraPose((x, y, z), whole.focal_point, pose.view_up, whole.parallel_scale)
+
+
+CELL_SIZE = (420, 400)
+"""Width and height of one particle in pixels."""
+N_COLUMNS = 4
+FRAME_SECONDS = 0.25
+LAST_FRAME_SECONDS = 1.5
+
+
+def degree_picture(
+    particle: Mesh,
+    fit: HarmonicFit,
+    degrees: Sequence[int],
+    path: Path | None = None,
+    level: int = 5,
+) -> Picture:
+    """The particle and its fit cut at each of `degrees`, row by row, under one camera pose.
+
+    A degree at which the expansion has a negative radius keeps its place and says so.
+
+    Parameters
+    ----------
+    path
+        PNG file to write; nothing is written if not given.
+    level
+        Icosphere level of the surfaces.
+
+    Returns
+    -------
+    The picture, shape (height, width, 3), uint8.
+
+    Raises
+    ------
+    InputError
+        If a degree is negative or above that of the fit.
+    """
+    shown: list[tuple[Mesh | None, str]] = [(particle, N_("Particle"))]
+    shown += [(surface, degree_title(fit, degree)) for degree, surface in gallery(fit, degrees, level)]
+    columns = min(N_COLUMNS, len(shown))
+    rows = ceil(len(shown) / columns)
+    size = [columns * CELL_SIZE[0], rows * CELL_SIZE[1]]
+    plotter_setup.choose_off_screen_window()
+    plotter = pv.Plotter(off_screen=True, shape=(rows, columns), window_size=size, border=False)
+    try:
+        pose = cameras.framing_pose(particle.vertices, "isometric", CELL_SIZE[0] / CELL_SIZE[1])
+        for place in range(rows * columns):
+            plotter.subplot(*divmod(place, columns))
+            plotter_setup.set_stage(plotter, palette.PAPER)
+            if place < len(shown):
+                _fill(plotter, *shown[place], is_particle=place == 0)
+            cameras.apply_pose(plotter, pose)
+        plotter.subplot(0, 0)
+        bar = annotations.ScaleBar(plotter, palette.PAPER)
+        picture = plotter.screenshot(path, return_img=True)
+        bar.remove()
+    finally:
+        plotter.close()
+    return np.array(picture, dtype=np.uint8)
+
+
+def degree_animation(
+    particle: Mesh,
+    fit: HarmonicFit,
+    degrees: Sequence[int],
+    path: Path,
+    level: int = 5,
+) -> None:
+    """Write a GIF or WebP of the fit growing through `degrees` beside the particle; the last frame lasts.
+
+    Degrees with a negative radius are left out.
+
+    Raises
+    ------
+    InputError
+        If a degree is negative or above that of the fit.
+    """
+    frames = list(_frames(particle, fit, degrees, level))
+    seconds = [FRAME_SECONDS] * (len(frames) - 1) + [LAST_FRAME_SECONDS]
+    save_animation(frames, seconds, path)
+
+
+def degree_title(fit: HarmonicFit, degree: int) -> str:
+    """The degree, and how far the cut expansion is from the radius function."""
+    return f"l_max = {degree}, radial error {fit.truncated(degree).radial_error:.1%}"
+
+
+def _frames(particle: Mesh, fit: HarmonicFit, degrees: Sequence[int], level: int) -> Iterator[Picture]:
+    width, height = CELL_SIZE
+    plotter_setup.choose_off_screen_window()
+    plotter = pv.Plotter(off_screen=True, shape=(1, 2), window_size=[2 * width, height], border=False)
+    try:
+        pose = cameras.framing_pose(particle.vertices, "isometric", width / height)
+        for column in (0, 1):
+            plotter.subplot(0, column)
+            plotter_setup.set_stage(plotter, palette.PAPER)
+        plotter.subplot(0, 0)
+        _fill(plotter, particle, N_("Particle"), is_particle=True)
+        cameras.apply_pose(plotter, pose)
+        plotter.subplot(0, 1)
+        for degree, surface in gallery(fit, degrees, level):
+            if surface is None:
+                continue
+            _fill(plotter, surface, degree_title(fit, degree), is_particle=False)
+            cameras.apply_pose(plotter, pose)
+            plotter.render()
+            yield np.array(plotter.screenshot(return_img=True), dtype=np.uint8)
+    finally:
+        plotter.close()
+
+
+def _fill(plotter: Any, surface: Mesh | None, title: str, *, is_particle: bool) -> None:
+    if surface is None:
+        title = f"{title.partition(',')[0]}: the radius is negative"
+    elif is_particle:
+        surfaces.show_particle(plotter, surface)
+    else:
+        surfaces.show_fit(plotter, surface)
+    annotations.show_title(plotter, title)

@@ -12,9 +12,8 @@ from regolith_studio.io.atomic import hidden_folder
 from regolith_studio.jobs.events import Job, Started, Steps
 from regolith_studio.jobs.executor import open_executor, value_of
 from regolith_studio.messages import N_
-from regolith_studio.scene.animation import turntable
+from regolith_studio.scene.animation import degree_animation, turntable
 from regolith_studio.scene.cameras import CameraPose
-from regolith_studio.scene.degrees import degree_animation
 from regolith_studio.scene.figure import three_views
 from regolith_studio.scene.shapes import SceneShape
 

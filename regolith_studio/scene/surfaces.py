@@ -15,6 +15,8 @@ from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.convex_compound import ConvexCompound, Polyhedron
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.jobs.events import Started, Steps
+from regolith_studio.messages import N_
 from regolith_studio.scene import annotations, palette
 from regolith_studio.scene.palette import Material, ThemeColors
 
@@ -325,3 +327,9 @@ def _closest_points(points: FloatArray, triangles: FloatArray) -> FloatArray:
         best = np.where(nearer[:, None], foot, best)
         distance = np.where(nearer, reach, distance)
     return np.asarray(best)
+
+
+def measure_distances(fit: Mesh, particle: Mesh) -> Steps:
+    """A job: :func:`signed_distances` of a fit's vertices."""
+    yield Started(N_("Measuring distances"))
+    return signed_distances(fit.vertices, particle)

@@ -3432,10 +3432,6 @@
         <translation>Noch kein Datensatz.</translation>
     </message>
     <message>
-        <source>No error falls by more than 0.1 % with more facets.</source>
-        <translation>Mit mehr Facetten sinkt kein Fehler um mehr als 0,1 %.</translation>
-    </message>
-    <message>
         <source>No grain became a particle: {border} touch the border of the volume, {small} are too small.</source>
         <translation>Kein Korn wurde zum Partikel: {border} berühren den Rand des Volumens, {small} sind zu klein.</translation>
     </message>
@@ -6580,8 +6576,16 @@
         <translation>Wischen</translation>
     </message>
     <message>
+        <source>With more facets no error falls by more than {gain:.1%}.</source>
+        <translation>Mit mehr Facetten sinkt kein Fehler um mehr als {gain:.1%}.</translation>
+    </message>
+    <message>
         <source>With the overlap alone the Jaccard distance would be {free}.</source>
         <translation>Mit der Überdeckung allein wäre die Jaccard-Distanz {free}.</translation>
+    </message>
+    <message>
+        <source>With these facets the loss was no larger.</source>
+        <translation>Mit diesen Facetten war der Verlust nicht größer.</translation>
     </message>
     <message>
         <source>Working on particles</source>

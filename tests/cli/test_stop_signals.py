@@ -11,7 +11,7 @@ from pathlib import Path
 import psutil
 import pytest
 
-from regolith_studio.cli.stop_signals import STOP_SECONDS
+from regolith_studio.cli.entry import STOP_SECONDS
 
 ROOT = Path(__file__).resolve().parents[2]
 PATIENCE = 60.0

@@ -6,7 +6,7 @@ from PIL import Image
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.harmonics.coefficients import ShCoefficients
 from regolith_studio.harmonics.fit import HarmonicFit, fit_harmonics
-from regolith_studio.scene.degrees import CELL_SIZE, degree_animation, degree_picture, degree_title
+from regolith_studio.scene.animation import CELL_SIZE, degree_animation, degree_picture, degree_title
 
 
 def spheroid(ball: Mesh) -> Mesh:

@@ -12,11 +12,11 @@ from PySide6.QtTest import QTest
 
 from regolith_studio.errors import FileError
 from regolith_studio.session.choices import Choices
+from regolith_studio.session.outputs.studies import write_studies
 from regolith_studio.session.study_requests import varied_rows
 from regolith_studio.studies.loss_variants import PAPER_LOSSES, losses, paper_variants
 from regolith_studio.studies.sweeps import sufficient_facets
 from regolith_studio.ui.app import open_window
-from regolith_studio.ui.pages.studies.page import write_studies
 from regolith_studio.ui.pages.studies.sweep import ROW_COLOURS, LossSelector
 from regolith_studio.ui.theme import DARK
 
@@ -254,7 +254,7 @@ def test_that_a_study_that_cannot_be_written_leaves_the_earlier_files(tmp_path, 
         return (folder / "table.csv",)
 
     kind = SimpleNamespace(title="A study", write=write)
-    monkeypatch.setattr("regolith_studio.ui.pages.studies.page.STUDIES", {"study": kind})
+    monkeypatch.setattr("regolith_studio.session.outputs.studies.STUDIES", {"study": kind})
     list(write_studies((("study", "old"),), tmp_path / "out"))
     with pytest.raises(FileError, match="the disk is full"):
         list(write_studies((("study", "new"),), tmp_path / "out"))

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from regolith_studio.errors import RegolithError, os_error_reason
+from regolith_studio.io.child_process import private_pipes
 from regolith_studio.readers.error_messages import message_about
 from regolith_studio.readers.formats import MESH_FORMATS
 from regolith_studio.readers.sandbox import tasks, volume_tasks
@@ -55,7 +56,7 @@ def answer(request: dict[str, Any]) -> SandboxMessage:
 
 def main() -> None:
     """Answer requests until the parent closes the pipe."""
-    source, sink = _private_pipes()
+    source, sink = private_pipes(buffering=0)
     limit = int(sys.argv[1]) if len(sys.argv) > 1 else 0
     _limit_memory(limit)
     warnings.simplefilter("ignore")
@@ -68,16 +69,6 @@ def main() -> None:
             _allow_memory(int(request.get("memory", 0)), limit)
             send(sink, answer(request))
             _alarm(0.0, 0.0)
-
-
-def _private_pipes() -> tuple[Any, Any]:
-    """The pipes to the parent, out of reach of anything that prints."""
-    source, sink = os.dup(0), os.dup(1)
-    nothing = os.open(os.devnull, os.O_RDWR)
-    os.dup2(nothing, 0)
-    os.dup2(nothing, 1)
-    os.close(nothing)
-    return os.fdopen(source, "rb", buffering=0), os.fdopen(sink, "wb", buffering=0)
 
 
 def _alarm(seconds: float, work: float) -> None:

@@ -12,10 +12,12 @@ from pathlib import Path
 from typing import Any
 
 from regolith_studio.errors import FileError, MissingRequirement, RegolithError, os_error_reason
+from regolith_studio.io.child_process import start_module
 from regolith_studio.io.machine_memory import machine_memory
 from regolith_studio.readers.error_messages import message_about
 from regolith_studio.readers.sandbox.messages import SandboxMessage, receive, send
 
+CHILD = "regolith_studio.readers.sandbox.child"
 MAX_FILE_BYTES = 2 * 1024**3
 MAX_MEMORY = 6 * 1024**3
 """Address space of the child in bytes; enough for a binary file of 2 GiB and its arrays."""
@@ -193,7 +195,10 @@ class Sandbox:
     def _start_process(self) -> subprocess.Popen[bytes]:
         """Start a child without waiting until it is ready."""
         self.close()
-        process = self._process = _launch(self._memory)
+        writes_nothing = {"PYTHONDONTWRITEBYTECODE": "1"}
+        process = self._process = start_module(
+            CHILD, str(self._memory), environment=writes_nothing, bufsize=0
+        )
         self._ready = False
         if not self._ends_with_process:
             process_end.Finalize(None, self.close, exitpriority=100)
@@ -243,22 +248,6 @@ def checked_size(path: Path, largest: int | None = MAX_FILE_BYTES) -> int:
 
 def _memory_limit() -> int:
     return min(MAX_MEMORY, int(machine_memory() * MAX_MEMORY_SHARE))
-
-
-def _launch(memory: int) -> subprocess.Popen[bytes]:
-    package = str(Path(__file__).resolve().parents[3])
-    single = dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"), "1")
-    inherited = os.environ.get("PYTHONPATH")
-    found = {"PYTHONPATH": os.pathsep.join([package, inherited] if inherited else [package])}
-    return subprocess.Popen(
-        [sys.executable, "-P", "-B", "-m", "regolith_studio.readers.sandbox.child", str(memory)],
-        stdin=subprocess.PIPE,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.DEVNULL,
-        bufsize=0,
-        env={**os.environ, **single, **found},
-        creationflags=getattr(subprocess, "CREATE_NO_WINDOW", 0),
-    )
 
 
 def _stop(process: subprocess.Popen[bytes]) -> None:

@@ -7,7 +7,10 @@ from pathlib import Path
 from pkgutil import resolve_name
 from typing import Any
 
+from regolith_studio.io.atomic import staged_folder
 from regolith_studio.io.tables import Table
+from regolith_studio.jobs.events import Progress, Started, Steps
+from regolith_studio.messages import N_
 from regolith_studio.studies.coarsening import rmsre_table as coarsening_table
 from regolith_studio.studies.lmax import rmsre_table as lmax_table
 from regolith_studio.studies.polyhedron_gallery import gallery_table
@@ -78,3 +81,14 @@ STUDIES: Mapping[str, StudyKind] = {
     },
 }
 """The first two can be asked for by a recipe, by the keys of ``session.choices.Kind``."""
+
+
+def write_studies(studies: tuple[tuple[str, object], ...], folder: Path) -> Steps:
+    """Write tables and figures; returns their paths. A job."""
+    yield Started(N_("Writing figures"), len(studies))
+    written: tuple[Path, ...] = ()
+    for number, (kind, study) in enumerate(studies, start=1):
+        with staged_folder(folder, kind) as stage:
+            written += tuple(folder / path.name for path in STUDIES[kind].write(study, stage))
+        yield Progress(number, len(studies), STUDIES[kind].title)
+    return written

@@ -171,7 +171,7 @@ class CoarseningPanel(QWidget):
         self.enough.setToolTip(tr("Coarsens this particle at several numbers of facets."))
         self.enough.setEnabled(not running)
 
-    def show_sufficient(self, count: int, *, saturated: bool, now: int) -> None:
+    def show_sufficient(self, count: int, *, saturated: bool, now: int, reason: str) -> None:
         """Show the number of facets from which on nothing is gained, and offer it.
 
         Parameters
@@ -180,6 +180,8 @@ class CoarseningPanel(QWidget):
             Whether more facets than `count` were tried in vain; else the errors still fall there.
         now
             The chosen number.
+        reason
+            Why more are not needed; the tool tip.
         """
         self._sufficient = count
         if not saturated:
@@ -189,7 +191,7 @@ class CoarseningPanel(QWidget):
         else:
             words = tr("Use {count} facets: more do not help", count=count)
         self.enough.setText(words)
-        self.enough.setToolTip(tr("No error falls by more than 0.1 % with more facets."))
+        self.enough.setToolTip(reason)
         self.enough.setEnabled(now != count)
 
     def set_theme(self, theme: Theme) -> None:

@@ -15,14 +15,14 @@ from regolith_studio.geometry.convex_compound import ConvexCompound
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.oriented_box import minimum_volume_box
 from regolith_studio.harmonics.visibility import hidden_faces
-from regolith_studio.jobs.events import Job, Started, Steps
+from regolith_studio.jobs.events import Job
 from regolith_studio.messages import N_
 from regolith_studio.scene import facets, overlays, surfaces
 from regolith_studio.scene.annotations import bar_length, length_text
 from regolith_studio.scene.cameras import Projection
 from regolith_studio.scene.palette import ThemeColors
 from regolith_studio.scene.shapes import FIT, NAMES, PARTICLE, POLYHEDRON, SceneShape
-from regolith_studio.scene.surfaces import signed_distances
+from regolith_studio.scene.surfaces import measure_distances
 from regolith_studio.session.results import ParticleEntry, Results
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import Markup, number_text, rich, tr, translate
@@ -537,9 +537,3 @@ class Distances(QObject):
     def _take(self, fit: Mesh, particle: Mesh, found: FloatArray) -> None:
         self._known = fit, particle, found
         self.measured.emit()
-
-
-def measure_distances(fit: Mesh, particle: Mesh) -> Steps:
-    """A job: :func:`~regolith_studio.scene.surfaces.signed_distances` of a fit's vertices."""
-    yield Started(N_("Measuring distances"))
-    return signed_distances(fit.vertices, particle)

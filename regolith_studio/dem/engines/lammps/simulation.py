@@ -23,12 +23,12 @@ from regolith_studio.dem.engines.lammps.script import (
     script,
     stiffness,
 )
-from regolith_studio.dem.external_program import printed_lines, running_program, written_files
 from regolith_studio.dem.initial_packing import enclosing_radii
 from regolith_studio.dem.run_checks import check_run, measure_filling
 from regolith_studio.dem.snapshot import ParticleState, Snapshot, progress_message
 from regolith_studio.errors import RegolithError
 from regolith_studio.geometry.arrays import FloatArray, IntArray
+from regolith_studio.io.child_process import printed_lines, running_program, written_files
 
 _LOST_ATOMS_ERRORS = ("missing on proc", "Lost atoms", "Out of range atoms", "Non-numeric", "too far outside")
 """Error messages of LAMMPS for particles that moved too far in one step."""

@@ -20,7 +20,6 @@ import numpy as np
 from regolith_studio.dem.case import PreparedCase
 from regolith_studio.dem.engine import RunChecks, SimulationResult
 from regolith_studio.dem.engines.yade.program import YadeSettings, command
-from regolith_studio.dem.external_program import printed_lines, running_program, written_files
 from regolith_studio.dem.initial_packing import enclosing_radii, loose_column
 from regolith_studio.dem.lifting_cylinder import expected_duration
 from regolith_studio.dem.run_checks import check_run, lowest_corners, measure_filling
@@ -28,6 +27,7 @@ from regolith_studio.dem.separation import overlap_depths
 from regolith_studio.dem.snapshot import ParticleState, Snapshot, progress_message
 from regolith_studio.errors import RegolithError
 from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.io.child_process import printed_lines, running_program, written_files
 
 LENGTH, DENSITY, GRAVITY = 2e-3, 3000.0, 9.81
 TIME = float(np.sqrt(LENGTH / GRAVITY))

@@ -21,7 +21,7 @@ from regolith_studio.session.results import Results
 from regolith_studio.session.study_requests import varied_rows
 from regolith_studio.session.verdict import redundant_planes
 from regolith_studio.studies.coarsening import CoarseningStudy
-from regolith_studio.studies.sweeps import SWEEPS, sufficient_facets
+from regolith_studio.studies.sweeps import GAIN, SWEEPS, sufficient_facets
 from regolith_studio.ui.layout import padded, scrolled_column, side_by_side, stacked
 from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.pages.explore.panels import FitPanel, LossPanel, VerdictPanel
@@ -147,9 +147,13 @@ class FacetSearch(QObject):
             self._found = None
         if self._found is not None:
             _, enough, saturated = self._found
-            self._panel.show_sufficient(enough, saturated=saturated, now=choices.facet_count)
+            why = (
+                tr("With more facets no error falls by more than {gain:.1%}.", gain=GAIN) if saturated else ""
+            )
+            self._panel.show_sufficient(enough, saturated=saturated, now=choices.facet_count, reason=why)
         elif results.fewer_facets is not None:
-            self._panel.show_sufficient(results.fewer_facets[0], saturated=True, now=choices.facet_count)
+            count, why = results.fewer_facets[0], tr("With these facets the loss was no larger.")
+            self._panel.show_sufficient(count, saturated=True, now=choices.facet_count, reason=why)
         else:
             self._panel.show_search(running=running)
 

@@ -9,9 +9,7 @@ import numpy as np
 
 from regolith_studio.errors import InputError
 from regolith_studio.io.file_names import MAX_NAME_BYTES, cut_name, file_stem
-from regolith_studio.io.output_lock import output_lock
-from regolith_studio.jobs.events import Steps
-from regolith_studio.jobs.repose_calibration import ReposeCalibrationRequest, calibration_steps
+from regolith_studio.jobs.repose_calibration import ReposeCalibrationRequest
 from regolith_studio.jobs.repose_jobs import ReposeRequest
 from regolith_studio.jobs.repose_study import values_in
 from regolith_studio.messages import N_
@@ -197,9 +195,3 @@ def folder_name(request: ReposeCalibrationRequest) -> str:
     same = repr((request.datasets, sorted(request.ranges), request.request))
     name = cut_name(request.datasets[0].name, MAX_NAME_BYTES - 21)
     return f"calibration-{file_stem(name)}-{hashlib.sha256(same.encode()).hexdigest()[:8]}"
-
-
-def locked_calibration(request: ReposeCalibrationRequest, folder: Path) -> Steps:
-    """The job in a folder that no other process writes to."""
-    with output_lock(folder):
-        return (yield from calibration_steps(request, folder))

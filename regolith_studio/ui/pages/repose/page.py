@@ -31,6 +31,7 @@ from regolith_studio.errors import RegolithError
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.jobs.dataset_jobs import DatasetOptions, build_dataset_folder
 from regolith_studio.jobs.events import Job
+from regolith_studio.jobs.repose_calibration import locked_calibration
 from regolith_studio.jobs.repose_jobs import (
     ReposeRequest,
     ReposeRun,
@@ -45,7 +46,7 @@ from regolith_studio.studies.repose import ReposeStudyRun
 from regolith_studio.ui.dialogs.folder import FolderDialog
 from regolith_studio.ui.layout import scrolled_column, side_by_side, tabs
 from regolith_studio.ui.page import PageContext, PageWidget
-from regolith_studio.ui.pages.repose.calibration import CalibrationPanel, folder_name, locked_calibration
+from regolith_studio.ui.pages.repose.calibration import CalibrationPanel, folder_name
 from regolith_studio.ui.pages.repose.controller import RunController
 from regolith_studio.ui.pages.repose.export import export_measurement, read_other
 from regolith_studio.ui.pages.repose.heap import (

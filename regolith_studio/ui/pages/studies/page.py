@@ -9,13 +9,12 @@ from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QSizePolicy, QTabWidget, QVBoxLayout, QWidget
 
 from regolith_studio.errors import RegolithError
-from regolith_studio.io.atomic import staged_folder
-from regolith_studio.jobs.events import Job, Progress, Started, Steps
+from regolith_studio.jobs.events import Job
 from regolith_studio.jobs.study_jobs import coarsen_gallery, study_coarsening, study_of_cells
 from regolith_studio.messages import N_
 from regolith_studio.session.choices import STUDIES as KINDS
 from regolith_studio.session.choices import Choices, Kind, depends
-from regolith_studio.session.outputs.studies import STUDIES
+from regolith_studio.session.outputs.studies import write_studies
 from regolith_studio.session.study_requests import COMPOUND, chosen_rows, varied_rows
 from regolith_studio.studies.coarsening import CoarseningStudy
 from regolith_studio.studies.sweeps import SWEEPS
@@ -306,17 +305,6 @@ class StudiesPage(PageWidget):
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(columns)
-
-
-def write_studies(studies: tuple[tuple[str, object], ...], folder: Path) -> Steps:
-    """Write tables and figures; returns their paths. A job."""
-    yield Started(N_("Writing figures"), len(studies))
-    written: tuple[Path, ...] = ()
-    for number, (kind, study) in enumerate(studies, start=1):
-        with staged_folder(folder, kind) as stage:
-            written += tuple(folder / path.name for path in STUDIES[kind].write(study, stage))
-        yield Progress(number, len(studies), STUDIES[kind].title)
-    return written
 
 
 def _titled(title: str, part: QWidget) -> QWidget:

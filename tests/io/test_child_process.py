@@ -6,7 +6,7 @@ import time
 
 import pytest
 
-from regolith_studio.dem.external_program import printed_lines, running_program, written_files
+from regolith_studio.io.child_process import printed_lines, running_program, written_files
 
 WRITER = """
 import time
