@@ -21,9 +21,9 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle, Source
 from regolith_studio.imaging.bounding_boxes import Box, box_between, grown, n_voxels, touches, within
 from regolith_studio.imaging.connected_components import largest_component, pores_filled
+from regolith_studio.imaging.grain_errors import ScanOfGrain
 from regolith_studio.imaging.grain_surface import (
     MARGIN,
-    MAX_NOISE_OF_SHAPE,
     clipped_share,
     grey_mesh,
     mask_mesh,
@@ -63,6 +63,8 @@ class ExtractedParticle:
         Miles-Lantuejoul weight (:func:`border_weight`), 1 where border grains are kept.
     surface
         What its surface was taken from: of the mask, too, where the grey values do not tell it.
+    scan
+        What its surface was made from, where that is of the grey values.
     """
 
     particle: Particle
@@ -70,6 +72,7 @@ class ExtractedParticle:
     n_voxels: int
     weight: float
     surface: Surface = "mask"
+    scan: ScanOfGrain | None = None
 
 
 @dataclass(frozen=True)
@@ -448,21 +451,21 @@ def _particle_of(
     group: str, source: Source | None, make: Callable[[ExtractedParticle], Any] | None, cut: LabelCut
 ) -> Any:
     """The particle of a label, or what is made of it."""
-    mesh, notes, surface = surface_of_label(cut)
+    mesh, notes, surface, scan = surface_of_label(cut)
     particle = Particle(cut.name, mesh, group, source, notes, cut.weight)
-    extracted = ExtractedParticle(particle, cut.label, cut.n_voxels, cut.weight, surface)
+    extracted = ExtractedParticle(particle, cut.label, cut.n_voxels, cut.weight, surface, scan)
     return extracted if make is None else make(extracted)
 
 
-def surface_of_label(cut: LabelCut) -> tuple[Mesh, tuple[str, ...], Surface]:
-    """Surface in micrometres, notes on it, and what it was taken from.
+def surface_of_label(cut: LabelCut) -> tuple[Mesh, tuple[str, ...], Surface, ScanOfGrain | None]:
+    """Surface in micrometres, notes on it, what it was taken from, and its size and noise in the scan.
 
     It is of the grey values where they are at hand and tell it, else of the mask.
     """
     settings = cut.settings
     if cut.grey is None:
         body, notes = _one_body(np.ascontiguousarray(cut.labels.array[cut.box] == cut.label), cut)
-        return cut.mask_surface(body), tuple(notes), "mask"
+        return cut.mask_surface(body), tuple(notes), "mask", None
     crop = grain_crop(cut.labels, cut.grey, cut.label, cut.wider)
     part = within(cut.box, cut.wider)
     body, notes = _one_body(crop.own[part], cut)
@@ -477,13 +480,18 @@ def surface_of_label(cut: LabelCut) -> tuple[Mesh, tuple[str, ...], Surface]:
         )
     if isinstance(found, str):
         notes.append(f"{_OF_MASK}: {found}.")
-        return cut.mask_surface(body), tuple(notes), "mask"
-    if found.noise > MAX_NOISE_OF_SHAPE:
+        return cut.mask_surface(body), tuple(notes), "mask", None
+    if not found.scan.follows_grey:
         notes.append(
-            f"{_OF_MASK}, its volume that of the grey values: their noise is {100 * found.noise:.0f} % "
+            f"{_OF_MASK}, its volume that of the grey values: their noise is {100 * found.scan.noise:.0f} % "
             "of the contrast."
         )
-    return cut.placed(found.mesh, cut.wider), tuple(notes), "grey"
+    return (
+        cut.placed(found.mesh, cut.wider),
+        tuple(notes),
+        "grey",
+        found.scan,
+    )
 
 
 def _one_body(mask: BoolArray, cut: LabelCut) -> tuple[BoolArray, list[str]]:

@@ -24,6 +24,7 @@ from scipy import ndimage
 from regolith_studio.geometry.arrays import BoolArray, FloatArray
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.imaging.contours import body_contour, contour, depth
+from regolith_studio.imaging.grain_errors import ScanOfGrain, follows_grey
 from regolith_studio.imaging.label_table import GrainCrop
 from regolith_studio.imaging.rim_levels import CONTACT, PRESMOOTHING, RIM, grain_shares
 from regolith_studio.imaging.smoothing import windowed_sinc, with_volume
@@ -52,10 +53,6 @@ _TWICING, _TWICING_OF_UNEQUAL = 0.9, 0.6
 """Factor of the twicing at the end (see ``surface_refinement``), and in voxels with unequal edges: steps
 along their long edge widen the smoothing, so that 0.9 makes areas 1 to 2 % too large at 1 : 1 : 3."""
 
-MAX_NOISE_OF_SHAPE = 0.2
-"""Noise, as a share of the contrast, beyond which the shape is that of the mask and only the volume that of
-the grey values: for shapes of 16 to 32 voxels, round, edged and rough, its area is nearer then."""
-
 Floats = NDArray[np.float32]
 
 _without_specks: Any = cc3d.dust
@@ -70,10 +67,16 @@ chosen on balls, ellipsoids, polyhedra and rough grains of 24 to 48 voxels."""
 
 @dataclass(frozen=True, eq=False)
 class GreySurface:
-    """A surface from grey values, in voxels, and their noise as a share of the contrast."""
+    """A surface from grey values, in voxels.
+
+    Parameters
+    ----------
+    scan
+        Its size and noise; where it does not follow the grey values, only its volume is theirs.
+    """
 
     mesh: Mesh
-    noise: float
+    scan: ScanOfGrain
 
 
 def grey_mesh(
@@ -109,8 +112,11 @@ def grey_mesh(
     volume = float(rim.sum(dtype=np.float64))
     if not 1.0 / _MAX_VOLUME_RATIO < volume / np.count_nonzero(body) < _MAX_VOLUME_RATIO:
         return "its brightness and its number of voxels tell different volumes"
-    if found.noise > MAX_NOISE_OF_SHAPE:
-        return GreySurface(with_volume(mask_mesh(body, iterations, pass_band), volume), found.noise)
+    across = float(np.cbrt(6.0 * volume / np.pi))
+    scan = ScanOfGrain(across, found.noise, follows_grey(across, found.noise))
+    if not scan.follows_grey:
+        of_mask = mask_mesh(body, iterations, pass_band)
+        return GreySurface(with_volume(of_mask, volume), scan)
     rough = body_contour(ndimage.gaussian_filter(rim, PRESMOOTHING))
     mesh = windowed_sinc(rough, iterations, pass_band)
     if iterations:
@@ -120,7 +126,7 @@ def grey_mesh(
         blur = _blur(rim, found.noise, mesh, cubic_voxels)
         fit = refined_to_scan(mesh, rim, told, blur, how)
         mesh = without_crossings(fit, windowed_sinc(rough, iterations, min(LIGHT_SMOOTHING * pass_band, 2.0)))
-    return GreySurface(with_volume(mesh, volume), found.noise)
+    return GreySurface(with_volume(mesh, volume), scan)
 
 
 def _rim(share: Floats, others: BoolArray, inside: Floats, outside: Floats) -> tuple[Floats, BoolArray]:

@@ -183,7 +183,7 @@ def test_that_volumes_without_usable_labels_are_refused(volume: Volume, message:
 
 
 def test_that_settings_without_meaning_are_refused() -> None:
-    with pytest.raises(InputError, match="number of voxels"):
+    with pytest.raises(InputError, match="min_voxels must be a whole number"):
         ExtractionSettings(min_voxels=-1)
     with pytest.raises(InputError, match="pass band"):
         ExtractionSettings(pass_band=0.0)

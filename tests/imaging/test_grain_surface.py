@@ -239,7 +239,7 @@ def test_that_grey_values_of_another_shape_and_unknown_surfaces_are_refused() ->
     grey = Volume(np.ones((4, 4, 5), dtype=np.uint8), (1, 1, 1), "grey", "b")
     with pytest.raises(ValueError, match=r"shape \(4, 4, 4\) do not fit grey values of shape \(4, 4, 5\)"):
         extract_particles(labels, ExtractionSettings(min_voxels=1, exclude_border=False), grey=grey)
-    with pytest.raises(InputError, match="from the mask or the grey, not 'voxels'"):
+    with pytest.raises(InputError, match="surface must be one of grey, mask, got 'voxels'"):
         ExtractionSettings(surface="voxels")  # type: ignore[arg-type]
 
 

@@ -11,8 +11,10 @@ from typing import Any
 import numpy as np
 
 from regolith_studio.dataset.build import software_versions
+from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.harmonics.coefficients import CONVENTION
 from regolith_studio.imaging.extraction import ExtractedParticle
+from regolith_studio.imaging.grain_errors import intervals
 from regolith_studio.imaging.volume_slabs import SliceSource
 from regolith_studio.io.atomic import write_bytes, write_in_stage
 from regolith_studio.io.file_names import file_stem
@@ -61,10 +63,24 @@ def write_particle(folder: Path, extracted: ExtractedParticle, facts: MeasuredPa
         "weight": extracted.weight,
         "surface": extracted.surface,
     }
+    stated = _intervals(extracted, facts)
     row = dict(zip(table.columns, table.rows[0], strict=True)) | {
         Column(name): value for name, value in (extra | {"notes": " ".join(particle.notes)}).items()
     }
-    return ParticleRecord(extracted.label, row, described(particle, facts) | extra)
+    for key, ends in stated.items():
+        unit = CATALOGUE[key].unit
+        row |= {Column(f"{key}_{end}", unit): value for end, value in zip(("low", "high"), ends, strict=True)}
+    entry = (
+        described(particle, facts) | extra | {"intervals": {key: list(ends) for key, ends in stated.items()}}
+    )
+    return ParticleRecord(extracted.label, row, entry)
+
+
+def _intervals(extracted: ExtractedParticle, facts: MeasuredParticle) -> dict[str, tuple[float, float]]:
+    """Ends of the interval of each descriptor; nothing where its surface is not of grey values."""
+    if extracted.scan is None or facts.descriptors is None:
+        return {}
+    return intervals(facts.descriptors, extracted.scan)
 
 
 class ExtractionFolder:
