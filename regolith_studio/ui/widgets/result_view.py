@@ -105,12 +105,13 @@ class ResultView(QFrame):
         self.captions = tuple(remark(caption) for caption in captions)
         self.sentence = remark()
         self.sentence.setObjectName(f"{name}_sentence")
-        self.button = QPushButton(start)
+        self.button = QPushButton(start, self)
         self.button.setObjectName(f"{name}_button")
         self.button.clicked.connect(self._act)
         self._ends: list[QWidget] = []
         self._place(lines)
         self._enlarge()
+        self.button.setVisible(bool(start))
         if start:
             self.add(self.button)
 

@@ -117,8 +117,9 @@ def test_that_runs_are_compared(page, dataset, wait):
         folder.mkdir()
         (folder / "repose.json").write_text(json.dumps(document))
     page.set_runs_folder(run.folder.parent)
-    (curve,) = page.runs.plot.curves
+    curve, bars = page.runs.plot.curves
     assert (curve.x, curve.y) == ((0.2, 0.8), (18.0, 26.0))
+    assert (bars.y[:2], bars.y[3:5]) == ((17.0, 19.0), (25.0, 27.0))
 
 
 def test_that_the_problems_of_a_saved_run_are_shown_in_the_language_of_the_window(speaking, tmp_path):
