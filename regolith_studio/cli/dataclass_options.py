@@ -71,13 +71,16 @@ def _option(each: Field[Any], name: str) -> Any:
     if isinstance(each.default, bool):
         off = f"/--no-{flag.removeprefix('--')}" if each.default and "/" not in flag else ""
         return typer.Option(f"{flag}{off}", help=help_)
+    limits = {end[:3]: metadata[end] for end in ("minimum", "maximum") if end in metadata}
+    metavar = "KEY" if isinstance(each.default, str) else "N"
+    if metadata.get("unit") == "%":
+        metavar, limits = "PERCENT", {end: 100.0 * limit for end, limit in limits.items()}
     return typer.Option(
         flag,
         help=f"{help_} One of: {', '.join(keys)}." if keys else help_,
-        metavar=metadata.get("metavar") or ("KEY" if isinstance(each.default, str) else "N"),
+        metavar=metadata.get("metavar", metavar),
         show_default=metadata.get("shown_default", bool(each.default)),
-        min=metadata.get("minimum"),
-        max=metadata.get("maximum"),
+        **limits,
     )
 
 

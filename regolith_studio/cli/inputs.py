@@ -5,19 +5,18 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from regolith_studio.cli.options import Convention, Repair, Unit, usage_errors
+from regolith_studio.cli.options import Convention, usage_errors
 from regolith_studio.cli.terminal import print_errors, run_with_progress
+from regolith_studio.readers.settings import ReadingSettings
 
 if TYPE_CHECKING:
     from regolith_studio.readers.particles import LoadedParticles
 
 
 @dataclass(frozen=True)
-class ReadingOptions:
-    """How meshes are read."""
+class ReadingOptions(ReadingSettings):
+    """How meshes and tables are read."""
 
-    unit: Unit = "um"
-    repair: Repair = True
     convention: Convention = "auto"
 
     def read(self, paths: Sequence[Path], l_max: int | None = None) -> "LoadedParticles":

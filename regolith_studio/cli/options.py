@@ -9,9 +9,12 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from regolith_studio.cli.dataclass_options import option_of
+from regolith_studio.coarsening.settings import DEFAULT_PRESET, CoarseningSettings
 from regolith_studio.errors import FileError, InputError
-from regolith_studio.harmonics.fit_options import FitOptions
+from regolith_studio.harmonics.fit_options import FitOptions, FitSurfaceSettings
 from regolith_studio.io.output_lock import output_lock
+from regolith_studio.settings import setting_of
 
 if TYPE_CHECKING:
     from regolith_studio.coarsening.weights import LossWeights
@@ -22,23 +25,13 @@ Meshes = Annotated[
     list[Path], typer.Argument(metavar="MESH...", help="Mesh files, or folders that hold some.")
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print JSON instead of a table.")]
-MAX_SEED = 2**63 - 1
-Seed = Annotated[
-    int, typer.Option("--seed", min=0, max=MAX_SEED, help="Seed of the random numbers.", metavar="N")
-]
+Seed = Annotated[int, option_of(CoarseningSettings, "seed")]
 Jobs = Annotated[
     int,
     typer.Option(
         "--jobs", "-j", min=0, max=1024, help="Number of parallel processes; 0 for one per core.", metavar="N"
     ),
 ]
-Unit = Annotated[
-    str,
-    typer.Option(
-        "--unit", help="Length unit of files without one: um, mm, m, nm, cm or voxel:SIZE.", metavar="U"
-    ),
-]
-
 Convention = Annotated[
     str,
     typer.Option(
@@ -46,11 +39,6 @@ Convention = Annotated[
         help="Convention of tables of coefficients: auto, complex, shtools-4pi or shtools-ortho.",
         metavar="C",
     ),
-]
-
-Repair = Annotated[
-    bool,
-    typer.Option("--repair/--no-repair", help="Repair defects of the meshes and report the repairs."),
 ]
 
 
@@ -137,87 +125,17 @@ _FOLDER = typer.Option(
 )
 Folder = Annotated[Path, _FOLDER]
 OptionalFolder = Annotated[Path | None, _FOLDER]
-LMax = Annotated[
-    int,
-    typer.Option(
-        "--l-max", min=0, max=30, help="Maximum degree of the spherical harmonics, 0 to 30.", metavar="L"
-    ),
-]
+LMax = Annotated[int, option_of(FitSurfaceSettings, "l_max")]
 Degrees = Annotated[
     str, typer.Option("--degrees", help="Values of l_max, such as 1,2,5 or 1-20.", metavar="LIST")
 ]
-Level = Annotated[
-    int,
-    typer.Option(
-        "--level",
-        min=0,
-        max=7,
-        help="Subdivisions of the icosahedron that surfaces are drawn on.",
-        metavar="N",
-    ),
-]
-Facets = Annotated[
-    int, typer.Option("--facets", min=5, max=500, help="Number of facets of each polyhedron.", metavar="N")
-]
-Triangles = Annotated[
-    int | None,
-    typer.Option(
-        "--triangles",
-        min=8,
-        max=1_000_000,
-        help="Maximum number of triangles of each polyhedron, instead of --facets.",
-        metavar="N",
-    ),
-]
-Vertices = Annotated[
-    int | None,
-    typer.Option(
-        "--vertices",
-        min=6,
-        max=1_000_000,
-        help="Maximum number of vertices of each polyhedron, instead of --facets.",
-        metavar="N",
-    ),
-]
-MaxError = Annotated[
-    float | None,
-    typer.Option(
-        "--max-error",
-        min=1e-6,
-        max=1e6,
-        help="Maximum error of the weighted descriptors, met by the fewest facets, instead of --facets.",
-        metavar="PERCENT",
-    ),
-]
+Level = Annotated[int, option_of(FitSurfaceSettings, "level")]
+Facets = Annotated[int, option_of(CoarseningSettings, "n_facets")]
 Resume = Annotated[
     bool,
     typer.Option("--resume", help="Resume an interrupted study in the output folder."),
 ]
-Method = Annotated[
-    str,
-    typer.Option(
-        "--method",
-        help="Coarsening method: exact (default), annealing, quadric, or compound (a union of convex parts).",
-        metavar="NAME",
-    ),
-]
-Target = Annotated[
-    str,
-    typer.Option(
-        "--target",
-        help="Surface to approximate: particle, or fit (its spherical harmonics, as in the paper).",
-        metavar="T",
-    ),
-]
-Preset = Annotated[
-    str,
-    typer.Option(
-        "--preset",
-        help="Preset of loss weights: quadric, descriptors, volume_sphericity_aspect_ratio, "
-        "aspect_ratio_overlap, overlap, all, size, hull or shape_first.",
-        metavar="NAME",
-    ),
-]
+Preset = Annotated[str, option_of(CoarseningSettings, "preset", default="")]
 Weights = Annotated[
     list[str] | None,
     typer.Option(
@@ -304,7 +222,7 @@ def _simplest(text: str) -> bool | int | float | str:
 
 NOTHING = "nothing"
 """Keep no term exactly."""
-FACETS = 20
+FACETS = CoarseningSettings.n_facets
 """Default of ``--facets``."""
 
 
@@ -312,10 +230,10 @@ FACETS = 20
 class StoppingOptions:
     """When the coarsening stops: number of facets, triangles or vertices, or largest error."""
 
-    facets: Facets = FACETS
-    triangles: Triangles = None
-    vertices: Vertices = None
-    max_error: MaxError = None
+    facets: int = setting_of(CoarseningSettings, "n_facets")
+    triangles: int | None = setting_of(CoarseningSettings, "n_triangles", default=None)
+    vertices: int | None = setting_of(CoarseningSettings, "n_vertices", default=None)
+    max_error: float | None = setting_of(CoarseningSettings, "largest_error", default=None, minimum=1e-8)
 
     @property
     def changes(self) -> dict[str, object]:
@@ -338,12 +256,12 @@ class StoppingOptions:
 class CoarseningOptions:
     """Options of the coarsening, without the stopping criterion and the preset."""
 
-    method: Method = ""
+    method: str = setting_of(CoarseningSettings, "method")
     weight: Weights = None
     keep: Keep = ""
     set_: Settings = None
-    target: Target = "particle"
-    l_max: LMax = 10
+    target: str = setting_of(CoarseningSettings, "target")
+    l_max: int = setting_of(FitSurfaceSettings, "l_max")
     radii: FitOptions
 
     def choices(self, preset: str = "", **others: object) -> "Choices":
@@ -360,6 +278,7 @@ class CoarseningOptions:
         from regolith_studio.session.choices import Choices
 
         changes: dict[str, object] = {
+            "method": self.method,
             "settings": tuple(values(self.set_, "setting").items()),
             "target": self.target,
             "l_max": self.l_max,
@@ -367,8 +286,6 @@ class CoarseningOptions:
             **others,
         }
         with usage_errors():
-            if self.method:
-                changes["method"] = self.method
             if preset:
                 changes["preset"] = preset
             if (weights := self._weights(preset)) is not None:
@@ -379,7 +296,6 @@ class CoarseningOptions:
             return choices
 
     def _weights(self, preset: str) -> "LossWeights | None":
-        from regolith_studio.coarsening.coarsen import DEFAULT_PRESET
         from regolith_studio.coarsening.weights import LossWeights
 
         named = numbers(self.weight, "weight")

@@ -8,11 +8,13 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from regolith_studio.cli.dataclass_options import option_of
 from regolith_studio.cli.executor_options import Address, Runner, Tls, chosen_executor
 from regolith_studio.cli.generate import write_particles
 from regolith_studio.cli.offscreen_process import draw_in_process, draw_three_views
-from regolith_studio.cli.options import MAX_SEED, Folder, Jobs, Json, Seed
+from regolith_studio.cli.options import Folder, Jobs, Json, Seed
 from regolith_studio.cli.terminal import print_errors, print_json, run_with_progress
+from regolith_studio.coarsening.settings import CoarseningSettings
 from regolith_studio.errors import RegolithError
 
 if TYPE_CHECKING:
@@ -49,12 +51,8 @@ def run(
     tls: Tls = None,
     seed: Annotated[
         int | None,
-        typer.Option(
-            "--seed",
-            min=0,
-            max=MAX_SEED,
-            help="Seed of the random numbers, instead of that of the recipe.",
-            metavar="N",
+        option_of(
+            CoarseningSettings, "seed", tip="Seed of the random numbers, instead of that of the recipe."
         ),
     ] = None,
 ) -> None:

@@ -49,9 +49,10 @@ def gallery(
 ) -> None:
     """Draw each particle and its fits at several values of l_max (Fig. 2)."""
     from regolith_studio.harmonics.fit import HarmonicFit
+    from regolith_studio.harmonics.fit_options import FIT_DEGREE
     from regolith_studio.io.atomic import staged_folder
     from regolith_studio.io.file_names import file_stem
-    from regolith_studio.jobs.particle_jobs import FIT_DEGREE, FitRequest, fit_sample
+    from regolith_studio.jobs.particle_jobs import FitRequest, fit_sample
 
     wanted = whole_numbers(degrees, 0, FIT_DEGREE)
     with usage_errors():

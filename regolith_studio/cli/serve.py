@@ -6,10 +6,11 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from regolith_studio.cli.dataclass_options import with_dataclass_options
+from regolith_studio.cli.dataclass_options import option_of, with_dataclass_options
 from regolith_studio.cli.inputs import ReadingOptions
-from regolith_studio.cli.options import FACETS, Facets, Json, LMax, Method, usage_errors
+from regolith_studio.cli.options import FACETS, Facets, Json, LMax, usage_errors
 from regolith_studio.cli.terminal import print_json
+from regolith_studio.coarsening.settings import DEFAULT_METHOD, CoarseningSettings
 
 if TYPE_CHECKING:
     from regolith_studio.geometry.particle import Particle
@@ -26,6 +27,8 @@ Port = Annotated[
 ]
 OpenBrowser = Annotated[bool, typer.Option("--browser/--no-browser", help="Open the page in a browser.")]
 
+Method = Annotated[str, option_of(CoarseningSettings, "method")]
+
 
 @with_dataclass_options
 def serve(
@@ -36,7 +39,7 @@ def serve(
     browser: OpenBrowser = True,
     l_max: LMax = 10,
     facets: Facets = FACETS,
-    method: Method = "exact",
+    method: Method = DEFAULT_METHOD,
     reading: ReadingOptions,
     json: Json = False,
 ) -> None:

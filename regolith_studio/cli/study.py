@@ -196,7 +196,7 @@ def lmax(
     run: RunOptions,
 ) -> None:
     """RMSRE of the descriptors against l_max (Fig. 3)."""
-    from regolith_studio.jobs.particle_jobs import FIT_DEGREE
+    from regolith_studio.harmonics.fit_options import FIT_DEGREE
     from regolith_studio.jobs.study_jobs import study_lmax
     from regolith_studio.session.choices import Choices
     from regolith_studio.studies.lmax import enough_degrees

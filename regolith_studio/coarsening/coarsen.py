@@ -15,6 +15,7 @@ from regolith_studio.coarsening.methods import METHODS, CoarseningMethod
 from regolith_studio.coarsening.polyhedra import polyhedron_of
 from regolith_studio.coarsening.progress import CoarseningProgress, MethodStep
 from regolith_studio.coarsening.result import CoarseningResult, MethodResult
+from regolith_studio.coarsening.settings import DEFAULT_METHOD, DEFAULT_PRESET, FACETS_LIMITS
 from regolith_studio.coarsening.target import Target
 from regolith_studio.coarsening.weights import JACCARD, WEIGHT_KEYS, LossWeights
 from regolith_studio.descriptors.catalogue import CATALOGUE
@@ -28,11 +29,6 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle, solid_of
 from regolith_studio.geometry.topology import genus
 from regolith_studio.settings import is_whole
-
-DEFAULT_METHOD = "exact"
-DEFAULT_PRESET = "all"
-FACETS_LIMITS = (5, 500)
-"""Section 2.4 asks for n > 4."""
 
 
 def facets_for_triangles(n_triangles: int) -> int:

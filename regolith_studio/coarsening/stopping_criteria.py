@@ -5,14 +5,10 @@ from collections.abc import Generator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from regolith_studio.coarsening.coarsen import (
-    DEFAULT_METHOD,
-    DEFAULT_PRESET,
-    FACETS_LIMITS,
-    coarsening_steps,
-)
+from regolith_studio.coarsening.coarsen import coarsening_steps
 from regolith_studio.coarsening.progress import CoarseningProgress
 from regolith_studio.coarsening.result import CoarseningResult
+from regolith_studio.coarsening.settings import DEFAULT_METHOD, DEFAULT_PRESET, FACETS_LIMITS
 from regolith_studio.coarsening.target import Target
 from regolith_studio.coarsening.weights import JACCARD, LossWeights
 from regolith_studio.errors import InputError

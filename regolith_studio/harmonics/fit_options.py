@@ -10,10 +10,48 @@ if TYPE_CHECKING:  # the command line makes its options of these fields, and mus
     from regolith_studio.geometry.mesh import Mesh
     from regolith_studio.harmonics.fit import HarmonicFit
 
+FIT_DEGREE = 30
+"""Highest degree of the fits of meshes."""
+LEVEL_LIMITS = (0, 7)
 MAX_TABLE_DEGREE = 200
 """Of tables of coefficients that are read instead of meshes."""
 AUTOMATIC = ""
 """The centre of mass or, where that is not inside, the point that hides the least volume."""
+
+
+@dataclass(frozen=True)
+class FitSurfaceSettings:
+    """How fine the surface of a fit is.
+
+    Raises
+    ------
+    InputError
+        If a value is out of its range.
+    """
+
+    l_max: int = setting(
+        10,
+        N_("Maximum degree"),
+        N_(
+            "Degree at which the series is truncated: 0 is a sphere, 10 keeps the form, "
+            "30 nearly all details."
+        ),
+        symbol="l_max",
+        minimum=0,
+        maximum=FIT_DEGREE,
+        slider=(0, FIT_DEGREE),
+        metavar="L",
+    )
+    level: int = setting(
+        4,
+        N_("Subdivisions"),
+        N_("Subdivisions of the icosahedron that surfaces are drawn on; 4 gives 5,120 triangles."),
+        minimum=LEVEL_LIMITS[0],
+        maximum=LEVEL_LIMITS[1],
+    )
+
+    def __post_init__(self) -> None:
+        check_settings(self)
 
 
 @dataclass(frozen=True)

@@ -7,11 +7,12 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any
 
-from regolith_studio.coarsening.coarsen import DEFAULT_METHOD, FACETS_LIMITS, coarsening_steps
+from regolith_studio.coarsening.coarsen import coarsening_steps
 from regolith_studio.coarsening.compound.line_overlap import compound_distance
 from regolith_studio.coarsening.methods import METHODS
 from regolith_studio.coarsening.progress import CoarseningProgress
 from regolith_studio.coarsening.result import CoarseningResult
+from regolith_studio.coarsening.settings import DEFAULT_METHOD, FACETS_LIMITS
 from regolith_studio.coarsening.stopping_criteria import Trial, fewest_facets
 from regolith_studio.coarsening.target import Target
 from regolith_studio.coarsening.weights import LossWeights
@@ -25,7 +26,7 @@ from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.ray_casting import jaccard_distance
 from regolith_studio.harmonics.coefficients import ShCoefficients
 from regolith_studio.harmonics.fit import HarmonicFit
-from regolith_studio.harmonics.fit_options import DEFAULT_FIT_OPTIONS, FitOptions
+from regolith_studio.harmonics.fit_options import DEFAULT_FIT_OPTIONS, FIT_DEGREE, FitOptions
 from regolith_studio.harmonics.surface import reconstruct
 from regolith_studio.jobs.compile_kernels import compile_first, compile_first_for, is_compiled
 from regolith_studio.jobs.events import (
@@ -40,7 +41,6 @@ from regolith_studio.jobs.events import (
     Steps,
 )
 from regolith_studio.jobs.executor import Executor, open_executor
-from regolith_studio.jobs.particle_jobs import FIT_DEGREE
 from regolith_studio.messages import N_
 
 N_RECENT = 200

@@ -12,6 +12,7 @@ from regolith_studio.errors import GeometryError, InputError, RegolithError
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.harmonics.fit import HarmonicFit
+from regolith_studio.harmonics.fit_options import FIT_DEGREE
 from regolith_studio.harmonics.surface import level_for, reconstruct
 from regolith_studio.io.atomic import write_in_stage
 from regolith_studio.io.file_names import MAX_NAME_BYTES, cut_name, file_stem
@@ -19,13 +20,7 @@ from regolith_studio.io.stl import stl_bytes
 from regolith_studio.jobs.compile_kernels import compile_first
 from regolith_studio.jobs.events import Job, Progress, Started, Steps
 from regolith_studio.jobs.executor import Executor, open_executor, value_of
-from regolith_studio.jobs.particle_jobs import (
-    FIT_DEGREE,
-    FitRequest,
-    MeasuredParticle,
-    fit_sample,
-    measure_particle,
-)
+from regolith_studio.jobs.particle_jobs import FitRequest, MeasuredParticle, fit_sample, measure_particle
 from regolith_studio.messages import N_
 from regolith_studio.readers.shape_files import ShapeSource, radius_of
 from regolith_studio.shape_models.chunked_sampling import check_draws, joined

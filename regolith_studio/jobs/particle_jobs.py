@@ -17,7 +17,7 @@ from regolith_studio.geometry.mesh_health import MeshHealth, inspect
 from regolith_studio.geometry.particle import Particle, defect_triangles
 from regolith_studio.harmonics.coefficients import checked_degree
 from regolith_studio.harmonics.fit import HarmonicFit
-from regolith_studio.harmonics.fit_options import DEFAULT_FIT_OPTIONS, FitOptions
+from regolith_studio.harmonics.fit_options import DEFAULT_FIT_OPTIONS, FIT_DEGREE, FitOptions
 from regolith_studio.harmonics.surface import reconstruct
 from regolith_studio.harmonics.visibility import StarPointVisibility, hidden_faces, star_point_visibility
 from regolith_studio.jobs.compile_kernels import compile_first
@@ -35,7 +35,6 @@ from regolith_studio.readers.particles import (
     sample_particles,
 )
 
-FIT_DEGREE = 30
 """Everything is fitted to this degree once; lower ones are truncations of that fit."""
 
 

@@ -20,12 +20,12 @@ from regolith_studio.dataset.build import software_versions
 from regolith_studio.errors import RegolithError
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.harmonics.fit import HarmonicFit
+from regolith_studio.harmonics.fit_options import FIT_DEGREE
 from regolith_studio.io.checkpoint import Checkpoint, CheckpointRecord
 from regolith_studio.jobs.coarsening_jobs import CoarsenedParticle, CoarseningRequest, coarsen_particle
 from regolith_studio.jobs.compile_kernels import compile_first, compile_first_for
 from regolith_studio.jobs.events import Job, Partial, Progress, Started, Step, Steps
 from regolith_studio.jobs.executor import Executor, call, open_executor, value_of
-from regolith_studio.jobs.particle_jobs import FIT_DEGREE
 from regolith_studio.messages import N_
 from regolith_studio.shape_models.sample import Sample
 from regolith_studio.studies.coarsening import TargetChoice, coarsening_study

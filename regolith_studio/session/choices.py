@@ -7,39 +7,27 @@ from enum import StrEnum
 from typing import Any, Self
 
 from regolith_studio.coarsening.coarsen import (
-    DEFAULT_METHOD,
-    DEFAULT_PRESET,
-    FACETS_LIMITS,
     check_kept,
     facets_for_triangles,
     facets_for_vertices,
     settings_of,
 )
+from regolith_studio.coarsening.settings import DEFAULT_PRESET, CoarseningSettings
 from regolith_studio.coarsening.stopping_criteria import check_limit
 from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.descriptors.shape_cache import BOX_METRICS
 from regolith_studio.errors import InputError
-from regolith_studio.harmonics.fit_options import FitOptions
+from regolith_studio.harmonics.fit_options import FitOptions, FitSurfaceSettings
 from regolith_studio.jobs.coarsening_jobs import CoarseningRequest
-from regolith_studio.jobs.particle_jobs import FIT_DEGREE
+from regolith_studio.readers.settings import ReadingSettings
 from regolith_studio.readers.units import unit_factor
 from regolith_studio.settings import setting
 
 Scalar = bool | int | float | str
 
-LEVEL_LIMITS = (0, 7)
-TARGETS = {"fit": "surface of the spherical-harmonics fit", "particle": "particle itself"}
-STOPS = {
-    "facets": "a number of facets",
-    "triangles": "a number of triangles",
-    "vertices": "a number of vertices",
-    "error": "the fewest facets whose errors are all small enough",
-}
-"""What says how fine a polyhedron is."""
-
 
 @dataclass(frozen=True)
-class Choices(FitOptions):
+class Choices(ReadingSettings, CoarseningSettings, FitSurfaceSettings, FitOptions):
     """Every setting that decides what is computed.
 
     Fields made by :func:`~regolith_studio.settings.setting` describe themselves, and are entries of a recipe.
@@ -60,53 +48,8 @@ class Choices(FitOptions):
     """
 
     selected: str = ""
-    l_max: int = setting(
-        10,
-        "Maximum degree",
-        "Degree at which the series is truncated: 0 is a sphere, 10 keeps the form, 30 nearly all details.",
-        minimum=0,
-        maximum=FIT_DEGREE,
-    )
-    level: int = setting(
-        4,
-        "Subdivisions",
-        "Subdivisions of the icosahedron that the fit is drawn on; 4 gives 5,120 triangles.",
-        minimum=LEVEL_LIMITS[0],
-        maximum=LEVEL_LIMITS[1],
-    )
-    target: str = setting(
-        "particle",
-        "Target",
-        "What the coarsening imitates: the particle, or its fit (section 3.2 of the paper).",
-        choices=TARGETS,
-    )
-    method: str = setting(DEFAULT_METHOD, "Coarsening method", "Method of coarsening.")
     settings: tuple[tuple[str, Scalar], ...] = ()
-    preset: str = setting(DEFAULT_PRESET, "Preset", "Preset of the weights of the loss (Eq. 9).")
     weights: LossWeights = field(default_factory=lambda: LossWeights.from_preset(DEFAULT_PRESET))
-    stop_at: str = setting(
-        "facets",
-        "Stop at",
-        "Which of n_facets, n_triangles, n_vertices and largest_error says how fine polyhedra are.",
-        choices=STOPS,
-    )
-    n_facets: int = setting(
-        20,
-        "Facets",
-        "Facets asked of a polyhedron.",
-        minimum=FACETS_LIMITS[0],
-        maximum=FACETS_LIMITS[1],
-    )
-    n_triangles: int = setting(68, "Triangles", "Most triangles that a polyhedron may have.", minimum=4)
-    n_vertices: int = setting(64, "Vertices", "Most vertices that a polyhedron may have.", minimum=4)
-    largest_error: float = setting(
-        0.01,
-        "Largest error",
-        "That the weighted descriptors of the fewest facets may have, as a fraction.",
-    )
-    seed: int = setting(0, "Seed", "Seed of all randomness.", minimum=0, maximum=2**63 - 1)
-    unit: str = setting("um", "Unit", "Length unit in which files without one are read.")
-    repair: bool = setting(True, "Repair meshes", "Whether meshes are repaired as they are read.")
     box_metric: str = setting(
         "exact",
         "Bounding box",

@@ -11,12 +11,11 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, create_model
 from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.descriptors.catalogue import LOSS_KEYS
 from regolith_studio.errors import FileError, InputError, format_validation_error
-from regolith_studio.harmonics.fit_options import MAX_TABLE_DEGREE
+from regolith_studio.harmonics.fit_options import FIT_DEGREE, LEVEL_LIMITS, MAX_TABLE_DEGREE
 from regolith_studio.io.json_text import parse_strict_json
-from regolith_studio.jobs.particle_jobs import FIT_DEGREE
 from regolith_studio.readers.coefficient_tables import TableConvention
 from regolith_studio.readers.file_bytes import read_bytes
-from regolith_studio.session.choices import LEVEL_LIMITS, Choices, Scalar
+from regolith_studio.session.choices import Choices, Scalar
 from regolith_studio.settings import settings_of_kind
 
 FORMAT: Literal["regolith-studio recipe"] = "regolith-studio recipe"

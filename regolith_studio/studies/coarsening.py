@@ -7,8 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from regolith_studio.coarsening.coarsen import DEFAULT_METHOD, coarsen
+from regolith_studio.coarsening.coarsen import coarsen
 from regolith_studio.coarsening.result import CoarseningResult
+from regolith_studio.coarsening.settings import DEFAULT_METHOD
 from regolith_studio.coarsening.target import Target
 from regolith_studio.coarsening.weights import JACCARD
 from regolith_studio.descriptors.catalogue import LOSS_KEYS

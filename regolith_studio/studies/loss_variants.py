@@ -6,7 +6,7 @@ from functools import cache
 from itertools import combinations
 from typing import Any, Self
 
-from regolith_studio.coarsening.coarsen import DEFAULT_METHOD
+from regolith_studio.coarsening.settings import DEFAULT_METHOD
 from regolith_studio.coarsening.weights import JACCARD, WEIGHT_KEYS, LossWeights, presets
 from regolith_studio.descriptors.catalogue import CATALOGUE, LOSS_KEYS
 from regolith_studio.errors import InputError

@@ -6,12 +6,12 @@ from typing import Any
 from trame.ui.html import DivLayout
 from trame.widgets import client, html, vtk
 
-from regolith_studio.coarsening.coarsen import FACETS_LIMITS
 from regolith_studio.coarsening.methods import METHODS
+from regolith_studio.coarsening.settings import FACETS_LIMITS
 from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.errors import RegolithError
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
-from regolith_studio.jobs.particle_jobs import FIT_DEGREE
+from regolith_studio.harmonics.fit_options import FIT_DEGREE
 from regolith_studio.scene.figure import SideBySide, view_titles
 from regolith_studio.scene.shapes import FIT, NAMES, PARTICLE, POLYHEDRON, SceneShape
 from regolith_studio.session.results import Failure

@@ -1136,6 +1136,10 @@
         <translation>Verfahren der Vergröberung</translation>
     </message>
     <message>
+        <source>Coarsening method: exact, annealing, quadric, or compound (a union of convex parts).</source>
+        <translation>Verfahren der Vergröberung: exact, annealing, quadric oder compound (eine Vereinigung konvexer Teile).</translation>
+    </message>
+    <message>
         <source>Coarsens this particle at several numbers of facets.</source>
         <translation>Vergröbert dieses Partikel mit mehreren Anzahlen von Facetten.</translation>
     </message>
@@ -2904,6 +2908,10 @@
         <translation>Längeneinheit</translation>
     </message>
     <message>
+        <source>Length unit of files without one: um, mm, m, nm, cm or voxel:SIZE.</source>
+        <translation>Längeneinheit von Dateien ohne eigene: um, mm, m, nm, cm oder voxel:GRÖSSE.</translation>
+    </message>
+    <message>
         <source>Length unit of the file:</source>
         <translation>Längeneinheit der Datei:</translation>
     </message>
@@ -3580,6 +3588,10 @@
         <translation>Anzahl der Facetten jedes Polyeders.</translation>
     </message>
     <message>
+        <source>Number of facets of each polyhedron; n in general position have 2n−4 vertices, 4n−12 triangles.</source>
+        <translation>Zahl der Facetten jedes Polyeders; n in allgemeiner Lage haben 2n−4 Ecken und 4n−12 Dreiecke.</translation>
+    </message>
+    <message>
         <source>Number of grains that it represents: large ones are more often cut by the border of the scan</source>
         <translation>Anzahl der Körner, für die es steht: Große schneidet der Rand des Scans öfter an</translation>
     </message>
@@ -4192,6 +4204,10 @@
         <translation>Vorlage</translation>
     </message>
     <message>
+        <source>Preset of the loss weights (Eq. 9): quadric, descriptors, volume_sphericity_aspect_ratio, aspect_ratio_overlap, overlap, all, size, hull or shape_first.</source>
+        <translation>Voreinstellung der Gewichte des Verlusts (Gl. 9): quadric, descriptors, volume_sphericity_aspect_ratio, aspect_ratio_overlap, overlap, all, size, hull oder shape_first.</translation>
+    </message>
+    <message>
         <source>Preset of the loss weights of the representative particles.</source>
         <translation>Vorlage für die Verlustgewichte der Repräsentanten.</translation>
     </message>
@@ -4520,8 +4536,16 @@
         <translation>&amp;Netze beim Öffnen reparieren</translation>
     </message>
     <message>
+        <source>Repair defects of the meshes and report the repairs.</source>
+        <translation>Fehler der Netze reparieren und die Reparaturen nennen.</translation>
+    </message>
+    <message>
         <source>Repair lost facets</source>
         <translation>Verlorene Facetten ersetzen</translation>
+    </message>
+    <message>
+        <source>Repair meshes</source>
+        <translation>Netze reparieren</translation>
     </message>
     <message>
         <source>Replace</source>
@@ -5024,8 +5048,8 @@
         <translation>Startwert der Zufallszahlen.</translation>
     </message>
     <message>
-        <source>Seed of the random numbers: the same seed gives the same polyhedron.</source>
-        <translation>Startwert der Zufallszahlen: derselbe Startwert ergibt dasselbe Polyeder.</translation>
+        <source>Seed of the random numbers: the same seed gives the same result.</source>
+        <translation>Startwert der Zufallszahlen: Derselbe Startwert gibt dasselbe Ergebnis.</translation>
     </message>
     <message>
         <source>Segment the whole volume</source>
@@ -5540,6 +5564,14 @@
         <translation>Studie des Grades</translation>
     </message>
     <message>
+        <source>Subdivisions</source>
+        <translation>Unterteilungen</translation>
+    </message>
+    <message>
+        <source>Subdivisions of the icosahedron that surfaces are drawn on; 4 gives 5,120 triangles.</source>
+        <translation>Unterteilungen des Ikosaeders, auf dem Oberflächen gezeichnet werden; 4 gibt 5.120 Dreiecke.</translation>
+    </message>
+    <message>
         <source>Surface</source>
         <translation>Oberfläche</translation>
     </message>
@@ -5626,10 +5658,6 @@
     <message>
         <source>Target</source>
         <translation>Ziel</translation>
-    </message>
-    <message>
-        <source>Target of the coarsening</source>
-        <translation>Ziel der Vergröberung</translation>
     </message>
     <message>
         <source>Targets</source>
@@ -6544,12 +6572,20 @@
         <translation>Was exportiert wurde, steht hier, mit dem Befehl, der es lädt.</translation>
     </message>
     <message>
+        <source>What the coarsening imitates: the particle, or its fit (section 3.2 of the paper).</source>
+        <translation>Was die Vergröberung nachbildet: das Partikel oder seine Anpassung (Abschnitt 3.2 der Arbeit).</translation>
+    </message>
+    <message>
         <source>What was restored after the crash is not saved as a project.</source>
         <translation>Was nach dem Absturz wiederhergestellt wurde, ist nicht als Projekt gespeichert.</translation>
     </message>
     <message>
         <source>Wheel</source>
         <translation>Rad</translation>
+    </message>
+    <message>
+        <source>Which of n_facets, n_triangles, n_vertices and largest_error says how fine polyhedra are.</source>
+        <translation>Welche von n_facets, n_triangles, n_vertices und largest_error sagt, wie fein Polyeder sind.</translation>
     </message>
     <message>
         <source>Which radius counts where a ray crosses the surface more than once. Keep the volume: the cube root of the signed sum of r³ over all crossings.</source>
@@ -7394,10 +7430,6 @@
     <message>
         <source>moments of inertia are sums over the spheres</source>
         <translation>Trägheitsmomente sind Summen über die Kugeln</translation>
-    </message>
-    <message>
-        <source>n facets in general position have 2n−4 vertices and 4n−12 triangles.</source>
-        <translation>n Facetten in allgemeiner Lage haben 2n−4 Ecken und 4n−12 Dreiecke.</translation>
     </message>
     <message>
         <source>name of the folder</source>

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from regolith_studio.cli.entry import run
-from regolith_studio.coarsening.coarsen import FACETS_LIMITS
+from regolith_studio.coarsening.settings import FACETS_LIMITS
 from regolith_studio.session.outputs.summary import Summary, summary_page
 from regolith_studio.session.recipe import recipe_of
 

@@ -34,7 +34,7 @@ def test_that_a_fit_holds_the_mean_radius_of_a_ball(command, tmp_path: Path) -> 
 
 def test_that_the_help_of_coarsen_names_every_preset(command) -> None:
     text = " ".join(command("coarsen", "--help").out.split())
-    named = text.partition("Preset of loss weights: ")[2].partition(".")[0]
+    named = text.partition("Preset of the loss weights (Eq. 9): ")[2].partition(".")[0]
     assert named.replace(" or ", ", ").split(", ") == list(presets())
 
 

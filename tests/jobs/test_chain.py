@@ -7,18 +7,20 @@ from typing import Any
 import numpy as np
 import pytest
 
-from regolith_studio.coarsening.coarsen import DEFAULT_METHOD, coarsen
+from regolith_studio.coarsening.coarsen import coarsen
+from regolith_studio.coarsening.settings import DEFAULT_METHOD
 from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.errors import DatasetError, FileError
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.harmonics.fit import fit_harmonics
+from regolith_studio.harmonics.fit_options import FIT_DEGREE
 from regolith_studio.io.stl import stl_bytes
 from regolith_studio.jobs.coarsening_jobs import CoarseningRequest, coarsen_one, coarsen_sample
 from regolith_studio.jobs.dataset_jobs import DatasetOptions, build_dataset_folder
 from regolith_studio.jobs.events import Partial, Progress, Started, Step, Steps
-from regolith_studio.jobs.particle_jobs import FIT_DEGREE, load_particles, measure_particle, measure_particles
+from regolith_studio.jobs.particle_jobs import load_particles, measure_particle, measure_particles
 from regolith_studio.readers.particles import unique_names
 
 SPHERE = icosphere(3)

@@ -18,7 +18,7 @@ from regolith_studio.session.choices import Choices
         ({"l_max": 3.5}, "whole number"),
         ({"l_max": True}, "whole number"),
         ({"n_facets": 4}, "from 5 to 500, got 4"),
-        ({"n_triangles": 7}, "7 triangles are too few"),
+        ({"n_triangles": 7}, "n_triangles must be a whole number from 8"),
         ({"n_triangles": 70.5}, "whole number"),
         ({"largest_error": 0.0}, "above 0 per cent"),
         ({"largest_error": float("nan")}, "must be a number"),

@@ -9,7 +9,7 @@ import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QFontMetrics
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QAbstractButton, QAbstractSpinBox, QComboBox, QSlider
+from PySide6.QtWidgets import QAbstractButton, QAbstractSpinBox, QComboBox, QSlider, QWidget
 
 from regolith_studio.coarsening.coarsen import coarsen
 from regolith_studio.coarsening.weights import LossWeights, presets
@@ -151,11 +151,12 @@ def test_that_the_number_of_what_is_stopped_at_is_the_one_that_can_be_set(shown,
     said = []
     panel.valueChanged.connect(said.append)
     panel.stop_at.setCurrentIndex(panel.stop_at.findData(stop))
-    panel.stop_at.activated.emit(panel.stop_at.currentIndex())
     names = ("n_facets", "n_triangles", "n_vertices", "largest_error")
-    assert [name for name in names if getattr(panel, name).isVisible()] == [field]
-    getattr(panel, field).field.setValue(typed)
-    assert said == [{"stop_at": stop}, {field: told}]
+    fields = {name: panel.findChild(QWidget, name) for name in names}
+    assert [name for name in names if fields[name].isVisible()] == [field]
+    fields[field].setValue(typed)
+    stopped = [] if stop == "facets" else [{"stop_at": stop}]  # which is chosen already
+    assert said == [*stopped, {field: told}]
 
 
 def test_that_the_dice_takes_the_next_seed(shown):

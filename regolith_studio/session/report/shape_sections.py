@@ -7,10 +7,11 @@ from regolith_studio.errors import InputError
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.harmonics.fit import HarmonicFit
+from regolith_studio.harmonics.fit_options import FIT_DEGREE
 from regolith_studio.harmonics.surface import gallery
 from regolith_studio.io.tables import Column, Table, write_table
 from regolith_studio.jobs.model_jobs import sample_of_meshes
-from regolith_studio.jobs.particle_jobs import FIT_DEGREE, FitRequest, fit_sample
+from regolith_studio.jobs.particle_jobs import FitRequest, fit_sample
 from regolith_studio.jobs.representatives_jobs import MeasuredPopulation, measure_population
 from regolith_studio.jobs.study_jobs import study_lmax, study_population
 from regolith_studio.session.outputs.studies import STUDIES

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
-from PySide6.QtCore import QEvent, QSignalBlocker, Signal
+from PySide6.QtCore import QEvent, Signal
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import (
     QFormLayout,
@@ -15,73 +15,31 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from regolith_studio.coarsening.coarsen import FACETS_LIMITS
 from regolith_studio.coarsening.methods import METHODS
-from regolith_studio.messages import N_
+from regolith_studio.coarsening.settings import CoarseningSettings
 from regolith_studio.ui.icons import icon
 from regolith_studio.ui.layout import Collapsible
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import tr, translate
 from regolith_studio.ui.widgets.combo_box import ChoiceBox
 from regolith_studio.ui.widgets.fixed_height_text import FixedHeightText
-from regolith_studio.ui.widgets.forms import SettingsForm
+from regolith_studio.ui.widgets.forms import LARGEST_NUMBER, SettingsForm
 from regolith_studio.ui.widgets.labels import heading, remark
-from regolith_studio.ui.widgets.numbers import NumberSlider, NumberSpec
+from regolith_studio.ui.widgets.numbers import NumberSlider
 
-STOPS = {
-    "facets": N_("Facets n"),
-    "triangles": N_("Triangles"),
-    "vertices": N_("Vertices"),
-    "error": N_("Error ≤"),
+AMOUNTS = {
+    "facets": "n_facets",
+    "triangles": "n_triangles",
+    "vertices": "n_vertices",
+    "error": "largest_error",
 }
-FACETS = NumberSpec(
-    "",
-    N_("Number of facets"),
-    FACETS_LIMITS[0],
-    60,
-    limit=FACETS_LIMITS[1],
-    tip=N_("n facets in general position have 2n−4 vertices and 4n−12 triangles."),
-)
-TRIANGLES = NumberSpec(
-    "",
-    N_("Maximum number of triangles"),
-    4 * FACETS_LIMITS[0] - 12,
-    228,
-    limit=4 * FACETS_LIMITS[1] - 12,
-    tip=N_("The number of facets follows from it: n facets have at most 4n−12 triangles."),
-)
-VERTICES = NumberSpec(
-    "",
-    N_("Maximum number of vertices"),
-    2 * FACETS_LIMITS[0] - 4,
-    128,
-    limit=2 * FACETS_LIMITS[1] - 4,
-    tip=N_("The number of facets follows from it: n facets have at most 2n−4 vertices."),
-)
-ERROR = NumberSpec(
-    "",
-    N_("Largest error"),
-    0.05,
-    10.0,
-    0.05,
-    limit=50.0,
-    suffix=" %",
-    tip=N_(
-        "The smallest number of facets is sought at which no weighted descriptor has a larger error. V and CH"
-        " cannot both be met: of their errors only what exceeds the lower bound counts."
-    ),
-)
-TARGET_LABELS = {"fit": N_("Spherical-harmonics fit"), "particle": N_("Particle")}
-SEED_LIMIT = 2**31 - 1
+"""Setting of each stopping criterion."""
 
 
 class CoarseningPanel(QWidget):
     """Edits the choices of the coarsening, apart from the weights of its loss."""
 
-    FIELDS = (
-        *("stop_at", "n_facets", "n_triangles", "n_vertices", "largest_error"),
-        *("target", "method", "settings", "seed"),
-    )
+    FIELDS = (*AMOUNTS.values(), "stop_at", "target", "method", "settings", "seed")
     valueChanged = Signal(dict)  # noqa: N815
     editingFinished = Signal()  # noqa: N815
     searchRequested = Signal()  # noqa: N815
@@ -92,22 +50,18 @@ class CoarseningPanel(QWidget):
         self._sufficient = 0
         self.enough = QPushButton()
         self.enough.setObjectName("sufficient_facets")
-        self.stop_at = ChoiceBox("stop_at", tr("Stopping criterion"), STOPS)
-        self.stop_at.setToolTip(self.stop_at.accessibleName())
-        self.stop_at.setMinimumContentsLength(max(len(tr(label)) for label in STOPS.values()))
-        self.n_facets = _amount(FACETS, "n_facets")
-        self.n_triangles = _amount(TRIANGLES, "n_triangles")
-        self.largest_error = _amount(ERROR, "largest_error")
-        self.n_vertices = _amount(VERTICES, "n_vertices")
-        self._amounts = {
-            "facets": self.n_facets,
-            "triangles": self.n_triangles,
-            "vertices": self.n_vertices,
-            "error": self.largest_error,
+        methods = {"method": {key: method.label for key, method in METHODS.items()}}
+        names = ("method", "target", "seed", "stop_at")
+        self._form = SettingsForm(CoarseningSettings, methods, names, "")
+        self._sizes = SettingsForm(CoarseningSettings, None, AMOUNTS.values(), "")
+        self.method: ChoiceBox = self._form.editors["method"]
+        self.target: ChoiceBox = self._form.editors["target"]
+        self.stop_at: ChoiceBox = self._form.editors["stop_at"]
+        self.seed: QSpinBox = self._form.editors["seed"]
+        self.n_facets: NumberSlider = self._sizes.editors["n_facets"]
+        self._amounts: dict[str, NumberSlider] = {
+            key: self._sizes.editors[name] for key, name in AMOUNTS.items()
         }
-        self.target = ChoiceBox("target", tr("Target of the coarsening"), TARGET_LABELS)
-        self.method = ChoiceBox("method", tr("Coarsening method"), {k: m.label for k, m in METHODS.items()})
-        self.seed = _seed_field()
         self.dice = QToolButton()
         self.dice.setObjectName("next_seed")
         self.dice.setToolTip(tr("Next seed: the same method with other random numbers"))
@@ -130,31 +84,14 @@ class CoarseningPanel(QWidget):
     def value(self) -> dict[str, Any]:
         """The edited choices."""
         form = self._forms.get(self.method.value())
-        settings = form.value() if form else {}
-        return {
-            "stop_at": self.stop_at.value(),
-            "n_facets": int(self.n_facets.value()),
-            "n_triangles": int(self.n_triangles.value()),
-            "n_vertices": int(self.n_vertices.value()),
-            "largest_error": _share(self.largest_error.value()),
-            "target": self.target.value(),
-            "method": self.method.value(),
-            "settings": tuple(sorted(settings.items())),
-            "seed": self.seed.value(),
-        }
+        settings = tuple(sorted(form.value().items())) if form else ()
+        return self._form.values() | self._sizes.values() | {"settings": settings}
 
     def setValue(self, value: Mapping[str, Any]) -> None:
         """Show other choices without emitting a signal."""
-        self.stop_at.setValue(value["stop_at"])
-        self.n_facets.setValue(value["n_facets"])
-        self.n_triangles.setValue(value["n_triangles"])
-        self.n_vertices.setValue(value["n_vertices"])
-        self.largest_error.setValue(100.0 * value["largest_error"])
+        self._form.setValue(value)
+        self._sizes.setValue(value)
         self._show_amount()
-        self.target.setValue(value["target"])
-        self.method.setValue(value["method"])
-        with QSignalBlocker(self.seed):
-            self.seed.setValue(value["seed"])
         self._show_settings()
         if form := self._forms.get(value["method"]):
             form.setValue(dict(value["settings"]))
@@ -209,49 +146,43 @@ class CoarseningPanel(QWidget):
 
     def _wrap_rows(self) -> None:
         """Wrap the rows of the form where combo boxes would elide their labels."""
-        labels = [self._form.labelForField(box) for box in (self.method, self.target)]
-        beside = max(label.sizeHint().width() for label in labels) + self._form.horizontalSpacing()
-        narrow = self.width() < beside + max(box.whole_width() for box in (self.method, self.target))
+        rows, boxes = self._form.rows, (self.method, self.target)
+        beside = max(rows.labelForField(box).sizeHint().width() for box in boxes) + rows.horizontalSpacing()
+        narrow = self.width() < beside + max(box.whole_width() for box in boxes)
         wrap = QFormLayout.RowWrapPolicy
-        self._form.setRowWrapPolicy(wrap.WrapAllRows if narrow else wrap.DontWrapRows)
+        rows.setRowWrapPolicy(wrap.WrapAllRows if narrow else wrap.DontWrapRows)
 
     def _arrange(self) -> None:
-        amount = QHBoxLayout()
-        for slider in self._amounts.values():
-            amount.addWidget(slider, 1)
+        row = self._form.rows.getWidgetPosition(self.seed)[0]  # type: ignore[index]  # a pair, says Qt
         seed = QHBoxLayout()
         seed.addWidget(self.seed, 1)
         seed.addWidget(self.dice)
-        form = self._form = QFormLayout()
-        form.setContentsMargins(0, 0, 0, 0)
-        form.addRow(tr("Method"), self.method)
-        form.addRow(tr("Target"), self.target)
-        form.addRow(tr("Seed"), seed)
-        form.addRow(tr("Stop at"), self.stop_at)
+        self._form.rows.setLayout(row, QFormLayout.ItemRole.FieldRole, seed)
+        for slider in self._amounts.values():  # the stopping criterion above is their label
+            self._sizes.rows.labelForField(slider).hide()
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(heading(tr("Coarsened polyhedron")))
-        layout.addLayout(form)
-        layout.addLayout(amount)
+        layout.addWidget(self._form)
+        layout.addWidget(self._sizes)
         layout.addWidget(self.enough)
         layout.addWidget(self.more)
         layout.addWidget(FixedHeightText((self.outcome,)))
 
     def _connect(self) -> None:
-        self.n_facets.valueChanged.connect(lambda n: self.valueChanged.emit({"n_facets": int(n)}))
-        self.n_triangles.valueChanged.connect(lambda n: self.valueChanged.emit({"n_triangles": int(n)}))
-        self.n_vertices.valueChanged.connect(lambda n: self.valueChanged.emit({"n_vertices": int(n)}))
-        self.largest_error.valueChanged.connect(
-            lambda percent: self.valueChanged.emit({"largest_error": _share(percent)})
-        )
-        for slider in self._amounts.values():
-            slider.editingFinished.connect(self.editingFinished)
-        self.stop_at.activated.connect(self._change_stop)
+        for form in (self._form, self._sizes):
+            form.edited.connect(self._change)
+            form.editingFinished.connect(self.editingFinished)
         self.enough.clicked.connect(self._take_or_search)
-        self.target.activated.connect(lambda _: self._announce("target"))
-        self.method.activated.connect(self._change_method)
-        self.seed.valueChanged.connect(lambda _: self._announce("seed"))
-        self.dice.clicked.connect(lambda: self.seed.setValue((self.seed.value() + 1) % SEED_LIMIT))
+        self.dice.clicked.connect(lambda: self.seed.setValue((self.seed.value() + 1) % LARGEST_NUMBER))
+
+    def _change(self, changes: dict[str, Any]) -> None:
+        if "stop_at" in changes:
+            self._show_amount()
+        if "method" in changes:
+            self._show_settings()
+            changes["settings"] = self.value()["settings"]
+        self.valueChanged.emit(changes)
 
     def _announce(self, *names: str) -> None:
         now = self.value()
@@ -265,18 +196,10 @@ class CoarseningPanel(QWidget):
         self.n_facets.setValue(self._sufficient)
         self._announce("n_facets")
 
-    def _change_stop(self) -> None:
-        self._show_amount()
-        self._announce("stop_at")
-
     def _show_amount(self) -> None:
         for key, slider in self._amounts.items():
             slider.setVisible(key == self.stop_at.value())
         self.enough.setVisible(self.stop_at.value() == "facets")
-
-    def _change_method(self) -> None:
-        self._show_settings()
-        self._announce("method", "settings")
 
     def _show_settings(self) -> None:
         key = self.method.value()
@@ -290,25 +213,3 @@ class CoarseningPanel(QWidget):
         self.more.setEnabled(settable)
         if not settable:
             self.more.set_open(False)
-
-
-def _amount(spec: NumberSpec, name: str) -> NumberSlider:
-    slider = NumberSlider(spec)
-    slider.slider.setObjectName(f"{name}_slider")
-    slider.field.setObjectName(name)
-    return slider
-
-
-def _share(percent: float) -> float:
-    """A percentage as a fraction, rounded so that it has a short decimal form."""
-    return round(percent / 100.0, 9)
-
-
-def _seed_field() -> QSpinBox:
-    field = QSpinBox()
-    field.setObjectName("seed")
-    field.setAccessibleName(tr("Seed"))
-    field.setToolTip(tr("Seed of the random numbers: the same seed gives the same polyhedron."))
-    field.setRange(0, SEED_LIMIT)
-    field.setKeyboardTracking(False)
-    return field

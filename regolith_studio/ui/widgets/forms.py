@@ -2,6 +2,7 @@
 
 import dataclasses
 from collections.abc import Collection, Mapping
+from functools import partial
 from typing import Any
 
 from PySide6.QtCore import QSignalBlocker, Signal
@@ -46,6 +47,8 @@ class SettingsForm(QWidget):
     """
 
     valueChanged = Signal(dict)  # noqa: N815
+    edited = Signal(dict)
+    """The one setting that has been changed, by its name."""
     editingFinished = Signal()  # noqa: N815
 
     def __init__(
@@ -89,8 +92,8 @@ class SettingsForm(QWidget):
     def _add_row(self, each: "dataclasses.Field[Any]", editor: QWidget) -> None:
         words = tr(str(each.metadata.get("label", each.name.replace("_", " ").capitalize())))
         self.editors[each.name] = editor
-        _signal(editor).connect(lambda *_: self.valueChanged.emit(SettingsForm.value(self)))
-        if isinstance(editor, NumberSlider):
+        _signal(editor).connect(partial(self._announce, each.name))
+        if isinstance(editor, NumberSlider):  # others change in one step
             editor.editingFinished.connect(self.editingFinished)
         if isinstance(editor, QCheckBox):
             editor.setText(words)
@@ -100,6 +103,12 @@ class SettingsForm(QWidget):
             label.setBuddy(editor)
             label.setToolTip(editor.toolTip())
             self.rows.addRow(label, editor)
+
+    def _announce(self, name: str, *_: object) -> None:
+        self.valueChanged.emit(SettingsForm.value(self))
+        self.edited.emit({name: self._read(name)})
+        if not isinstance(self.editors[name], NumberSlider):
+            self.editingFinished.emit()
 
     def _default(self, name: str) -> Any:
         return self._settings[name].default

@@ -2,17 +2,15 @@
 
 from collections.abc import Mapping
 from dataclasses import fields
-from functools import partial
 from typing import Any
 
 from PySide6.QtCore import QEvent, Signal
-from PySide6.QtWidgets import QFormLayout, QGridLayout, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QGridLayout, QVBoxLayout, QWidget
 
 from regolith_studio.coarsening.weights import JACCARD, WEIGHT_KEYS, LossWeights, Preset, presets
 from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.errors import InputError
-from regolith_studio.harmonics.fit_options import FitOptions
-from regolith_studio.jobs.particle_jobs import FIT_DEGREE
+from regolith_studio.harmonics.fit_options import FitOptions, FitSurfaceSettings
 from regolith_studio.messages import N_
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.preferences import UserPresets
@@ -20,23 +18,13 @@ from regolith_studio.session.results import Results
 from regolith_studio.session.verdict import PolyhedronVerdict, polyhedron_verdict
 from regolith_studio.ui.layout import Collapsible
 from regolith_studio.ui.translation import number_text, tr, translate
-from regolith_studio.ui.widgets.combo_box import ChoiceBox
 from regolith_studio.ui.widgets.fixed_height_text import FixedHeightText
+from regolith_studio.ui.widgets.forms import SettingsForm
 from regolith_studio.ui.widgets.labels import heading, remark, rich_symbol, with_subscripts
 from regolith_studio.ui.widgets.numbers import NumberSlider, NumberSpec, align_labels
 from regolith_studio.ui.widgets.presets import PresetBar, PresetEntry
 from regolith_studio.ui.widgets.result_view import ResultRecord, ResultState, ResultView
 from regolith_studio.ui.widgets.table import definition
-
-L_MAX = NumberSpec(
-    "l<sub>max</sub>",
-    N_("Maximum degree"),
-    0,
-    FIT_DEGREE,
-    tip=N_(
-        "Degree at which the series is truncated: 0 is a sphere, 10 keeps the form, 30 nearly all details."
-    ),
-)
 
 
 class FitPanel(QWidget):
@@ -49,14 +37,12 @@ class FitPanel(QWidget):
     def __init__(self) -> None:
         super().__init__()
         self.setObjectName("fit")
-        self.l_max = NumberSlider(L_MAX)
-        self.l_max.slider.setObjectName("l_max_slider")
-        self.l_max.field.setObjectName("l_max")
-        self.ways = {
-            each.name: ChoiceBox(each.name, tr(each.metadata["label"]), each.metadata["choices"])
-            for each in fields(FitOptions)
-        }
-        self.more = Collapsible(tr("Radius function"), self._form())
+        self._degree = SettingsForm(FitSurfaceSettings, None, ("l_max",), "")
+        self._ways = SettingsForm(FitOptions, prefix="")
+        self.l_max: NumberSlider = self._degree.editors["l_max"]
+        self.ways = self._ways.editors
+        self._ways.rows.setContentsMargins(14, 0, 0, 0)
+        self.more = Collapsible(tr("Radius function"), self._ways)
         self.more.button.setObjectName("radius_settings")
         self.findings = remark()
         self.warnings = remark(role="warning")
@@ -64,24 +50,24 @@ class FitPanel(QWidget):
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(heading(tr("Spherical-harmonics fit")))
         for widget in (
-            self.l_max,
+            self._degree,
             self.more,
             FixedHeightText((self.warnings, self.findings)),
         ):
             layout.addWidget(widget)
         self.set_findings(None)
-        self.l_max.valueChanged.connect(lambda degree: self.valueChanged.emit({"l_max": int(degree)}))
-        self.l_max.editingFinished.connect(self.editingFinished)
+        for form in (self._degree, self._ways):
+            form.edited.connect(self.valueChanged)
+            form.editingFinished.connect(self.editingFinished)
 
     def value(self) -> dict[str, Any]:
         """The edited choices."""
-        return {"l_max": int(self.l_max.value()), **{name: box.value() for name, box in self.ways.items()}}
+        return self._degree.values() | self._ways.values()
 
     def setValue(self, value: Mapping[str, Any]) -> None:
         """Show other choices."""
-        self.l_max.setValue(value["l_max"])
-        for name, box in self.ways.items():
-            box.setValue(value[name])
+        self._degree.setValue(value)
+        self._ways.setValue(value)
 
     def set_findings(self, fit: Any | None, check: str = "") -> None:
         """Show what the radius function of a ``HarmonicFit`` cannot represent, and what a check found."""
@@ -105,20 +91,6 @@ class FitPanel(QWidget):
             )
         self.warnings.setText(with_subscripts(" ".join(map(translate, warnings))))
         self.warnings.setVisible(bool(warnings))
-
-    def _form(self) -> QWidget:
-        form = QFormLayout(content := QWidget())
-        form.setContentsMargins(14, 0, 0, 0)
-        for each in fields(FitOptions):
-            box = self.ways[each.name]
-            box.setToolTip(tr(each.metadata["tip"]))
-            box.activated.connect(partial(self._announce, each.name))
-            form.addRow(tr(each.metadata["label"]), box)
-        return content
-
-    def _announce(self, name: str, _index: int) -> None:
-        self.valueChanged.emit({name: self.ways[name].value()})
-        self.editingFinished.emit()
 
 
 OWN = "own:"

@@ -14,6 +14,7 @@ from PySide6.QtWidgets import QFileDialog, QHBoxLayout, QWidget
 from regolith_studio.errors import InputError, RegolithError
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
+from regolith_studio.harmonics.fit_options import FIT_DEGREE
 from regolith_studio.jobs.events import Job
 from regolith_studio.jobs.model_evaluation import compare_distributions, evaluate_models
 from regolith_studio.jobs.model_jobs import (
@@ -27,7 +28,6 @@ from regolith_studio.jobs.model_jobs import (
     make_card,
     make_particles,
 )
-from regolith_studio.jobs.particle_jobs import FIT_DEGREE
 from regolith_studio.messages import N_, Message
 from regolith_studio.readers.shape_files import ShapeSource, read_shape_source
 from regolith_studio.session.provenance import VirtualSource

@@ -1,0 +1,21 @@
+"""Settings of reading meshes: the unit of files without one, and repair."""
+
+from dataclasses import dataclass
+
+from regolith_studio.messages import N_
+from regolith_studio.settings import setting
+
+
+@dataclass(frozen=True)
+class ReadingSettings:
+    """How meshes are read."""
+
+    unit: str = setting(
+        "um",
+        N_("Unit"),
+        N_("Length unit of files without one: um, mm, m, nm, cm or voxel:SIZE."),
+        metavar="U",
+    )
+    repair: bool = setting(
+        True, N_("Repair meshes"), N_("Repair defects of the meshes and report the repairs.")
+    )
