@@ -71,6 +71,7 @@ def test_that_the_package_itself_imports_nothing_heavy() -> None:
     assert not {"numpy", "PySide6", "pyvista", "typer"} & set(result.stdout.split())
 
 
+@pytest.mark.slow
 def test_that_lines_of_help_are_wrapped_and_not_cut() -> None:
     for group in ((), ("study",), ("dataset",), ("repose",)):
         result = start(*group, "--help").stdout
@@ -144,6 +145,7 @@ def test_that_a_name_that_the_terminal_cannot_show_is_no_error(grains: Path, tmp
 
 
 @pytest.mark.skipif(os.name == "nt", reason="signals are a matter of POSIX")
+@pytest.mark.slow
 def test_that_a_signal_while_modules_are_loaded_is_no_traceback() -> None:
     code = (
         "import os, signal, sys\n"
@@ -162,6 +164,7 @@ def test_that_a_signal_while_modules_are_loaded_is_no_traceback() -> None:
 
 @pytest.mark.skipif(os.name == "nt", reason="Windows has no SIGTERM")
 @pytest.mark.parametrize(("name", "code"), [("SIGTERM", 143), ("SIGINT", 130)])
+@pytest.mark.slow
 def test_that_a_signal_in_a_callback_of_a_library_is_not_lost(name: str, code: int) -> None:
     question = (
         "import ctypes, os, signal, sys, time\n"

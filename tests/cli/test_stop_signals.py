@@ -105,6 +105,7 @@ def test_that_a_command_that_waits_for_something_ends_two_seconds_after_a_signal
 
 
 @pytest.mark.skipif(os.name == "nt", reason="signals are a matter of POSIX")
+@pytest.mark.slow
 def test_that_a_second_signal_does_not_disturb_the_tidying_up(tmp_path: Path) -> None:
     code = (
         "import os, signal, sys, time\n"
@@ -260,6 +261,7 @@ def test_that_an_interruption_that_a_library_swallows_is_no_failed_particle(
 
 
 @pytest.mark.skipif(os.name == "nt", reason="signals are a matter of POSIX")
+@pytest.mark.slow
 def test_that_an_interruption_is_no_mistake_of_a_library_and_leaves_no_lock(tmp_path: Path) -> None:
     """Matplotlib makes a ValueError of one; one that came while leftovers were looked for left the lock."""
     code = (

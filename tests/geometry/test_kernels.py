@@ -84,8 +84,7 @@ def test_that_compiled_code_does_not_survive_an_edit_of_a_kernel_that_it_calls(p
     assert doubled("part") == 2000
 
 
-@pytest.mark.parametrize("kept", [0.0, 0.5, 0.99])
-@pytest.mark.parametrize("kind", ["nbi", "nbc"])
+@pytest.mark.parametrize(("kind", "kept"), [("nbi", 0.0), ("nbi", 0.5), ("nbc", 0.99)])
 @pytest.mark.usefixtures("package")
 def test_that_damaged_compiled_code_is_made_again_with_one_line(
     kind: str, kept: float, cache_below: Path, caplog: pytest.LogCaptureFixture
@@ -271,6 +270,7 @@ for _ in range(10):
 
 
 @pytest.mark.skipif(not hasattr(signal, "setitimer"), reason="this system has no such signal")
+@pytest.mark.slow
 def test_that_a_signal_during_a_kernel_raises_where_it_was_called() -> None:
     command = [sys.executable, "-c", INTERRUPTED]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=200)

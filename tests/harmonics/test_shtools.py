@@ -47,6 +47,7 @@ def test_that_four_threads_get_what_one_gets_and_nothing_crashes() -> None:
     subprocess.run([sys.executable, "-c", THREADS], check=True, timeout=120)
 
 
+@pytest.mark.slow
 def test_that_only_the_fortran_is_loaded_and_the_package_can_still_be_imported() -> None:
     subprocess.run([sys.executable, "-W", "ignore", "-c", ALONE], check=True, timeout=120)
 

@@ -47,6 +47,7 @@ def test_that_a_batch_answers_in_the_order_of_the_questions(workers: int) -> Non
     assert again == [1, 2, 3]
 
 
+@pytest.mark.slow
 def test_that_a_script_without_a_guarded_part_ends_with_a_sentence(tmp_path: Path) -> None:
     script = tmp_path / "unguarded.py"
     script.write_text(
@@ -194,6 +195,7 @@ def test_that_what_cannot_be_sent_or_answered_fails_with_a_sentence(pool: Proces
 
 
 @pytest.mark.skipif(os.name == "nt", reason="memory is told by POSIX systems")
+@pytest.mark.slow
 def test_that_a_process_that_holds_too_much_memory_is_replaced() -> None:
     runner = ProcessPoolRunner(1, memory=200 * 2**20)
     try:
@@ -209,6 +211,7 @@ def test_that_a_process_that_holds_too_much_memory_is_replaced() -> None:
 
 
 @pytest.mark.skipif(os.name == "nt", reason="signals are a matter of POSIX")
+@pytest.mark.slow
 def test_that_a_process_killed_from_outside_is_replaced_and_its_job_done(tmp_path: Path) -> None:
     runner = ProcessPoolRunner(2)
     received: list[Event] = []
@@ -260,6 +263,7 @@ def test_that_a_listener_that_stumbles_does_not_stop_the_pool(
         time.sleep(0.01)
 
 
+@pytest.mark.slow
 def test_that_a_process_that_cannot_start_is_a_sentence(monkeypatch: pytest.MonkeyPatch) -> None:
     runner = ProcessPoolRunner(1)
 
@@ -273,6 +277,7 @@ def test_that_a_process_that_cannot_start_is_a_sentence(monkeypatch: pytest.Monk
     assert "could not be started" in result.sentence
 
 
+@pytest.mark.slow
 def test_that_closing_waits_for_no_process_that_is_still_importing(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

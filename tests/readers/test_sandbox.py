@@ -219,6 +219,7 @@ def _wait_until_gone(pid):
         time.sleep(0.05)
 
 
+@pytest.mark.slow
 def test_that_the_child_imports_nothing_heavier_than_numpy():
     script = "import sys, regolith_studio.readers.sandbox.child; print(*sys.modules)"
     done = subprocess.run(
