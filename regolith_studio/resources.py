@@ -5,6 +5,8 @@ from pathlib import Path
 
 from regolith_studio.errors import MissingRequirement
 
+SAMPLE = "sample:all"
+"""Stands among inputs for the particles that ship with the program."""
 _PACKAGE = Path(__file__).resolve().parent
 
 

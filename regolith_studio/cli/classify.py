@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from regolith_studio.cli.dataclass_options import with_dataclass_options
+from regolith_studio.cli.dataclass_options import option_of, with_dataclass_options
 from regolith_studio.cli.options import Json, Seed, claim_json, claim_labels, output_path, usage_errors
 from regolith_studio.cli.terminal import CommandGroup, print_json, run_with_progress
 from regolith_studio.cli.volume_options import GrainOptions, VolumeOptions
@@ -24,8 +24,7 @@ ClassifierFile = Annotated[
     Path, typer.Argument(metavar="CLASSIFIER", help="File of `classify train` or of the window.")
 ]
 Scan = Annotated[Path, typer.Argument(metavar="SCAN", help="Volume of grey values.")]
-_OUTSIDE = RegionSettings.__dataclass_fields__["outside"].metadata
-Outside = Annotated[str, typer.Option("--outside", help=_OUTSIDE["tip"], metavar=_OUTSIDE["metavar"])]
+Outside = Annotated[str, option_of(RegionSettings, "outside")]
 
 
 @app.command("train")

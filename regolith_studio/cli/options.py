@@ -14,6 +14,7 @@ from regolith_studio.coarsening.settings import DEFAULT_PRESET, CoarseningSettin
 from regolith_studio.errors import FileError, InputError
 from regolith_studio.harmonics.fit_options import FitOptions, FitSurfaceSettings
 from regolith_studio.io.output_lock import output_lock
+from regolith_studio.resources import SAMPLE, resource
 from regolith_studio.settings import setting_of
 
 if TYPE_CHECKING:
@@ -21,8 +22,18 @@ if TYPE_CHECKING:
     from regolith_studio.session.choices import Choices
 
 
+def mesh_path(text: str) -> Path:
+    """The path of a mesh or a folder of meshes; ``sample:all`` is that of the shipped ones."""
+    return resource("samples", "particles") if text == SAMPLE else Path(text)
+
+
 Meshes = Annotated[
-    list[Path], typer.Argument(metavar="MESH...", help="Mesh files, or folders that hold some.")
+    list[Path],
+    typer.Argument(
+        metavar="MESH...",
+        help="Mesh files, or folders that hold some; sample:all for the shipped ones.",
+        parser=mesh_path,
+    ),
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print JSON instead of a table.")]
 Seed = Annotated[int, option_of(CoarseningSettings, "seed")]

@@ -4,8 +4,8 @@ import shlex
 from dataclasses import asdict
 
 from regolith_studio.harmonics.fit_options import FitOptions
+from regolith_studio.resources import SAMPLE
 from regolith_studio.session.choices import Choices
-from regolith_studio.session.recipe import SAMPLE
 
 
 def as_command(choices: Choices, inputs: list[str]) -> str:

@@ -14,6 +14,7 @@ from regolith_studio.io.atomic import write_files
 from regolith_studio.io.file_names import unique_name
 from regolith_studio.io.json_text import parse_strict_json
 from regolith_studio.readers.file_bytes import read_bytes
+from regolith_studio.resources import SAMPLE
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.provenance import (
     FileSource,
@@ -25,7 +26,6 @@ from regolith_studio.session.provenance import (
 )
 from regolith_studio.session.recipe import (
     LARGEST,
-    SAMPLE,
     DatasetRequest,
     FilesEntry,
     NamedParticle,

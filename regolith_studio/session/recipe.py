@@ -15,6 +15,7 @@ from regolith_studio.harmonics.fit_options import FIT_DEGREE, LEVEL_LIMITS, MAX_
 from regolith_studio.io.json_text import parse_strict_json
 from regolith_studio.readers.coefficient_tables import TableConvention
 from regolith_studio.readers.file_bytes import read_bytes
+from regolith_studio.resources import SAMPLE
 from regolith_studio.session.choices import Choices, Scalar
 from regolith_studio.settings import settings_of_kind
 
@@ -24,8 +25,6 @@ LARGEST = 16_000_000
 """Bytes of a recipe or project that are read: 100,000 inputs by name, and four seconds at the worst."""
 MAX_ENTRIES = 100_000
 """Of a list of inputs or particles."""
-SAMPLE = "sample:all"
-"""Stands among the inputs for the particles that ship with the program."""
 
 
 Pair = Annotated[list[float], Field(min_length=2, max_length=2)]

@@ -19,6 +19,7 @@ from regolith_studio.jobs.runners import Runner
 from regolith_studio.messages import N_
 from regolith_studio.readers.coefficient_tables import TableConvention, TableReading
 from regolith_studio.readers.particles import FileProblem, LoadedParticles, unique_names
+from regolith_studio.resources import SAMPLE
 from regolith_studio.session.choices import STUDIES, Choices, Kind, depends
 from regolith_studio.session.history import History
 from regolith_studio.session.provenance import (
@@ -31,7 +32,7 @@ from regolith_studio.session.provenance import (
     refs_of,
     restore_particles,
 )
-from regolith_studio.session.recipe import SAMPLE, DatasetRequest, Recipe
+from regolith_studio.session.recipe import DatasetRequest, Recipe
 from regolith_studio.session.recompute import LiveResults
 from regolith_studio.session.results import Failure, ParticleEntry, Results, SessionEvents
 from regolith_studio.session.study_requests import study_job

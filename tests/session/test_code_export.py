@@ -11,10 +11,10 @@ from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.io.stl import stl_bytes
 from regolith_studio.jobs.runners import InlineRunner
+from regolith_studio.resources import SAMPLE, resource
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.code_export import as_command, as_python
 from regolith_studio.session.project import Project, input_shown, inputs_of, read_project, without_file
-from regolith_studio.session.recipe import SAMPLE
 from regolith_studio.session.session import Session
 
 CHOICES = Choices(method="quadric", target="fit", level=2, l_max=4, n_facets=14, seed=3)
@@ -65,6 +65,17 @@ def test_that_the_copied_command_is_understood_and_coarsens(
     assert shown is not None
     (row,) = document["particles"] if isinstance(document, dict) else document
     assert row["errors"] == pytest.approx(dict(shown.errors), abs=1e-9)
+
+
+@pytest.mark.slow
+def test_that_the_command_that_is_copied_for_the_shipped_particles_coarsens_them(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    words = shlex.split(as_command(CHOICES.replaced(target="particle"), [SAMPLE]))
+    assert run(words[1:]) == 0
+    names = {path.name for path in (tmp_path / "coarsened").glob("*.stl")}
+    assert names == {path.name for path in resource("samples", "particles").glob("*.stl")}
 
 
 @pytest.mark.parametrize(

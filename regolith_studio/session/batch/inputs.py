@@ -27,6 +27,7 @@ from regolith_studio.readers.particles import (
     sample_particles,
 )
 from regolith_studio.readers.shape_files import read_shape_source
+from regolith_studio.resources import SAMPLE
 from regolith_studio.session.batch.preprocessing import (
     MODEL,
     PreparedInputs,
@@ -34,7 +35,7 @@ from regolith_studio.session.batch.preprocessing import (
     read_grain,
     read_index,
 )
-from regolith_studio.session.recipe import SAMPLE, NamedParticle, Population, Recipe
+from regolith_studio.session.recipe import NamedParticle, Population, Recipe
 from regolith_studio.shape_models.materials import materials
 from regolith_studio.shape_models.protocol import FittedModel
 from regolith_studio.shape_models.realizations import Realizations, virtual_mesh
