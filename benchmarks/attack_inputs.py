@@ -12,19 +12,23 @@ outside
 """
 
 import hashlib
+import io
 import json
 import os
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
 import zipfile
 from collections.abc import Iterator, Sequence
+from contextlib import redirect_stdout
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from regolith_studio.cli.entry import run
 from regolith_studio.resources import resource
 
 PATIENCE = 60.0
@@ -43,6 +47,8 @@ def cases(folder: Path) -> Iterator[Case]:
     """Kind and command of each case; the inputs are written to `folder`."""
     yield from _names(folder)
     yield from _documents(folder)
+    yield from _datasets(folder)
+    yield from _positions(folder)
     yield from _runs(folder)
 
 
@@ -74,6 +80,39 @@ def _documents(folder: Path) -> Iterator[Case]:
     yield "pipes", ["run", str(folder / "pipe.json"), "-o", "OUT"]
 
 
+def _datasets(folder: Path) -> Iterator[Case]:
+    """Datasets whose names and files lead elsewhere."""
+    mesh = str(resource("samples", "particles") / "bead-1.stl")
+    with redirect_stdout(io.StringIO()):
+        run(["dataset", "build", mesh, "-o", str(folder / "set"), "--method", "quadric", "--facets", "12"])
+    document = (folder / "set" / "dataset.json").read_text()
+    for key in ("name", "file"):
+        for number, name in enumerate(NAMES[:7]):
+            copy = folder / f"set-{key}-{number}"
+            shutil.copytree(folder / "set", copy)
+            changed = re.sub(
+                rf'"{key}": "[^"]*"', lambda _, key=key, name=name: f'"{key}": {json.dumps(name)}', document
+            )
+            (copy / "dataset.json").write_text(changed)
+            yield (
+                f"{key}s, dataset",
+                ["dataset", "export", str(copy), "--to", "half-spaces,gltf", "-o", "OUT"],
+            )
+
+
+def _positions(folder: Path) -> Iterator[Case]:
+    """Positions that are noise, cut off, or a pipe."""
+    random = np.random.default_rng(0)
+    table = "x,y,z,diameter\n" + "0.001,0.002,0.003,0.0004\n" * 50
+    for suffix in ("csv", "xyz", "txt", "vtk", "vtp", "vtu"):
+        for name, content in (("noise", random.bytes(3000)), ("cut", table.encode()[:-7]), ("none", b"")):
+            path = folder / f"{name}.{suffix}"
+            path.write_bytes(content)
+            yield "positions", ["repose", "measure", str(path), "-o", "OUT"]
+    os.mkfifo(folder / "heap.csv")
+    yield "pipes", ["repose", "measure", str(folder / "heap.csv"), "-o", "OUT"]
+
+
 def _runs(folder: Path) -> Iterator[Case]:
     state = {
         "points_m": np.zeros((3, 3)),
@@ -85,29 +124,29 @@ def _runs(folder: Path) -> Iterator[Case]:
         "phase": np.array("rest"),
     }
     for seed in range(8):
-        run = folder / f"run-{seed}"
-        (run / "snapshots").mkdir(parents=True)
-        (run / "repose.json").write_text('{"format": "regolith-studio-repose", "state": "finished"}')
-        np.savez_compressed(run / "final.npz", **state)  # type: ignore[arg-type]
-        np.savez_compressed(run / "shapes.npz", **{"shape_00000.part_00": np.eye(4, 3)})
+        place = folder / f"run-{seed}"
+        (place / "snapshots").mkdir(parents=True)
+        (place / "repose.json").write_text('{"format": "regolith-studio-repose", "state": "finished"}')
+        np.savez_compressed(place / "final.npz", **state)  # type: ignore[arg-type]
+        np.savez_compressed(place / "shapes.npz", **{"shape_00000.part_00": np.eye(4, 3)})
         random = np.random.default_rng(seed)
-        path = run / ("shapes.npz" if seed % 2 else "final.npz")
+        path = place / ("shapes.npz" if seed % 2 else "final.npz")
         content = np.frombuffer(path.read_bytes(), np.uint8).copy()
         content[random.integers(0, len(content), 4)] ^= np.uint8(85)
         path.write_bytes(content.tobytes()[: len(content) - 30 * (seed % 3)])
-        yield "damage", ["repose", "export", str(run), "-o", "OUT"]
+        yield "damage", ["repose", "export", str(place), "-o", "OUT"]
     with (
-        zipfile.ZipFile(run / "shapes.npz", "w", zipfile.ZIP_DEFLATED, compresslevel=1) as archive,
+        zipfile.ZipFile(place / "shapes.npz", "w", zipfile.ZIP_DEFLATED, compresslevel=1) as archive,
         archive.open("shape_00000.part_00.npy", "w", force_zip64=True) as stream,
     ):
         for _ in range(3000):
             stream.write(bytes(10**6))
-    np.savez_compressed(run / "final.npz", **state)  # type: ignore[arg-type]
-    yield "size", ["repose", "export", str(run), "-o", "OUT"]
+    np.savez_compressed(place / "final.npz", **state)  # type: ignore[arg-type]
+    yield "size", ["repose", "export", str(place), "-o", "OUT"]
     for name in ("shapes.npz", "final.npz", "repose.json"):
-        (run / name).unlink()
-        os.mkfifo(run / name)
-        yield "pipes", ["repose", "export", str(run), "-o", "OUT"]
+        (place / name).unlink()
+        os.mkfifo(place / name)
+        yield "pipes", ["repose", "export", str(place), "-o", "OUT"]
 
 
 def _recipe(path: Path, entries: dict[str, Any]) -> Path:
