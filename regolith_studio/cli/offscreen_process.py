@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from regolith_studio.errors import MissingRequirement
-from regolith_studio.jobs.runners.worker import end_with_parent, interrupts_blocked
+from regolith_studio.jobs.runners.process_pool import end_with_parent, interrupts_blocked
 
 if TYPE_CHECKING:
     from multiprocessing.connection import Connection

@@ -94,7 +94,7 @@ def describe(
 
     shared_sandbox().start_in_background()  # while this process still imports
     from regolith_studio.jobs.particle_jobs import measure_sample
-    from regolith_studio.session.outputs.descriptors import described, short_table
+    from regolith_studio.session.outputs.measurements import described, short_table
     from regolith_studio.session.results import ParticleEntry
 
     loaded = reading.read(meshes, l_max)
@@ -187,7 +187,7 @@ def fit(
     """Fit spherical harmonics to meshes; write coefficients and spectrum."""
     from regolith_studio.jobs.particle_jobs import FitRequest, fit_sample
     from regolith_studio.session.choices import Choices
-    from regolith_studio.session.outputs.fits import FittedSample, fits_document, write_fits
+    from regolith_studio.session.outputs.measurements import FittedSample, fits_document, write_fits
 
     with usage_errors():
         Choices(l_max=l_max, level=level)

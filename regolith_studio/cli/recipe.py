@@ -89,7 +89,7 @@ def demo(
     from regolith_studio.io.atomic import staged_folder, write_bytes
     from regolith_studio.jobs.events import Progress
     from regolith_studio.jobs.executor import open_executor
-    from regolith_studio.session.outputs import demo_page as page
+    from regolith_studio.session.outputs import summary as page
 
     problems: list[str] = []
     with staged_folder(output, "demo") as stage, open_executor(jobs) as executor:
@@ -102,13 +102,13 @@ def demo(
                 _draw_population(stage / page.SCAN / "fit.json", stage / page.POPULATION, executor, seed)
             run_with_progress(heap)
         problems = [each.replace(str(stage), str(output)) for each in problems]
-        write_bytes(stage / page.PAGE, page.demo_page(stage, problems).encode("utf-8"))
+        write_bytes(stage / page.DEMO_PAGE, page.demo_page(stage, problems).encode("utf-8"))
         files = sorted(path.relative_to(stage).as_posix() for path in stage.rglob("*") if path.is_file())
     print_errors(problems)
     if json:
         print_json({"folder": str(output), "files": files, "problems": problems})
     else:
-        typer.echo(f"{len(files)} files in {output}; begin with {output / page.PAGE}")
+        typer.echo(f"{len(files)} files in {output}; begin with {output / page.DEMO_PAGE}")
     raise typer.Exit(1 if problems else 0)
 
 
@@ -148,7 +148,7 @@ def _shipped_particles(folder: Path, executor: "Executor", seed: int, problems: 
 def _pictures(done: "RecipeRun") -> tuple[tuple[str, str], ...]:
     """The three views of the first particle."""
     from regolith_studio.jobs.coarsening_jobs import coarsen_particle
-    from regolith_studio.session.outputs.demo_page import VIEWS
+    from regolith_studio.session.outputs.summary import VIEWS
 
     index = done.tally.first_coarse
     if index is None:
@@ -197,7 +197,7 @@ def _heap(dataset: Path, folder: Path, seed: int, problems: list[str]) -> "Steps
     from regolith_studio.dem.engines.mujoco.settings import MujocoSettings
     from regolith_studio.dem.run_io import TIMES, read_shapes
     from regolith_studio.jobs.repose_jobs import ReposeRequest, repose_steps
-    from regolith_studio.session.outputs.demo_page import HEAP_PICTURE
+    from regolith_studio.session.outputs.summary import HEAP_PICTURE
 
     settings = MujocoSettings(time_step=0.04, iterations=15, rest_energy=1e-3)
     case = ReposeCase(n_particles=N_HEAP, seed=seed + 1)  # the heap of seed 0 has no angle

@@ -237,8 +237,7 @@ def run(
     from dataclasses import replace
 
     from regolith_studio.dataset.folder_io import dataset_hash, read_dataset
-    from regolith_studio.dem.case import prepare
-    from regolith_studio.dem.scaling_report import scaling_report
+    from regolith_studio.dem.case import prepare, scaling_report
     from regolith_studio.jobs.repose_jobs import simulate_prepared
     from regolith_studio.jobs.runners.process_pool import cores
 

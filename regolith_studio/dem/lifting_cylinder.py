@@ -13,8 +13,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from regolith_studio.dem.case import PreparedCase
-from regolith_studio.dem.engine import RunChecks, SimulationResult
-from regolith_studio.dem.run_checks import check_run, lowest_corners, measure_filling
+from regolith_studio.dem.engine import RunChecks, SimulationResult, check_run, lowest_corners, measure_filling
 from regolith_studio.dem.snapshot import PHASES, EngineState, ParticleState, Snapshot, progress_message
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.messages import N_

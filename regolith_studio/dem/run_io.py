@@ -14,11 +14,10 @@ import numpy as np
 
 from regolith_studio.dataset.parameters import ContactParameters, LiftingCylinderTest, missing_in_paper
 from regolith_studio.dem.angle_of_repose import ReposeMeasurement, measurement_document
-from regolith_studio.dem.case import PreparedCase, ReposeCase
+from regolith_studio.dem.case import PreparedCase, ReposeCase, scaling_report
 from regolith_studio.dem.engine import Engine, RunChecks, SimulationResult
 from regolith_studio.dem.evaluation.section import NotAPileError
 from regolith_studio.dem.heap_packing import HeapPacking, packing_document
-from regolith_studio.dem.scaling_report import scaling_report
 from regolith_studio.dem.snapshot import ParticleState, particle_state_bytes, read_particle_state
 from regolith_studio.errors import FileError, RegolithError, os_error_reason
 from regolith_studio.geometry.arrays import FloatArray

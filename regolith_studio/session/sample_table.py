@@ -14,7 +14,7 @@ from regolith_studio.io.tables import Column, Table
 from regolith_studio.jobs.model_jobs import is_origin
 from regolith_studio.jobs.particle_jobs import MeasuredParticle
 from regolith_studio.messages import N_
-from regolith_studio.session.outputs.descriptors import descriptor_table
+from regolith_studio.session.outputs.measurements import descriptor_table
 from regolith_studio.session.results import ParticleEntry
 
 QUANTILES = (0.1, 0.5, 0.9)

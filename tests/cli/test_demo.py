@@ -13,7 +13,7 @@ from regolith_studio.dataset.folder_io import read_dataset
 from regolith_studio.jobs.events import Progress, Started, Steps
 from regolith_studio.readers.particles import sample_particles
 from regolith_studio.session.batch import inputs
-from regolith_studio.session.outputs import demo_page
+from regolith_studio.session.outputs import summary
 
 EXPECTED = {
     "index.html",
@@ -100,7 +100,7 @@ def test_that_the_heap_is_simulated_during_the_other_steps_if_there_are_processe
     for step in ("_shipped_scan", "_shipped_particles", "_draw_population"):
         monkeypatch.setattr(recipe, step, lambda *_, name=step: done.append(name.rpartition("_")[2]))
     monkeypatch.setattr(recipe, "_heap", heap)
-    monkeypatch.setattr(demo_page, "demo_page", lambda *_: "")
+    monkeypatch.setattr(summary, "demo_page", lambda *_: "")
     assert command("demo", "-o", tmp_path / "demo", "--jobs", jobs).code == 0
     assert done == steps
 

@@ -13,8 +13,7 @@ from regolith_studio.dataset.parameters import (
     LiftingCylinderTest,
     missing_in_paper,
 )
-from regolith_studio.dem.case import ReposeCase, prepare
-from regolith_studio.dem.scaling_report import bond_number, rayleigh_time, scaling_report
+from regolith_studio.dem.case import ReposeCase, bond_number, prepare, rayleigh_time, scaling_report
 from regolith_studio.errors import InputError
 
 

@@ -17,13 +17,12 @@ from regolith_studio.dataset.multisphere import COUNTS
 from regolith_studio.dataset.parameters import ContactParameters, LiftingCylinderTest, ScriptTimes
 from regolith_studio.dataset.size_distributions import DiscreteSizeDistribution
 from regolith_studio.dem.angle_of_repose import NEIGHBOURHOOD
-from regolith_studio.dem.case import ReposeCase, prepare
+from regolith_studio.dem.case import ReposeCase, prepare, rayleigh_time, scaling_report
+from regolith_studio.dem.engine import DEEP_OVERLAP, MAX_DEEP_CONTACTS, MAX_OVERLAP
 from regolith_studio.dem.engines.lammps.program import LammpsSettings
 from regolith_studio.dem.engines.mujoco.simulation import MAX_MOVE, SMALLEST_SHARE
 from regolith_studio.dem.engines.yade.program import YadeSettings
 from regolith_studio.dem.evaluation.settings import MAX_CURVATURE, EvaluationSettings
-from regolith_studio.dem.run_checks import DEEP_OVERLAP, MAX_DEEP_CONTACTS, MAX_OVERLAP
-from regolith_studio.dem.scaling_report import rayleigh_time, scaling_report
 
 ROOT = Path(__file__).parents[2]
 REPOSE = "\n".join(path.read_text("utf-8") for path in sorted((ROOT / "docs").glob("repose*.md")))

@@ -8,7 +8,7 @@ from scipy.spatial.transform import Rotation
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.parameters import LiftingCylinderTest
 from regolith_studio.dem.case import PreparedCase, ReposeCase, prepare
-from regolith_studio.dem.run_checks import lowest_corners
+from regolith_studio.dem.engine import lowest_corners
 from regolith_studio.dem.separation import near_pairs, overlap_depths, separations
 from regolith_studio.dem.snapshot import ParticleState
 

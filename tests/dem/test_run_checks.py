@@ -5,7 +5,7 @@ import pytest
 
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dem.case import ReposeCase, prepare
-from regolith_studio.dem.run_checks import check_run, measure_filling
+from regolith_studio.dem.engine import check_run, measure_filling
 from regolith_studio.dem.snapshot import ParticleState
 
 SOUND = {

@@ -21,7 +21,7 @@ from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.harmonics.fit import fit_harmonics
 from regolith_studio.readers.shape_files import read_shape_source
-from regolith_studio.session.outputs.fits import FittedSample, write_fits
+from regolith_studio.session.outputs.measurements import FittedSample, write_fits
 from regolith_studio.session.project import Project, read_project
 from regolith_studio.session.recipe import Recipe, read_recipe
 from regolith_studio.shape_models.io import write_model

@@ -26,7 +26,7 @@ from regolith_studio.readers.coefficient_tables import read_coefficients
 from regolith_studio.readers.sandbox.tasks import read_number_rows
 from regolith_studio.readers.sandbox.volume_tasks import open_volume_file, read_checked_slices
 from regolith_studio.readers.shape_files import read_shape_source
-from regolith_studio.session.outputs.fits import FittedSample, write_fits
+from regolith_studio.session.outputs.measurements import FittedSample, write_fits
 from regolith_studio.session.project import Project, read_project
 from regolith_studio.session.recipe import Recipe, read_recipe
 from regolith_studio.shape_models.io import write_model

@@ -29,7 +29,7 @@ from regolith_studio.readers.particles import read_mesh, read_particles
 from regolith_studio.resources import resource
 from regolith_studio.session.batch.scan_groups import extract_groups, group_names
 from regolith_studio.session.outputs.coarsening import write_coarsening
-from regolith_studio.session.outputs.fits import FittedSample, write_fits
+from regolith_studio.session.outputs.measurements import FittedSample, write_fits
 from regolith_studio.session.outputs.particles import write_particle
 from regolith_studio.session.project import Project
 from regolith_studio.session.recipe import Recipe, recipe_of

@@ -24,7 +24,7 @@ from regolith_studio.jobs.runners import iterate_job
 from regolith_studio.messages import N_
 from regolith_studio.session.batch.inputs import BatchInput
 from regolith_studio.session.outputs.coarsening import STL_HEADER, coarsening_entry, meshes_of
-from regolith_studio.session.outputs.descriptors import described
+from regolith_studio.session.outputs.measurements import described
 
 MESH, SHAPE, COEFFICIENTS, CUT = "mesh.stl", "shape.stl", "coefficients.f8", "cut.f8"
 """Names of the byte strings of a record: polyhedron in place, polyhedron of the dataset, coefficients

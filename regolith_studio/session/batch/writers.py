@@ -34,8 +34,7 @@ from regolith_studio.jobs.executor import Executor
 from regolith_studio.jobs.representatives_jobs import RepresentativesRequest
 from regolith_studio.session.batch.particle_task import COEFFICIENTS, CUT, MESH, STAGES, shape_blob
 from regolith_studio.session.outputs.coarsening import document_head
-from regolith_studio.session.outputs.descriptors import table_columns, table_row
-from regolith_studio.session.outputs.fits import FittedSample, write_fits
+from regolith_studio.session.outputs.measurements import FittedSample, table_columns, table_row, write_fits
 from regolith_studio.session.recipe import Exports, Recipe, Representatives
 
 DATASET, EXPORTS = "dataset", "exports"

@@ -29,7 +29,7 @@ from regolith_studio.jobs.model_jobs import GenerationRequest, particle_names
 from regolith_studio.jobs.particle_jobs import MeasuredParticle
 from regolith_studio.messages import N_
 from regolith_studio.readers.shape_files import ShapeSource
-from regolith_studio.session.outputs.descriptors import described, descriptor_table
+from regolith_studio.session.outputs.measurements import described, descriptor_table
 from regolith_studio.shape_models.chunked_sampling import RejectionSampler
 from regolith_studio.shape_models.materials import MaterialCard
 from regolith_studio.shape_models.protocol import FittedModel

@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 
-from regolith_studio.dem.run_checks import check_run
+from regolith_studio.dem.engine import check_run
 from regolith_studio.dem.run_io import FORMAT, RunSummary, read_run, save_result
 from regolith_studio.dem.snapshot import Snapshot
 from regolith_studio.errors import JobCancelled

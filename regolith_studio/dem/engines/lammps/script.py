@@ -17,10 +17,9 @@ from regolith_studio.dataset.multisphere import (
     fit_spheres_within,
     sphere_fit_errors,
 )
-from regolith_studio.dem.case import PreparedCase
+from regolith_studio.dem.case import PreparedCase, rayleigh_time
 from regolith_studio.dem.engines.lammps.program import LammpsSettings
 from regolith_studio.dem.initial_packing import loose_column
-from regolith_studio.dem.scaling_report import rayleigh_time
 from regolith_studio.dem.snapshot import PHASES
 from regolith_studio.geometry.arrays import FloatArray, IntArray
 from regolith_studio.geometry.convex_compound import ConvexCompound, Polyhedron

@@ -11,7 +11,7 @@ from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
 from regolith_studio.dem.case import PreparedCase
-from regolith_studio.dem.engine import RunChecks, SimulationResult
+from regolith_studio.dem.engine import RunChecks, SimulationResult, check_run, measure_filling
 from regolith_studio.dem.engines.lammps.program import LammpsSettings, command
 from regolith_studio.dem.engines.lammps.script import (
     Clumps,
@@ -24,7 +24,6 @@ from regolith_studio.dem.engines.lammps.script import (
     stiffness,
 )
 from regolith_studio.dem.initial_packing import enclosing_radii
-from regolith_studio.dem.run_checks import check_run, measure_filling
 from regolith_studio.dem.snapshot import ParticleState, Snapshot, progress_message
 from regolith_studio.errors import RegolithError
 from regolith_studio.geometry.arrays import FloatArray, IntArray

@@ -9,7 +9,7 @@ from scipy.spatial import ConvexHull, HalfspaceIntersection
 from scipy.spatial.transform import Rotation
 
 from regolith_studio.dem.case import PreparedCase
-from regolith_studio.dem.engine import ENGINE_THREADS
+from regolith_studio.dem.engine import ENGINE_THREADS, lowest_corners
 from regolith_studio.dem.engines.rapier.settings import RapierSettings
 from regolith_studio.dem.initial_packing import enclosing_radii, loose_column
 from regolith_studio.dem.lifting_cylinder import (
@@ -19,7 +19,6 @@ from regolith_studio.dem.lifting_cylinder import (
     lift_speed,
     steps_note,
 )
-from regolith_studio.dem.run_checks import lowest_corners
 from regolith_studio.dem.separation import overlap_depths
 from regolith_studio.dem.snapshot import PHASES, ParticleState
 from regolith_studio.errors import InputError, RegolithError

@@ -18,11 +18,10 @@ from typing import Any
 import numpy as np
 
 from regolith_studio.dem.case import PreparedCase
-from regolith_studio.dem.engine import RunChecks, SimulationResult
+from regolith_studio.dem.engine import RunChecks, SimulationResult, check_run, lowest_corners, measure_filling
 from regolith_studio.dem.engines.yade.program import YadeSettings, command
 from regolith_studio.dem.initial_packing import enclosing_radii, loose_column
 from regolith_studio.dem.lifting_cylinder import expected_duration
-from regolith_studio.dem.run_checks import check_run, lowest_corners, measure_filling
 from regolith_studio.dem.separation import overlap_depths
 from regolith_studio.dem.snapshot import ParticleState, Snapshot, progress_message
 from regolith_studio.errors import RegolithError

@@ -12,7 +12,7 @@ from PySide6.QtWidgets import QFileDialog, QVBoxLayout
 
 from regolith_studio.dataset.parameters import LiftingCylinderTest
 from regolith_studio.dem.angle_of_repose import ReposeMeasurement
-from regolith_studio.dem.case import PreparedCase, with_number
+from regolith_studio.dem.case import PreparedCase, scaling_report, with_number
 from regolith_studio.dem.engines import engine_named
 from regolith_studio.dem.evaluation.section import NotAPileError
 from regolith_studio.dem.run_io import (
@@ -25,7 +25,6 @@ from regolith_studio.dem.run_io import (
     read_shapes,
     snapshot_files,
 )
-from regolith_studio.dem.scaling_report import scaling_report
 from regolith_studio.dem.snapshot import ParticleState, Snapshot
 from regolith_studio.errors import RegolithError
 from regolith_studio.geometry.arrays import FloatArray

@@ -20,7 +20,7 @@ from regolith_studio.jobs.classifier_jobs import SlicePrediction
 from regolith_studio.jobs.scan_jobs import Scan
 from regolith_studio.messages import N_
 from regolith_studio.scene.cameras import framing_pose
-from regolith_studio.scene.grains import show_grains
+from regolith_studio.scene.surfaces import show_grains
 from regolith_studio.ui.layout import equal_parts
 from regolith_studio.ui.pages.scan.slice_view import SliceView, colours_of_labels
 from regolith_studio.ui.pages.scan.tools import CLASS_COLOURS, Brush, BrushPanel
