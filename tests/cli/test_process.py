@@ -169,7 +169,6 @@ def test_that_a_signal_in_a_callback_of_a_library_is_not_lost(name: str, code: i
     question = (
         "import ctypes, os, signal, sys, time\n"
         "from regolith_studio import __main__ as program\n"
-        "from regolith_studio.cli import entry\n"
         "@ctypes.CFUNCTYPE(None)\n"
         "def callback():\n"
         f"    os.kill(os.getpid(), signal.{name})\n"
@@ -177,7 +176,7 @@ def test_that_a_signal_in_a_callback_of_a_library_is_not_lost(name: str, code: i
         "def run(words):\n"
         "    callback()\n"
         "    time.sleep(60)\n"
-        "entry.run, sys.argv = run, ['regolith-studio', 'fit']\n"
+        "program.run, sys.argv = run, ['regolith-studio', 'fit']\n"
         "program.main()\n"
     )
     done = subprocess.run(

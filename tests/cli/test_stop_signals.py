@@ -20,7 +20,6 @@ STUCK = """
 import subprocess, sys, threading, time
 from pathlib import Path
 from regolith_studio import __main__ as program
-from regolith_studio.cli import entry
 from regolith_studio.io.atomic import hidden_folder, staged_file
 from regolith_studio.jobs.events import Job
 from regolith_studio.jobs.executor import Executor
@@ -38,7 +37,7 @@ def run(words):
         (folder / "ready").touch()
         {waits}
 
-entry.run, sys.argv = run, ["regolith-studio", "fit"]
+program.run, sys.argv = run, ["regolith-studio", "fit"]
 program.main()
 """
 WAITS = {
@@ -111,7 +110,6 @@ def test_that_a_second_signal_does_not_disturb_the_tidying_up(tmp_path: Path) ->
         "import os, signal, sys, time\n"
         "from pathlib import Path\n"
         "from regolith_studio import __main__ as program\n"
-        "from regolith_studio.cli import entry\n"
         "def run(words):\n"
         "    try:\n"
         "        os.kill(os.getpid(), signal.SIGINT)\n"
@@ -120,7 +118,7 @@ def test_that_a_second_signal_does_not_disturb_the_tidying_up(tmp_path: Path) ->
         "        os.kill(os.getpid(), signal.SIGINT)\n"
         "        os.kill(os.getpid(), signal.SIGTERM)\n"
         "        Path(sys.argv[0]).touch()\n"
-        "entry.run, sys.argv = run, [sys.argv[1], 'fit']\n"
+        "program.run, sys.argv = run, [sys.argv[1], 'fit']\n"
         "program.main()\n"
     )
     done = subprocess.run(
@@ -205,13 +203,12 @@ def test_that_an_interruption_ends_the_window_whenever_it_comes(moment: str, cod
         "from PySide6.QtCore import QTimer\n"
         "from PySide6.QtWidgets import QApplication\n"
         "from regolith_studio import __main__ as program\n"
-        "from regolith_studio.cli import entry\n"
         "from regolith_studio.ui.startup import close_on_interrupt\n"
         "def run(words):\n"
         "    app = QApplication([])\n"
         f"    {moment}\n"
         "    return app.exec()\n"
-        "entry.run, sys.argv = run, ['regolith-studio']\n"
+        "program.run, sys.argv = run, ['regolith-studio']\n"
         "program.main()\n"
     )
     environment = {**os.environ, "QT_QPA_PLATFORM": "offscreen"}
@@ -268,7 +265,7 @@ def test_that_an_interruption_is_no_mistake_of_a_library_and_leaves_no_lock(tmp_
         "import os, signal, sys\n"
         "from pathlib import Path\n"
         "from regolith_studio import __main__ as program\n"
-        "from regolith_studio.cli import entry, commands\n"
+        "from regolith_studio.cli import commands\n"
         "from regolith_studio.io import output_lock\n"
         "def look(place):\n"
         "    os.kill(os.getpid(), signal.SIGTERM)\n"
