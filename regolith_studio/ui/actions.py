@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from functools import partial
 
 from PySide6.QtCore import QEvent, QObject, Qt, QTimer
-from PySide6.QtGui import QAction, QKeyEvent, QKeySequence, QResizeEvent
+from PySide6.QtGui import QAction, QKeyEvent, QKeySequence
 from PySide6.QtWidgets import (
     QDialog,
     QLineEdit,
@@ -229,41 +229,12 @@ STYLES = {
     "under": Qt.ToolButtonStyle.ToolButtonTextUnderIcon,
 }
 """How a button of the tool bar shows its words."""
-WORDS = "words"
-"""Property of an action: its key in :data:`STYLES`."""
 KINDS = (
     ("scan", "open_volume", N_("Open &volume …")),
     ("dataset", "open_dataset", N_("Open &dataset …")),
     ("repose", "open_positions", N_("&Measure positions …")),
 )
 """Page, command and text of what is opened on another page."""
-
-
-class ToolBar(QToolBar):
-    """A tool bar whose buttons give up their words where there is no room for all of them."""
-
-    def resizeEvent(self, event: QResizeEvent) -> None:
-        super().resizeEvent(event)
-        self.show_words()
-
-    def changeEvent(self, event: QEvent) -> None:
-        super().changeEvent(event)
-        if event.type() in (QEvent.Type.FontChange, QEvent.Type.StyleChange):
-            self.show_words()
-
-    def show_words(self) -> None:
-        """Write the words of the buttons where all of them fit, and show icons alone otherwise."""
-        buttons = [
-            (button, action.property(WORDS))
-            for action in self.actions()
-            if isinstance(button := self.widgetForAction(action), QToolButton) and action.property(WORDS)
-        ]
-        for button, words in buttons:
-            button.setToolButtonStyle(STYLES[words])
-        if self.sizeHint().width() > self.width():
-            for button, words in buttons:
-                if words == "under":
-                    button.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonIconOnly)
 
 
 STEPS = {"undo": N_("&Undo"), "redo": N_("&Redo")}
@@ -297,7 +268,7 @@ class Actions:
         self._icons: list[tuple[QAction, str]] = []
         self._of_page: dict[str, list[QAction]] = {key: [] for key in pages}
         self.by_name: dict[str, QAction] = {}
-        self.bar = ToolBar(tr("Tools"))
+        self.bar = QToolBar(tr("Tools"))
         self.bar.setObjectName("tool_bar")
         self.bar.setMovable(False)
         window.addToolBar(self.bar)
@@ -340,7 +311,6 @@ class Actions:
             for action in actions:
                 action.setVisible(owner == key)
                 action.setEnabled(owner == key)
-        self.bar.show_words()
         for title in (PAGE_MENU, N_("Look &from")):
             if menu := self._menus.get(title):
                 menu.menuAction().setVisible(any(each.isVisible() for each in menu.actions()))
@@ -414,7 +384,6 @@ class Actions:
         if isinstance(button, QToolButton):
             button.setAccessibleName(tr(row.tip) or plain(action))
             button.setToolButtonStyle(STYLES[row.bar])
-            action.setProperty(WORDS, row.bar)
 
     def _menu(self, title: str) -> QMenu:
         if title not in self._menus:

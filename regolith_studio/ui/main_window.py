@@ -19,7 +19,6 @@ from regolith_studio.ui.batch_runs import BatchRuns, ReportRuns
 from regolith_studio.ui.bindings import Bindings
 from regolith_studio.ui.commands import Commands
 from regolith_studio.ui.dialogs.help import CitationLinks, about_dialog, guide_dialog
-from regolith_studio.ui.layout import scale_borders
 from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.page_stack import PageStack
 from regolith_studio.ui.pages import PAGES
@@ -160,11 +159,10 @@ class MainWindow(QMainWindow):
             self.menus.recent.addAction(name, partial(self.commands.open_paths, [Path(name)]))
 
     def _apply_theme(self) -> None:
-        theme, before = current_theme(), QApplication.font().pointSizeF()
+        theme = current_theme()
         apply_theme(cast(QApplication, QApplication.instance()), theme, self, self.pages.scroll_areas)
         for part in (self.menus, self.pages, self.tasks):
             part.set_theme(theme)
-        scale_borders(self, before, QApplication.font().pointSizeF())
 
     def dragEnterEvent(self, event: QDragEnterEvent) -> None:
         if any(url.isLocalFile() for url in event.mimeData().urls()):

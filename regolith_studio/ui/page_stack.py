@@ -4,8 +4,8 @@ from collections.abc import Callable, Mapping
 from functools import partial
 from pathlib import Path
 
-from PySide6.QtCore import QEvent, QObject, QSize, Qt, Signal
-from PySide6.QtGui import QKeySequence, QResizeEvent
+from PySide6.QtCore import QSize, Qt, Signal
+from PySide6.QtGui import QKeySequence
 from PySide6.QtWidgets import (
     QAbstractItemView,
     QButtonGroup,
@@ -20,17 +20,13 @@ from PySide6.QtWidgets import (
 )
 
 from regolith_studio.ui.icons import icon
+from regolith_studio.ui.layout import scrolled
 from regolith_studio.ui.page import Page, PageContext, PageWidget
 from regolith_studio.ui.shortcuts import with_keys
 from regolith_studio.ui.theme import Theme, current_theme, ensure_polished, restyle
 from regolith_studio.ui.translation import tr
 
-_STYLES = (
-    (Qt.ToolButtonStyle.ToolButtonTextUnderIcon, 24),
-    (Qt.ToolButtonStyle.ToolButtonTextBesideIcon, 16),
-    (Qt.ToolButtonStyle.ToolButtonIconOnly, 18),
-)
-"""From the most room that the buttons can take to the least, with the size of their icons."""
+ICON_SIZE = QSize(24, 24)
 
 
 class Sidebar(QFrame):
@@ -53,15 +49,12 @@ class Sidebar(QFrame):
         self._column = QVBoxLayout(self)
         self._column.setContentsMargins(5, 8, 5, 8)
         self._column.setSpacing(3)
-        self._heights: tuple[int, ...] = ()
-        self._style, self._narrow, self._words_width = 0, False, 0
         self.buttons: dict[str, QToolButton] = {}
         for number, (key, page) in enumerate(pages.items(), start=1):
             button = self.buttons[key] = self._button(page, number)
             self._group.addButton(button)
             self._column.addWidget(button)
         self._column.addStretch(1)
-        self._choose(0)
 
     def set_current(self, key: str) -> None:
         """Check the button of a page; Tab comes to it alone, and the focus follows within the bar."""
@@ -72,77 +65,10 @@ class Sidebar(QFrame):
         if focused:
             self.buttons[key].setFocus(Qt.FocusReason.OtherFocusReason)
 
-    def width_with_words(self) -> int:
-        """Width that the bar needs for the words below the icons."""
-        self._needed()
-        return self._words_width
-
-    def set_narrow(self, narrow: bool) -> None:
-        """Show icons alone, whatever height there is."""
-        if narrow != self._narrow:
-            self._narrow = narrow
-            self._fit()
-
     def set_theme(self, theme: Theme) -> None:
         """Take the colours of a theme."""
         for key, page in self._pages.items():
             self.buttons[key].setIcon(icon(page.icon, theme.text, theme.muted))
-        self._measure_again()
-
-    def sizeHint(self) -> QSize:
-        return QSize(super().sizeHint().width(), self._needed()[0])
-
-    def minimumSizeHint(self) -> QSize:
-        return QSize(super().minimumSizeHint().width(), self._needed()[-1])
-
-    def resizeEvent(self, event: QResizeEvent) -> None:
-        super().resizeEvent(event)
-        self._fit()
-
-    def changeEvent(self, event: QEvent) -> None:
-        super().changeEvent(event)
-        if event.type() in (QEvent.Type.FontChange, QEvent.Type.StyleChange):
-            self._measure_again()
-
-    def _measure_again(self) -> None:
-        self._heights = ()
-        self.updateGeometry()
-        self._fit()
-
-    def _fit(self) -> None:
-        """The most roomy style that fits."""
-        if self._narrow:
-            self._choose(len(_STYLES) - 1)
-            return
-        fitting = (at for at, height in enumerate(self._needed()) if height <= self.height())
-        self._choose(next(fitting, len(_STYLES) - 1))
-
-    def _needed(self) -> tuple[int, ...]:
-        """Height of the buttons in each style."""
-        if not self._heights:
-            now, heights = self._style, []
-            for at in range(len(_STYLES)):
-                self._choose(at)
-                heights.append(self._height())
-            self._heights = tuple(heights)
-            self._choose(0)
-            margins = self._column.contentsMargins()
-            widest = max(button.sizeHint().width() for button in self.buttons.values())
-            self._words_width = widest + margins.left() + margins.right()
-            self._choose(now)
-        return self._heights
-
-    def _height(self) -> int:
-        margins, between = self._column.contentsMargins(), self._column.spacing()
-        inside = sum(button.sizeHint().height() + between for button in self.buttons.values())
-        return inside + margins.top() + margins.bottom()
-
-    def _choose(self, at: int) -> None:
-        style, size = _STYLES[at]
-        self._style = at
-        for button in self.buttons.values():
-            button.setToolButtonStyle(style)
-            button.setIconSize(QSize(size, size))
 
     def _button(self, page: Page, number: int) -> QToolButton:
         button = QToolButton()
@@ -151,6 +77,8 @@ class Sidebar(QFrame):
         button.setText(tr(page.title))
         button.setAccessibleName(tr("Page {title}", title=tr(page.title)))
         button.setToolTip(with_keys(tr(page.tip), QKeySequence(f"Alt+{number}")))
+        button.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextUnderIcon)
+        button.setIconSize(ICON_SIZE)
         button.setCheckable(True)
         button.setAutoRaise(True)
         button.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
@@ -165,15 +93,7 @@ MIN_SIZE = QSize(240, 160)
 
 
 class ScrollablePage(QScrollArea):
-    """A page with scroll bars where it needs more room than there is.
-
-    Attributes
-    ----------
-    laidOut
-        Emitted when the page may need another width.
-    """
-
-    laidOut = Signal()  # noqa: N815
+    """A page with scroll bars where it needs more room than there is."""
 
     def __init__(self, page: QWidget) -> None:
         super().__init__()
@@ -185,12 +105,6 @@ class ScrollablePage(QScrollArea):
 
     def minimumSizeHint(self) -> QSize:
         return MIN_SIZE
-
-    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
-        done = super().eventFilter(watched, event)
-        if event.type() == QEvent.Type.LayoutRequest:
-            self.laidOut.emit()
-        return done
 
 
 class PageStack(QWidget):
@@ -238,15 +152,10 @@ class PageStack(QWidget):
             self._current = key
             self._stack.setCurrentWidget(self._scroll_areas[key])
             self._bar.set_current(key)
-            self._fit_bar()
             self._contexts[key].bindings.resume()
             widget.on_show()
             self.changed.emit(key)
         return widget
-
-    def resizeEvent(self, event: QResizeEvent) -> None:
-        super().resizeEvent(event)
-        self._fit_bar()
 
     def open_in(self, key: str, path: Path) -> None:
         """Show a page and open a file there."""
@@ -295,18 +204,11 @@ class PageStack(QWidget):
         for view in widget.findChildren(QAbstractItemView):
             view.setTabKeyNavigation(False)  # Tab leaves a table; arrows move in it
         self._scroll_areas[key] = ScrollablePage(widget)
-        self._scroll_areas[key].laidOut.connect(self._fit_bar)
         self._stack.addWidget(self._scroll_areas[key])
         ensure_polished(widget)
         widget.set_theme(current_theme())
         self.widgets[key] = widget
         self.built.emit(key)
-
-    def _fit_bar(self) -> None:
-        """Let the bar give up its words where the page would be scrolled sideways beside them."""
-        if self._current:
-            needed = self.widgets[self._current].minimumSizeHint().width()
-            self._bar.set_narrow(needed + self._bar.width_with_words() > self.width())
 
     def _apply_theme(self, key: str) -> None:
         if key in self._unthemed:
@@ -323,5 +225,5 @@ class PageStack(QWidget):
         row = QHBoxLayout(self)
         row.setContentsMargins(0, 0, 0, 0)
         row.setSpacing(0)
-        row.addWidget(self._bar)
+        row.addWidget(scrolled(self._bar, whole_width=True))
         row.addWidget(self._stack, 1)

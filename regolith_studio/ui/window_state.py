@@ -8,7 +8,7 @@ from PySide6.QtCore import QByteArray, QSize
 from PySide6.QtWidgets import QMainWindow, QSplitter, QWidget
 
 from regolith_studio.session.preferences import Preferences
-from regolith_studio.ui.layout import Splitter
+from regolith_studio.ui.layout import STANDARD_SIZES
 
 LAYOUT = "layout"
 STANDARD_SIZE = (1480, 900)
@@ -42,23 +42,16 @@ class WindowState:
         """Put the borders in a page back where they were."""
         kept = self._kept()
         for splitter in root.findChildren(QSplitter):
-            sizes = kept.get(splitter.objectName())
-            if splitter.objectName() and isinstance(sizes, list) and len(sizes) == splitter.count():
-                splitter.setSizes([int(size) for size in sizes])
-                if isinstance(splitter, Splitter):
-                    splitter.moved = True
+            state = _bytes(kept.get(splitter.objectName())) if splitter.objectName() else None
+            if state is not None:
+                splitter.restoreState(state)
 
     def keep(self, window: QMainWindow) -> None:
         """Note down how everything stands now."""
-        kept: dict[str, Any] = self._kept()
-        kept["window"] = base64.b64encode(window.saveGeometry().data()).decode("ascii")
-        for splitter in window.findChildren(QSplitter):
-            name = splitter.objectName()
-            if isinstance(splitter, Splitter) and splitter.fit is not None and not splitter.moved:
-                kept.pop(name, None)
-            elif name and sum(splitter.sizes()):
-                kept[name] = splitter.sizes()
-        self._preferences.window = self._preferences.window | {LAYOUT: kept}
+        states = {each.objectName(): each.saveState() for each in window.findChildren(QSplitter)}
+        states = {name: state for name, state in states.items() if name} | {"window": window.saveGeometry()}
+        texts = {name: base64.b64encode(state.data()).decode("ascii") for name, state in states.items()}
+        self._preferences.window = self._preferences.window | {LAYOUT: self._kept() | texts}
 
     def restore_standard(self, window: QMainWindow) -> None:
         """Give window and borders the places of a new window, and forget others."""
@@ -66,10 +59,7 @@ class WindowState:
         window.showNormal()
         window.resize(QSize(*STANDARD_SIZE).boundedTo(room_on_screen(window)))
         for splitter in window.findChildren(QSplitter):
-            if isinstance(splitter, Splitter):
-                splitter.restore_standard()
-            else:
-                splitter.setSizes([EQUAL] * splitter.count())
+            splitter.setSizes(splitter.property(STANDARD_SIZES) or [EQUAL] * splitter.count())
 
     def _kept(self) -> dict[str, Any]:
         kept = self._preferences.window.get(LAYOUT)

@@ -1,15 +1,12 @@
 """A control never moves under the mouse because a text beside it has changed."""
 
 import pytest
-from PySide6.QtCore import QPoint, QRect, Qt
-from PySide6.QtTest import QTest
+from PySide6.QtCore import QPoint, QRect
 from PySide6.QtWidgets import (
     QAbstractButton,
     QAbstractSpinBox,
     QApplication,
     QComboBox,
-    QFrame,
-    QLabel,
     QLineEdit,
     QScrollBar,
     QSlider,
@@ -19,8 +16,6 @@ from regolith_studio.jobs.runners import InlineRunner
 from regolith_studio.session.choices import Choices, Kind
 from regolith_studio.session.session import Session
 from regolith_studio.ui.main_window import MainWindow
-from regolith_studio.ui.widgets.fixed_height_text import FixedHeightText
-from regolith_studio.ui.widgets.labels import remark
 
 KINDS = (QAbstractButton, QAbstractSpinBox, QComboBox, QLineEdit, QSlider)
 SECONDS = 170.0
@@ -35,34 +30,6 @@ def window(request, shown, preferences, settled):
     session.open_sample()
     settled(made, SECONDS)
     return made
-
-
-@pytest.mark.parametrize("width", [240, 320, 410])
-def test_that_no_word_of_a_long_text_is_below_the_button(shown, wait, width):
-    label = remark("Surfaces of measured particles on the forms of others: new particles, " * 3)
-    text = FixedHeightText((label,))
-    text.resize(width, 40)
-    shown(text)
-    assert text.more.isVisible()
-    wait(lambda: label.width() <= text.viewport().width(), 5.0)
-    label.setText("Short.")
-    wait(lambda: not text.more.isVisible() and label.width() >= width - 4, 5.0)
-
-
-def dark(widget):
-    """Number of dark pixels, which are those of letters."""
-    picture = widget.grab().toImage()
-    dots = ((x, y) for x in range(picture.width()) for y in range(picture.height()))
-    return sum(picture.pixelColor(*dot).lightness() < 100 for dot in dots)
-
-
-def test_that_the_dots_above_capital_letters_are_seen(shown):
-    alone = QLabel("ÄÖÜ")
-    alone.setMargin(8)
-    text = FixedHeightText((QLabel("ÄÖÜ"),))
-    text.setFrameShape(QFrame.Shape.NoFrame)
-    text.resize(alone.sizeHint().width(), text.sizeHint().height())
-    assert dark(shown(text)) == dark(shown(alone)) > 0
 
 
 def places(page):
@@ -201,30 +168,3 @@ def test_that_no_control_of_the_lecture_moves_with_its_sentences(window, watched
     settled(window, SECONDS)
     for step in (1, 2, 8):
         watched.does(f"degree {step}", page.degrees.playback.go, step)
-
-
-def test_that_a_long_note_is_two_lines_high_and_its_button_shows_all(shown, app):
-    label = QLabel("short")
-    label.setWordWrap(True)
-    texts = FixedHeightText((label,))
-    texts.resize(200, texts.sizeHint().height())
-    shown(texts)
-    assert not texts.more.isVisible()
-    usual = texts.sizeHint()
-    assert usual.height() // texts.line == 2
-    words = "a text of many words " * 12
-    label.setText(words)
-    for _ in range(3):
-        app.processEvents()
-    assert texts.sizeHint().height() == usual.height()
-    assert texts.more.focusPolicy() & Qt.FocusPolicy.TabFocus
-    assert texts.rect().contains(texts.more.geometry())
-    QTest.mouseClick(texts.more, Qt.MouseButton.LeftButton)
-    shown_texts = [each for each in QApplication.topLevelWidgets() if each.inherits("QWhatsThat")]
-    assert len(shown_texts) == 1
-    assert texts.whole_text() == words
-    shown_texts[0].close()
-    label.setText("short")
-    for _ in range(3):
-        app.processEvents()
-    assert not texts.more.isVisible()

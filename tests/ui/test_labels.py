@@ -10,7 +10,6 @@ from regolith_studio.session.session import Session
 from regolith_studio.ui.main_window import MainWindow
 from regolith_studio.ui.widgets.labels import (
     CITATION,
-    ElidedLabel,
     WrappedLabel,
     heading,
     with_citations,
@@ -84,16 +83,3 @@ def test_that_references_to_the_paper_are_links_to_its_citation(shown, preferenc
     dialog = window.findChild(QDialog, "about_dialog")
     assert any("Geometry-Preserving" in each.text() for each in dialog.findChildren(QLabel))
     dialog.close()
-
-
-def test_that_a_line_leaves_out_whole_parts_before_it_is_elided(shown):
-    label = shown(ElidedLabel("1.27 × 1.75 µm, 4,998 triangles; finer", in_parts=True))
-    width = label.fontMetrics().horizontalAdvance
-    for room, seen in (
-        (label.text(), label.text()),
-        ("1.27 × 1.75 µm, 4,998 triangles;", "1.27 × 1.75 µm, 4,998 triangles"),
-        ("1.27 × 1.75 µm, 4,9", "1.27 × 1.75 µm"),
-        ("1.27 × 1.", "1.27 × …"),
-    ):
-        label.resize(width(room) + 2, 20)
-        assert label.shown_text() == seen

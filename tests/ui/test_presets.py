@@ -127,21 +127,6 @@ def test_that_materials_have_the_papers_preset_and_own_ones(shown):
     assert labels(form.bar.box) == ["Table 1"]
 
 
-def test_that_the_buttons_of_a_narrow_list_of_presets_stand_below_it(shown, app):
-    bar = PresetBar("test", "Preset")
-    bar.set_entries([PresetEntry("long", "All descriptors and the overlap"), PresetEntry("short", "All")])
-    bar.show_state("short", False)
-    shown(bar)
-    letters = bar.box.fontMetrics()
-    for width in (240, 600, 240):
-        bar.resize(width, bar.sizeHint().height())
-        app.processEvents()
-        beside = bar.reset.y() < bar.box.geometry().bottom()
-        assert beside is (width == 600)
-        assert text_room(bar.box) >= min(letters.horizontalAdvance("All descriptors and the overlap"), 200)
-        assert all(bar.rect().contains(each.geometry()) for each in (bar.box, bar.reset, bar.more))
-
-
 def test_that_a_preset_with_little_room_still_shows_that_it_was_modified(shown, app):
     """The same dots are drawn behind letters that have room for all of it."""
     bar = PresetBar("test", "Preset")

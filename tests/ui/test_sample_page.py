@@ -151,17 +151,6 @@ def test_that_statistics_undo_the_loss_at_the_border_only_where_there_was_one(sh
     assert panel.value().rows[0][2] == pytest.approx((small + large) / 2)
 
 
-def test_that_the_choices_of_statistics_wrap_where_they_have_no_room(shown):
-    panel = shown(StatisticsPanel())
-    panel.border.show()
-    for width, rows in ((1000, 1), (420, 2)):
-        panel.resize(width, 200)
-        QApplication.processEvents()
-        controls = (panel.key, panel.weighting, panel.border)
-        assert len({each.mapTo(panel, each.rect().center()).y() // 16 for each in controls}) == rows
-        assert panel.border.width() >= panel.border.sizeHint().width()
-
-
 def test_that_the_names_of_the_classes_of_zingg_take_the_letters_of_the_window(window, page, wait):
     usual = QApplication.font().pointSizeF()
 
@@ -211,15 +200,3 @@ def test_that_a_logarithmic_plot_cannot_be_dragged_to_where_numbers_end(shown):
     plot.canvas.setXRange(0, 1e4)
     assert plot.canvas.getAxis("bottom").range[1] >= 1e4
     plot.set_theme(plot.theme)
-
-
-@pytest.mark.parametrize(("width", "rows"), [(900, 1), (330, 2)])
-def test_that_what_is_beside_the_axes_stands_below_them_where_it_has_no_room(shown, width, rows):
-    panel = ScatterPanel()
-    panel.resize(width, 400)
-    shown(panel)
-    controls = (panel.up, panel.across, panel.log, panel.zingg)
-    assert len({each.geometry().center().y() // 12 for each in controls}) == rows
-    for each in (panel.log, panel.zingg):
-        assert each.width() >= each.sizeHint().width()
-        assert panel.rect().contains(each.mapTo(panel, each.rect().bottomRight()))

@@ -30,7 +30,6 @@ from regolith_studio.ui.pages.explore.particle_list import ParticleListPanel
 from regolith_studio.ui.pages.lecture.page import LESSONS
 from regolith_studio.ui.project_files import autosave_path, needs_confirmation, stale_autosaves
 from regolith_studio.ui.shortcuts import plain
-from regolith_studio.ui.theme import choose_letters
 from regolith_studio.ui.tour import TOUR_SEEN, Tour, start_tour, steps
 
 SECONDS = 120.0
@@ -368,15 +367,6 @@ def test_that_the_standard_layout_acts_at_once_and_stays(window, monkeypatch):
     window.window_state.keep(window)
     window.menus.by_name["standard_layout"].trigger()
     assert columns.sizes() == standard
-    window.window_state.keep(window)
-    assert not window.preferences.window["layout"].keys() & {"explore_columns", "explore_rows"}  # they follow
-    try:  # larger letters and back leave the borders where they were
-        window.appearance.choose(letters=150)
-        assert columns.sizes()[2] >= standard[2]
-        window.appearance.choose(letters=100)
-        assert columns.sizes() == pytest.approx(standard, abs=6)
-    finally:
-        choose_letters(None)
 
 
 @pytest.mark.slow

@@ -22,9 +22,8 @@ from regolith_studio.ui.layout import Collapsible
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import tr, translate
 from regolith_studio.ui.widgets.combo_box import ChoiceBox
-from regolith_studio.ui.widgets.fixed_height_text import FixedHeightText
 from regolith_studio.ui.widgets.forms import LARGEST_NUMBER, SettingsForm
-from regolith_studio.ui.widgets.labels import heading, remark
+from regolith_studio.ui.widgets.labels import FixedHeightText, heading, remark
 from regolith_studio.ui.widgets.numbers import NumberSlider
 
 AMOUNTS = {

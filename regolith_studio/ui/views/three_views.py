@@ -258,11 +258,6 @@ class ThreeViews(QSplitter):
         self.set_theme(self._theme)
         self._empty_titles()
 
-    def whole_width(self) -> int:
-        """Width at which equal views show what can be compared with whole labels."""
-        frames = self.frames.values()
-        return len(frames) * max(frame.whole_width() for frame in frames) + 2 * self.handleWidth()
-
     def show_particle(self, entry: ParticleEntry | None) -> None:
         """Put a particle on screen; the other views wait for what belongs to it."""
         if entry is None or entry.particle.mesh is self._surface(PARTICLE):

@@ -58,7 +58,7 @@ class ViewFrame(QFrame):
         self._title.setProperty("role", "heading")
         self._title.setMinimumWidth(10)
         self._title.setObjectName(f"title_{name}")
-        self.detail = ElidedLabel(role="remark", in_parts=True)
+        self.detail = ElidedLabel(role="remark")
         self.partner = ChoiceBox(f"partner_{name}", tr(compare), partners or {})
         self.partner.setMinimumContentsLength(7)
         self.partner.prefers_whole = True
@@ -98,10 +98,6 @@ class ViewFrame(QFrame):
     def set_comparing(self, comparing: bool) -> None:
         """Offer the box of partners, or not."""
         self.partner.setVisible(comparing and self.partner.count() > 1)
-
-    def whole_width(self) -> int:
-        """Width at which the box of partners elides no label."""
-        return self.partner.whole_width() + 2 * _PADDING + _BESIDE
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)

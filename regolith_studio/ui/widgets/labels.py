@@ -2,12 +2,13 @@
 
 import html
 import re
+from collections.abc import Sequence
 
 from PySide6.QtCore import QEvent, QLocale, QSize, Qt
 from PySide6.QtGui import QFocusEvent, QPainter, QPaintEvent, QResizeEvent
-from PySide6.QtWidgets import QLabel, QSizePolicy, QWidget
+from PySide6.QtWidgets import QLabel, QScrollArea, QSizePolicy, QVBoxLayout, QWidget
 
-from regolith_studio.ui.translation import Markup, inert, localized, number_text, rich
+from regolith_studio.ui.translation import Markup, inert, localized, number_text, rich, tr
 
 _TAG = re.compile(r"(<[^<>]*>)")
 _CITED = re.compile(
@@ -95,6 +96,56 @@ def remark(text: str = "", role: str = "remark") -> QLabel:
     return label
 
 
+NOTE_LINES = 2
+"""Visible lines of a note between controls."""
+
+
+class FixedHeightText(QScrollArea):
+    """Labels with the height of a fixed number of lines, so that the controls below do not move.
+
+    Parameters
+    ----------
+    texts
+        From top to bottom; hidden ones take no space. Longer ones are scrolled.
+    lines
+        Visible at once.
+    """
+
+    def __init__(self, texts: Sequence[QLabel], lines: int = NOTE_LINES) -> None:
+        super().__init__()
+        self._lines, self._inside = lines, QWidget()
+        inside = self._inside
+        column = QVBoxLayout(inside)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.setSpacing(0)
+        for text in texts:
+            text.setAlignment(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignTop)
+            column.addWidget(text)
+        column.addStretch(1)
+        self.setProperty("role", "texts")
+        self.setWidgetResizable(True)
+        self.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)
+        self.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        self.setAccessibleName(tr("Remarks"))
+        self.setWidget(inside)
+        for part in (self.viewport(), inside):
+            part.setAutoFillBackground(False)  # shows what is behind, which is lighter in tabs
+
+    def sizeHint(self) -> QSize:
+        # the dots of Ä, Ö and Ü rise above what Qt takes for the height of a line
+        height = self._lines * self.fontMetrics().lineSpacing() + 2 + 2 * self.frameWidth()
+        return QSize(super().sizeHint().width(), height)
+
+    def minimumSizeHint(self) -> QSize:
+        return QSize(self._inside.minimumSizeHint().width(), self.sizeHint().height())
+
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() in (QEvent.Type.FontChange, QEvent.Type.StyleChange):
+            self.updateGeometry()
+
+
 class WrappedLabel(QLabel):
     """A wrapped text whose minimum height holds all of its lines."""
 
@@ -115,9 +166,6 @@ class WrappedLabel(QLabel):
         self.updateGeometry()
 
 
-PART_END = re.compile("[,;] ")
-
-
 class ElidedLabel(QWidget):
     """One line of plain text, elided if necessary, with the whole text as tool tip.
 
@@ -125,8 +173,6 @@ class ElidedLabel(QWidget):
     ----------
     role
         ``heading`` or ``remark``, for the style sheet.
-    in_parts
-        Whether parts after a comma or semicolon are left out as a whole where there is no room for them.
     elide
         Where it is elided: paths in the middle.
     """
@@ -136,12 +182,11 @@ class ElidedLabel(QWidget):
         text: str = "",
         role: str = "",
         *,
-        in_parts: bool = False,
         elide: Qt.TextElideMode = Qt.TextElideMode.ElideRight,
     ) -> None:
         super().__init__()
         self._elide = elide
-        self._text, self._in_parts = "", in_parts
+        self._text = ""
         self.setProperty("role", role)
         self.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
         self.setText(text)
@@ -167,11 +212,7 @@ class ElidedLabel(QWidget):
 
     def shown_text(self) -> str:
         """What there is room for."""
-        metrics, text = self.fontMetrics(), self._text
-        ends = [match.start() for match in PART_END.finditer(text)] if self._in_parts else []
-        while ends and metrics.horizontalAdvance(text) > self.width():
-            text = text[: ends.pop()]
-        return metrics.elidedText(text, self._elide, self.width())
+        return self.fontMetrics().elidedText(self._text, self._elide, self.width())
 
     def paintEvent(self, event: QPaintEvent) -> None:  # noqa: ARG002
         painter = QPainter(self)

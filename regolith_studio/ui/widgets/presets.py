@@ -11,9 +11,9 @@ from PySide6.QtWidgets import QFormLayout, QInputDialog, QMenu, QPushButton, QTo
 from regolith_studio.errors import InputError
 from regolith_studio.messages import N_
 from regolith_studio.session.preferences import UserPresets
-from regolith_studio.ui.layout import WrappingRow
+from regolith_studio.ui.layout import control_row
 from regolith_studio.ui.translation import inert, tr
-from regolith_studio.ui.widgets.combo_box import ComboBoxRow, ElidedComboBox
+from regolith_studio.ui.widgets.combo_box import ElidedComboBox
 from regolith_studio.ui.widgets.forms import ParameterForm
 
 MODIFIED = N_("{preset} (modified)")
@@ -61,7 +61,6 @@ class PresetBar(QWidget):
         super().__init__()
         self._entries: tuple[PresetEntry, ...] = ()
         self.box = ElidedComboBox(Qt.TextElideMode.ElideMiddle)  # the mark at the end must be seen
-        self.box.needs_whole = True
         self.box.setObjectName(name)
         self.box.setAccessibleName(accessible)
         self.reset = QPushButton(tr("Reset"))
@@ -77,10 +76,9 @@ class PresetBar(QWidget):
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         buttons = (self.reset, self.more)
-        self._row = None if title else ComboBoxRow(self.box, buttons)
+        layout.addWidget(control_row(title or self.box, *buttons))
         if title is not None:
-            layout.addWidget(WrappingRow((title,), buttons, (0, 0, 0, 0)))
-        layout.addWidget(self._row or self.box)
+            layout.addWidget(self.box)
         self.box.activated.connect(lambda _: self.chosen.emit(self.current()))
         self.reset.clicked.connect(self.resetRequested)
 
@@ -98,7 +96,6 @@ class PresetBar(QWidget):
             for row, entry in enumerate(self._entries):
                 self.box.addItem(entry.label, entry.key)
                 self.box.setItemData(row, entry.tip, Qt.ItemDataRole.ToolTipRole)
-        self._refold()
 
     def show_state(self, key: str, modified: bool) -> None:
         """Select the preset of the values, and mark whether they are modified."""
@@ -116,11 +113,6 @@ class PresetBar(QWidget):
         super().changeEvent(event)
         if event.type() in (QEvent.Type.FontChange, QEvent.Type.StyleChange):
             self._make_room()
-            self._refold()
-
-    def _refold(self) -> None:
-        if self._row is not None:
-            self._row.refold()
 
     def _make_room(self) -> None:
         """Limit the button to the width of its text."""

@@ -10,8 +10,7 @@ from PySide6.QtWidgets import QBoxLayout, QFrame, QGridLayout, QHBoxLayout, QLab
 
 from regolith_studio.messages import N_
 from regolith_studio.ui.translation import tr
-from regolith_studio.ui.widgets.fixed_height_text import FixedHeightText
-from regolith_studio.ui.widgets.labels import remark
+from regolith_studio.ui.widgets.labels import FixedHeightText, remark
 
 MAGNIFICATION = 1.75
 """Size of the figures in units of the widget's font."""

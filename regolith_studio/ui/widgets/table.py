@@ -17,7 +17,7 @@ from PySide6.QtCore import (
     Signal,
 )
 from PySide6.QtGui import QPixmap, QShowEvent
-from PySide6.QtWidgets import QAbstractItemView, QHeaderView, QTableView
+from PySide6.QtWidgets import QAbstractItemView, QTableView
 
 from regolith_studio.coarsening.weights import JACCARD
 from regolith_studio.descriptors.catalogue import CATALOGUE, Descriptor
@@ -298,27 +298,24 @@ class FontRowHeight(QObject):
 
 MEASURED = 100
 """Number of visible rows whose contents determine the width of columns."""
-MIN_DIGITS = 7
-"""Smallest width of a column in digits; columns without room are scrolled to."""
 
 
 class ParticleTable(QTableView):
     """The particles, sorted by a click on a header; emits which rows are selected and which one is current.
 
-    Groups are listed where there are two, weights where one differs from 1.
+    Groups are listed where there are two, weights where one differs from 1. Columns are as wide as their
+    contents, and scrolled to where there is no room for them.
 
     Parameters
     ----------
     columns
         See :func:`particle_columns`.
-    name_stretches
-        Whether the first column takes the room that the others leave.
     """
 
     chosenChanged = Signal(list)  # noqa: N815
     currentChosen = Signal(str)  # noqa: N815
 
-    def __init__(self, columns: Sequence[ParticleColumn], *, name_stretches: bool = True) -> None:
+    def __init__(self, columns: Sequence[ParticleColumn]) -> None:
         super().__init__()
         self.particles = ParticleTableModel(columns, self)
         self.setModel(self.particles)
@@ -334,10 +331,7 @@ class ParticleTable(QTableView):
         header = self.horizontalHeader()
         header.setHighlightSections(False)
         header.setResizeContentsPrecision(MEASURED)
-        header.setMinimumSectionSize(MIN_DIGITS * self.fontMetrics().horizontalAdvance("0"))
         header.setDefaultAlignment(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter)
-        if name_stretches:
-            header.setSectionResizeMode(0, QHeaderView.ResizeMode.Stretch)
         self.setSortingEnabled(True)
         self.horizontalHeader().setSortIndicator(UNSORTED, Qt.SortOrder.AscendingOrder)
         self._quiet = False

@@ -15,8 +15,7 @@ from regolith_studio.messages import N_
 from regolith_studio.session.recipe import DatasetRequest, Representatives
 from regolith_studio.ui.pages.dataset.export_panel import ExportPanel
 from regolith_studio.ui.translation import tr, tr_count
-from regolith_studio.ui.widgets.fixed_height_text import FixedHeightText
-from regolith_studio.ui.widgets.labels import heading, remark
+from regolith_studio.ui.widgets.labels import FixedHeightText, heading, remark
 from regolith_studio.ui.widgets.numbers import NumberSlider, NumbersLine, NumberSpec
 
 MAX_REPRESENTATIVES = 200

@@ -15,7 +15,7 @@ from regolith_studio.jobs.particle_jobs import FitRequest, check_fit, may_be_far
 from regolith_studio.jobs.study_jobs import study_coarsening
 from regolith_studio.messages import join_messages
 from regolith_studio.scene.cameras import DIRECTIONS
-from regolith_studio.scene.shapes import FIT, PARTICLE
+from regolith_studio.scene.shapes import FIT
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.results import Results
 from regolith_studio.session.study_requests import varied_rows
@@ -162,16 +162,8 @@ def _differ_in_facets_only(one: Choices, other: Choices) -> bool:
     return replace(one, n_facets=other.n_facets) == other
 
 
-LIST_WIDTH, NAMES_WIDTH = 38, 16
-"""Initial and least width of the particle list in digits."""
-CONTROLS_LETTERS = 32
-"""Minimum width of the controls in digits."""
-LIST_SHARE = 0.225
-"""Largest share of the width for the list where that is more than 300 pixels: larger letters leave room."""
-VIEWS_SHARE, PLOTS_SHARE = 0.4, 0.38
-"""Minimum shares of the height for the views and for what is below them."""
-WIDE_CONTROLS = 330
-"""Initial width of the controls in pixels; sliders have 150 then."""
+LIST_WIDTH, CONTROLS_WIDTH = 300, 330
+"""Initial widths of the particle list and of the controls in pixels; sliders have 150 then."""
 PLOTS_HEIGHT, PLOTS_LINES = 300, 15
 """Initial height of the plots in pixels, and its minimum in lines of text."""
 
@@ -240,39 +232,19 @@ class ExplorePage(PageWidget):
         column.setContentsMargins(0, 0, 0, 0)
         column.addWidget(self.verdict)
         column.addWidget(self.plots, 1)
-        middle = self._rows = stacked([self.three_views, below], [520, high_enough], stretch=0)
+        middle = stacked([self.three_views, below], [480, max(400, high_enough)], stretch=0)
+        middle.setStretchFactor(1, 1)  # views wider than high would leave their sides empty
         middle.setObjectName("explore_rows")
-        middle.fit = self._fit_rows
-        self._below = below
         controls = scrolled_column([self.fit, self.coarsening, self.loss])
         self._list = padded(self.particles, 10, 10, 2, 8)
         parts = [self._list, padded(middle, 2, 10, 2, 8), controls]
-        self._controls = controls
-        columns = self._columns = side_by_side(parts, [300, 900, WIDE_CONTROLS], stretch=1)
+        columns = side_by_side(parts, [LIST_WIDTH, 800, CONTROLS_WIDTH], stretch=1)
+        for part, share in enumerate((1, 4)):
+            columns.setStretchFactor(part, share)
         columns.setObjectName("explore_columns")
-        columns.fit = self._fit_columns
         layout = QHBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(columns)
-
-    def _fit_columns(self) -> None:
-        """Make list and controls as wide as letters need; the list gives way to the views' combo boxes."""
-        width, digit = sum(self._columns.sizes()), self.fontMetrics().horizontalAdvance("0")
-        controls = max(WIDE_CONTROLS, CONTROLS_LETTERS * digit, self._controls.minimumSizeHint().width())
-        least = 0 if self._list.isHidden() else max(NAMES_WIDTH * digit, self._list.minimumSizeHint().width())
-        most = min(LIST_WIDTH * digit, max(300, round(LIST_SHARE * width)))
-        names = max(least, min(most, width - controls - self.three_views.whole_width()))
-        self._columns.setSizes([names, width - names - controls, controls])
-
-    def _fit_rows(self) -> None:
-        """Make the views as high as they are wide, where the plots have enough."""
-        height = sum(self._rows.sizes())
-        self.verdict.place_sentence(self._rows.width())
-        frame = self.three_views.frames[PARTICLE]
-        wanted = frame.width() + frame.height() - frame.view.widget.height()
-        least = max(self._below.minimumSizeHint().height(), round(PLOTS_SHARE * height))
-        views = max(min(wanted, height - least), round(VIEWS_SHARE * height))
-        self._rows.setSizes([views, height - views])
 
     def _show_list(self, shown: bool) -> None:
         self._list.setVisible(shown)

@@ -18,9 +18,8 @@ from regolith_studio.session.results import Results
 from regolith_studio.session.verdict import PolyhedronVerdict, polyhedron_verdict
 from regolith_studio.ui.layout import Collapsible
 from regolith_studio.ui.translation import number_text, tr, translate
-from regolith_studio.ui.widgets.fixed_height_text import FixedHeightText
 from regolith_studio.ui.widgets.forms import SettingsForm
-from regolith_studio.ui.widgets.labels import heading, remark, rich_symbol, with_subscripts
+from regolith_studio.ui.widgets.labels import FixedHeightText, heading, remark, rich_symbol, with_subscripts
 from regolith_studio.ui.widgets.numbers import NumberSlider, NumberSpec, align_labels
 from regolith_studio.ui.widgets.presets import PresetBar, PresetEntry
 from regolith_studio.ui.widgets.result_view import ResultRecord, ResultState, ResultView

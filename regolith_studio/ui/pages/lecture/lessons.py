@@ -16,7 +16,7 @@ from regolith_studio.scene import surfaces
 from regolith_studio.scene.lecture_scenes import show_field
 from regolith_studio.scene.palette import DESCRIPTOR_COLOURS
 from regolith_studio.shape_models.materials import materials
-from regolith_studio.ui.layout import Splitter, scrolled, side_by_side, stacked
+from regolith_studio.ui.layout import control_row, scrolled, side_by_side, stacked
 from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.pages.lecture import texts
 from regolith_studio.ui.pages.lecture.playback_bar import PlaybackBar
@@ -25,7 +25,7 @@ from regolith_studio.ui.translation import Markup, tr, tr_count
 from regolith_studio.ui.views.factory import make_view
 from regolith_studio.ui.views.view import CameraLink
 from regolith_studio.ui.views.view_frame import ViewFrame
-from regolith_studio.ui.widgets.combo_box import ChoiceBox, ComboBoxRow
+from regolith_studio.ui.widgets.combo_box import ChoiceBox
 from regolith_studio.ui.widgets.formula import FormulaLabel, prepare
 from regolith_studio.ui.widgets.labels import remark
 from regolith_studio.ui.widgets.plots.curves import CurvePlot, PlotCurve
@@ -33,8 +33,6 @@ from regolith_studio.ui.widgets.plots.spectrum_editor import SpectrumEditor
 
 VIEWS, PLOTS = 560, 240
 """Initial heights in pixels."""
-MIN_PLOT = 150
-"""Least height of a plot below texts that need more."""
 PICTURES, TEXTS = 1000, 560
 """Initial widths in pixels."""
 
@@ -67,29 +65,11 @@ def lesson_columns(
     if under_texts is not None:
         both = right = stacked([right, under_texts], [VIEWS, PLOTS], stretch=0)
         both.setObjectName(f"{name}_texts")
-        both.fit = _TextsAbovePlot(both, column_of_texts).place
     pictures.setObjectName(f"{name}_rows")
     columns = side_by_side([pictures, right], [PICTURES, TEXTS], stretch=0)
     columns.setObjectName(f"{name}_columns")
     columns.setStretchFactor(1, 1)
     return columns
-
-
-class _TextsAbovePlot:
-    """Gives the texts the height of the longest so far, if there is so much, and the plot the rest."""
-
-    def __init__(self, both: Splitter, texts: QWidget) -> None:
-        self._both, self._texts = both, texts
-        self._width, self._longest = 0, 0
-
-    def place(self) -> None:
-        """Place the border between them."""
-        if self._texts.width() != self._width:
-            self._width, self._longest = self._texts.width(), 0
-        height = sum(self._both.sizes())
-        self._longest = max(self._longest, self._texts.minimumSizeHint().height())
-        texts = max(round(height * VIEWS / (VIEWS + PLOTS)), min(self._longest, height - MIN_PLOT))
-        self._both.setSizes([texts, height - texts])
 
 
 def _row(parts: Sequence[QWidget]) -> QSplitter:
@@ -343,7 +323,7 @@ class FieldView(QWidget):
             self.link.frame(drawn.mesh.vertices)
 
     def _arrange(self) -> None:
-        choices = ComboBoxRow(self.material, (self.reset, self.another), spacing=10)
+        choices = control_row(self.material, self.reset, self.another)
         views, texts = list(self.frames.values()), [choices, self.sentence, self.formula]
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)

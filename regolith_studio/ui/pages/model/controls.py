@@ -25,9 +25,8 @@ from regolith_studio.messages import N_
 from regolith_studio.shape_models.materials import LOG_FIELD
 from regolith_studio.shape_models.models import DEFAULT_MODEL, MODELS
 from regolith_studio.ui.translation import tr
-from regolith_studio.ui.widgets.fixed_height_text import FixedHeightText
 from regolith_studio.ui.widgets.forms import SettingsForm
-from regolith_studio.ui.widgets.labels import heading, remark
+from regolith_studio.ui.widgets.labels import FixedHeightText, heading, remark
 from regolith_studio.ui.widgets.numbers import DecimalField, NumberSlider, NumberSpec
 
 L_MAX = NumberSpec(

@@ -34,8 +34,7 @@ from regolith_studio.ui.translation import rich, tr, with_decimal_point
 from regolith_studio.ui.views.factory import make_view
 from regolith_studio.ui.views.view import CameraLink
 from regolith_studio.ui.views.view_frame import ViewFrame
-from regolith_studio.ui.widgets.fixed_height_text import FixedHeightText
-from regolith_studio.ui.widgets.labels import heading, remark
+from regolith_studio.ui.widgets.labels import FixedHeightText, heading, remark
 from regolith_studio.ui.widgets.table import FORM_WORDS, HEALTH_WORDS, ParticleTable, particle_columns
 
 
@@ -60,7 +59,7 @@ class SamplePage(PageWidget):
         self.filter.setClearButtonEnabled(True)
         self.verdict = remark(role="warning")
         self.verdict.hide()
-        self.table = ParticleTable(particle_columns(), name_stretches=False)
+        self.table = ParticleTable(particle_columns())
         self.table.setObjectName("sample_table")
         self.table.setAccessibleName(tr("All particles"))
         self.table.setSelectionMode(QAbstractItemView.SelectionMode.ExtendedSelection)

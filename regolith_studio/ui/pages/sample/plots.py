@@ -28,7 +28,7 @@ from regolith_studio.messages import N_
 from regolith_studio.scene.palette import DESCRIPTOR_COLOURS
 from regolith_studio.session.results import ParticleEntry
 from regolith_studio.session.sample_table import has_weights, statistics_table
-from regolith_studio.ui.layout import WrappingRow
+from regolith_studio.ui.layout import control_row
 from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import number_text, rich, tr, tr_count
 from regolith_studio.ui.widgets.combo_box import ElidedComboBox
@@ -92,7 +92,7 @@ class ScatterPanel(QWidget):
 
     def _arrange(self) -> None:
         against = QLabel(tr("against"))
-        row = WrappingRow((self.up, against, self.across), (self.log, self.zingg), margins=(8, 6, 8, 0))
+        row = control_row(self.up, against, self.across, self.log, self.zingg, margins=(8, 6, 8, 0))
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(row)
@@ -258,7 +258,7 @@ class StatisticsPanel(QWidget):
         choices = (QLabel(tr("Statistics of")), self.key, self.weighting)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
-        layout.addWidget(WrappingRow(choices, (self.border,), margins=(0, 0, 0, 0)))
+        layout.addWidget(control_row(*choices, self.border))
         layout.addWidget(self.table, 1)
         self.key.currentIndexChanged.connect(lambda _at: self._fill())
         self.weighting.currentIndexChanged.connect(lambda _at: self._fill())

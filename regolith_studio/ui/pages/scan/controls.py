@@ -33,9 +33,8 @@ from regolith_studio.readers.volumes.region import RegionSettings
 from regolith_studio.ui.layout import Collapsible
 from regolith_studio.ui.translation import number_text, tr, translate
 from regolith_studio.ui.widgets.combo_box import ChoiceBox
-from regolith_studio.ui.widgets.fixed_height_text import FixedHeightText
 from regolith_studio.ui.widgets.forms import SettingsForm, form_layout
-from regolith_studio.ui.widgets.labels import heading, remark
+from regolith_studio.ui.widgets.labels import FixedHeightText, heading, remark
 from regolith_studio.ui.widgets.numbers import DecimalField
 
 CLASSIFIER = {"classifier": N_("Classifier from examples")}

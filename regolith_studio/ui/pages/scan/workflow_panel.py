@@ -9,8 +9,7 @@ from regolith_studio.jobs.scan_jobs import FirstLook, Scan
 from regolith_studio.messages import N_
 from regolith_studio.ui.pages.scan.tools import button
 from regolith_studio.ui.translation import number_text, tr, tr_count, translate
-from regolith_studio.ui.widgets.fixed_height_text import FixedHeightText
-from regolith_studio.ui.widgets.labels import WrappedLabel, heading
+from regolith_studio.ui.widgets.labels import FixedHeightText, WrappedLabel, heading
 
 _DENSEST, _LARGEST = 0.7, 0.4
 """Plausible limits of the volume fraction of all grains, and of a single grain."""

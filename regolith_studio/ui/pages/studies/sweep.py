@@ -30,8 +30,7 @@ from regolith_studio.studies.sweeps import GAIN, SWEEPS, descriptor_error, paret
 from regolith_studio.ui.pages.studies.plots import BandPlot, SensitivityTable, Series
 from regolith_studio.ui.translation import tr, tr_count, translate
 from regolith_studio.ui.widgets.combo_box import ChoiceBox
-from regolith_studio.ui.widgets.fixed_height_text import FixedHeightText
-from regolith_studio.ui.widgets.labels import heading, plain_symbol, remark, rich_symbol
+from regolith_studio.ui.widgets.labels import FixedHeightText, heading, plain_symbol, remark, rich_symbol
 from regolith_studio.ui.widgets.numbers import NumbersLine
 from regolith_studio.ui.widgets.plots.curves import PlotCurve
 from regolith_studio.ui.widgets.study_frame import StudyFrame
