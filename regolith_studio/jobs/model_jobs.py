@@ -384,9 +384,9 @@ def draw_live(model: FittedModel, seed: int) -> Steps:
     return live_mesh(model, seed)
 
 
-def live_mesh(model: FittedModel, seed: int, level: int = 4) -> Mesh:
+def live_mesh(model: FittedModel, seed: int) -> Mesh:
     """One particle; the same seed gives the same random numbers, so that it changes with the spectrum."""
-    return virtual_mesh(model.draw(1, seed), 0, level)
+    return virtual_mesh(model.draw(1, seed), 0, EXAMPLE_LEVEL)
 
 
 def _example_meshes(sample: Sample, l_max: int) -> tuple[Mesh, ...]:

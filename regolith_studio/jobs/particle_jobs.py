@@ -39,7 +39,7 @@ from regolith_studio.readers.particles import (
 
 
 LARGE = 200_000
-"""Faces of a mesh from which on the parts of its measurement are told: they take more than a second."""
+"""Faces of a mesh from which on the parts of its measurement are reported: they take more than a second."""
 
 
 def load_particles(
@@ -160,11 +160,11 @@ def find_faults(particle: Particle, visibility: StarPointVisibility | None = Non
     return found
 
 
-def measure_one(particle: Particle, box_metric: str = "exact") -> Steps:
+def measure_one(particle: Particle) -> Steps:
     """As :func:`measure_particle`, for a runner."""
     yield from compile_first("describe")
     yield Started(N_("Measuring"))
-    return (yield from _measuring(particle, box_metric))
+    return (yield from _measuring(particle, "exact"))
 
 
 def measure_particles(particles: Sequence[Particle], box_metric: str = "exact") -> Steps:
@@ -186,13 +186,11 @@ def measure_particles(particles: Sequence[Particle], box_metric: str = "exact") 
     return tuple(measured)
 
 
-def measure_sample(
-    particles: Sequence[Particle], box_metric: str = "exact", workers: int | Executor = 1
-) -> Steps:
+def measure_sample(particles: Sequence[Particle], workers: int | Executor = 1) -> Steps:
     """As :func:`measure_particles`, in one or several processes; returns a tuple of what was measured."""
     yield from compile_first("describe")
     yield Started(N_("Measuring"), len(particles))
-    jobs = [Job(measure_one, (particle, box_metric)) for particle in particles]
+    jobs = [Job(measure_one, (particle,)) for particle in particles]
     with open_executor(workers) as executor:
         results = yield from executor.run_all(jobs, [particle.name for particle in particles])
     return tuple(value_of(result) for result in results)

@@ -169,14 +169,16 @@ class FirstLook:
     dtype: np.dtype[Any]
 
 
-def first_look(source: SliceSource, seconds: float = LOOK_SECONDS) -> FirstLook:
-    """A coarser level of a volume if its file has one, else the slices that can be read within `seconds`."""
+def first_look(source: SliceSource) -> FirstLook:
+    """A coarser level of a volume if its file has one, else the slices that are read in `LOOK_SECONDS`."""
     level = source.coarser(LOOK_VOXELS) if isinstance(source, VolumeFile) else None
     if level is not None:
         size = np.array(level.voxel_size)
         coarse = Volume(level.read(0, level.shape[2]), size, level.kind, source.name)
     else:
-        coarse = sparse_slices(source, seconds, in_order=isinstance(source, VolumeFile) and source.in_order)
+        coarse = sparse_slices(
+            source, LOOK_SECONDS, in_order=isinstance(source, VolumeFile) and source.in_order
+        )
     edges = np.asarray(source.voxel_size, dtype=np.float64)
     return FirstLook(scan_of(coarse), source.shape, edges, source.kind, source.dtype)
 

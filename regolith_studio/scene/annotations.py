@@ -52,8 +52,6 @@ class ScaleBar:
         Any pyvista plotter; the bar belongs to its active renderer.
     surroundings
         Whose ink it is drawn with.
-    unit
-        ``True`` for micrometres, ``False`` for a dimensionless scene.
     factor
         Size of letters and line; pictures of several times the usual size want larger ones.
     """
@@ -63,11 +61,9 @@ class ScaleBar:
         plotter: Any,
         surroundings: ThemeColors = palette.LIGHT,
         *,
-        unit: bool = True,
         factor: float = 1.0,
     ) -> None:
         self._renderer = plotter.renderer
-        self._unit = unit
         self._line = pv.PolyData()
         self._factor = factor
         self.suspended = False
@@ -119,7 +115,7 @@ class ScaleBar:
         high = y + 5 * self._factor
         points = [(x, high, 0), (x, y, 0), (end, y, 0), (end, high, 0)]
         self._line.copy_from(pv.PolyData(points, lines=[4, 0, 1, 2, 3]))
-        self._label.SetInput(length_text(length) if self._unit else f"{length:.4g}")
+        self._label.SetInput(length_text(length))
         self._label.SetPosition((x + end) / 2, y + 7 * self._factor)
 
 
@@ -150,14 +146,14 @@ def flat_actor(data: pv.PolyData, line_width: float = 2.0) -> vtkActor2D:
     return actor
 
 
-def show_title(plotter: Any, title: str, surroundings: ThemeColors = palette.PAPER, size: int = 11) -> None:
+def show_title(plotter: Any, title: str, size: int = 11) -> None:
     """One line at the upper edge of the picture, or none for an empty text."""
     text = plotter.add_text(
         title,
         position=(0.5, 0.985),
         viewport=True,
         font_size=size,
-        color=surroundings.ink,
+        color=palette.PAPER.ink,
         name=TITLE,
         render=False,
     )

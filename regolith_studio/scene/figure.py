@@ -144,17 +144,12 @@ def view_titles(
 
 
 class SideBySide:
-    """Three renderers of one window under one camera; belongs to the thread that made it.
+    """Three renderers of one window under one camera; belongs to the thread that made it."""
 
-    Parameters
-    ----------
-    size
-        Width and height of the window in pixels; a browser changes it.
-    """
-
-    def __init__(self, size: tuple[int, int] = (1500, 500)) -> None:
+    def __init__(self) -> None:
         plotter_setup.choose_off_screen_window()
-        plotter = pv.Plotter(off_screen=True, shape=(1, 3), window_size=list(size), border=False)
+        size = [1500, 500]  # until a browser changes it
+        plotter = pv.Plotter(off_screen=True, shape=(1, 3), window_size=size, border=False)
         self.plotter = cast(Any, plotter)  # pyvista's decorators hide the signatures of its methods
         self._bars = []
         for column in range(len(NAMES)):

@@ -55,7 +55,7 @@ def sample_pixels(plotter: Any, once: bool) -> None:
 def thumbnail(plotter: Any, scale: int = 1, transparent: bool = False) -> Picture:
     """What a plotter with one renderer shows, at a multiple of its size.
 
-    Shape (height, width, 3), or 4 with transparency, which is told from pictures on black and on white:
+    Shape (height, width, 3), or 4 with transparency, which is computed from pictures on black and on white:
     the frame buffers of windows keep none. It is put together from tiles: nothing may be shown that is laid
     out in pixels.
     """
