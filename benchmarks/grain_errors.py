@@ -27,8 +27,8 @@ from regolith_studio.imaging import grain_surface
 from regolith_studio.imaging.extraction import extract_particles
 from regolith_studio.imaging.segmentation.segment import segment
 from regolith_studio.imaging.settings import ExtractionSettings
+from regolith_studio.imaging.surface_refinement import coverage
 from regolith_studio.imaging.volume import Volume
-from regolith_studio.imaging.voxelize import coverage
 from tools.make_samples.grains import random_rotation
 from tools.make_samples.random_fields import SphereField, power_law
 

@@ -20,7 +20,7 @@ from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.imaging.contours import contour
 from regolith_studio.imaging.grain_surface import grey_mesh, mask_mesh
 from regolith_studio.imaging.label_table import GrainCrop
-from regolith_studio.imaging.voxelize import coverage
+from regolith_studio.imaging.surface_refinement import coverage
 from tools.make_samples.grains import even_sphere, random_rotation
 from tools.make_samples.random_fields import SphereField, power_law
 

@@ -297,8 +297,13 @@ def study(
     """Measure the angle of repose against a parameter or for several datasets; resumes a stopped study."""
     from regolith_studio.errors import InputError
     from regolith_studio.jobs.repose_study import ReposeVariant, study_repose, with_value, write_study
-    from regolith_studio.studies.repose import repose_means, repose_table
-    from regolith_studio.studies.repose_surface import fit_repose_surface, surface_document, surface_table
+    from regolith_studio.studies.repose import (
+        fit_repose_surface,
+        repose_means,
+        repose_table,
+        surface_document,
+        surface_table,
+    )
 
     key, points = varied_values(vary)
     if points and against:
@@ -338,7 +343,7 @@ def _statistics(against: str, folders: list[Path]) -> tuple[list[str], dict[str,
     import numpy as np
 
     from regolith_studio.dataset.folder_io import read_dataset
-    from regolith_studio.studies.repose_surface import fit_response_surface, shape_statistics
+    from regolith_studio.studies.repose import fit_response_surface, shape_statistics
 
     keys = [key.strip() for key in against.split(",") if key.strip()]
     if not keys:

@@ -10,7 +10,7 @@ from scipy import sparse
 from scipy.sparse import csgraph
 
 from regolith_studio.geometry.arrays import BoolArray, IntArray
-from regolith_studio.imaging.bounding_boxes import Box, box_between
+from regolith_studio.imaging.volume import Box, box_between
 
 _components: Any = cc3d.connected_components
 _statistics: Any = cc3d.statistics

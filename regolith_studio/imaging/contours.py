@@ -1,4 +1,7 @@
-"""Contours of voxels, and how deep each voxel lies in a mask."""
+"""Contours of voxels, their smoothing, and how deep each voxel lies in a mask.
+
+Contours are smoothed by a windowed sinc: a low-pass filter on the mesh that does not shrink it much.
+"""
 
 from collections.abc import Sequence
 from typing import Any
@@ -7,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 from skimage import measure
 
-from regolith_studio.geometry.arrays import BoolArray
+from regolith_studio.errors import GeometryError
+from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray
 from regolith_studio.geometry.kernels import kernel
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.imaging.connected_components import largest_component, pores_filled
@@ -90,3 +94,136 @@ def _fill_squared(mask: BoolArray, deepest: int, found: NDArray[np.int32]) -> No
             for j in range(ny):
                 for k in range(nz):
                     found[i, j, k] = min(found[i, j, k], across[other, j, k] + added)
+
+
+class LowPass:
+    """The polynomial low-pass filter of Taubin, Zhang and Golub (1996) for meshes with the same faces.
+
+    A Chebyshev series of the ideal low-pass filter with a Hamming window, scaled so that what is constant
+    stays, of the mean of each corner's neighbours. It acts on each coordinate alone, so that it commutes with
+    stretching along the axes: anisotropic voxels need no special care. VTK's filter of this name shifts the
+    pass band, so that it lets more through.
+
+    Parameters
+    ----------
+    faces
+        Triangles, shape (m, 3).
+    n_vertices
+        Corners of the mesh.
+    iterations
+        Degree of the polynomial; 0 leaves the mesh as it is.
+    """
+
+    def __init__(self, faces: IntArray, n_vertices: int, iterations: int) -> None:
+        first, stop = np.zeros(n_vertices + 1, dtype=np.int64), np.empty(n_vertices, dtype=np.int64)
+        others = np.empty(6 * len(faces), dtype=np.int64)
+        _fill_links(faces, first, stop, others)
+        self._links = first, stop, others
+        self._iterations = iterations
+
+    def __call__(self, vertices: FloatArray, pass_band: float) -> FloatArray:
+        """Smoothed corners, shape (n, 3).
+
+        Parameters
+        ----------
+        vertices
+            Shape (n, 3).
+        pass_band
+            Share of the mesh's frequencies that stay, 0 to 2; the smaller, the smoother.
+        """
+        if self._iterations == 0:
+            return vertices
+        smoothed = np.empty(vertices.shape)
+        _filter(*self._links, _series(self._iterations, pass_band), vertices, smoothed)
+        return smoothed
+
+
+def windowed_sinc(mesh: Mesh, iterations: int = 20, pass_band: float = 0.13) -> Mesh:
+    """The mesh smoothed by :class:`LowPass`."""
+    return Mesh(LowPass(mesh.faces, len(mesh.vertices), iterations)(mesh.vertices, pass_band), mesh.faces)
+
+
+def with_volume(mesh: Mesh, volume: float) -> Mesh:
+    """The mesh scaled about its centroid to enclose `volume`.
+
+    Raises
+    ------
+    GeometryError
+        If the mesh encloses no volume.
+    """
+    if not mesh.volume > 0.0:
+        raise GeometryError(f"The surface encloses no volume (its signed volume is {mesh.volume:.3g}).")
+    centre = mesh.centroid
+    scaled = mesh.moved(shift=-centre, scale=(volume / mesh.volume) ** (1 / 3))
+    return scaled.moved(shift=centre)
+
+
+def _series(iterations: int, pass_band: float) -> FloatArray:
+    """Chebyshev coefficients, shape (iterations + 1,)."""
+    order = np.arange(1, iterations + 1)
+    angle = np.arccos(1.0 - pass_band / 2.0)
+    window = 0.54 + 0.46 * np.cos(np.pi * order / (iterations + 1))
+    series = np.concatenate([[angle / np.pi], 2.0 * window * np.sin(order * angle) / (order * np.pi)])
+    return np.asarray(series / series.sum())
+
+
+@kernel
+def _fill_links(faces: IntArray, first: IntArray, stop: IntArray, others: IntArray) -> None:
+    """Neighbours of each corner: ``others[first[i]:stop[i]]``, each once; `first` is 0 before."""
+    n_vertices = len(stop)
+    for face in range(len(faces)):
+        for corner in range(3):
+            first[faces[face, corner] + 1] += 2
+    for corner in range(n_vertices):
+        first[corner + 1] += first[corner]
+    stop[:] = first[:-1]
+    for face in range(len(faces)):
+        for corner in range(3):
+            one = faces[face, corner]
+            for turn in range(1, 3):
+                other, known = faces[face, (corner + turn) % 3], False
+                for at in range(first[one], stop[one]):
+                    known = known or others[at] == other
+                if not known:
+                    others[stop[one]] = other
+                    stop[one] += 1
+
+
+@kernel
+def _filter(
+    first: IntArray,
+    stop: IntArray,
+    others: IntArray,
+    series: FloatArray,
+    vertices: FloatArray,
+    total: FloatArray,
+) -> None:
+    """Sum of series[k] T_k(M) x: M is the mean of a corner and of the mean of its neighbours."""
+    count = len(vertices)
+    before, now, later = vertices.copy(), np.empty((count, 3)), np.empty((count, 3))
+    total[:] = np.multiply(series[0], vertices)
+    for degree in range(1, len(series)):
+        source, weight = (before, 0.5) if degree == 1 else (now, 1.0)
+        for corner in range(count):
+            x, y, z = 0.0, 0.0, 0.0
+            for at in range(first[corner], stop[corner]):
+                other = others[at]
+                x += source[other, 0]
+                y += source[other, 1]
+                z += source[other, 2]
+            share = weight / max(stop[corner] - first[corner], 1)
+            a = weight * source[corner, 0] + share * x
+            b = weight * source[corner, 1] + share * y
+            c = weight * source[corner, 2] + share * z
+            if degree > 1:
+                a -= before[corner, 0]
+                b -= before[corner, 1]
+                c -= before[corner, 2]
+            later[corner, 0], later[corner, 1], later[corner, 2] = a, b, c
+            total[corner, 0] += series[degree] * a
+            total[corner, 1] += series[degree] * b
+            total[corner, 2] += series[degree] * c
+        if degree > 1:
+            before, now, later = now, later, before
+        else:
+            now, later = later, now

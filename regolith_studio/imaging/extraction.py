@@ -19,7 +19,6 @@ import numpy as np
 from regolith_studio.geometry.arrays import BoolArray, FloatArray
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle, Source
-from regolith_studio.imaging.bounding_boxes import Box, box_between, grown, n_voxels, touches, within
 from regolith_studio.imaging.connected_components import largest_component, pores_filled
 from regolith_studio.imaging.grain_errors import ScanOfGrain
 from regolith_studio.imaging.grain_surface import (
@@ -28,10 +27,15 @@ from regolith_studio.imaging.grain_surface import (
     grey_mesh,
     mask_mesh,
 )
-from regolith_studio.imaging.label_table import contact_areas, find_padding, grain_crop, label_table
-from regolith_studio.imaging.scan_circle import ScanCircle
+from regolith_studio.imaging.label_table import (
+    ScanCircle,
+    contact_areas,
+    find_padding,
+    grain_crop,
+    label_table,
+)
 from regolith_studio.imaging.settings import ExtractionSettings, Surface
-from regolith_studio.imaging.volume import Origin, Volume
+from regolith_studio.imaging.volume import Box, Origin, Volume, box_between, grown, n_voxels, touches, within
 from regolith_studio.imaging.volume_slabs import BATCH_VOXELS, ParallelMap, SharedArray, in_batches
 from regolith_studio.messages import N_, count_message
 

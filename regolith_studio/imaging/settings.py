@@ -285,7 +285,7 @@ class ExtractionSettings:
     fill_pores
         Close pores that have no way out.
     iterations, pass_band
-        Of the smoothing (:func:`~regolith_studio.imaging.smoothing.LowPass`).
+        Of the smoothing (:func:`~regolith_studio.imaging.contours.LowPass`).
     surface
         What surfaces are taken from: the ``grey`` values about each label where they are at hand
         (:mod:`~regolith_studio.imaging.grain_surface`), or its ``mask`` always.

@@ -3,16 +3,21 @@
 A slab is a run of slices along z. Whatever reads one, a file or an array, is a :class:`SliceSource`;
 what is written slab by slab lies in a :class:`ScratchArrays`, in memory or in files that vanish with it.
 Tasks for other processes hold a :class:`SharedArray`, the path of such a file, and read their own parts.
+
+:func:`sparse_slices` reads a few slices for a limited time, as a coarse volume that fills the same space;
+a :class:`VolumeRegion` is a box in a volume, with voxels averaged to larger ones.
 """
 
 import contextlib
 import math
 import shutil
 import tempfile
+import time
 import weakref
 from collections.abc import Callable, Generator, Iterable, Iterator
 from dataclasses import dataclass
 from functools import partial
+from itertools import pairwise
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Protocol, TypeVar
@@ -20,8 +25,9 @@ from typing import Any, Protocol, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
-from regolith_studio.errors import MissingRequirement
-from regolith_studio.imaging.volume import Origin, Volume, VolumeKind
+from regolith_studio.errors import InputError, MissingRequirement
+from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.imaging.volume import Box, Origin, Volume, VolumeKind
 from regolith_studio.io.checkpoint import Checkpoint
 
 ParallelMap = Callable[[Callable[[Any], Any], Iterable[Any]], Iterable[Any]]
@@ -307,3 +313,173 @@ def _batches(items: Iterable[_Item], n_voxels: Callable[[_Item], int]) -> Iterat
 
 def _apply_to_each(function: Callable[[_Item], _Done], items: list[_Item]) -> list[_Done]:
     return [function(item) for item in items]
+
+
+SLICE_BYTES, ALL_BYTES = 2**22, 2**26
+"""Bytes of one slice, and of all: larger slices are thinned out, and no more are read."""
+
+
+def sparse_slices(source: SliceSource, seconds: float, *, in_order: bool = False) -> Volume:
+    """The middle slice, and as many others at equal distances as can be read within `seconds`.
+
+    The distance is halved until the time ends or every slice is read; slices of the last, unfinished halving
+    are left out. The voxels of the result are longer along z, and wider where slices are thinned out.
+
+    Parameters
+    ----------
+    in_order
+        Take the first slices instead, for a file that must be unpacked from its beginning; the result then
+        fills only their part of the volume.
+    """
+    nx, ny, nz = source.shape
+    slice_bytes = nx * ny * source.dtype.itemsize
+    thin = max(1, math.ceil(math.sqrt(slice_bytes / SLICE_BYTES)))
+    most = max(1, ALL_BYTES * thin**2 // slice_bytes)
+    wanted = _first_places(nz, most) if in_order else _halved_distances(nz, most)
+    places, values = _read_while(source, wanted, thin, time.monotonic() + seconds)
+    size = np.asarray(source.voxel_size, float) * np.array([nx, ny, nz]) / values.shape
+    if in_order:
+        size[2] = np.asarray(source.voxel_size, float)[2] * places.step
+    return Volume(values, size, source.kind, source.name)
+
+
+def _read_while(
+    source: SliceSource, wanted: Iterator[range], thin: int, end: float
+) -> tuple[range, NDArray[Any]]:
+    """The last of the runs of places whose slices could all be read until `end`, at least the first run."""
+    read: dict[int, NDArray[Any]] = {}
+    places = range(0)
+    for run in wanted:
+        for z in run:
+            if places and time.monotonic() > end:
+                break
+            if z not in read:
+                read[z] = source.read(z, z + 1)[::thin, ::thin, 0]
+        else:
+            places = run
+            continue
+        break
+    return places, np.stack([read[z] for z in places], axis=2)
+
+
+def _halved_distances(count: int, most: int) -> Iterator[range]:
+    """The middle of `count` places, then all at a distance that is halved each time, at most `most`."""
+    distance = 1 << max(count - 1, 1).bit_length()
+    while distance >= 1 and len(run := range(count // 2 % distance, count, distance)) <= most:
+        yield run
+        distance //= 2
+
+
+def _first_places(count: int, most: int) -> Iterator[range]:
+    for stop in range(1, min(count, most) + 1):
+        yield range(stop)
+
+
+@dataclass(frozen=True, eq=False)
+class VolumeRegion:
+    """The voxels of a box, or the means of cubes of them; a ``SliceSource`` itself.
+
+    Parameters
+    ----------
+    source
+        The whole volume.
+    box
+        What of it is used.
+    bin
+        Edge of the cubes in voxels. Voxels at the far faces of the box that fill no cube are left out.
+        Means of integers are rounded, half to even, and keep their type.
+
+    Raises
+    ------
+    InputError
+        If the box has no voxel or reaches beyond the volume, is thinner than one cube, or if labels, which
+        have no mean, are to be averaged.
+    """
+
+    source: SliceSource
+    box: Box
+    bin: int = 1
+
+    def __post_init__(self) -> None:
+        for axis, side, edge in zip("xyz", self.box, self.source.shape, strict=True):
+            if not 0 <= side.start < side.stop <= edge:
+                raise InputError(
+                    f"The region {side.start}:{side.stop} along {axis} does not lie within the {edge} voxels "
+                    f"of {self.source.name}."
+                )
+            if side.stop - side.start < self.bin:
+                raise InputError(
+                    f"The region of {side.stop - side.start} voxels along {axis} is thinner than {self.bin} "
+                    "voxels, which are to become one."
+                )
+        if self.bin > 1 and self.source.kind == "labels":
+            raise InputError(f"{self.source.name} holds labels, which have no mean; leave the binning out.")
+
+    @property
+    def shape(self) -> tuple[int, int, int]:
+        """Voxels along x, y and z."""
+        nx, ny, nz = ((side.stop - side.start) // self.bin for side in self.box)
+        return nx, ny, nz
+
+    @property
+    def dtype(self) -> np.dtype[Any]:
+        """Type of a voxel."""
+        return self.source.dtype
+
+    @property
+    def voxel_size(self) -> FloatArray:
+        """Edges of a voxel along x, y and z in micrometres."""
+        return np.asarray(self.source.voxel_size, dtype=np.float64) * self.bin
+
+    @property
+    def origin(self) -> Origin:
+        """Centre of the first voxel, in voxels of this region from the centre of the first whole one."""
+        before = zip(self.source.origin, self.box, strict=True)
+        x, y, z = ((first + side.start + (self.bin - 1) / 2) / self.bin for first, side in before)
+        return x, y, z
+
+    @property
+    def kind(self) -> VolumeKind:
+        """``labels`` or ``grey``."""
+        return self.source.kind
+
+    @property
+    def name(self) -> str:
+        """As the user knows the volume."""
+        return self.source.name
+
+    def read(self, z0: int, z1: int, /) -> NDArray[Any]:
+        """The slices ``z0 <= z < z1``, shape (nx, ny, z1 - z0), in Fortran's order."""
+        nx, ny, _ = self.shape
+        out = np.empty((nx, ny, z1 - z0), self.dtype, order="F")
+        whole_nx, whole_ny, _ = self.source.shape
+        step = max(1, SLAB_VOXELS // (whole_nx * whole_ny * self.bin))
+        for first in range(z0, z1, step):
+            stop = min(first + step, z1)
+            out[:, :, first - z0 : stop - z0] = self._means(first, stop)
+        return out
+
+    def parts(self) -> list[tuple[int, int]]:
+        """Ranges of slices that processes may read each by itself: those of the whole volume."""
+        start, nz = self.box[2].start, self.shape[2]
+        ends = [-((start - stop) // self.bin) for _, stop in self.source.parts()]
+        inner = sorted({end for end in ends if 0 < end < nz})
+        return list(pairwise([0, *inner, nz])) if ends else []
+
+    def _means(self, z0: int, z1: int) -> NDArray[Any]:
+        """The slices from one slab of the whole volume."""
+        (x, y, z), (nx, ny, _) = self.box, self.shape
+        slab = self.source.read(z.start + z0 * self.bin, z.start + z1 * self.bin)
+        slab = slab[x.start : x.start + nx * self.bin, y.start : y.start + ny * self.bin]
+        if self.bin == 1:
+            return slab
+        with np.errstate(invalid="ignore", over="ignore"):  # infinities, whose mean is not finite
+            total = slab
+            for axis in (2, 1, 0):
+                parts = np.moveaxis(total, axis, 0)
+                sums = parts[:: self.bin].astype(np.float64)  # exact for integers up to 2^53
+                for k in range(1, self.bin):
+                    sums += parts[k :: self.bin]
+                total = np.moveaxis(sums, 0, axis)
+            mean = total / self.bin**3
+        return (mean if self.dtype.kind == "f" else np.rint(mean)).astype(self.dtype)

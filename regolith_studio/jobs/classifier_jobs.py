@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import IntArray
-from regolith_studio.imaging.bounding_boxes import box_between
 from regolith_studio.imaging.label_files import write_label_file, write_probability_file
 from regolith_studio.imaging.segmentation.classifier_document import objects_document, training_document
 from regolith_studio.imaging.segmentation.object_classifier import (
@@ -44,7 +43,7 @@ from regolith_studio.imaging.segmentation.segment import (
 from regolith_studio.imaging.segmentation.strokes import ERASER, Stroke, painted_rows
 from regolith_studio.imaging.settings import ThresholdSettings
 from regolith_studio.imaging.slice_images import SliceImages
-from regolith_studio.imaging.volume import Volume
+from regolith_studio.imaging.volume import Volume, box_between
 from regolith_studio.imaging.volume_slabs import ScratchArrays, SliceSource
 from regolith_studio.io.atomic import write_bytes
 from regolith_studio.io.json_text import canonical_json

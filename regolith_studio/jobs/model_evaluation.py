@@ -24,14 +24,14 @@ from regolith_studio.studies.population import (
     default_draws,
     descriptors_of,
 )
-from regolith_studio.studies.population_curves import (
+from regolith_studio.studies.population_distances import WEIGHTINGS, DistributionComparison
+from regolith_studio.studies.population_tables import (
     PopulationPanel,
     components_panels,
     density_panels,
     pair_panels,
     quantile_panels,
 )
-from regolith_studio.studies.population_distances import WEIGHTINGS, DistributionComparison
 
 MIN_FOR_PROCESSES = 400
 """Particles to be measured beyond which processes are started: some seconds of work, and fits that this

@@ -25,8 +25,7 @@ from regolith_studio.jobs.events import Job, Partial, Progress, Started, Steps
 from regolith_studio.jobs.executor import Executor, open_executor, value_of
 from regolith_studio.jobs.repose_jobs import PROGRESS_STEPS, ReposeRequest, repose_steps
 from regolith_studio.messages import N_, Message
-from regolith_studio.studies.repose import ReposeStudy, runs_from
-from regolith_studio.studies.repose_surface import ReposeSurface
+from regolith_studio.studies.repose import ReposeStudy, ReposeSurface, runs_from
 
 CASE_KEYS = ("shapes", "cohesion", "n_particles", "coarse_graining")
 """What of a case can be varied besides the values of Tables 1 and 2."""

@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 
 from regolith_studio.errors import InputError, RegolithError
 from regolith_studio.geometry.arrays import FloatArray
-from regolith_studio.imaging.bounding_boxes import Box
 from regolith_studio.imaging.label_surface import label_surface
 from regolith_studio.imaging.sample_volumes import SampleVolume, sample_volume
 from regolith_studio.imaging.segmentation.scan_outside import (
@@ -34,13 +33,13 @@ from regolith_studio.imaging.segmentation.segment import (
 from regolith_studio.imaging.segmentation.thresholding import Histogram, histogram, level_of
 from regolith_studio.imaging.settings import ThresholdSettings
 from regolith_studio.imaging.slice_images import SliceImages, coarse_copy
-from regolith_studio.imaging.sparse_slices import sparse_slices
-from regolith_studio.imaging.volume import Volume, VolumeKind
+from regolith_studio.imaging.volume import Box, Volume, VolumeKind
 from regolith_studio.imaging.volume_slabs import (
     ParallelMap,
     ScratchArrays,
     SliceSource,
     slab_ranges,
+    sparse_slices,
     unpacked,
 )
 from regolith_studio.jobs.compile_kernels import compile_first

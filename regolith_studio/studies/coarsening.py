@@ -13,7 +13,13 @@ from regolith_studio.coarsening.settings import DEFAULT_METHOD
 from regolith_studio.coarsening.target import Target
 from regolith_studio.coarsening.weights import JACCARD
 from regolith_studio.descriptors.catalogue import LOSS_KEYS
-from regolith_studio.descriptors.comparison import relative_errors
+from regolith_studio.descriptors.comparison import (
+    N_RESAMPLES,
+    band_of,
+    pooled_rmsre,
+    relative_errors,
+    resampled_counts,
+)
 from regolith_studio.descriptors.describe import describe
 from regolith_studio.errors import InputError, RegolithError
 from regolith_studio.geometry.arrays import FloatArray
@@ -23,7 +29,6 @@ from regolith_studio.geometry.particle import Particle
 from regolith_studio.harmonics.fit_options import DEFAULT_FIT_OPTIONS, FitOptions
 from regolith_studio.harmonics.surface import reconstruct
 from regolith_studio.io.tables import Column, Table
-from regolith_studio.studies.error_bands import N_RESAMPLES, band_of, pooled_rmsre, resampled_counts
 from regolith_studio.studies.loss_variants import LossVariant, paper_variants
 from regolith_studio.studies.progress import StudyProgress
 

@@ -1,12 +1,24 @@
-"""Angle of repose against a varied value: one row a run, and the mean of the runs of each value."""
+"""Angle of repose against a varied value, or against shape statistics of datasets.
 
-from collections.abc import Sequence
+Of a value: one row a run, and the mean of the runs of each. Of statistics: a response surface, a polynomial
+of one or more factors through scattered results, with intervals, by least squares (Box and Wilson, *J. R.
+Stat. Soc. B* 13 (1951) 1): linear, or with all squares and products where there are twice as many different
+points as terms.
+"""
+
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import combinations_with_replacement
 from typing import Any
 
 import numpy as np
 from scipy.stats import t as student_t
 
+from regolith_studio.dataset.dataset import Dataset
+from regolith_studio.descriptors.catalogue import CATALOGUE
+from regolith_studio.descriptors.describe import describe
+from regolith_studio.errors import InputError
+from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.io.tables import Cell, Column, Table
 from regolith_studio.messages import N_
 
@@ -166,3 +178,206 @@ def runs_from(documents: Sequence[tuple[str, float | str, str, dict[str, Any]]])
             for varied, value, folder, document in documents
         )
     )
+
+
+INDEPENDENT = 0.02
+"""Smallest singular value of the terms of a surface, for factors of range 1."""
+
+
+@dataclass(frozen=True, eq=False)
+class ResponseSurface:
+    """A fitted polynomial in factors that are centred and divided by their ranges.
+
+    Parameters
+    ----------
+    factors
+        Names.
+    centre, width
+        Mean and range of each factor, shape (k,).
+    powers
+        Indices of the factors that each term multiplies; none for the constant.
+    coefficients, covariance
+        Of the terms, shapes (p,) and (p, p).
+    degrees_of_freedom
+        Results less terms.
+    residual_deviation
+        Standard deviation of the results about the surface.
+    """
+
+    factors: tuple[str, ...]
+    centre: FloatArray
+    width: FloatArray
+    powers: tuple[tuple[int, ...], ...]
+    coefficients: FloatArray
+    covariance: FloatArray
+    degrees_of_freedom: int
+    residual_deviation: float
+
+    @property
+    def is_quadratic(self) -> bool:
+        return max(map(len, self.powers)) > 1
+
+    def predict(self, values: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Mean results at `values`, shape (m, k), and half widths of their intervals of 95 %, shape (m,)."""
+        terms = _terms((values - self.centre) / self.width, self.powers)
+        variance = np.einsum("ij,jk,ik->i", terms, self.covariance, terms)
+        return terms @ self.coefficients, self._quantile * np.sqrt(variance)
+
+    def effects(self) -> tuple[FloatArray, FloatArray]:
+        """Change of the result over the range of each factor at the centre, and half widths, shape (k,)."""
+        own = [self.powers.index((k,)) for k in range(len(self.factors))]
+        return self.coefficients[own], self._quantile * np.sqrt(np.diag(self.covariance)[own])
+
+    @property
+    def _quantile(self) -> float:
+        return float(student_t.ppf((1.0 + CONFIDENCE) / 2, self.degrees_of_freedom))
+
+
+def fit_response_surface(factors: Sequence[str], values: FloatArray, results: FloatArray) -> ResponseSurface:
+    """Fit a surface.
+
+    Parameters
+    ----------
+    values, results
+        Of the factors, shape (n, k), and what they gave, shape (n,).
+
+    Raises
+    ------
+    InputError
+        If there are too few different points, or the factors do not vary independently of each other.
+    """
+    n_points, n_linear = len(np.unique(values, axis=0)), len(factors) + 1
+    if n_points <= n_linear:
+        raise InputError(
+            f"A response surface of {', '.join(factors)} needs results at {n_linear + 1} different points "
+            f"or more, got {n_points}."
+        )
+    centre, width = values.mean(axis=0), np.ptp(values, axis=0)
+    scaled = (values - centre) / np.where(width > 0.0, width, 1.0)
+    linear: list[tuple[int, ...]] = [(), *((k,) for k in range(len(factors)))]
+    quadratic = [*linear, *combinations_with_replacement(range(len(factors)), 2)]
+    powers = quadratic if n_points >= 2 * len(quadratic) and _independent(scaled, quadratic) else linear
+    if not _independent(scaled, powers):
+        raise InputError(f"{', '.join(factors)} do not vary independently of each other; leave one out.")
+    terms = _terms(scaled, powers)
+    coefficients = np.asarray(np.linalg.lstsq(terms, results, rcond=None)[0], dtype=np.float64)
+    freedom = len(results) - len(powers)
+    variance = float(((results - terms @ coefficients) ** 2).sum() / freedom)
+    covariance = np.asarray(variance * np.linalg.inv(terms.T @ terms), dtype=np.float64)
+    return ResponseSurface(
+        tuple(factors), centre, width, tuple(powers), coefficients, covariance, freedom, variance**0.5
+    )
+
+
+def _independent(scaled: FloatArray, powers: Sequence[tuple[int, ...]]) -> bool:
+    return bool(np.linalg.matrix_rank(_terms(scaled, powers), tol=INDEPENDENT) == len(powers))
+
+
+def _terms(scaled: FloatArray, powers: Sequence[tuple[int, ...]]) -> FloatArray:
+    """Products of the factors, shape (n, p)."""
+    return np.column_stack([scaled[:, list(each)].prod(axis=1) for each in powers])
+
+
+@dataclass(frozen=True, eq=False)
+class ReposeSurface:
+    """Runs of several datasets, the mean shape statistics of each, shape (n, k), and the surface."""
+
+    study: ReposeStudy
+    statistics: FloatArray
+    surface: ResponseSurface
+
+
+def shape_statistics(datasets: Sequence[Dataset], keys: Sequence[str]) -> FloatArray:
+    """Weighted means of dimensionless descriptors over the simulated shapes of each dataset, shape (n, k).
+
+    Raises
+    ------
+    InputError
+        If a key is no dimensionless descriptor.
+    """
+    known = [each.key for each in CATALOGUE.values() if each.dimension == 0]
+    for key in keys:
+        if key not in known:
+            raise InputError(f"There is no shape statistic {key!r}; there are {', '.join(known)}.")
+    values = [
+        [[describe(each.shape, keys)[key] for key in keys] for each in dataset.representatives]
+        for dataset in datasets
+    ]
+    return np.array(
+        [dataset.weights @ np.array(rows) for dataset, rows in zip(datasets, values, strict=True)]
+    )
+
+
+def fit_repose_surface(
+    study: ReposeStudy, statistics: Mapping[str, FloatArray], keys: Sequence[str]
+) -> ReposeSurface:
+    """The surface through the mean angle of each dataset, over its runs that became piles.
+
+    Heaps of one dataset share its shapes, so that datasets, not heaps, are the independent results.
+
+    Parameters
+    ----------
+    statistics
+        Of each value of the study, shape (k,).
+
+    Raises
+    ------
+    InputError
+        If the runs do not suffice.
+    """
+    angles = {value: study.angles(value) for value in study.values}
+    piles = [value for value in study.values if angles[value]]
+    values = np.array([statistics[str(value)] for value in piles]).reshape(len(piles), len(keys))
+    means = np.array([np.mean(angles[value]) for value in piles])
+    rows = np.array([statistics[str(value)] for value in study.values])
+    return ReposeSurface(study, rows, fit_response_surface(keys, values, means))
+
+
+def surface_table(found: ReposeSurface) -> Table:
+    """One row a dataset: its statistics, the mean angle of its runs, and that of the surface."""
+    mean, half = found.surface.predict(found.statistics)
+    angles = [found.study.angles(value) for value in found.study.values]
+    columns = (
+        Column("dataset"),
+        *map(Column, found.surface.factors),
+        Column("runs"),
+        Column("angle", "deg"),
+        Column("surface", "deg"),
+        Column("surface_low", "deg"),
+        Column("surface_high", "deg"),
+    )
+    rows = tuple(
+        (str(value), *place.tolist(), len(own), float(np.mean(own)) if own else None, m, m - h, m + h)
+        for value, place, own, m, h in zip(
+            found.study.values, found.statistics, angles, mean.tolist(), half.tolist(), strict=True
+        )
+    )
+    return Table(N_("Angle of repose against shape statistics"), columns, rows)
+
+
+def surface_document(found: ReposeSurface) -> dict[str, Any]:
+    """The terms of the surface and the effect of each statistic as JSON; angles in degrees."""
+    surface = found.surface
+    change, half = surface.effects()
+    return {
+        "kind": "quadratic" if surface.is_quadratic else "linear",
+        "confidence": CONFIDENCE,
+        "residual_standard_deviation_deg": surface.residual_deviation,
+        "degrees_of_freedom": surface.degrees_of_freedom,
+        "effects": [
+            {
+                "statistic": name,
+                "mean": float(centre),
+                "range": float(width),
+                "change_over_range_deg": float(c),
+                "interval_deg": [float(c - h), float(c + h)],
+            }
+            for name, centre, width, c, h in zip(
+                surface.factors, surface.centre, surface.width, change, half, strict=True
+            )
+        ],
+        "terms": [
+            {"factors": [surface.factors[k] for k in powers], "coefficient_deg": float(value)}
+            for powers, value in zip(surface.powers, surface.coefficients, strict=True)
+        ],
+    }

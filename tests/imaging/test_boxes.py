@@ -2,7 +2,7 @@
 
 import pytest
 
-from regolith_studio.imaging.bounding_boxes import box_about, box_between
+from regolith_studio.imaging.volume import box_about, box_between
 
 
 @pytest.mark.parametrize(

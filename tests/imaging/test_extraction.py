@@ -10,7 +10,6 @@ from scipy.special import ellipeinc, ellipkinc
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.imaging import volume_slabs
-from regolith_studio.imaging.bounding_boxes import touches
 from regolith_studio.imaging.extraction import (
     border_weight,
     extract_particles,
@@ -21,7 +20,7 @@ from regolith_studio.imaging.extraction import (
 from regolith_studio.imaging.label_table import contact_areas, label_table
 from regolith_studio.imaging.sample_volumes import sample_volume
 from regolith_studio.imaging.settings import ExtractionSettings
-from regolith_studio.imaging.volume import Volume
+from regolith_studio.imaging.volume import Volume, touches
 from tools.make_samples.grains import even_sphere, random_rotation
 
 ALL = ExtractionSettings(exclude_border=False, min_voxels=0)
@@ -185,7 +184,7 @@ def test_that_volumes_without_usable_labels_are_refused(volume: Volume, message:
 def test_that_settings_without_meaning_are_refused() -> None:
     with pytest.raises(InputError, match="min_voxels must be a whole number"):
         ExtractionSettings(min_voxels=-1)
-    with pytest.raises(InputError, match="pass band"):
+    with pytest.raises(InputError, match="pass_band must be a number"):
         ExtractionSettings(pass_band=0.0)
 
 

@@ -6,7 +6,7 @@ import pyvista as pv
 
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.sphere_points import icosphere
-from regolith_studio.imaging.smoothing import LowPass, _fill_links, _series, windowed_sinc
+from regolith_studio.imaging.contours import LowPass, _fill_links, _series, windowed_sinc
 from tests.filling import filled
 
 SPHERE = icosphere(4)

@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from regolith_studio.imaging import sparse_slices as module
-from regolith_studio.imaging.sparse_slices import sparse_slices
+from regolith_studio.imaging import volume_slabs as module
 from regolith_studio.imaging.volume import Volume
+from regolith_studio.imaging.volume_slabs import sparse_slices
 
 SHAPE = (6, 8, 21)
 

@@ -4,13 +4,12 @@ import numpy as np
 import pytest
 
 from regolith_studio.errors import InputError
-from regolith_studio.imaging import volume_region
-from regolith_studio.imaging.bounding_boxes import box_between
+from regolith_studio.imaging import volume_slabs as volume_region
 from regolith_studio.imaging.extraction import extract_particles
 from regolith_studio.imaging.segmentation.segment import SegmentationSettings, segment
 from regolith_studio.imaging.settings import DenoiseSettings, ExtractionSettings
-from regolith_studio.imaging.volume import Volume
-from regolith_studio.imaging.volume_region import VolumeRegion
+from regolith_studio.imaging.volume import Volume, box_between
+from regolith_studio.imaging.volume_slabs import VolumeRegion
 from regolith_studio.readers.volumes.region import RegionSettings, crop_of_rectangle
 
 RNG = np.random.default_rng(4)

@@ -8,7 +8,7 @@ from regolith_studio.jobs.model_evaluation import ModelEvaluationResult, evaluat
 from regolith_studio.jobs.model_jobs import GenerationRequest, draw
 from regolith_studio.shape_models.materials import materials
 from regolith_studio.shape_models.sample import Sample
-from regolith_studio.studies.population_curves import CONTAINED, common_grid, contours, pair_density
+from regolith_studio.studies.population_tables import CONTAINED, common_grid, contours, pair_density
 
 
 @pytest.fixture(scope="module")

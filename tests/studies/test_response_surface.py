@@ -4,8 +4,12 @@ import numpy as np
 import pytest
 
 from regolith_studio.errors import InputError
-from regolith_studio.studies.repose import runs_from
-from regolith_studio.studies.repose_surface import ResponseSurface, fit_repose_surface, fit_response_surface
+from regolith_studio.studies.repose import (
+    ResponseSurface,
+    fit_repose_surface,
+    fit_response_surface,
+    runs_from,
+)
 
 from .test_repose_means import document
 

@@ -1,5 +1,8 @@
-"""Noise out of grey values, edges kept."""
+"""Noise out of grey values, edges kept, slab by slab, with the histogram of what is left."""
 
+from collections.abc import Generator
+from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -7,7 +10,18 @@ from numpy.typing import NDArray
 from scipy import ndimage
 from skimage import restoration
 
+from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.imaging.segmentation.scan_outside import Padding
+from regolith_studio.imaging.segmentation.thresholding import (
+    Histogram,
+    bins_between,
+    finite,
+    histogram,
+    span,
+)
 from regolith_studio.imaging.settings import DenoiseSettings
+from regolith_studio.imaging.volume import Volume
+from regolith_studio.imaging.volume_slabs import ParallelMap, ScratchArrays, SharedArray, slab_ranges
 
 _denoise_nl_means: Any = restoration.denoise_nl_means
 
@@ -69,3 +83,71 @@ def _in_type(values: NDArray[np.float32], dtype: np.dtype[Any]) -> NDArray[Any]:
     limits = np.iinfo(dtype)
     rounded = np.rint(values, out=values)
     return np.clip(rounded, float(limits.min), float(limits.max)).astype(dtype)
+
+
+def denoised_volume(
+    source: Volume,
+    how: DenoiseSettings,
+    are_probabilities: bool,
+    scratch: ScratchArrays,
+    run: ParallelMap,
+    padding: Padding | None,
+) -> Generator[tuple[int, int], None, tuple[Volume, Histogram, int]]:
+    """Grey values without noise (probabilities as they are), their histogram, and how many are not finite.
+
+    Parameters
+    ----------
+    padding
+        What the histogram does not count.
+    """
+    given = SharedArray(source.array)
+    ranges = slab_ranges(source.shape)
+    edges, n_not_finite = _bins(given, run)
+    middle = source.shape[2] // 2
+    noise = noise_of(given.slices(middle, middle + 1)) if how.method == "non-local-means" else 0.0
+    values = None
+    if how.method != "none" and not are_probabilities:
+        values = SharedArray(scratch.zeros(source.shape, source.dtype))
+    smooth = partial(_smooth_slab, given, values, how, noise, edges, padding)
+    seen = Histogram(np.zeros(len(edges) - 1, dtype=np.int64), edges)
+    for done, counts in enumerate(run(smooth, ranges), start=1):
+        seen = seen + counts
+        yield done, len(ranges)
+    found = source if values is None else replace(source, array=values.array)
+    return found, seen, n_not_finite
+
+
+def _smooth_slab(
+    given: SharedArray,
+    values: SharedArray | None,
+    how: DenoiseSettings,
+    noise: float,
+    edges: FloatArray,
+    padding: Padding | None,
+    part: tuple[int, int],
+) -> Histogram:
+    """Write a slab without noise into `values`, if there are any; returns its histogram."""
+    if values is None:
+        smooth = given.slices(*part)
+    else:
+        slab = given.thick(*part, how.margin)
+        smooth = denoised(slab.values, how, noise)[:, :, slab.inner]
+        values.write(slab.first, smooth)
+    return histogram(smooth if padding is None else smooth[~padding.of(part)], edges)
+
+
+def _bins(given: SharedArray, run: ParallelMap) -> tuple[FloatArray, int]:
+    """Edges of the histogram's bins, and the number of voxels that are not finite."""
+    spans, n_not_finite = [], 0
+    for known, count in run(partial(_span_of_slab, given), slab_ranges(given.shape)):
+        spans += known
+        n_not_finite += count
+    lowest, highest = span(np.array(spans))
+    return bins_between(lowest, highest, given.array.dtype), n_not_finite
+
+
+def _span_of_slab(given: SharedArray, part: tuple[int, int]) -> tuple[list[tuple[float, float]], int]:
+    """Lowest and highest finite value of a slab, if there is one, and how many are not finite."""
+    slab = given.slices(*part)
+    known = finite(slab)
+    return [span(known)] if known.size else [], slab.size - known.size

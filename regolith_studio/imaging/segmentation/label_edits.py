@@ -16,10 +16,9 @@ from skimage.segmentation import watershed
 
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray
-from regolith_studio.imaging.bounding_boxes import Box, box_between
 from regolith_studio.imaging.label_table import label_table
 from regolith_studio.imaging.segmentation.splitting import distance_map
-from regolith_studio.imaging.volume import Volume
+from regolith_studio.imaging.volume import Box, Volume, box_between
 
 EditKind = Literal["merge", "delete", "seeds", "cut", "fill", "paint", "erase"]
 EDIT_KINDS: tuple[EditKind, ...] = get_args(EditKind)

@@ -19,11 +19,10 @@ from skimage.measure import marching_cubes, mesh_surface_area
 
 from regolith_studio.errors import InputError, MissingRequirement
 from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray, locked_floats, locked_integers
-from regolith_studio.imaging.bounding_boxes import Box, box_between, grown
 from regolith_studio.imaging.label_table import GrainCrop, LabelTable, grain_crop, label_table
 from regolith_studio.imaging.segmentation.splitting import in_mean_edges, split
 from regolith_studio.imaging.settings import SplittingSettings
-from regolith_studio.imaging.volume import Volume
+from regolith_studio.imaging.volume import Box, Volume, box_between, grown
 from regolith_studio.imaging.volume_slabs import SharedArray
 from regolith_studio.messages import N_
 

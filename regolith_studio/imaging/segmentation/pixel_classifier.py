@@ -16,14 +16,13 @@ from numpy.typing import NDArray
 
 from regolith_studio.errors import InputError, MissingRequirement
 from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats, locked_integers
-from regolith_studio.imaging.bounding_boxes import Box, box_between
 from regolith_studio.imaging.segmentation.pixel_features import (
     FeatureSettings,
     block_features,
     features_at,
     features_in,
 )
-from regolith_studio.imaging.volume import Origin, Volume, VolumeKind
+from regolith_studio.imaging.volume import Box, Origin, Volume, VolumeKind, box_between
 from regolith_studio.imaging.volume_slabs import (
     ParallelMap,
     ScratchArrays,

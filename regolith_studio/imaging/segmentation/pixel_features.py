@@ -15,8 +15,7 @@ from numpy.typing import NDArray
 
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import IntArray
-from regolith_studio.imaging.bounding_boxes import Box, box_between, grown
-from regolith_studio.imaging.volume import Volume
+from regolith_studio.imaging.volume import Box, Volume, box_between, grown
 from regolith_studio.imaging.volume_slabs import SliceSource, slab_ranges, thick_slabs
 
 FloatBlock = NDArray[np.float32]

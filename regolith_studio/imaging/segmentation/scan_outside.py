@@ -8,10 +8,9 @@ from numpy.typing import NDArray
 
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import BoolArray
-from regolith_studio.imaging.bounding_boxes import Box
 from regolith_studio.imaging.segmentation.thresholding import finite, grain_voxels, histogram, level_of
 from regolith_studio.imaging.settings import ThresholdSettings
-from regolith_studio.imaging.volume import Volume
+from regolith_studio.imaging.volume import Box, Volume
 from regolith_studio.imaging.volume_slabs import ScratchArrays, SharedArray, SliceSource, slab_ranges
 from regolith_studio.messages import N_, Message, Number
 

@@ -15,16 +15,14 @@ from numpy.typing import NDArray
 
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray, IntArray
-from regolith_studio.imaging.bounding_boxes import Box
 from regolith_studio.imaging.connected_components import (
     ComponentJoiner,
     ConnectedComponents,
     SlabComponents,
     components_of_slab,
 )
-from regolith_studio.imaging.segmentation.denoised_volume import denoised_volume
+from regolith_studio.imaging.segmentation.denoising import denoised_volume
 from regolith_studio.imaging.segmentation.label_edits import LabelEdit, apply_edits
-from regolith_studio.imaging.segmentation.morphology import cleaned
 from regolith_studio.imaging.segmentation.object_classifier import (
     ObjectTable,
     ObjectTraining,
@@ -43,6 +41,7 @@ from regolith_studio.imaging.segmentation.scan_outside import OUTSIDE, Padding, 
 from regolith_studio.imaging.segmentation.splitting import GrainSplitter
 from regolith_studio.imaging.segmentation.thresholding import (
     Histogram,
+    cleaned,
     grain_voxels,
     level_of,
     threshold_words,
@@ -55,7 +54,7 @@ from regolith_studio.imaging.settings import (
     ThresholdSettings,
     TileSettings,
 )
-from regolith_studio.imaging.volume import Volume
+from regolith_studio.imaging.volume import Box, Volume
 from regolith_studio.imaging.volume_slabs import (
     ParallelMap,
     ScratchArrays,

@@ -86,14 +86,14 @@ class RegionSettings:
         Raises
         ------
         InputError
-            As :class:`~regolith_studio.imaging.volume_region.VolumeRegion`.
+            As :class:`~regolith_studio.imaging.volume_slabs.VolumeRegion`.
         """
         if self.is_whole:
             return source
         import numpy as np
 
-        from regolith_studio.imaging.bounding_boxes import box_between
-        from regolith_studio.imaging.volume_region import VolumeRegion
+        from regolith_studio.imaging.volume import box_between
+        from regolith_studio.imaging.volume_slabs import VolumeRegion
 
         edges = np.asarray(source.voxel_size, float).tolist()
         ranges = _ranges(self.crop) or (((None, ""), (None, "")),) * 3

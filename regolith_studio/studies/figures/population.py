@@ -15,10 +15,13 @@ from regolith_studio.io.tables import write_table
 from regolith_studio.shape_models.models import MODELS
 from regolith_studio.studies.figures.files import write_figure
 from regolith_studio.studies.population import PopulationStudy
-from regolith_studio.studies.population_curves import QUANTILES, common_grid, histogram_edges, pair_density
 from regolith_studio.studies.population_distances import WEIGHTINGS, class_weights
 from regolith_studio.studies.population_tables import (
+    QUANTILES,
+    common_grid,
     distance_table,
+    histogram_edges,
+    pair_density,
     pair_table,
     ranking_table,
     size_column,

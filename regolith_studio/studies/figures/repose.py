@@ -23,7 +23,14 @@ from regolith_studio.io.json_text import json_bytes
 from regolith_studio.io.tables import write_table
 from regolith_studio.studies.calibration import CONFIDENCE, density_of
 from regolith_studio.studies.figures.files import with_subscript, write_figure
-from regolith_studio.studies.repose import ReposeStudy, repose_means, repose_table
+from regolith_studio.studies.repose import (
+    ReposeStudy,
+    ReposeSurface,
+    repose_means,
+    repose_table,
+    surface_document,
+    surface_table,
+)
 from regolith_studio.studies.repose_calibration import (
     ANGLE,
     ReposeCalibration,
@@ -31,7 +38,6 @@ from regolith_studio.studies.repose_calibration import (
     calibration_table,
     probabilities_of,
 )
-from regolith_studio.studies.repose_surface import ReposeSurface, surface_document, surface_table
 
 SURFACE_STEM = "response_surface"
 

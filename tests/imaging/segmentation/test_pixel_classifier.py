@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from regolith_studio.errors import FileError, InputError, MissingRequirement
-from regolith_studio.imaging.bounding_boxes import box_between
 from regolith_studio.imaging.segmentation import pixel_classifier
 from regolith_studio.imaging.segmentation.classifier_document import training_document, training_from
 from regolith_studio.imaging.segmentation.pixel_classifier import (
@@ -25,7 +24,7 @@ from regolith_studio.imaging.segmentation.pixel_classifier import (
 from regolith_studio.imaging.segmentation.pixel_features import FeatureSettings, features_at, features_in
 from regolith_studio.imaging.segmentation.segment import SegmentationSettings, preview, segment
 from regolith_studio.imaging.settings import CleaningSettings, DenoiseSettings, ThresholdSettings
-from regolith_studio.imaging.volume import Volume
+from regolith_studio.imaging.volume import Volume, box_between
 from regolith_studio.imaging.volume_slabs import ScratchArrays, SharedArray
 
 PROBABLE = ThresholdSettings("probability", 0.5)

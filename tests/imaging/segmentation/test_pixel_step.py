@@ -8,8 +8,13 @@ from skimage import filters
 from regolith_studio.errors import InputError
 from regolith_studio.imaging.sample_volumes import sample_volume
 from regolith_studio.imaging.segmentation.denoising import denoised, noise_of
-from regolith_studio.imaging.segmentation.morphology import cleaned
-from regolith_studio.imaging.segmentation.thresholding import Histogram, grain_voxels, histogram, level_of
+from regolith_studio.imaging.segmentation.thresholding import (
+    Histogram,
+    cleaned,
+    grain_voxels,
+    histogram,
+    level_of,
+)
 from regolith_studio.imaging.settings import (
     DENOISE_METHODS,
     CleaningSettings,

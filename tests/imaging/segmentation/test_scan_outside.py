@@ -5,7 +5,7 @@ import pytest
 
 from regolith_studio.errors import InputError
 from regolith_studio.imaging.extraction import extract_particles
-from regolith_studio.imaging.scan_circle import ScanCircle
+from regolith_studio.imaging.label_table import ScanCircle
 from regolith_studio.imaging.segmentation.scan_outside import background_filled, find_outside
 from regolith_studio.imaging.segmentation.segment import SegmentationSettings, preview, segment
 from regolith_studio.imaging.segmentation.thresholding import hidden_class

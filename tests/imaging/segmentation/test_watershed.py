@@ -7,8 +7,13 @@ from skimage.measure import label
 from skimage.morphology import local_maxima, reconstruction
 from skimage.segmentation import watershed as skimage_watershed
 
-from regolith_studio.imaging.segmentation.splitting import distance_map, in_mean_edges, joined, split
-from regolith_studio.imaging.segmentation.watershed import find_basins
+from regolith_studio.imaging.segmentation.splitting import (
+    distance_map,
+    find_basins,
+    in_mean_edges,
+    joined,
+    split,
+)
 from regolith_studio.imaging.settings import SplittingSettings
 
 EVERY = np.ones((3, 3, 3), dtype=bool)

@@ -29,8 +29,16 @@ from regolith_studio.scene.palette import DESCRIPTOR_COLOURS
 from regolith_studio.session.tasks import Task
 from regolith_studio.shape_models.models import MODELS
 from regolith_studio.studies.population import PopulationStudy
-from regolith_studio.studies.population_curves import CUT, MEASURED, PopulationCurve, PopulationPanel
-from regolith_studio.studies.population_tables import distance_table, pair_table, ranking_table, target_table
+from regolith_studio.studies.population_tables import (
+    CUT,
+    MEASURED,
+    PopulationCurve,
+    PopulationPanel,
+    distance_table,
+    pair_table,
+    ranking_table,
+    target_table,
+)
 from regolith_studio.ui.layout import scrolled, tabs
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import localized, number_text, tr, translate

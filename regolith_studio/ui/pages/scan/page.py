@@ -10,10 +10,9 @@ from PySide6.QtGui import QDragEnterEvent, QDropEvent, QKeyEvent, QKeySequence
 from PySide6.QtWidgets import QHBoxLayout, QSizePolicy
 
 from regolith_studio.errors import RegolithError
-from regolith_studio.imaging.bounding_boxes import Box
 from regolith_studio.imaging.segmentation.segment import Segmentation, SegmentationSettings
 from regolith_studio.imaging.segmentation.strokes import ERASER
-from regolith_studio.imaging.volume import Volume
+from regolith_studio.imaging.volume import Box, Volume
 from regolith_studio.jobs.events import Failed, Job
 from regolith_studio.jobs.extraction_settings import GrainSettings
 from regolith_studio.jobs.scan_jobs import (

@@ -11,9 +11,8 @@ from PySide6.QtCore import QPointF, QRectF, QSignalBlocker, Qt, Signal
 from PySide6.QtGui import QColor, QMouseEvent, QPainterPath, QWheelEvent
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QSlider, QVBoxLayout, QWidget
 
-from regolith_studio.imaging.bounding_boxes import Box
 from regolith_studio.imaging.slice_images import SliceImages
-from regolith_studio.imaging.volume import Volume
+from regolith_studio.imaging.volume import Box, Volume
 from regolith_studio.ui.pages.scan.tools import CLASS_COLOURS, Brush
 from regolith_studio.ui.theme import Theme, current_theme
 from regolith_studio.ui.translation import tr
