@@ -158,6 +158,26 @@ def min_feret_diameter(facts: ShapeCache) -> float:
     return feret_min(facts.hull)
 
 
+def width(facts: ShapeCache) -> float:
+    """Longest chord of the hull perpendicular to its longest one, which is the largest Feret diameter L."""
+    return facts.three_chords[1]
+
+
+def thickness(facts: ShapeCache) -> float:
+    """Longest chord of the hull perpendicular to both L and W."""
+    return facts.three_chords[2]
+
+
+def width_over_length(facts: ShapeCache) -> float:
+    """Zingg's ratio of elongation from chords."""
+    return facts.three_chords[1] / facts.three_chords[0]
+
+
+def thickness_over_width(facts: ShapeCache) -> float:
+    """Zingg's ratio of flatness from chords."""
+    return facts.three_chords[2] / facts.three_chords[1]
+
+
 def roundness(facts: ShapeCache) -> float:
     """Mean over the surface of |n . x| / |x| about the centroid, after Bullard and Garboczi (2013)."""
     return mean_incidence(facts.mesh, facts.mesh.centroid)
@@ -273,6 +293,22 @@ _ROWS = (
         1,
         N_("least distance of two parallel tangent planes"),
         min_feret_diameter,
+        costly=True,
+    ),
+    Descriptor("width", "W", N_("Width"), 1, N_("longest chord across F_max"), width, costly=True),
+    Descriptor(
+        "thickness", "T", N_("Thickness"), 1, N_("longest chord across F_max and W"), thickness, costly=True
+    ),
+    Descriptor(
+        "width_over_length", "W/L", N_("Width to length"), 0, N_("W / F_max"), width_over_length, costly=True
+    ),
+    Descriptor(
+        "thickness_over_width",
+        "T/W",
+        N_("Thickness to width"),
+        0,
+        N_("T / W"),
+        thickness_over_width,
         costly=True,
     ),
     Descriptor(

@@ -11,6 +11,7 @@ from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.mass_properties import ellipsoid_area, equal_ellipsoid, volume_and_area
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.oriented_box import OrientedBox, heuristic_box, minimum_volume_box
+from regolith_studio.geometry.three_chords import length_width_thickness
 
 FLAT = 1e-9
 """A mesh whose volume is below this share of its size cubed encloses nothing."""
@@ -56,6 +57,11 @@ class ShapeCache:
     def box(self) -> OrientedBox:
         """Oriented bounding box by `box_metric`."""
         return BOX_METRICS[self.box_metric](self._solid)
+
+    @cached_property
+    def three_chords(self) -> tuple[float, float, float]:
+        """Length, width and thickness of the hull by chords."""
+        return length_width_thickness(self.hull)
 
     @cached_property
     def principal_moments(self) -> FloatArray:

@@ -98,7 +98,8 @@ def test_that_every_row_can_be_shown() -> None:
         assert row.key == key
         assert all([row.symbol, row.label, row.formula])
         assert row.label[0].isupper()
-    assert [key for key in CATALOGUE if key not in DEFAULT_KEYS] == ["min_feret_diameter"]
+    chords = ["width", "thickness", "width_over_length", "thickness_over_width"]
+    assert [key for key in CATALOGUE if key not in DEFAULT_KEYS] == ["min_feret_diameter", *chords]
 
 
 @pytest.mark.parametrize(
