@@ -1,5 +1,6 @@
 """MuJoCo: an MJCF model of drawn particles, falling on a plate."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from xml.sax.saxutils import quoteattr
 
@@ -8,8 +9,10 @@ import numpy as np
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.export import NOTES, Exporter, ExportOptions, number_row, shape_names, sizes_csv
 from regolith_studio.dataset.packing import PackedParticles, pack_on_lattice
+from regolith_studio.dataset.parameters import ContactParameters, LiftingCylinderTest
 from regolith_studio.errors import DatasetError
-from regolith_studio.geometry.convex_compound import ConvexCompound, Polyhedron
+from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.messages import N_
 
 
@@ -33,16 +36,60 @@ one. A compound is a body of several geoms, one a convex part, with mass and ine
 Contacts of MuJoCo are soft constraints with Coulomb friction, not Hertz, Mindlin or JKR."""
 
 
+@dataclass(frozen=True, eq=False)
+class MjcfShape:
+    """A shape of volume 1 about its centre of mass, as convex parts.
+
+    Parameters
+    ----------
+    name
+        Unique.
+    parts
+        Closed convex meshes.
+    inertia
+        Of the union at density 1, shape (3, 3).
+    """
+
+    name: str
+    parts: Sequence[Mesh]
+    inertia: FloatArray
+
+
 def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
+    shapes = [
+        MjcfShape(key, each.shape.part_meshes, each.shape.mesh.inertia)
+        for key, each in zip(shape_names(dataset), dataset.representatives, strict=True)
+    ]
     bodies = pack_on_lattice(dataset, options)
-    units = _units(dataset, bodies, options.contact.density)
-    keys, density = shape_names(dataset), options.contact.density * units.per_kilogram / units.per_metre**3
+    text, notes = mjcf_model(dataset.name, shapes, bodies, options.contact, options.test)
+    return {
+        "particles.xml": text.encode("utf-8"),
+        "sizes.csv": sizes_csv(dataset),
+        NOTES: notes.encode("utf-8"),
+    }
+
+
+def mjcf_model(
+    name: str,
+    shapes: Sequence[MjcfShape],
+    bodies: PackedParticles,
+    contact: ContactParameters,
+    test: LiftingCylinderTest,
+) -> tuple[str, str]:
+    """An MJCF model of particles on a plate, and what its reader should know.
+
+    Raises
+    ------
+    DatasetError
+        If the particles are too small for MuJoCo.
+    """
+    units = _units(shapes, bodies, contact.density)
+    density = contact.density * units.per_kilogram / units.per_metre**3
     scales = bodies.scale * units.per_metre
-    shapes = [one.shape for one in dataset.representatives]
     assets: dict[tuple[int, float], str] = {}
     lines = []
     for index, (which, scale) in enumerate(zip(bodies.class_index.tolist(), scales.tolist(), strict=True)):
-        mesh = assets.setdefault((which, scale), f"{keys[which]}_{len(assets)}")
+        mesh = assets.setdefault((which, scale), f"{shapes[which].name}_{len(assets)}")
         place, turn = bodies.position[index] * units.per_metre, bodies.orientation[index]
         lines += [
             f'    <body name="particle_{index}" pos="{number_row(place)}" quat="{number_row(turn)}">',
@@ -59,15 +106,14 @@ def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
         f'vertex="{number_row(part.vertices.ravel())}" '
         f'face="{" ".join(map(str, part.faces.ravel().tolist()))}"/>'
         for (which, scale), mesh in assets.items()
-        for name, part in zip(_mesh_names(mesh, shapes[which]), shapes[which].part_meshes, strict=True)
+        for name, part in zip(_mesh_names(mesh, shapes[which]), shapes[which].parts, strict=True)
     ]
     reach = float(np.abs(bodies.position).max() * units.per_metre) * 4
-    text = _model(dataset.name, options, units, reach, meshes, lines)
-    notes = _NOTE.format(length=units.length, mass=units.mass).encode("utf-8")
-    return {"particles.xml": text.encode("utf-8"), "sizes.csv": sizes_csv(dataset), NOTES: notes}
+    text = _model(name, contact, test, units, reach, meshes, lines)
+    return text, _NOTE.format(length=units.length, mass=units.mass)
 
 
-def _units(dataset: Dataset, bodies: PackedParticles, density: float) -> _Units:
+def _units(shapes: Sequence[MjcfShape], bodies: PackedParticles, density: float) -> _Units:
     """The first units in which MuJoCo takes the smallest moment of inertia.
 
     Raises
@@ -75,7 +121,7 @@ def _units(dataset: Dataset, bodies: PackedParticles, density: float) -> _Units:
     DatasetError
         If there are none.
     """
-    least = np.array([np.linalg.eigvalsh(each.shape.mesh.inertia)[0] for each in dataset.representatives])
+    least = np.array([np.linalg.eigvalsh(each.inertia)[0] for each in shapes])
     smallest = float((least[bodies.class_index] * density * bodies.scale**5).min())
     for units in UNITS:
         if smallest * units.per_kilogram * units.per_metre**2 > MIN_MOMENT:
@@ -89,9 +135,14 @@ def _units(dataset: Dataset, bodies: PackedParticles, density: float) -> _Units:
 
 
 def _model(
-    name: str, options: ExportOptions, units: _Units, reach: float, meshes: list[str], bodies: list[str]
+    name: str,
+    contact: ContactParameters,
+    test: LiftingCylinderTest,
+    units: _Units,
+    reach: float,
+    meshes: list[str],
+    bodies: list[str],
 ) -> str:
-    contact, test = options.contact, options.test
     density = contact.density * units.per_kilogram / units.per_metre**3
     gravity = test.gravity * units.per_metre * 1e-6
     return "\n".join(
@@ -119,15 +170,15 @@ def _model(
     )
 
 
-def _mesh_names(mesh: str, shape: Polyhedron) -> list[str]:
+def _mesh_names(mesh: str, shape: MjcfShape) -> list[str]:
     """Of the convex parts of a shape; a convex shape is its only part."""
-    count = len(shape.part_meshes)
+    count = len(shape.parts)
     return [mesh] if count == 1 else [f"{mesh}_part{number}" for number in range(1, count + 1)]
 
 
-def _inertial(shape: Polyhedron, mass: float, scale: float) -> list[str]:
+def _inertial(shape: MjcfShape, mass: float, scale: float) -> list[str]:
     """Mass and inertia of a compound: those that MuJoCo sums over its geoms count twice what parts share."""
-    if not isinstance(shape, ConvexCompound):
+    if len(shape.parts) == 1:
         return []
     tensor = (shape.inertia * mass * scale**2)[[0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]]
     return [f'      <inertial pos="0 0 0" mass="{mass!r}" fullinertia="{number_row(tensor)}"/>']
