@@ -19,6 +19,7 @@ from regolith_studio.cli.options import (
 from regolith_studio.cli.repose_calibrate import calibrate
 from regolith_studio.cli.repose_options import (
     CaseOptions,
+    EngineKey,
     Particles,
     check_results_folder,
     evaluation_settings,
@@ -226,6 +227,14 @@ def run(
     cohesion: Annotated[
         str, typer.Option("--cohesion", help="Cohesion: none, given or scaled.", metavar="C")
     ] = "none",
+    filling: Annotated[
+        Path | None,
+        typer.Option(
+            "--filling",
+            help="Folder of a run of the same particles, whose filled cylinder is lifted again.",
+            metavar="RUN",
+        ),
+    ] = None,
     overwrite: Annotated[
         bool, typer.Option("--overwrite", help="Replace an existing run in the folder.")
     ] = False,
@@ -238,6 +247,7 @@ def run(
 
     from regolith_studio.dataset.folder_io import dataset_hash, read_dataset
     from regolith_studio.dem.case import prepare, scaling_report
+    from regolith_studio.dem.run_io import with_filling
     from regolith_studio.jobs.repose_jobs import simulate_prepared
     from regolith_studio.jobs.runners.process_pool import cores
 
@@ -250,6 +260,9 @@ def run(
     )
     prepared = prepare(read_dataset(dataset), request.case, dataset_hash(dataset))
     print_errors(scaling_report(prepared).sentences)
+    if filling is not None:
+        prepared, notes = with_filling(prepared, filling)
+        print_errors(notes)
     request = replace(request, overwrite=overwrite, threads=jobs or cores())
     done = run_with_progress(simulate_prepared(prepared, output, request))
     print_errors(run_remarks(done.document))
@@ -335,6 +348,45 @@ def study(
     if surface is not None:
         print_table(surface_table(surface))
         typer.echo(surface_in_words(surface_document(surface)))
+
+
+@app.command("verify")
+def verify(
+    engine: EngineKey = "mujoco",
+    quick: Annotated[
+        bool, typer.Option("--quick", help="Leave out gravity and dice, which take more than minutes.")
+    ] = False,
+    json: Json = False,
+) -> None:
+    """Verify an engine: friction, energy, rest, contacts, time step, gravity, packings of dice."""
+    from regolith_studio.dem.verification.certificate import certificate_document
+    from regolith_studio.jobs.repose_verification import verify_engine
+
+    with usage_errors():
+        done = run_with_progress(verify_engine(engine, quick))
+    document = certificate_document(done)
+    if json:
+        print_json(document)
+    else:
+        typer.echo(certificate_in_words(document))
+    raise typer.Exit(0 if done.passed else 1)
+
+
+def certificate_in_words(document: dict[str, Any]) -> str:
+    """The lines of a certificate."""
+    lines = [f"{document['engine']} {document['version']}"]
+    for each in document["lines"]:
+        verdict = "passed" if each["passed"] else "FAILED"
+        lines.append(f"{verdict}  {each['what']}: {each['value']:.3g} {each['unit']}".rstrip())
+        details = [
+            f"band: {each['band']}",
+            *([each["note"]] if each["note"] else []),
+            f"{each['seconds']:.0f} s",
+        ]
+        lines.append("        " + "; ".join(details))
+    if document["left_out"]:
+        lines.append(f"not measured: {', '.join(document['left_out'])}")
+    return "\n".join(lines)
 
 
 def _statistics(against: str, folders: list[Path]) -> tuple[list[str], dict[str, Any]]:

@@ -16,6 +16,7 @@ from regolith_studio.dataset.parameters import (
 )
 from regolith_studio.dataset.sampling import sample_dataset
 from regolith_studio.dem.angle_of_repose import COARSE_PILE, RELIABLE_N
+from regolith_studio.dem.snapshot import ParticleState
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats, locked_integers
 from regolith_studio.geometry.convex_compound import ConvexCompound
@@ -106,6 +107,8 @@ class PreparedCase:
     parts, inertias
         Number of vertices of each convex part of each shape, and each shape's tensor of inertia at density 1,
         shape (3, 3), of a compound that of its union. Both empty where all shapes are convex.
+    filling
+        The same particles at rest in the cylinder, from an earlier run; without it the cylinder is filled.
     """
 
     case: ReposeCase
@@ -118,6 +121,7 @@ class PreparedCase:
     n_facets: tuple[int, ...] = ()
     parts: tuple[tuple[int, ...], ...] = ()
     inertias: tuple[FloatArray, ...] = ()
+    filling: ParticleState | None = None
 
     def __post_init__(self) -> None:
         n = len(self.diameters)
@@ -137,6 +141,7 @@ class PreparedCase:
             self.n_facets,
             self.parts,
             self.inertias,
+            self.filling,
         )
 
     def __len__(self) -> int:

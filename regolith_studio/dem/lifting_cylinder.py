@@ -143,6 +143,14 @@ class Solver(Protocol):
         """Sentences on the run, from the simulated time with each step."""
         ...
 
+    def place(self, points: FloatArray, orientations: FloatArray) -> None:
+        """Put the particles at rest at these centres, shape (n, 3), with these quaternions, shape (n, 4)."""
+        ...
+
+    def set_gravity(self, gravity: FloatArray) -> None:
+        """Let another gravity act, shape (3,), of length 1 as a rule; on a slope it is not vertical."""
+        ...
+
     def state(self) -> bytes:
         """Everything that is needed to go on."""
         ...
@@ -221,9 +229,29 @@ def simulate_lifting(run: LiftingRun) -> Generator[Snapshot, None, SimulationRes
     RegolithError
         If the solver diverges.
     """
-    _begin(run, PHASES[0])
+    yield from fill_cylinder(run)
+    return (yield from lift_cylinder(run))
+
+
+def fill_cylinder(run: LiftingRun) -> Generator[Snapshot, None, None]:
+    """Let the particles fall into the cylinder and settle there, or take them from an earlier filling.
+
+    The last snapshot is that of the settled filling.
+    """
+    filling = run.prepared.filling
+    _begin(run, PHASES[0] if filling is None else "settle")
+    if filling is not None:
+        run.solver.place(filling.points / run.units.length, filling.orientations)
     yield _snapshot(run)
-    return (yield from _go_on(run))
+    yield from _phases(run, last="settle")
+    yield _snapshot(run)
+
+
+def lift_cylinder(run: LiftingRun) -> Generator[Snapshot, None, SimulationResult]:
+    """Lift the cylinder off a settled filling, and wait until the heap is at rest."""
+    _begin(run, "lift")
+    yield from _phases(run, last=PHASES[-1])
+    return _simulation_result(run)
 
 
 def resume_lifting(run: LiftingRun, state: EngineState) -> Generator[Snapshot, None, SimulationResult]:
@@ -234,7 +262,8 @@ def resume_lifting(run: LiftingRun, state: EngineState) -> Generator[Snapshot, N
     run.times = {float(step): time for step, time in state.records["times"].items()}
     run.solver.phase = run.phase
     run.solver.load(state.solver)
-    return (yield from _go_on(run, resumed=True))
+    yield from _phases(run, last=PHASES[-1], resumed=True)
+    return _simulation_result(run)
 
 
 @dataclass(frozen=True)
@@ -286,7 +315,8 @@ class SteppedEngine(ABC):
         return resume_lifting(LiftingRun(prepared, settings, self.solver(prepared, settings)), state)
 
 
-def _go_on(run: LiftingRun, *, resumed: bool = False) -> Generator[Snapshot, None, SimulationResult]:
+def _phases(run: LiftingRun, last: str, *, resumed: bool = False) -> Generator[Snapshot, None, None]:
+    """From where the run is to the end of the phase `last`."""
     while True:
         done = {"fill": _is_filled, "lift": _is_clear}.get(run.phase, _is_calm)
         if not (resumed and run.steps and done(run)):  # a snapshot comes before this question
@@ -294,9 +324,12 @@ def _go_on(run: LiftingRun, *, resumed: bool = False) -> Generator[Snapshot, Non
         resumed = False
         if run.phase == "settle":
             run.fill = measure_filling(run.prepared, particles_of(run))
-        if run.phase == PHASES[-1]:
-            break
+        if run.phase == last:
+            return
         _begin(run, PHASES[PHASES.index(run.phase) + 1])
+
+
+def _simulation_result(run: LiftingRun) -> SimulationResult:
     simulated = run.solver.time * run.units.time
     return SimulationResult(
         particles_of(run), _checks(run), run.steps, simulated, tuple(run.solver.notes(run.times))
@@ -357,10 +390,13 @@ def _is_clear(run: LiftingRun) -> bool:
 def _snapshot(run: LiftingRun) -> Snapshot:
     share = min(0.99, run.solver.time / run.expected)
     simulated = run.solver.time * run.units.time
-    return Snapshot(particles_of(run), share, progress_message(run.phase, simulated), lambda: _state(run))
+    return Snapshot(
+        particles_of(run), share, progress_message(run.phase, simulated), lambda: engine_state(run)
+    )
 
 
-def _state(run: LiftingRun) -> EngineState:
+def engine_state(run: LiftingRun) -> EngineState:
+    """All that :func:`resume_lifting` needs to go on from here."""
     records = {name: getattr(run, name) for name in RECORDS} | {"times": run.times}
     return EngineState(json.loads(json.dumps(records)), run.solver.state())
 

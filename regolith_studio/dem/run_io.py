@@ -6,7 +6,7 @@ import os
 import shutil
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +18,7 @@ from regolith_studio.dem.case import PreparedCase, ReposeCase, scaling_report
 from regolith_studio.dem.engine import Engine, RunChecks, SimulationResult
 from regolith_studio.dem.evaluation.section import NotAPileError
 from regolith_studio.dem.heap_packing import HeapPacking, packing_document
+from regolith_studio.dem.shipped_certificates import engine_remarks
 from regolith_studio.dem.snapshot import ParticleState, particle_state_bytes, read_particle_state
 from regolith_studio.errors import FileError, RegolithError, os_error_reason
 from regolith_studio.geometry.arrays import FloatArray
@@ -156,11 +157,60 @@ def run_key(prepared: PreparedCase, engine: Engine, settings: Any) -> str:
         "parts": [list(counts) for counts in prepared.parts],
         "engine": [engine.key, engine.find().version, asdict(settings)],
         "coarse_graining": prepared.coarse_graining,
+        "filling": filling_hash(prepared),
     }
     found = hashlib.sha256(canonical_json(document).encode("utf-8"))
     for array in (prepared.diameters, prepared.class_index, *prepared.shapes):
         found.update(array.tobytes())
     return found.hexdigest()
+
+
+def filling_hash(prepared: PreparedCase) -> str | None:
+    """SHA-256 of the filling that a case begins with, as hexadecimal; ``None`` where it is filled anew."""
+    if prepared.filling is None:
+        return None
+    return hashlib.sha256(particle_state_bytes(prepared.filling)).hexdigest()
+
+
+def with_filling(prepared: PreparedCase, folder: Path) -> tuple[PreparedCase, list[str]]:
+    """The case with the settled filling of an earlier run of the same particles in the same cylinder.
+
+    Gravity, lift, wall and plate may be others. Returns also a sentence if friction between particles, which
+    the filling remembers, is another one.
+
+    Raises
+    ------
+    FileError
+        If the folder holds no run that has filled its cylinder, or one of other particles or another
+        cylinder.
+    """
+    states = (read_particle_state(path) for path in reversed(snapshot_files(folder)))
+    later = False
+    for state in states:
+        if state.phase == "settle" and later:
+            break
+        later = later or state.phase in ("lift", "rest")
+    else:
+        raise FileError(f"{folder.name} holds no settled filling; name the folder of a run that was lifted.")
+    earlier = read_run(folder).document
+    same = (
+        len(state) == len(prepared)
+        and np.array_equal(state.diameters, prepared.diameters)
+        and np.array_equal(state.class_index, prepared.class_index)
+        and earlier["dataset"]["sha256"] == (prepared.dataset_hash or None)
+        and earlier["case"]["test"]["diameter"] == prepared.case.test.diameter
+        and earlier["case"]["shapes"] == prepared.case.shapes
+    )
+    if not same:
+        raise FileError(
+            f"{folder.name} was filled with other particles or has another cylinder; its filling goes with "
+            f"the same dataset, number, seed, mass and diameter of the cylinder."
+        )
+    was, friction = earlier["case"]["contact"]["static_friction"], prepared.case.contact.static_friction
+    notes = (
+        [f"The cylinder was filled with a friction of {was:g}, not {friction:g}."] if was != friction else []
+    )
+    return replace(prepared, filling=state), notes
 
 
 def save_shapes(folder: Path, prepared: PreparedCase) -> Path:
@@ -336,6 +386,7 @@ def run_document(
         "software": {"regolith-studio": __version__},
         "length_unit": "m",
         "case": case_document(case),
+        "filling_sha256": filling_hash(prepared),
         "not_given_in_the_paper": [
             *missing_in_paper(LiftingCylinderTest),
             *missing_in_paper(ContactParameters),
@@ -350,7 +401,7 @@ def run_document(
             "steps": ending.steps if ending else None,
             "simulated_time": ending.simulated_time if ending else None,
             "n_snapshots": n_snapshots,
-            "notes": list(ending.notes) if ending else [],
+            "notes": [*ending.notes, *engine_remarks(engine)] if ending else [],
         },
         "checks": _checks(ending.checks) if ending else None,
         "packing": packing_document(

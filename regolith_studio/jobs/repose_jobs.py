@@ -8,7 +8,7 @@ from typing import Any
 from regolith_studio.dataset.folder_io import dataset_hash, read_dataset
 from regolith_studio.dem.angle_of_repose import ReposeMeasurement, check_number, measure_repose
 from regolith_studio.dem.case import PreparedCase, ReposeCase, prepare
-from regolith_studio.dem.engine import Engine, SimulationResult
+from regolith_studio.dem.engine import Engine, ResumableEngine, SimulationResult
 from regolith_studio.dem.engine_process import EngineError, run_engine
 from regolith_studio.dem.engines import DEFAULT_ENGINE, ENGINES, engine_named
 from regolith_studio.dem.evaluation.section import NotAPileError
@@ -110,6 +110,11 @@ def simulate_prepared(prepared: PreparedCase, folder: Path, request: ReposeReque
     if problem := engine.find().problem:
         raise MissingRequirement(problem)
     check_shapes(prepared, engine)
+    if prepared.filling is not None and not isinstance(engine, ResumableEngine):
+        others = [each.label for each in ENGINES.values() if isinstance(each, ResumableEngine)]
+        raise InputError(
+            f"{engine.label} fills its cylinder itself; an earlier filling goes with {', '.join(others)}."
+        )
     with staged_run(folder, request.overwrite) as stage:
         save_shapes(stage, prepared)
         return (yield from _simulate(_RunWriter(prepared, engine, settings, stage), folder, request))

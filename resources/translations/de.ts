@@ -824,6 +824,10 @@
         <translation>Quader</translation>
     </message>
     <message>
+        <source>Box3D is not installed; install the package robox3d.</source>
+        <translation>Box3D ist nicht installiert; installieren Sie das Paket robox3d.</translation>
+    </message>
+    <message>
         <source>Browse …</source>
         <translation>Durchsuchen …</translation>
     </message>
@@ -2526,6 +2530,10 @@
     <message>
         <source>Hertz and Mindlin stiffness, cohesion, rolling resistance; single precision</source>
         <translation>Steifigkeit nach Hertz und Mindlin, Kohäsion, Rollwiderstand; einfache Genauigkeit</translation>
+    </message>
+    <message>
+        <source>Hertz and Mindlin stiffness, cohesion; single precision</source>
+        <translation>Steifigkeit nach Hertz und Mindlin, Kohäsion; einfache Genauigkeit</translation>
     </message>
     <message>
         <source>Hertz and Mindlin stiffness, restitution, different static and dynamic friction</source>
@@ -5572,6 +5580,10 @@
         <translation>Unterteilungen des Ikosaeders, auf dem Oberflächen gezeichnet werden; 4 gibt 5.120 Dreiecke.</translation>
     </message>
     <message>
+        <source>Substeps</source>
+        <translation>Teilschritte</translation>
+    </message>
+    <message>
         <source>Surface</source>
         <translation>Oberfläche</translation>
     </message>
@@ -5626,6 +5638,10 @@
     <message>
         <source>Synthetic particles ({count})</source>
         <translation>Synthetische Partikel ({count})</translation>
+    </message>
+    <message>
+        <source>T / W</source>
+        <translation>T / W</translation>
     </message>
     <message>
         <source>Table 1</source>
@@ -6188,6 +6204,14 @@
         <translation>Sie werden zuerst nach Kugelflächenfunktionen entwickelt.</translation>
     </message>
     <message>
+        <source>Thickness</source>
+        <translation>Dicke</translation>
+    </message>
+    <message>
+        <source>Thickness to width</source>
+        <translation>Dicke zu Breite</translation>
+    </message>
+    <message>
         <source>This one misses {missed}.</source>
         <translation>Dieses verfehlt {missed}.</translation>
     </message>
@@ -6432,6 +6456,10 @@
         <translation>Verändert</translation>
     </message>
     <message>
+        <source>Verifying the engine</source>
+        <translation>Der Rechenkern wird geprüft</translation>
+    </message>
+    <message>
         <source>Vertical axis</source>
         <translation>Senkrechte Achse</translation>
     </message>
@@ -6490,6 +6518,10 @@
     <message>
         <source>Voxels x, y, z</source>
         <translation>Voxel x, y, z</translation>
+    </message>
+    <message>
+        <source>W / F_max</source>
+        <translation>W / F_max</translation>
     </message>
     <message>
         <source>W / noise</source>
@@ -6594,6 +6626,14 @@
     <message>
         <source>Wi&amp;pe</source>
         <translation>&amp;Wischblende</translation>
+    </message>
+    <message>
+        <source>Width</source>
+        <translation>Breite</translation>
+    </message>
+    <message>
+        <source>Width to length</source>
+        <translation>Breite zu Länge</translation>
     </message>
     <message>
         <source>Widths</source>
@@ -7332,6 +7372,14 @@
         <translation>lognormale Mischung</translation>
     </message>
     <message>
+        <source>longest chord across F_max</source>
+        <translation>längste Sehne quer zu F_max</translation>
+    </message>
+    <message>
+        <source>longest chord across F_max and W</source>
+        <translation>längste Sehne quer zu F_max und W</translation>
+    </message>
+    <message>
         <source>longest edge of the bounding box</source>
         <translation>längste Kante des Hüllquaders</translation>
     </message>
@@ -7644,6 +7692,10 @@
         <translation>neu gezogen</translation>
     </message>
     <message>
+        <source>resistance to rolling and spinning</source>
+        <translation>Widerstand gegen Rollen und Drehen</translation>
+    </message>
+    <message>
         <source>rest</source>
         <translation>Ruhe</translation>
     </message>
@@ -7890,6 +7942,10 @@
     <message>
         <source>the convex polyhedra themselves</source>
         <translation>die konvexen Polyeder selbst</translation>
+    </message>
+    <message>
+        <source>the convex polyhedra themselves, of at most 44 facets</source>
+        <translation>die konvexen Polyeder selbst, mit höchstens 44 Facetten</translation>
     </message>
     <message>
         <source>the convex polyhedra, their edges rounded by 0.5 % of the diameter</source>
@@ -8286,6 +8342,18 @@
     <message>
         <source>{edges} µm</source>
         <translation>{edges} µm</translation>
+    </message>
+    <message>
+        <source>{engine} does not pass these lines of its verification: {lines}.</source>
+        <translation>{engine} besteht diese Zeilen seiner Prüfung nicht: {lines}.</translation>
+    </message>
+    <message>
+        <source>{engine} was not verified.</source>
+        <translation>{engine} wurde nicht geprüft.</translation>
+    </message>
+    <message>
+        <source>{engine} was verified in version {verified}, not in {version}.</source>
+        <translation>{engine} wurde in Version {verified} geprüft, nicht in {version}.</translation>
     </message>
     <message>
         <source>{engine}, static friction {friction:g}, seed {seed}</source>

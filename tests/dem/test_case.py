@@ -101,7 +101,7 @@ def test_that_full_stiffness_needs_twenty_million_steps_a_second() -> None:
 def test_that_the_consequences_are_sentences(boxes: Dataset) -> None:
     report = scaling_report(prepare(boxes, ReposeCase(n_particles=300)))
     assert all(sentence.endswith(".") for sentence in report.sentences)
-    assert any("fewer than 1,000 particles" in sentence for sentence in report.sentences)
+    assert any("Fewer than 1,000 particles" in sentence for sentence in report.sentences)
 
 
 def test_that_a_cylinder_too_narrow_or_too_low_is_refused(boxes: Dataset) -> None:

@@ -1,5 +1,6 @@
 """Whole runs on MuJoCo, small enough for every day: finished, repeated, crashed, cancelled."""
 
+import hashlib
 import json
 import shutil
 import subprocess
@@ -121,6 +122,44 @@ def test_that_too_few_particles_are_refused_before_the_run(
 ) -> None:
     assert run(["repose", "run", str(boxes_folder), "-o", str(tmp_path / "run"), "-n", "120"]) == 1
     assert "120 particles are too few" in capsys.readouterr().err
+    assert not (tmp_path / "run").exists()
+
+
+def test_that_a_filled_cylinder_is_lifted_again_under_another_gravity(
+    finished: Path, boxes_folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    command = ["repose", "run", str(boxes_folder), "-o", str(tmp_path / "moon"), *COMMAND]
+    again = [
+        *command,
+        "--filling",
+        str(finished),
+        "--test",
+        "gravity=1.62",
+        "--contact",
+        "static_friction=0.7",
+    ]
+    assert run(again) == 0
+    assert "filled with a friction of 0.8, not 0.7" in capsys.readouterr().err
+    first, second = read_run(finished).document, read_run(tmp_path / "moon").document
+    assert first["filling_sha256"] is None
+    filled = [
+        state for state in map(read_particle_state, snapshot_files(finished)) if state.phase == "settle"
+    ]
+    begun = read_particle_state(snapshot_files(tmp_path / "moon")[0])
+    assert begun.phase == "settle"
+    np.testing.assert_allclose(begun.points, filled[-1].points, rtol=0.0, atol=1e-12)
+    assert second["filling_sha256"] == hashlib.sha256(particle_state_bytes(filled[-1])).hexdigest()
+    assert second["run"]["steps"] < first["run"]["steps"]
+
+
+def test_that_a_filling_of_other_particles_is_refused_before_the_run(
+    finished: Path, boxes_folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    command = ["repose", "run", str(boxes_folder), "-o", str(tmp_path / "run"), *COMMAND]
+    assert run([*command, "--filling", str(finished), "--seed", "2"]) == 1
+    assert "filled with other particles" in capsys.readouterr().err
+    assert run([*command, "--filling", str(tmp_path)]) == 1
+    assert "holds no settled filling" in capsys.readouterr().err
     assert not (tmp_path / "run").exists()
 
 

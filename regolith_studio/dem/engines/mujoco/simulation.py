@@ -285,6 +285,13 @@ class MujocoSolver:
     def notes(self, times: dict[float, float]) -> list[str]:
         return [steps_note(times)]
 
+    def place(self, points: FloatArray, orientations: FloatArray) -> None:
+        self.data.qpos.reshape(-1, 7)[:] = np.column_stack([points, orientations])
+        self.data.qvel[:] = 0.0
+
+    def set_gravity(self, gravity: FloatArray) -> None:
+        self.model.opt.gravity = gravity
+
     def state(self) -> bytes:
         values = np.empty(mujoco.mj_stateSize(self.model, STATE))
         mujoco.mj_getState(self.model, self.data, values, STATE)

@@ -58,7 +58,7 @@ class RapierEngine(SteppedEngine):
         if prepared.surface_energy > 0.0:
             raise InputError("Rapier has no cohesion; take LAMMPS, or cohesion none.")
         if prepared.case.contact.rolling_friction > 0.0:
-            raise InputError("Rapier has no rolling resistance; take MuJoCo or LAMMPS.")
+            raise InputError("Rapier has no rolling resistance; take MuJoCo, Box3D or LAMMPS.")
         from regolith_studio.dem.engines.rapier.simulation import RapierSolver
 
         return RapierSolver(prepared, settings)

@@ -170,6 +170,16 @@ class RapierSolver:
     def notes(self, times: dict[float, float]) -> list[str]:
         return [steps_note(times), REPEATABLE]
 
+    def place(self, points: FloatArray, orientations: FloatArray) -> None:
+        still = rapier.Vec3(0.0, 0.0, 0.0)
+        turns = np.roll(orientations, -1, axis=1)
+        for body, place, turn in zip(self.particles, points.tolist(), turns.tolist(), strict=True):
+            body.translation, body.linvel, body.angvel = rapier.Vec3(*place), still, still
+            body.rotation = rapier.Rotation3.from_tuple(tuple(turn))
+
+    def set_gravity(self, gravity: FloatArray) -> None:
+        self.world.gravity = rapier.Vec3(*gravity.tolist())
+
     def state(self) -> bytes:
         return np.float64(self.time).tobytes() + self.world.snapshot()
 

@@ -1,0 +1,62 @@
+"""Box3D (MIT): convex polyhedra with friction, restitution and rolling resistance, on several threads."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from importlib.metadata import PackageNotFoundError, version
+
+from regolith_studio.dem.case import PreparedCase
+from regolith_studio.dem.engine import Availability, EngineCapabilities
+from regolith_studio.dem.engines.box3d.settings import Box3dSettings
+from regolith_studio.dem.lifting_cylinder import Solver, SteppedEngine
+from regolith_studio.errors import InputError
+from regolith_studio.messages import N_
+
+REPRESENTS = EngineCapabilities(
+    shape=N_("the convex polyhedra themselves, of at most 44 facets"),
+    normal=N_("unilateral constraint with restitution; penetration is reported, stiffness is not used"),
+    tangential=N_("Coulomb friction of each patch of contact, one coefficient (the static one)"),
+    cohesion=N_("none"),
+    rolling=N_("resistance to rolling and spinning"),
+    coarse_graining=N_("by size"),
+    missing=N_("Hertz and Mindlin stiffness, cohesion; single precision"),
+    compounds=N_("one body of several convex parts, with mass and inertia of their union"),
+)
+
+
+@dataclass(frozen=True)
+class Box3dEngine(SteppedEngine):
+    """For heaps that come wholly to rest, and for rolling resistance."""
+
+    key: str = "box3d"
+    label: str = "Box3D"
+    order: int = 2
+    licence: str = "MIT"
+    Settings: type[Box3dSettings] = Box3dSettings
+    capabilities: EngineCapabilities = REPRESENTS
+    seconds_per_step: Mapping[str, float] = field(default_factory={"polyhedra": 10e-6, "spheres": 3e-6}.copy)
+    exponent: float = 0.1
+    further_part: float = 0.5
+
+    def find(self) -> Availability:
+        """Whether the package is installed."""
+        try:
+            return Availability(version("robox3d"))
+        except PackageNotFoundError:
+            return Availability(problem=N_("Box3D is not installed; install the package robox3d."))
+
+    def solver(self, prepared: PreparedCase, settings: Box3dSettings) -> Solver:
+        """Box3D with the particles of a case.
+
+        Raises
+        ------
+        InputError
+            If the case has what the solver does not represent.
+        """
+        if prepared.surface_energy > 0.0:
+            raise InputError("Box3D has no cohesion; take LAMMPS, or cohesion none.")
+        from regolith_studio.dem.engines.box3d.simulation import Box3dSolver
+
+        return Box3dSolver(prepared, settings)
+
+
+ENGINE = Box3dEngine()

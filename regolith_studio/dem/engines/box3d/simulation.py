@@ -1,0 +1,317 @@
+"""Box3D as a solver of the lifting-cylinder test: plate, a ring of boxes, free convex bodies."""
+
+import os
+import weakref
+from typing import Any
+
+import numpy as np
+from robox3d._ffi import ffi, lib, shim  # the package's layer of Box3D's own functions
+from scipy.spatial.transform import Rotation
+
+from regolith_studio.dem.case import PreparedCase
+from regolith_studio.dem.engine import ENGINE_THREADS, lowest_corners
+from regolith_studio.dem.engines.box3d.settings import Box3dSettings
+from regolith_studio.dem.initial_packing import enclosing_radii, loose_column
+from regolith_studio.dem.lifting_cylinder import Units, friction_in, halved_step, lift_speed, steps_note
+from regolith_studio.dem.separation import overlap_depths
+from regolith_studio.dem.snapshot import PHASES, ParticleState
+from regolith_studio.errors import InputError, RegolithError
+from regolith_studio.geometry.arrays import FloatArray
+
+SHIM: Any = shim
+N_WALLS, WALL_THICKNESS, PLATE_WIDTH = 32, 0.6, 12.0
+"""Boxes of the cylinder, thickness of these and of the plate in mean diameters; width of the plate in
+diameters of the cylinder. Box3D resists rolling by the larger of two bodies' radii, so these must be thin."""
+ROLLING_RADIUS = 0.25
+"""Radius by which Box3D resists the rolling of a hull, in radii of its largest inner ball (measured)."""
+LENGTH_UNIT = 0.2
+"""Mean diameters that Box3D takes for a metre: bodies may overlap by half a hundredth of it, which its
+contacts need to persist from step to step."""
+CONTACT_HERTZ, CONTACT_DAMPING = 60.0, 3.0
+"""Frequency and damping ratio with which overlaps are pushed apart."""
+RESTITUTION_SPEED = 0.1
+"""Speed in sqrt(g d) below which an impact has no restitution, so that what touches comes to rest."""
+MAX_VERTICES = 84
+"""Box3D's hulls have at most 126 edges, which are two thirds as many vertices; of more points it may search
+for a hull for ever."""
+MAX_MOVE, SMALLEST_SHARE = 0.1, 1 / 4
+"""Largest way in a step of all but one in a hundred particles, in mean diameters, and smallest share of the
+time step that is set."""
+MAX_SPEED = 400.0
+REPEATABLE = "Equal seeds give equal bytes on one machine, with any number of threads."
+
+
+class Box3dSolver:
+    """Box3D's world: the particles, the cylinder, the plate."""
+
+    def __init__(self, prepared: PreparedCase, settings: Box3dSettings) -> None:
+        self.prepared, self.settings, self.lift_speed = prepared, settings, lift_speed(prepared)
+        units = Units.of(prepared)
+        self.unit_length, self.unit_time = units.length, units.time
+        self.n, self.time, self.phase = len(prepared), 0.0, PHASES[0]
+        lib.b3SetLengthUnitsPerMeter(LENGTH_UNIT)  # of the process; worlds keep what was set
+        self.world = _new_world()
+        self._end = weakref.finalize(self, lib.b3DestroyWorld, self.world)
+        self._build()
+
+    def _build(self) -> None:
+        """Particles in a loose column, the cylinder, and the plate."""
+        prepared, length = self.prepared, self.unit_length
+        column = loose_column(prepared)
+        places, turns = column.points / length, np.roll(column.orientations, -1, axis=1)
+        self.top = float((places[:, 2] + enclosing_radii(prepared) / length).max())
+        forms = _Forms(prepared)
+        self.particles, self.shapes, inertias = [], [], []
+        for kind, size, place, turn in zip(
+            prepared.class_index.tolist(), prepared.scales / length, places, turns, strict=True
+        ):
+            body = self._body(lib.b3_dynamicBody, place, turn)
+            self.shapes += forms.add(body, kind, float(size))
+            inertias.append(forms.inertia(kind, float(size)))
+            self.particles.append(body)
+        self.identifiers = ffi.new("b3BodyId[]", self.particles)
+        self.masses, self.inertias = (prepared.scales / length) ** 3, np.array(inertias)
+        self.cylinder = self._body(lib.b3_kinematicBody, np.zeros(3), IDENTITY)
+        test = prepared.case.test
+        self.walls = [
+            _add_box(self.cylinder, half, place, turn, _definition(prepared, test.wall_friction))
+            for half, place, turn in _walls(prepared, 1.1 * self.top + 2.0)
+        ]
+        half = test.diameter / length * PLATE_WIDTH / 2
+        plate = self._body(lib.b3_staticBody, np.zeros(3), IDENTITY)
+        box = (half, half, WALL_THICKNESS / 2), (0.0, 0.0, -WALL_THICKNESS / 2), IDENTITY
+        self.plate = _add_box(plate, *box, _definition(prepared, test.plate_friction))
+
+    def _body(self, kind: int, place: FloatArray, turn: Any) -> Any:
+        definition = lib.b3DefaultBodyDef()
+        definition.type, definition.enableSleep = kind, False
+        definition.position, definition.rotation = _vector(place), _quaternion(turn)
+        return lib.b3CreateBody(self.world, ffi.new("b3BodyDef*", definition))
+
+    def _poses(self) -> FloatArray:
+        """Centres and quaternions (x, y, z, w), shape (n, 7)."""
+        values = np.empty((self.n, 7), dtype=np.float32)
+        SHIM.rxBodyGetPoses(self.identifiers, self.n, ffi.cast("float*", ffi.from_buffer(values)))
+        return values.astype(np.float64)
+
+    def _velocities(self) -> FloatArray:
+        """Linear and angular velocities, shape (n, 6)."""
+        values = np.empty((self.n, 6), dtype=np.float32)
+        SHIM.rxBodyGetVelocities(self.identifiers, self.n, ffi.cast("float*", ffi.from_buffer(values)))
+        return values.astype(np.float64)
+
+    @property
+    def points(self) -> FloatArray:
+        return np.asarray(self._poses()[:, :3])
+
+    @property
+    def orientations(self) -> FloatArray:
+        return np.asarray(np.roll(self._poses()[:, 3:], 1, axis=1))
+
+    @property
+    def rim(self) -> float:
+        return float(lib.b3Body_GetPosition(self.cylinder).z)
+
+    def energies(self) -> tuple[float, float]:
+        velocities, poses = self._velocities(), self._poses()
+        spins = Rotation.from_quat(poses[:, 3:]).apply(velocities[:, 3:], inverse=True)
+        kinetic = 0.5 * self.masses @ (velocities[:, :3] ** 2).sum(axis=1)
+        kinetic += 0.5 * np.einsum("ni,nij,nj->", spins, self.inertias, spins)
+        return float(self.masses @ poses[:, 2]), float(kinetic)
+
+    def overlaps(self) -> FloatArray:
+        """Of the polyhedra with each other and with the plate, from where they are."""
+        length = self.unit_length
+        heap = ParticleState(
+            self.points * length, self.prepared.diameters, self.orientations, self.prepared.class_index
+        )
+        depths = overlap_depths(self.prepared, heap)
+        if self.prepared.case.shapes == "spheres":
+            below = self.prepared.diameters / 2 - heap.points[:, 2]
+        else:
+            below = -lowest_corners(self.prepared, heap)
+        return np.concatenate([depths, below[below > 0.0]]) / length
+
+    def begin(self, phase: str) -> None:
+        self.phase = phase
+        # small particles that are squeezed out of the foot of the heap would be shot off the plate
+        fall = np.sqrt(2.0 * self.prepared.fill_height / self.unit_length)
+        limit = {"fill": self.settings.max_fill_speed, "rest": MAX_SPEED}.get(phase, float(fall))
+        lib.b3World_SetMaximumLinearSpeed(self.world, limit)
+        self._set_friction()
+        speed = self.lift_speed if phase == "lift" else 0.0
+        lib.b3Body_SetLinearVelocity(self.cylinder, _vector((0.0, 0.0, speed)))
+        if phase == "rest":
+            self._raise_cylinder(self.rim + 10.0 * self.top)
+
+    def _raise_cylinder(self, height: float) -> None:
+        lib.b3Body_SetTransform(self.cylinder, _vector((0.0, 0.0, height)), _quaternion(IDENTITY))
+
+    def _set_friction(self) -> None:
+        """That of particles in this phase; wall and plate are felt as before.
+
+        Box3D takes the geometric mean of two bodies' friction.
+        """
+        test, friction = self.prepared.case.test, friction_in(self.phase, self.prepared, self.settings)
+        for shape in self.shapes:
+            lib.b3Shape_SetFriction(shape, friction)
+        if friction > 0.0:
+            for shape in self.walls:
+                lib.b3Shape_SetFriction(shape, test.wall_friction**2 / friction)
+            lib.b3Shape_SetFriction(self.plate, test.plate_friction**2 / friction)
+
+    def time_step(self) -> float:
+        """The step that is set, halved until what moves does not go too far in it, but for the filling."""
+        if self.phase == "fill":
+            return self.settings.time_step
+        speeds = np.linalg.norm(self._velocities()[:, :3], axis=1)
+        return halved_step(self.settings.time_step, speeds, MAX_MOVE, SMALLEST_SHARE)
+
+    def advance(self, step: float, count: int) -> None:
+        substeps = max(1, round(self.settings.substeps * step / self.settings.time_step))
+        SHIM.rxWorldStepN(self.world, step, substeps, count)
+        self.time += count * step
+        if not np.isfinite(self._velocities()).all():
+            raise RegolithError(
+                f"The simulation diverged after {self.time * self.unit_time:.3g} s; take a smaller time step "
+                f"than {self.settings.time_step:g}."
+            )
+
+    def problems(self) -> list[str]:
+        return []
+
+    def notes(self, times: dict[float, float]) -> list[str]:
+        return [steps_note(times), REPEATABLE]
+
+    def place(self, points: FloatArray, orientations: FloatArray) -> None:
+        self._move(np.column_stack([points, np.roll(orientations, -1, axis=1)]), np.zeros((self.n, 6)))
+
+    def _move(self, poses: FloatArray, velocities: FloatArray) -> None:
+        for body, pose, velocity in zip(self.particles, poses, velocities, strict=True):
+            lib.b3Body_SetTransform(body, _vector(pose[:3]), _quaternion(pose[3:]))
+            lib.b3Body_SetLinearVelocity(body, _vector(velocity[:3]))
+            lib.b3Body_SetAngularVelocity(body, _vector(velocity[3:]))
+
+    def set_gravity(self, gravity: FloatArray) -> None:
+        lib.b3World_SetGravity(self.world, _vector(gravity))
+
+    def state(self) -> bytes:
+        """Places and velocities; the impulses of contacts are found anew when the run goes on."""
+        return np.concatenate(
+            [[self.time, self.rim], self._poses().ravel(), self._velocities().ravel()]
+        ).tobytes()
+
+    def load(self, state: bytes) -> None:
+        values = np.frombuffer(state)
+        if len(values) != 2 + 13 * self.n:
+            raise RegolithError("The state of Box3D to go on from is that of other particles.")
+        self.begin(self.phase)
+        self.time = float(values[0])
+        self._raise_cylinder(float(values[1]))
+        self._move(values[2 : 2 + 7 * self.n].reshape(-1, 7), values[2 + 7 * self.n :].reshape(-1, 6))
+
+
+IDENTITY = (0.0, 0.0, 0.0, 1.0)
+UNIT_RADIUS = (3 / (4 * np.pi)) ** (1 / 3)
+"""Radius of a ball of unit volume."""
+
+
+class _Forms:
+    """Hulls of the shapes at each of their sizes, made once."""
+
+    def __init__(self, prepared: PreparedCase) -> None:
+        self.prepared = prepared
+        self.hulls: dict[tuple[int, float], list[Any]] = {}
+        friction = prepared.case.contact.static_friction
+        self.definition = _definition(prepared, friction)
+
+    def add(self, body: Any, kind: int, size: float) -> list[Any]:
+        """Shapes of a particle, which are added to its body with its mass."""
+        prepared = self.prepared
+        if prepared.case.shapes == "spheres":
+            self.definition.baseMaterial.rollingResistance = prepared.case.contact.rolling_friction
+            ball = ffi.new("b3Sphere*", {"radius": size * UNIT_RADIUS})
+            return [lib.b3CreateSphereShape(body, self.definition, ball)]
+        hulls = self.hulls.setdefault((kind, size), [])
+        if not hulls:
+            hulls += [_hull(part * size) for part in prepared.part_vertices[kind]]
+        shapes = []
+        for hull in hulls:
+            ratio = size * UNIT_RADIUS / (ROLLING_RADIUS * hull.innerRadius)
+            self.definition.baseMaterial.rollingResistance = ratio * prepared.case.contact.rolling_friction
+            shapes.append(lib.b3CreateHullShape(body, self.definition, hull))
+        if len(hulls) > 1:  # masses of parts that overlap would add up to more than the body's
+            inertia = self.inertia(kind, size)
+            columns = [_vector(inertia[:, k]) for k in range(3)]
+            tensor = ffi.new("b3Matrix3*", columns)[0]
+            lib.b3Body_SetMassData(body, ffi.new("b3MassData*", [size**3, _vector(np.zeros(3)), tensor])[0])
+        return shapes
+
+    def inertia(self, kind: int, size: float) -> FloatArray:
+        """About the centre, at density 1."""
+        prepared = self.prepared
+        if prepared.case.shapes == "spheres":
+            return np.asarray(0.4 * size**5 * UNIT_RADIUS**2 * np.eye(3))
+        if prepared.inertias:
+            return np.asarray(prepared.inertias[kind] * size**5)
+        tensor = lib.b3ComputeHullMass(self.hulls[kind, size][0], 1.0).inertia
+        return np.array([[getattr(each, way) for way in "xyz"] for each in (tensor.cx, tensor.cy, tensor.cz)])
+
+
+def _hull(vertices: FloatArray) -> Any:
+    points = ffi.new("b3Vec3[]", [tuple(map(float, each)) for each in vertices])
+    hull = ffi.NULL
+    if len(vertices) <= MAX_VERTICES:
+        hull = lib.b3CreateHull(points, len(vertices), MAX_VERTICES)
+    if hull == ffi.NULL or hull.vertexCount != len(vertices):
+        raise InputError(
+            f"Box3D takes convex polyhedra of at most 44 facets (126 edges), and one with {len(vertices)} "
+            f"vertices has more; take fewer facets, or another engine."
+        )
+    return ffi.gc(hull, lib.b3DestroyHull)
+
+
+def _new_world() -> Any:
+    definition = lib.b3DefaultWorldDef()
+    definition.gravity = _vector((0.0, 0.0, -1.0))
+    definition.enableSleep = False
+    definition.workerCount = int(os.environ.get(ENGINE_THREADS, "1"))
+    definition.contactHertz, definition.contactDampingRatio = CONTACT_HERTZ, CONTACT_DAMPING
+    definition.restitutionThreshold = RESTITUTION_SPEED
+    return lib.b3CreateWorld(ffi.new("b3WorldDef*", definition))
+
+
+def _definition(prepared: PreparedCase, friction: float) -> Any:
+    definition = lib.b3DefaultShapeDef()
+    definition.density = 1.0
+    definition.baseMaterial.friction = friction
+    definition.baseMaterial.restitution = prepared.case.contact.restitution
+    return ffi.new("b3ShapeDef*", definition)
+
+
+def _add_box(body: Any, half: Any, place: Any, turn: Any, definition: Any) -> Any:
+    pose = ffi.new("b3Transform*", [_vector(place), _quaternion(turn)])[0]
+    box = ffi.new("b3BoxHull*", lib.b3MakeTransformedBoxHull(*map(float, half), pose))
+    return lib.b3CreateHullShape(body, definition, ffi.addressof(box.base))
+
+
+def _walls(prepared: PreparedCase, height: float) -> list[tuple[Any, Any, Any]]:
+    """Half widths, place and turn of each box of a ring; each overlaps its neighbours, so that no gap is
+    between them."""
+    radius = prepared.case.test.diameter / 2 / prepared.mean_diameter
+    half_width = (radius + WALL_THICKNESS) * np.tan(np.pi / N_WALLS)
+    distance = radius + WALL_THICKNESS / 2
+    rows = []
+    for angle in 2 * np.pi * np.arange(N_WALLS) / N_WALLS:
+        place = (distance * np.cos(angle), distance * np.sin(angle), height / 2)
+        turn = (0.0, 0.0, np.sin(angle / 2), np.cos(angle / 2))
+        rows.append(((WALL_THICKNESS / 2, half_width, height / 2), place, turn))
+    return rows
+
+
+def _vector(values: Any) -> Any:
+    return ffi.new("b3Vec3*", [float(each) for each in values])[0]
+
+
+def _quaternion(xyzw: Any) -> Any:
+    return ffi.new("b3Quat*", [_vector(xyzw[:3]), float(xyzw[3])])[0]

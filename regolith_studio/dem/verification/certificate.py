@@ -1,0 +1,113 @@
+"""The certificate of an engine: which measured lines it passes, and what is said of it beside its angles."""
+
+from collections.abc import Generator, Mapping
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from regolith_studio.dem.engines import ENGINES
+from regolith_studio.dem.verification import dice, heaps, scenes
+from regolith_studio.dem.verification.lines import MeasuredLine, Measurement, VerifiableEngine
+from regolith_studio.errors import InputError, MissingRequirement
+
+QUICK: Mapping[str, Measurement] = {
+    "incline": scenes.incline,
+    "sliding": scenes.sliding,
+    "fall": scenes.fall,
+    "stack": scenes.stack,
+    "rest": heaps.settled_heap,
+    "contacts": heaps.contacts,
+    "repeats": heaps.repeats,
+    "half_step": heaps.half_step,
+}
+LONG: Mapping[str, Measurement] = {
+    "gravity": heaps.gravities,
+    "loose_dice": dice.loose_dice,
+    "tapped_dice": dice.tapped_dice,
+}
+"""Measurements by key; those that a quick verification leaves out."""
+MEASUREMENTS: Mapping[str, Measurement] = {**QUICK, **LONG}
+
+
+@dataclass(frozen=True)
+class Certificate:
+    """What was measured of one version of an engine.
+
+    Parameters
+    ----------
+    engine, version
+        Key, and version that was installed.
+    lines
+        In the order in which they were measured.
+    left_out
+        Keys of lines that were not measured.
+    """
+
+    engine: str
+    version: str
+    lines: tuple[MeasuredLine, ...]
+    left_out: tuple[str, ...] = ()
+
+    @property
+    def passed(self) -> bool:
+        """Whether the engine passes all lines that were measured."""
+        return all(line.passed for line in self.lines)
+
+    @property
+    def failed(self) -> tuple[MeasuredLine, ...]:
+        """Lines that it does not pass."""
+        return tuple(line for line in self.lines if not line.passed)
+
+
+def verifiable_engine(key: str) -> VerifiableEngine:
+    """The engine of this key, if it can be verified.
+
+    Raises
+    ------
+    InputError
+        If there is none, or bodies cannot be placed in it one by one.
+    MissingRequirement
+        If it is not installed.
+    """
+    stepped = [each.key for each in ENGINES.values() if isinstance(each, VerifiableEngine)]
+    engine = ENGINES.get(key)
+    if not isinstance(engine, VerifiableEngine):
+        raise InputError(
+            f"The engine {key!r} cannot be verified; engines that are stepped from here can: "
+            f"{', '.join(stepped)}."
+        )
+    if problem := engine.find().problem:
+        raise MissingRequirement(problem)
+    return engine
+
+
+def measure_lines(
+    engine: VerifiableEngine, keys: tuple[str, ...]
+) -> Generator[tuple[str, MeasuredLine | None], None, Certificate]:
+    """Measure lines; yields the key of the line at each turn, and the line as it is done."""
+    lines = []
+    for key in keys:
+        steps = MEASUREMENTS[key](engine)
+        while True:
+            try:
+                next(steps)
+            except StopIteration as end:
+                lines.append(end.value)
+                yield key, end.value
+                break
+            yield key, None
+    left_out = tuple(key for key in MEASUREMENTS if key not in keys)
+    return Certificate(engine.key, engine.find().version, tuple(lines), left_out)
+
+
+def certificate_document(certificate: Certificate) -> dict[str, Any]:
+    """As JSON."""
+    return {
+        "engine": certificate.engine,
+        "version": certificate.version,
+        "passed": certificate.passed,
+        "lines": [
+            {**asdict(line), "band": str(line.band), "note": str(line.note)} for line in certificate.lines
+        ],
+        "failed": ", ".join(line.key for line in certificate.failed) or "none",
+        "left_out": list(certificate.left_out),
+    }

@@ -1,0 +1,188 @@
+"""Heaps of polyhedra: rest, contacts, threads, time step and gravity, each on the same cylinder test."""
+
+import tempfile
+from collections.abc import Generator, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from scipy.stats import t
+
+from regolith_studio.dataset.parameters import LiftingCylinderTest
+from regolith_studio.dem.angle_of_repose import measure_repose
+from regolith_studio.dem.case import PreparedCase, ReposeCase, prepare
+from regolith_studio.dem.engine import SimulationResult
+from regolith_studio.dem.engine_process import run_engine
+from regolith_studio.dem.evaluation.section import NotAPileError
+from regolith_studio.dem.lifting_cylinder import (
+    LiftingRun,
+    engine_state,
+    fill_cylinder,
+    lift_cylinder,
+    resume_lifting,
+    simulate_lifting,
+)
+from regolith_studio.dem.run_io import SNAPSHOTS
+from regolith_studio.dem.separation import overlap_depths
+from regolith_studio.dem.verification.bodies import polyhedra_dataset
+from regolith_studio.dem.verification.lines import MeasuredLine, VerifiableEngine, timed
+
+N_PARTICLES, SEEDS = 500, (0, 1, 2, 3, 4)
+AFTER_REST = 100.0
+"""Time for which a settled heap is watched, in sqrt(d/g)."""
+MEDIAN_WAY, MOST_WAY, MOST = 1e-3, 1e-2, 0.9
+"""Largest displacement of half and of nine in ten particles, in mean diameters."""
+DEEP, DEEPEST, MAX_DEEP_SHARE = 0.02, 0.05, 0.01
+"""Depth of a contact in mean diameters above which it is deep, depth that none has, and share of the deep."""
+GRAVITIES = {"Earth": 9.81, "Moon": 1.62}
+CONFIDENCE = 0.95
+
+
+def heap_case(seed: int, gravity: float = GRAVITIES["Earth"]) -> PreparedCase:
+    """The cylinder test of Table 2 with 500 polyhedra; it is lifted at the same Froude number everywhere."""
+    usual = LiftingCylinderTest()
+    speed = usual.lift_speed * float(np.sqrt(gravity / usual.gravity))
+    test = replace(usual, gravity=gravity, lift_speed=speed)
+    return prepare(polyhedra_dataset(), ReposeCase(test, n_particles=N_PARTICLES, seed=seed))
+
+
+@timed
+def settled_heap(engine: VerifiableEngine) -> Generator[None, None, MeasuredLine]:
+    """How far particles of a heap at rest move."""
+    run = _begun(engine, heap_case(0))
+    yield from _turns(simulate_lifting(run))
+    before, end = run.solver.points.copy(), run.solver.time + AFTER_REST
+    while run.solver.time < end:
+        step = run.solver.time_step()
+        run.solver.advance(step, max(1, round(0.5 / step)))
+        yield
+    ways = np.linalg.norm(run.solver.points - before, axis=1)
+    half, most = float(np.median(ways)), float(np.quantile(ways, MOST))
+    return MeasuredLine(
+        key="rest",
+        what="Median displacement in a settled heap of 500 during 100 √(d/g)",
+        value=half,
+        unit="d",
+        band=f"at most {MEDIAN_WAY:g} d, and 90 % within {MOST_WAY:g} d",
+        passed=half <= MEDIAN_WAY and most <= MOST_WAY,
+        note=f"90 % within {most:.2g} d",
+    )
+
+
+@timed
+def contacts(engine: VerifiableEngine) -> Generator[None, None, MeasuredLine]:
+    """How deep the polyhedra of a heap at rest overlap, by separating axes and not by the engine's word."""
+    prepared = heap_case(0)
+    heap = (yield from _turns(simulate_lifting(_begun(engine, prepared)))).particles
+    depths = overlap_depths(prepared, heap) / prepared.mean_diameter
+    deep, deepest = float((depths > DEEP).mean()) if len(depths) else 0.0, float(depths.max(initial=0.0))
+    return MeasuredLine(
+        key="contacts",
+        what="Contacts at rest that are deeper than 0.02 d, by separating axes",
+        value=100 * deep,
+        unit="%",
+        band=f"at most {100 * MAX_DEEP_SHARE:g} %, and none deeper than {DEEPEST:g} d",
+        passed=deep <= MAX_DEEP_SHARE and deepest <= DEEPEST,
+        note=f"the deepest {deepest:.2g} d",
+    )
+
+
+@timed
+def repeats(engine: VerifiableEngine) -> Generator[None, None, MeasuredLine]:
+    """Whether one and two threads, and the same seed again, give the same heap to the last byte."""
+    heaps = []
+    for threads in (1, 2, 1):
+        with tempfile.TemporaryDirectory() as folder:
+            (Path(folder) / SNAPSHOTS).mkdir()
+            running = run_engine(engine.key, heap_case(0), engine.Settings(), Path(folder), threads)
+            heaps.append((yield from _turns(running)).particles)
+    apart = max(float(np.abs(each.points - heaps[0].points).max()) for each in heaps[1:])
+    return MeasuredLine(
+        key="repeats",
+        what="Largest difference of the heaps of one seed on one thread, two threads, and one again",
+        value=apart / heap_case(0).mean_diameter,
+        unit="d",
+        band="none",
+        passed=apart == 0.0,
+    )
+
+
+@timed
+def half_step(engine: VerifiableEngine) -> Generator[None, None, MeasuredLine]:
+    """The angle with half the time step, of the same filling."""
+    pairs = []
+    usual = engine.Settings()
+    finer = replace(usual, time_step=usual.time_step / 2)
+    for seed in SEEDS:
+        run = _begun(engine, heap_case(seed))
+        yield from _turns(fill_cylinder(run))
+        filled = engine_state(run)
+        ending = yield from _turns(lift_cylinder(run))
+        again = LiftingRun(run.prepared, finer, engine.solver(run.prepared, finer))
+        other = yield from _turns(resume_lifting(again, filled))
+        pairs.append((_angle(ending), _angle(other)))
+    return _paired_line(
+        "half_step", "Change of the angle of repose with half the time step, same fillings", pairs
+    )
+
+
+@timed
+def gravities(engine: VerifiableEngine) -> Generator[None, None, MeasuredLine]:
+    """The angle under the gravity of the Moon against that of the Earth, with one step in seconds."""
+    pairs = []
+    usual = engine.Settings()
+    shorter = replace(usual, time_step=usual.time_step * (GRAVITIES["Moon"] / GRAVITIES["Earth"]) ** 0.5)
+    for seed in SEEDS:
+        angles = []
+        for gravity, settings in ((GRAVITIES["Earth"], usual), (GRAVITIES["Moon"], shorter)):
+            prepared = heap_case(seed, gravity)
+            run = LiftingRun(prepared, settings, engine.solver(prepared, settings))
+            angles.append(_angle((yield from _turns(simulate_lifting(run)))))
+        pairs.append((angles[0], angles[1]))
+    return _paired_line(
+        "gravity", "Change of the angle of repose from 9.81 to 1.62 m/s², with one time step", pairs
+    )
+
+
+def _begun(engine: VerifiableEngine, prepared: PreparedCase) -> LiftingRun:
+    settings = engine.Settings()
+    return LiftingRun(prepared, settings, engine.solver(prepared, settings))
+
+
+def _turns(steps: Generator[Any, None, Any]) -> Generator[None, None, Any]:
+    """The result of a simulation; the caller gets a turn at every snapshot."""
+    while True:
+        try:
+            next(steps)
+        except StopIteration as end:
+            return end.value
+        yield
+
+
+def _angle(ending: SimulationResult) -> float:
+    """Angle of repose in degrees; not a number of what is no heap."""
+    try:
+        return measure_repose(ending.particles.points, ending.particles.diameters).angle
+    except NotAPileError:
+        return float("nan")
+
+
+def _paired_line(key: str, what: str, pairs: Sequence[tuple[float, float]]) -> MeasuredLine:
+    """The mean difference of pairs of angles with Student's interval; it passes if that contains zero."""
+    known = np.array([pair for pair in pairs if np.isfinite(pair).all()]).reshape(-1, 2)
+    differences = known[:, 1] - known[:, 0]
+    n = len(differences)
+    mean, half = float("nan"), float("inf")
+    if n >= 2:
+        mean = float(differences.mean())
+        half = float(t.ppf(0.5 + CONFIDENCE / 2, n - 1) * differences.std(ddof=1) / np.sqrt(n))
+    return MeasuredLine(
+        key=key,
+        what=what,
+        value=mean,
+        unit="°",
+        band="its 95 % interval contains 0",
+        passed=n == len(pairs) and abs(mean) <= half,
+        note=f"± {half:.1f}° from {n} heaps",
+    )

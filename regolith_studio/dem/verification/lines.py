@@ -1,0 +1,65 @@
+"""A measured line of the verification of an engine, and the engines that can be verified."""
+
+import functools
+import time
+from collections.abc import Callable, Generator
+from dataclasses import dataclass, replace
+from typing import Any, Protocol, runtime_checkable
+
+from regolith_studio.dem.case import PreparedCase
+from regolith_studio.dem.engine import Engine
+from regolith_studio.dem.lifting_cylinder import Solver
+
+
+@dataclass(frozen=True)
+class MeasuredLine:
+    """One measured line.
+
+    Parameters
+    ----------
+    key, what
+        What is measured, for programs and in words.
+    value, unit
+        What was found.
+    band
+        Where the value passes, in words.
+    passed
+        Whether it lies there.
+    note
+        What else the value needs to be understood.
+    seconds
+        By the clock.
+    """
+
+    key: str
+    what: str
+    value: float
+    unit: str
+    band: str
+    passed: bool
+    note: str = ""
+    seconds: float = 0.0
+
+
+@runtime_checkable
+class VerifiableEngine(Engine, Protocol):
+    """An engine with a solver, in which bodies can be placed one by one."""
+
+    def solver(self, prepared: PreparedCase, settings: Any) -> Solver:
+        """The solver of a case."""
+        ...
+
+
+Measurement = Callable[..., Generator[None, None, MeasuredLine]]
+
+
+def timed(measure: Measurement) -> Measurement:
+    """The measurement, with the time that it took in its line."""
+
+    @functools.wraps(measure)
+    def with_time(*arguments: Any) -> Generator[None, None, MeasuredLine]:
+        began = time.monotonic()
+        line = yield from measure(*arguments)
+        return replace(line, seconds=time.monotonic() - began)
+
+    return with_time
