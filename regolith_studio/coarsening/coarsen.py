@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from regolith_studio.coarsening.compound.conditions import KEYS as KNOWN
 from regolith_studio.coarsening.compound.line_overlap import compound_distance
 from regolith_studio.coarsening.loss import loss
 from regolith_studio.coarsening.lower_bounds import attainable_errors
@@ -18,7 +19,7 @@ from regolith_studio.coarsening.result import CoarseningResult, MethodResult
 from regolith_studio.coarsening.settings import DEFAULT_METHOD, DEFAULT_PRESET, FACETS_LIMITS
 from regolith_studio.coarsening.target import Target
 from regolith_studio.coarsening.weights import JACCARD, WEIGHT_KEYS, LossWeights
-from regolith_studio.descriptors.catalogue import CATALOGUE
+from regolith_studio.descriptors.catalogue import CATALOGUE, LOSS_KEYS
 from regolith_studio.descriptors.comparison import relative_errors
 from regolith_studio.descriptors.describe import Descriptors, describe
 from regolith_studio.errors import InputError
@@ -29,6 +30,9 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle, solid_of
 from regolith_studio.geometry.topology import genus
 from regolith_studio.settings import is_whole
+
+SIZE_LIMITS = (1e-50, 1e50)
+"""Cube root of a particle's volume: moments of inertia go with its fifth power."""
 
 
 def facets_for_triangles(n_triangles: int) -> int:
@@ -157,6 +161,12 @@ def _prepare(
     weights = LossWeights.from_preset(DEFAULT_PRESET) if weights is None else weights
     _check(chosen, weights, seed)
     target = particle if isinstance(particle, Target) else Target.of(solid_of(particle))
+    low, high = SIZE_LIMITS
+    if not low <= target.scale <= high:
+        raise InputError(
+            f"The cube root of the particle's volume must be between {low:g} and {high:g}, got"
+            f" {target.scale:.2g}; use another unit."
+        )
     random, chosen_settings = np.random.SeedSequence(seed), settings_of(method, settings)
     few = None if fewer is None else target.in_unit_frame(fewer)
     run = chosen.run(target, n_facets, weights, random, chosen_settings, few)
@@ -238,6 +248,12 @@ def _check(method: CoarseningMethod, weights: Any, seed: Any) -> None:
         kind = type(weights).__name__
         raise InputError(f"The weights must be LossWeights, such as LossWeights.of(volume=1), got {kind}.")
     check_kept(method.key, weights)
+    foreign = [key for key in LOSS_KEYS if key not in KNOWN and (weights[key] or key in (weights.keep or ()))]
+    if foreign and method.keeps_terms:
+        raise InputError(
+            f"The method {method.key} does not know the term {foreign[0]}; give it the weight 0, or take"
+            f" {', '.join(key for key, each in METHODS.items() if not each.keeps_terms)}."
+        )
     if weights.all_zero and not weights.keep and method.key != "quadric":
         raise InputError("All weights of the loss are 0, so there is nothing to optimise; raise one of them.")
     if not is_whole(seed) or seed < 0:

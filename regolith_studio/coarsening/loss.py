@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 
@@ -13,7 +12,10 @@ from regolith_studio.coarsening.target import Target
 from regolith_studio.coarsening.weights import JACCARD, LossWeights
 from regolith_studio.descriptors.catalogue import LOSS_KEYS
 from regolith_studio.descriptors.comparison import relative_errors
+from regolith_studio.descriptors.describe import describe
 from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
+from regolith_studio.geometry.half_spaces import HalfSpaces
 from regolith_studio.geometry.minimum_box.hull_topology import Facets
 from regolith_studio.geometry.minimum_box.search import minimum_box
 
@@ -58,26 +60,6 @@ class Evaluation:
     loss: float
 
 
-class LossMeasures(NamedTuple):
-    """What Eq. 9 needs of a polyhedron, for a particle of unit volume; NaN where it was not asked for.
-
-    Parameters
-    ----------
-    volume, surface_area
-        Of the polyhedron.
-    shortest, longest
-        Edges of its minimum-volume box.
-    shared
-        Volume that it shares with the particle.
-    """
-
-    volume: float
-    surface_area: float
-    shortest: float
-    longest: float
-    shared: float
-
-
 class LossFunction:
     """Eq. 9 as a function of half-spaces.
 
@@ -110,28 +92,26 @@ class LossFunction:
         if self._crossings is not None:
             dual = polyhedron.normals / polyhedron.offsets[:, None]
             shared = shared_by_planes(dual, self._crossings, self._target.rays.weight)
-        volume, surface = polyhedron.volume, polyhedron.surface_area
-        return self.of(LossMeasures(volume, surface, shortest, longest, shared))
-
-    def value(self, normals: FloatArray, offsets: FloatArray) -> float:
-        """The loss alone, infinite where the half-spaces bound no proper polyhedron."""
-        found = self(normals, offsets)
-        return np.inf if found is None else found.loss
-
-    def of(self, measures: LossMeasures) -> Evaluation:
-        """Errors and loss of a polyhedron that is measured already."""
-        volume, surface, shortest, longest, shared = measures
+        volume = polyhedron.volume
         found = {
             "volume": volume,
-            "sphericity": float(np.cbrt(np.pi) * (6 * volume) ** (2 / 3) / surface),
+            "sphericity": float(np.cbrt(np.pi) * (6 * volume) ** (2 / 3) / polyhedron.surface_area),
             "min_diameter": shortest,
             "max_diameter": longest,
             "aspect_ratio": longest / shortest,
             "convex_hull_volume": volume,
         }
+        if others := tuple(key for key in LOSS_KEYS if key not in found):
+            solid = ConvexPolyhedron.from_half_spaces(HalfSpaces(polyhedron.normals, polyhedron.offsets))
+            found |= describe(solid, others)
         errors = relative_errors(self._target.descriptors, found)
         jaccard_distance = jaccard(shared, 1.0, volume)
         return Evaluation(errors, jaccard_distance, loss(self._weights, errors, jaccard_distance))
+
+    def value(self, normals: FloatArray, offsets: FloatArray) -> float:
+        """The loss alone, infinite where the half-spaces bound no proper polyhedron."""
+        found = self(normals, offsets)
+        return np.inf if found is None else found.loss
 
 
 def box_extents(polyhedron: MeasuredPolyhedron) -> FloatArray:

@@ -5,6 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from regolith_studio.coarsening.weights import JACCARD, LossWeights
+from regolith_studio.descriptors.catalogue import LOSS_KEYS
 from regolith_studio.messages import N_, Message, Number
 
 MAX_FACETS = 100_000
@@ -57,18 +58,15 @@ def attainable_errors(
 
     V and CH are bounded together: the one that the weights prefer can be met, the other misses by the
     solidity s = V/CH: 1 - s or 1/s - 1. The Jaccard distance is at least that of the volumes alone.
-    Sphericity follows Goldberg's bound; box and aspect ratio have the bound 0.
+    Sphericity follows Goldberg's bound; all others have the bound 0.
     """
     solidity = min(1.0, descriptors["volume"] / descriptors["convex_hull_volume"])
     keep_volume = volume_is_preferred(weights, descriptors)
     free = not (weights["volume"] or weights["convex_hull_volume"])
-    return {
+    return dict.fromkeys(LOSS_KEYS, 0.0) | {
         JACCARD: 0.0 if keep_volume or free else 1.0 - solidity,
         "volume": 0.0 if keep_volume else 1.0 / solidity - 1.0,
         "sphericity": max(0.0, 1.0 - max_sphericity(n_facets) / descriptors["sphericity"]),
-        "min_diameter": 0.0,
-        "max_diameter": 0.0,
-        "aspect_ratio": 0.0,
         "convex_hull_volume": 1.0 - solidity if keep_volume else 0.0,
     }
 

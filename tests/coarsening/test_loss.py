@@ -1,5 +1,8 @@
 """The loss of half-spaces against Eq. 9 written out from the public descriptors."""
 
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 
@@ -62,3 +65,32 @@ def test_that_the_least_box_is_the_public_one(n_facets: int, seed: int) -> None:
     offsets = np.append(planes.offsets, reach - 1e-10)
     extents = box_extents(measure_polyhedron(normals, offsets))
     assert np.sort(extents) == pytest.approx(np.sort(minimum_volume_box(solid).extents), rel=1e-7)
+
+
+ELONGATION = """
+from regolith_studio.descriptors import catalogue
+catalogue.LOSS_KEYS += ("elongation",)
+from regolith_studio.coarsening.coarsen import coarsen
+from regolith_studio.coarsening.weights import LossWeights
+from regolith_studio.errors import InputError
+from tests.geometry.solids import rough_stone
+weights, stone = LossWeights.of(elongation=1.0), rough_stone(0)
+short = coarsen(stone, 12, "annealing", weights, settings={"iterations": 5})
+long = coarsen(stone, 12, "annealing", weights, settings={"iterations": 60, "best_so_far": True})
+assert long.errors["elongation"] < short.errors["elongation"]
+assert abs(long.loss - long.errors["elongation"]) < 1e-9
+for method in ("exact", "compound"):
+    try:
+        coarsen(stone, 12, method, weights)
+    except InputError as refusal:
+        print(refusal)
+"""
+
+
+def test_that_any_descriptor_can_be_a_term_of_the_loss_or_is_refused_in_a_sentence() -> None:
+    child = subprocess.run([sys.executable, "-c", ELONGATION], capture_output=True, text=True, check=True)
+    assert child.stdout.splitlines() == [
+        f"The method {method} does not know the term elongation; give it the weight 0, or take"
+        " annealing, quadric."
+        for method in ("exact", "compound")
+    ]

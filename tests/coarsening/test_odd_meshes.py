@@ -1,5 +1,7 @@
 """What people and programs write: a polyhedron that meets all, one with reasons, or one sentence."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -7,8 +9,9 @@ from regolith_studio.coarsening.coarsen import coarsen
 from regolith_studio.coarsening.methods import METHODS
 from regolith_studio.coarsening.result import CoarseningResult
 from regolith_studio.coarsening.target import Target
-from regolith_studio.errors import RegolithError
+from regolith_studio.errors import InputError, RegolithError
 from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.sphere_points import icosphere
 from tests.coarsening.odd_meshes import KINDS, odd_mesh
 
 CONDITIONS = ("volume", "sphericity", "min_diameter", "max_diameter", "aspect_ratio")
@@ -55,3 +58,13 @@ def test_that_boxes_that_tie_and_near_misses_lead_to_another_start(number: int, 
 def test_that_hundreds_of_meshes_give_results_reasons_or_sentences() -> None:
     found = [outcome(number, (8, 12, 20)[number % 3]) for number in range(100, 200)]
     assert found.count("met") > 30
+
+
+@pytest.mark.parametrize(("size", "said"), [(1e150, "1e+150"), (1e-150, "1e-150")])
+def test_that_a_size_whose_fifth_power_is_no_number_is_one_sentence(size: float, said: str) -> None:
+    sphere = icosphere(2)
+    mesh = Mesh(sphere.vertices * size * (1.3, 1.0, 0.2), sphere.faces)
+    with pytest.raises(
+        InputError, match=re.escape(f"between 1e-50 and 1e+50, got {said}; use another unit.")
+    ):
+        coarsen(mesh, 12, "quadric")
