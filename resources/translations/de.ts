@@ -5200,10 +5200,6 @@
         <translation>Das ganze Partikel zeigen</translation>
     </message>
     <message>
-        <source>Show the whole text</source>
-        <translation>Ganzen Text zeigen</translation>
-    </message>
-    <message>
         <source>Show triangles</source>
         <translation>Dreiecke zeigen</translation>
     </message>
