@@ -151,14 +151,14 @@ STUDIES = (Kind.LMAX_STUDY, Kind.COARSENING_STUDY)
 """Kinds that are computed on demand."""
 
 _FIT_OPTIONS = tuple(each.name for each in fields(FitOptions))
-_PARTICLE = ("selected",)
-"""The choices that say which mesh is fitted, measured and coarsened; one that changes it belongs here."""
-PARTICLE_DESCRIPTORS = (*_PARTICLE, "box_metric")
+PARTICLE_CHOICES = ("selected",)
+"""Choices that say which mesh is shown, fitted, measured and coarsened; one that changes it stands here."""
+PARTICLE_DESCRIPTORS = (*PARTICLE_CHOICES, "box_metric")
 """What the descriptors of the particle itself depend on."""
-_FIT = (*_PARTICLE, *_FIT_OPTIONS)
+_FIT = (*PARTICLE_CHOICES, *_FIT_OPTIONS)
 _OF_FIT = (*_FIT_OPTIONS, "l_max", "level")
-_SURFACE = (*_PARTICLE, *_OF_FIT)
-_COARSENING = (*_PARTICLE, "target", "stopping_criterion", "method", "settings", "weights", "seed")
+_SURFACE = (*PARTICLE_CHOICES, *_OF_FIT)
+_COARSENING = (*PARTICLE_CHOICES, "target", "stopping_criterion", "method", "settings", "weights", "seed")
 DEPENDS_ON: Mapping[Kind, tuple[str, ...]] = {
     Kind.FIT: _FIT,
     Kind.SURFACE: _SURFACE,

@@ -1,9 +1,10 @@
 """The present choices as a command line and as Python code."""
 
 import shlex
-from dataclasses import asdict
+from dataclasses import asdict, fields
 
 from regolith_studio.harmonics.fit_options import FitOptions
+from regolith_studio.readers.settings import ReadingSettings
 from regolith_studio.resources import SAMPLE
 from regolith_studio.session.choices import Choices
 
@@ -23,9 +24,7 @@ def as_command(choices: Choices, inputs: list[str]) -> str:
     if choices.weights.keep is not None:
         words += ["--keep", ",".join(sorted(choices.weights.keep)) or "nothing"]
     words += [word for name, value in choices.settings for word in ("--set", f"{name}={value}")]
-    words += ["--unit", choices.unit]
-    words += [] if choices.repair else ["--no-repair"]
-    return shlex.join(words)
+    return shlex.join(words + _reading_options(choices))
 
 
 def as_python(choices: Choices, source: str) -> str:
@@ -65,6 +64,16 @@ def as_python(choices: Choices, source: str) -> str:
         "print(done.n_facets, done.errors, done.jaccard_distance)",
     ]
     return "\n".join(lines) + "\n"
+
+
+def _reading_options(choices: Choices) -> list[str]:
+    """The unit, and what else is not as by default."""
+    words = ["--unit", choices.unit]
+    for each in fields(ReadingSettings):
+        value = getattr(choices, each.name)
+        if isinstance(value, bool) and value != each.default:
+            words.append(f"--{'' if value else 'no-'}{each.name}")
+    return words
 
 
 def _keeping(choices: Choices) -> str:

@@ -89,6 +89,11 @@ class Session:
         return next((entry for entry in self.particles if entry.id == self.choices.selected), None)
 
     @property
+    def open_particles(self) -> tuple[Particle, ...]:
+        """The particles themselves, in the order of the list."""
+        return tuple(entry.particle for entry in self.particles)
+
+    @property
     def tasks(self) -> tuple[Task, ...]:
         """What is running, oldest first."""
         return self._board.running
@@ -379,7 +384,7 @@ class Session:
     def _open_particles(self) -> tuple[Particle, ...]:
         if not self.particles:
             raise InputError(N_("No particle is open; open a mesh first."))
-        return tuple(entry.particle for entry in self.particles)
+        return self.open_particles
 
     def _follow(self, before: Choices) -> None:
         changed = self.choices.changed_from(before)

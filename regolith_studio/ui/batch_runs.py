@@ -177,7 +177,7 @@ class ReportRuns(DialogRuns["ReportDialog"]):
     def make_job(self, request: "ReportRequest") -> Job:
         from regolith_studio.session.report.write import write_report
 
-        particles = tuple(entry.particle for entry in self._session.particles)
+        particles = self._session.open_particles
         return Job(write_report, (particles, request.folder, request.settings, request.workers))
 
     def sentence_of(self, result: "WrittenReport") -> str:

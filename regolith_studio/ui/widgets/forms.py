@@ -44,6 +44,8 @@ class SettingsForm(QWidget):
         Begins the object names of the editors.
     rows
         Takes the rows, so that those of several dataclasses are aligned; a layout of its own by default.
+    without
+        Fields that are edited elsewhere.
     """
 
     valueChanged = Signal(dict)  # noqa: N815
@@ -58,11 +60,12 @@ class SettingsForm(QWidget):
         names: Collection[str] = (),
         prefix: str = "setting_",
         rows: QFormLayout | None = None,
+        without: Collection[str] = (),
     ) -> None:
         super().__init__()
         known = {each.name: each for each in dataclasses.fields(kind) if isinstance(each.default, Scalar)}
         self._kind = kind
-        self._settings = {name: known[name] for name in names or known}
+        self._settings = {name: known[name] for name in names or known if name not in without}
         self.editors: dict[str, Any] = {}
         self.rows = form_layout(self) if rows is None else rows
         for name, each in self._settings.items():

@@ -16,7 +16,7 @@ from regolith_studio.jobs.study_jobs import study_coarsening
 from regolith_studio.messages import join_messages
 from regolith_studio.scene.cameras import DIRECTIONS
 from regolith_studio.scene.shapes import FIT
-from regolith_studio.session.choices import Choices
+from regolith_studio.session.choices import PARTICLE_CHOICES, Choices
 from regolith_studio.session.results import Results
 from regolith_studio.session.study_requests import varied_rows
 from regolith_studio.session.verdict import redundant_planes
@@ -257,7 +257,7 @@ class ExplorePage(PageWidget):
             "particles", lambda: self.particles.set_entries(session.particles), keeps_particles=True
         )
         bindings.refresh(
-            "particles choices", lambda: self.three_views.show_particle(session.selected), ("selected",)
+            "particles choices", lambda: self.three_views.show_particle(session.selected), PARTICLE_CHOICES
         )
         bindings.refresh("fit", self._show_star_point)
         bindings.refresh("fit choices", self._show_findings, ("l_max",), slow=True)

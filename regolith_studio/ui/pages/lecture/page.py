@@ -9,6 +9,7 @@ from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QTabWidget, QVBo
 
 from regolith_studio.jobs.events import Failed, Job
 from regolith_studio.jobs.lecture_jobs import trace_annealing, trace_degrees
+from regolith_studio.session.choices import PARTICLE_CHOICES
 from regolith_studio.session.results import ParticleEntry
 from regolith_studio.ui.layout import name_tabs
 from regolith_studio.ui.page import PageContext, PageWidget
@@ -57,7 +58,7 @@ class LecturePage(PageWidget):
         self.tabs.currentChanged.connect(self._turn)
         self.another.clicked.connect(self.draw_another)
         self.particle.currentIndexChanged.connect(self._select)
-        context.bindings.refresh("particles choices", self._show_particles, ("selected",))
+        context.bindings.refresh("particles choices", self._show_particles, PARTICLE_CHOICES)
         context.bindings.refresh("particles choices fit surface", self._fill, slow=True)
 
     # --- the page of the window ----------------------------------------------------------------

@@ -1,6 +1,5 @@
 """Controls: source, shape model with its settings, and number and sizes of the drawn particles."""
 
-import dataclasses
 from collections.abc import Mapping
 from typing import Any
 
@@ -54,7 +53,7 @@ class SourceControls(QWidget):
         self.half = QCheckBox(tr("Fit to a random half only"))
         self.open, self.fit = QPushButton(tr("Open …")), QPushButton(tr("Fit the model"))
         self.summary, self.findings = remark(), remark()
-        self.forms = {key: SettingsForm(_without_degree(model.Settings)) for key, model in MODELS.items()}
+        self.forms = {key: SettingsForm(model.Settings, without=("l_max",)) for key, model in MODELS.items()}
         self._forms = QStackedWidget()
         self._configure()
         self._place()
@@ -314,13 +313,3 @@ def request_from(
 def default_degree(model: str) -> int:
     """Degree of a model's draws where none is chosen; the slider ends at that of the source."""
     return int(MODELS[model].Settings().l_max)
-
-
-def _without_degree(kind: type[Any]) -> type[Any]:
-    """The settings without l_max, which has a slider of its own."""
-    rows = [
-        (each.name, each.type, dataclasses.field(default=each.default, metadata=each.metadata))
-        for each in dataclasses.fields(kind)
-        if each.name != "l_max"
-    ]
-    return dataclasses.make_dataclass(kind.__name__, rows, frozen=True)

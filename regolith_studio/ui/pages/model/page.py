@@ -162,7 +162,7 @@ class SourceBox:
             If no particle is open.
         """
         if key == OPEN_PARTICLES:
-            particles = tuple(entry.particle for entry in self._session.particles)
+            particles = self._session.open_particles
             if not particles:
                 raise InputError(tr("No particle is open: open some, or choose a material."))
             return particles

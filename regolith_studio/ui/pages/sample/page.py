@@ -23,6 +23,7 @@ from regolith_studio.io.tables import csv_text
 from regolith_studio.jobs.events import Job
 from regolith_studio.jobs.particle_jobs import find_faults
 from regolith_studio.scene import overlays, surfaces
+from regolith_studio.session.choices import PARTICLE_CHOICES
 from regolith_studio.session.results import ParticleEntry
 from regolith_studio.session.sample_table import filter_of, sample_table
 from regolith_studio.ui.layout import equal_parts, side_by_side, stacked, tabs
@@ -71,7 +72,7 @@ class SamplePage(PageWidget):
         self._place()
         self._connect()
         bindings.refresh("particles", self._show_particles, slow=True, keeps_particles=True)
-        bindings.refresh("choices", self._show_current, ("selected",))
+        bindings.refresh("choices", self._show_current, PARTICLE_CHOICES)
 
     def set_theme(self, theme: Theme) -> None:
         self.table.set_theme(theme)

@@ -70,7 +70,7 @@ class SweepController:
         quietly
             Whether to ignore a sweep that the choices do not allow, instead of reporting it.
         """
-        choices, particles = self._session.choices, tuple(e.particle for e in self._session.particles)
+        choices, particles = self._session.choices, self._session.open_particles
         try:
             with_compound = COMPOUND in self._bar.names()
             rows = varied_rows(key, choices, self._panels[key].values.value(), with_compound)
