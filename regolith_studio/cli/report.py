@@ -14,6 +14,7 @@ from regolith_studio.cli.options import (
     Jobs,
     Json,
     Meshes,
+    mesh_path,
     usage_errors,
     whole_numbers,
 )
@@ -100,6 +101,7 @@ Samples = Annotated[
     typer.Argument(
         metavar="SAMPLE...",
         help="Mesh files, tables of coefficients, folders of them; or one scan, or one recipe.",
+        parser=mesh_path,
     ),
 ]
 
