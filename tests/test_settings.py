@@ -5,14 +5,14 @@ from dataclasses import dataclass, fields
 
 import pytest
 
-from regolith_studio.cli.dataclass_options import with_dataclass_options
+from regolith_studio.cli.dataclass_options import option_of, with_dataclass_options
 from regolith_studio.errors import InputError
 from regolith_studio.harmonics.fit_options import FitOptions
 from regolith_studio.harmonics.radius_function import REFERENCES, RULES
 from regolith_studio.harmonics.star_point import STAR_POINT_RULES
 from regolith_studio.session.choices import Choices
 from regolith_studio.session.recipe import Recipe
-from regolith_studio.settings import check_settings, setting, settings_of_kind
+from regolith_studio.settings import check_settings, setting, setting_of, settings_of_kind
 
 
 @dataclass(frozen=True)
@@ -62,6 +62,29 @@ def test_that_a_command_has_an_option_for_each_setting_of_a_group() -> None:
     assert "One of: boil, fry." in options["way"].annotation.__metadata__[0].help
     cook(degree=1, share=0.2, way="fry")
     assert taken == [Cooking(1, 0.2, "fry")]
+
+
+def test_that_a_setting_of_another_dataclass_keeps_its_description_but_for_what_is_changed() -> None:
+    @dataclass(frozen=True)
+    class Dinner:
+        done: int | None = setting_of(Cooking, "degree", default=None, option="--done")
+
+        def __post_init__(self) -> None:
+            check_settings(self)
+
+    assert Dinner() == Dinner(None)
+    assert fields(Dinner)[0].metadata["tip"] == "How well done."
+    with pytest.raises(InputError, match="done must be a whole number from 0 to 5, got 9"):
+        Dinner(9)
+
+
+def test_that_a_fraction_that_is_shown_in_per_cent_is_an_option_in_per_cent() -> None:
+    option = option_of(Choices, "largest_error")
+    assert (option.default, option.metavar, option.max) == ("--max-error", "PERCENT", 50.0)
+
+
+def test_that_a_switch_that_is_on_by_default_has_an_option_that_turns_it_off() -> None:
+    assert option_of(Choices, "repair").default == "--repair/--no-repair"
 
 
 def test_that_the_choices_of_the_fit_are_those_that_the_numerics_know() -> None:

@@ -12,6 +12,7 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QAbstractButton, QAbstractSpinBox, QComboBox, QSlider, QWidget
 
 from regolith_studio.coarsening.coarsen import coarsen
+from regolith_studio.coarsening.settings import CoarseningSettings
 from regolith_studio.coarsening.weights import LossWeights, presets
 from regolith_studio.descriptors.describe import describe
 from regolith_studio.geometry.mesh_health import inspect
@@ -278,6 +279,16 @@ def test_that_a_form_holds_only_what_differs_from_the_defaults(shown):
     assert form.value() == wanted
     form.setValue({})
     assert form.value() == {}
+
+
+def test_that_a_form_shows_fractions_in_per_cent_and_announces_what_was_edited(shown):
+    form, heard = shown(SettingsForm(CoarseningSettings, names=("largest_error", "seed"))), []
+    form.edited.connect(heard.append)
+    form.editors["largest_error"].field.setValue(2.5)
+    form.editors["seed"].setValue(3)
+    assert heard == [{"largest_error": 0.025}, {"seed": 3}]
+    assert form.editors["largest_error"].field.suffix() == " %"
+    assert form.values() == {"largest_error": 0.025, "seed": 3}
 
 
 def test_that_a_line_is_drawn_across_a_bar_where_it_cannot_be_lower(shown):
