@@ -46,13 +46,17 @@ class Preferences(BaseModel):
         return preferences
 
     def save(self, path: Path | None = None) -> bool:
-        """Write what has changed here into the file, which other windows share; whether that was possible."""
+        """Write what has changed here into the file, which other windows share; whether that was possible.
+
+        Of the lists of recent files, that of the window that saves last is kept.
+        """
         target = path or preferences_path()
         try:
             with _locked(target):
                 there = type(self).load(target).model_dump(mode="json")
-                merged = _merged(there, self.model_dump(mode="json"), self._on_disk)
-                merged["recent"] = merged["recent"][:RECENT_LIMIT]
+                ours = self.model_dump(mode="json")
+                tables = {name: _merged(there, ours, self._on_disk, name) for name in ("units", "window")}
+                merged = there | tables | {"recent": ours["recent"]}
                 write_bytes(target, json.dumps(merged, indent=1, sort_keys=True).encode("utf-8"))
         except (OSError, FileError):
             return False
@@ -87,30 +91,10 @@ def _locked(target: Path) -> Iterator[None]:
     raise FileError(f"Another process is writing to {target}.")
 
 
-def _merged(theirs: Any, ours: Any, base: Any) -> Any:
-    """What `theirs` becomes by the changes that lead from `base` to `ours`."""
-    if isinstance(theirs, dict) and isinstance(ours, dict):
-        common = base if isinstance(base, dict) else {}
-        return {
-            key: _merged(theirs.get(key, ours.get(key)), ours.get(key, theirs.get(key)), common.get(key))
-            for key in {**theirs, **ours}
-            if (key in theirs or ours[key] != common.get(key)) and (key in ours or key not in common)
-        }
-    if ours == base:
-        return theirs
-    if isinstance(theirs, list) and isinstance(ours, list):  # recent files
-        opened = _opened_since(base or [], ours)
-        return [*opened, *(each for each in theirs if each not in opened)]
-    return ours
-
-
-def _opened_since(base: list[Any], ours: list[Any]) -> list[Any]:
-    """The first of `ours`, behind which the others stand as they did in `base`."""
-    for count in range(len(ours)):
-        rest = [each for each in base if each not in ours[:count]]
-        if ours[count:] == rest[: len(ours) - count]:
-            return ours[:count]
-    return ours
+def _merged(there: dict[str, Any], ours: dict[str, Any], before: dict[str, Any], name: str) -> dict[str, Any]:
+    """A table of the file with the entries that have changed here since it was read."""
+    changed = {key: value for key, value in ours[name].items() if value != before.get(name, {}).get(key)}
+    return {**there[name], **changed}
 
 
 def preferences_path() -> Path:

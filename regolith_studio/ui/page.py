@@ -15,7 +15,7 @@ from regolith_studio.session.preferences import Preferences
 from regolith_studio.session.session import Session
 from regolith_studio.ui.bindings import Bindings
 from regolith_studio.ui.commands import Commands
-from regolith_studio.ui.theme import Theme, pass_theme
+from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.widgets.toast import Toast
 
 BREAK = "-"
@@ -68,8 +68,7 @@ class PageWidget(QWidget):
         """Make the parts of the page; called once, right after construction."""
 
     def set_theme(self, theme: Theme) -> None:
-        """Take the colours of a theme, once after building and at every change, with all parts."""
-        pass_theme(self, theme)
+        """Take the colours of a theme, once after building and at every change; its parts have done so."""
 
     def commands(self) -> Mapping[str, Callable[..., object]]:
         """A function for each name in :attr:`Page.actions`; switches are called with their state."""

@@ -23,7 +23,7 @@ from regolith_studio.ui.icons import icon
 from regolith_studio.ui.layout import scrolled
 from regolith_studio.ui.page import Page, PageContext, PageWidget
 from regolith_studio.ui.shortcuts import with_keys
-from regolith_studio.ui.theme import Theme, current_theme, ensure_polished, restyle
+from regolith_studio.ui.theme import Theme, current_theme, ensure_polished, pass_theme, restyle
 from regolith_studio.ui.translation import tr
 
 ICON_SIZE = QSize(24, 24)
@@ -206,7 +206,7 @@ class PageStack(QWidget):
         self._scroll_areas[key] = ScrollablePage(widget)
         self._stack.addWidget(self._scroll_areas[key])
         ensure_polished(widget)
-        widget.set_theme(current_theme())
+        pass_theme(widget, current_theme())
         self.widgets[key] = widget
         self.built.emit(key)
 
@@ -214,7 +214,7 @@ class PageStack(QWidget):
         if key in self._unthemed:
             self._unthemed.remove(key)
             restyle(self._scroll_areas[key])
-            self.widgets[key].set_theme(current_theme())
+            pass_theme(self.widgets[key], current_theme())
 
     def _hide_current(self) -> None:
         if self._current:

@@ -5,7 +5,6 @@ import os
 import signal
 import socket
 import sys
-import threading
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
@@ -19,8 +18,6 @@ from regolith_studio.ui.icons import pixmap
 from regolith_studio.ui.views.factory import surface_format
 from regolith_studio.version import __version__
 
-EXIT_TIMEOUT = 1.5
-"""Seconds that the process may outlive its window."""
 SWITCH_INTERVAL = 0.001
 """Seconds after which a computing thread hands the interpreter to the thread of the window.
 
@@ -66,11 +63,8 @@ def run(paths: Sequence[str | Path] = (), unit: str | None = None) -> int:
     gc.freeze()  # later collections skip the modules and the window: up to 90 ms each
     gc.enable()
     QTimer.singleShot(0, window, lambda: show_recovery_and_tour(window))
-    timer = exit_timer()
-    window.closing.connect(timer.start)
     close_on_interrupt(app)
     code = app.exec()
-    timer.cancel()
     sys.excepthook = sys.__excepthook__
     return code
 
@@ -129,17 +123,6 @@ def close_on_interrupt(app: QApplication) -> None:
     notifier = QSocketNotifier(reading.fileno(), QSocketNotifier.Type.Read, app)
     notifier.activated.connect(lambda *_, ends=(reading, writing): ends[0].recv(1))
     signal.signal(signal.SIGINT, lambda *_: QTimer.singleShot(0, app.quit))
-
-
-def exit_timer(seconds: float = EXIT_TIMEOUT) -> threading.Timer:
-    """A timer that, once started and not cancelled, ends the process whatever its threads do.
-
-    Everything is saved when the window has closed and running jobs have been asked to stop; but a job is only
-    interrupted between its steps, and segmenting a scan has steps of some seconds.
-    """
-    timer = threading.Timer(seconds, os._exit, (0,))  # nothing before it: that might wait for the interpreter
-    timer.daemon = True
-    return timer
 
 
 def make_splash() -> QLabel:

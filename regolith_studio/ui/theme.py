@@ -140,14 +140,11 @@ def apply_theme(app: QApplication, theme: Theme, window: QWidget, later: Contain
 
 
 def pass_theme(widget: QWidget, theme: Theme) -> None:
-    """Call ``set_theme`` of the widgets within `widget` that have one; such a widget cares for its parts."""
-    for part in widget.children():
-        if isinstance(part, QWidget):
-            set_theme: Callable[[Theme], None] | None = getattr(part, "set_theme", None)
-            if set_theme is not None:
-                set_theme(theme)
-            else:
-                pass_theme(part, theme)
+    """Call ``set_theme`` of a widget and of all within it that have one, parts before their owners."""
+    for part in (*reversed(widget.findChildren(QWidget)), widget):
+        set_theme: Callable[[Theme], None] | None = getattr(part, "set_theme", None)
+        if set_theme is not None:
+            set_theme(theme)
 
 
 def restyle(widget: QWidget, later: Container[QObject] = ()) -> None:

@@ -150,6 +150,12 @@ def _is_text(value: object) -> bool:
     return not isinstance(value, Real | Markup)
 
 
+def in_a_sentence(label: str) -> str:
+    """A label within a sentence: lower case in English, unchanged in other languages."""
+    shown = tr(label)
+    return shown.lower() if shown == label else shown
+
+
 def tr_count(one: str, many: str, count: int, **values: object) -> str:
     """As :func:`tr`, of the form for one thing or of the form for `count` of them; both marked by ``N_``."""
     return tr(one if count == 1 else many, count=count, **values)

@@ -17,15 +17,20 @@ def test_that_two_windows_keep_what_each_of_them_has_changed(tmp_path: Path) -> 
     )
     one, two = Preferences.load(path), Preferences.load(path)
     one.add_recent(tmp_path / "a" / "a.stl", "mm")
-    one.window = {"theme": "light", "page.scan": {"zoom": 2, "tool": "pen"}}
+    one.window = {"theme": "light", "page.scan": {"zoom": 2}}
     two.add_recent(tmp_path / "b" / "b.stl", "um")
-    two.window = {"theme": "dark", "page.scan": {"zoom": 1, "tool": "brush"}, "tour": True}
+    two.window = {**two.window, "page.model": {"l_max": 8}, "tour": True}
     assert one.save(path)
     assert two.save(path)
     found = Preferences.load(path)
-    assert [Path(each).name for each in found.recent] == ["b.stl", "a.stl", "old"]
+    assert [Path(each).name for each in found.recent] == ["b.stl", "old"]
     assert sorted(found.units.values()) == ["mm", "um"]
-    assert found.window == {"theme": "light", "page.scan": {"zoom": 2, "tool": "brush"}, "tour": True}
+    assert found.window == {
+        "theme": "light",
+        "page.scan": {"zoom": 2},
+        "page.model": {"l_max": 8},
+        "tour": True,
+    }
     assert [each.name for each in tmp_path.iterdir()] == ["preferences.json"]
 
 

@@ -146,9 +146,9 @@ def test_that_explore_finds_and_takes_the_number_of_facets_from_which_on_nothing
     assert button.text() == "Find the sufficient number"
 
 
-def test_that_a_number_of_facets_found_by_its_loss_is_explained_by_the_loss(window, settled):
+def test_that_a_number_of_facets_found_by_its_loss_is_explained_by_the_loss(window, settled, wait):
     settled(window, SECONDS)
     window.session.update("coarsening", fewer_facets=(12, 0.1))
     button = window.page.coarsening.enough
-    assert "12" in button.text()
+    wait(lambda: "12" in button.text())  # refreshed at its next beat
     assert button.toolTip() == "With these facets the loss was no larger."

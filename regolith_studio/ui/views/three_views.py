@@ -228,7 +228,8 @@ class ThreeViews(QSplitter):
         self._theme = current_theme()
         ink = self._theme.surroundings
         self.frames = {
-            name: ViewFrame(make_view(kind, ink), name, partners_of(name), COMPARE[name]) for name in NAMES
+            name: ViewFrame(make_view(kind, ink), name, partners_of(name), COMPARE[name], name)
+            for name in NAMES
         }
         self.views = {name: frame.view for name, frame in self.frames.items()}
         self.link = CameraLink(list(self.views.values()))
@@ -405,9 +406,6 @@ class ThreeViews(QSplitter):
     def set_theme(self, theme: Theme) -> None:
         """Take the colours of a theme."""
         self._theme = theme
-        for name, frame in self.frames.items():
-            frame.view.set_surroundings(theme.surroundings)
-            frame.set_colour(getattr(theme, name))
         if self._heat:
             self._draw_fit()
         self._draw_polyhedron()

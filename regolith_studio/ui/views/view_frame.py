@@ -5,9 +5,10 @@ from collections.abc import Mapping
 
 from PySide6.QtCore import QEvent, Qt, Signal
 from PySide6.QtGui import QMouseEvent, QResizeEvent
-from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QVBoxLayout
 
 from regolith_studio.ui.keyboard import FOCUSED
+from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.views.view import SceneView
 from regolith_studio.ui.widgets.combo_box import ChoiceBox
@@ -32,6 +33,8 @@ class ViewFrame(QFrame):
         What it can be compared with, by key; the box is shown when :meth:`set_comparing` says so.
     compare
         What the box asks, for screen readers.
+    colour
+        Field of :class:`Theme` with the colour of the mark before the title: the same as in the plots.
     """
 
     partnerChanged = Signal(str)  # noqa: N815
@@ -43,9 +46,10 @@ class ViewFrame(QFrame):
         name: str,
         partners: Mapping[str, str] | None = None,
         compare: str = "",
-        parent: QWidget | None = None,
+        colour: str = "",
     ) -> None:
-        super().__init__(parent)
+        super().__init__()
+        self._colour = colour
         self.setObjectName(f"view_{name}")
         self.setProperty("role", "card")
         self.view = view
@@ -69,10 +73,12 @@ class ViewFrame(QFrame):
         self._arrange()
         self.setProperty(FOCUSED, False)
 
-    def set_colour(self, colour: str) -> None:
-        """Colour of the mark before the title: the same as in the plots."""
-        self._mark.setText(f'<span style="color:{colour}">&#9632;</span>')
-        self._mark.show()
+    def set_theme(self, theme: Theme) -> None:
+        """Take the colours of a theme."""
+        self.view.set_surroundings(theme.surroundings)
+        if self._colour:
+            self._mark.setText(f'<span style="color:{getattr(theme, self._colour)}">&#9632;</span>')
+            self._mark.show()
 
     def set_texts(self, title: str, detail: str = "", *shorter: str) -> None:
         """Title as rich text, the quiet line, and titles for views too narrow for the first one."""

@@ -7,7 +7,6 @@ from PySide6.QtCore import QPoint, Qt, Signal
 from PySide6.QtWidgets import QMenu, QVBoxLayout, QWidget
 
 from regolith_studio.session.results import ParticleEntry
-from regolith_studio.ui.theme import Theme
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.labels import heading, remark
 from regolith_studio.ui.widgets.table import ParticleTable, particle_columns
@@ -69,10 +68,6 @@ class ParticleListPanel(QWidget):
             self.table.set_entries(entries)
             self._mark()
             self.title.setText(_title(entries))
-
-    def set_theme(self, theme: Theme) -> None:
-        """Take the colours of a theme."""
-        self.table.set_theme(theme)
 
     def _show_menu(self, place: QPoint) -> None:
         index = self.table.indexAt(place)

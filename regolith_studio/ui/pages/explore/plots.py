@@ -183,9 +183,8 @@ class ErrorBarsPanel(QWidget):
         if self.plot.is_empty():
             self.plot.set_empty(True, failure or tr("The errors appear when the fit is measured."))
 
-    def set_theme(self, theme: Theme) -> None:
+    def set_theme(self, theme: Theme) -> None:  # noqa: ARG002
         """Take the colours of a theme."""
-        self.plot.set_theme(theme)
         if self._shown:
             self.show_results(*self._shown)
 
@@ -237,9 +236,8 @@ class LossCurvePanel(QWidget):
             tr("step {at} of {total}", at=progress.step, total=progress.steps) if running and progress else ""
         )
 
-    def set_theme(self, theme: Theme) -> None:
+    def set_theme(self, theme: Theme) -> None:  # noqa: ARG002
         """Take the colours of a theme."""
-        self.plot.set_theme(theme)
         if self._results:
             self.show_results(self._results)
 
@@ -304,9 +302,8 @@ class SpectrumPanel(QWidget):
         kept = tr("up to l<sub>max</sub> = {l_max}", l_max=choices.l_max)
         self.plot.set_legend([(theme.fit, kept), (theme.border, tr("above l<sub>max</sub>"))])
 
-    def set_theme(self, theme: Theme) -> None:
+    def set_theme(self, theme: Theme) -> None:  # noqa: ARG002
         """Take the colours of a theme."""
-        self.plot.set_theme(theme)
         if self._shown:
             self.show_results(*self._shown)
 
@@ -383,7 +380,6 @@ class SectionPanel(QWidget):
     def set_theme(self, theme: Theme) -> None:
         """Take the colours of a theme."""
         self._theme = theme
-        self.plot.set_theme(theme)
         self.refresh()
 
     def refresh(self) -> None:

@@ -53,7 +53,9 @@ class AnnealingView(QWidget):
         """Make the parts, right after construction."""
         self.frames: dict[str, ViewFrame] = {}
         for name in ("annealing", "exact"):
-            self.frames[name] = ViewFrame(make_view(self._kind, self._theme.surroundings), f"lecture_{name}")
+            self.frames[name] = ViewFrame(
+                make_view(self._kind, self._theme.surroundings), f"lecture_{name}", colour="polyhedron"
+            )
         self.link = CameraLink([frame.view for frame in self.frames.values()])
         self.sentence = WrappedLabel(tr(WAIT))
         self.sentence.setObjectName("annealing_sentence")
@@ -98,11 +100,6 @@ class AnnealingView(QWidget):
     def set_theme(self, theme: Theme) -> None:
         """Take the colours of a theme."""
         self._theme = theme
-        for frame in self.frames.values():
-            frame.view.set_surroundings(theme.surroundings)
-            frame.set_colour(theme.polyhedron)
-        for plot in (self.loss, self.chance, self.terms):
-            plot.set_theme(theme)
         if self._lesson is not None:
             self._show_exact()
             self._show_step(self.playback.step)

@@ -103,7 +103,9 @@ class DegreesView(QWidget):
         """Make the parts, right after construction."""
         self.frames: dict[str, ViewFrame] = {}
         for name in ("particle", "fit"):
-            self.frames[name] = ViewFrame(make_view(self._kind, self._theme.surroundings), f"degrees_{name}")
+            self.frames[name] = ViewFrame(
+                make_view(self._kind, self._theme.surroundings), f"degrees_{name}", colour=name
+            )
         self.link = CameraLink([frame.view for frame in self.frames.values()])
         self.sentence = remark(tr(WAIT), role="")
         self.sentence.setObjectName("degrees_sentence")
@@ -140,10 +142,6 @@ class DegreesView(QWidget):
     def set_theme(self, theme: Theme) -> None:
         """Take the colours of a theme."""
         self._theme = theme
-        for name, frame in self.frames.items():
-            frame.view.set_surroundings(theme.surroundings)
-            frame.set_colour(getattr(theme, name))
-        self.errors.set_theme(theme)
 
     def release(self) -> None:
         """Stop, and release graphics memory."""
@@ -229,7 +227,7 @@ class FieldView(QWidget):
         self.frames: dict[str, ViewFrame] = {}
         for name in ("sphere", "grain"):
             self.frames[name] = ViewFrame(
-                make_view(self._context.views, self._theme.surroundings), f"field_{name}"
+                make_view(self._context.views, self._theme.surroundings), f"field_{name}", colour="fit"
             )
         self.link = CameraLink([frame.view for frame in self.frames.values()])
         self.sentence = remark("", role="")
@@ -284,10 +282,6 @@ class FieldView(QWidget):
     def set_theme(self, theme: Theme) -> None:
         """Take the colours of a theme."""
         self._theme = theme
-        for frame in self.frames.values():
-            frame.view.set_surroundings(theme.surroundings)
-            frame.set_colour(theme.fit)
-        self.spectrum.set_theme(theme)
         if self.drawn is not None:
             self._show(self.drawn, False)
 

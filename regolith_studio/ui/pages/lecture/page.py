@@ -63,9 +63,7 @@ class LecturePage(PageWidget):
 
     # --- the page of the window ----------------------------------------------------------------
 
-    def set_theme(self, theme: Theme) -> None:
-        for lesson in (self.annealing, self.degrees, self.field):
-            lesson.set_theme(theme)
+    def set_theme(self, theme: Theme) -> None:  # noqa: ARG002
         if self._shown_size not in (0.0, self._size()):  # letters of the whole window have changed
             self._show_letters()
 

@@ -8,7 +8,7 @@ from regolith_studio.coarsening.progress import Move
 from regolith_studio.coarsening.weights import JACCARD, LossWeights
 from regolith_studio.descriptors.catalogue import CATALOGUE, LOSS_KEYS
 from regolith_studio.jobs.lecture_jobs import AnnealingLesson, AnnealingStep, DegreeStep
-from regolith_studio.ui.translation import Markup, number_text, tr
+from regolith_studio.ui.translation import Markup, in_a_sentence, number_text, tr
 from regolith_studio.ui.widgets.formula import BREAK
 
 TERMS = (JACCARD, *LOSS_KEYS)
@@ -19,12 +19,6 @@ REFUSED, ACCEPTED, LUCKY, START = "refused", "accepted", "lucky", "start"
 DEGREE = Markup("l<sub>max</sub>")
 GENERAL_LOSS = r"$L=\alpha_J\,J+\sum_i\alpha_i\,\varepsilon_i$"
 GENERAL_SERIES = r"$r(\theta,\varphi)=\sum_{l=0}^{l_{max}}\,\sum_{m=-l}^{l}c_{lm}\,Y_{lm}(\theta,\varphi)$"
-
-
-def in_a_sentence(label: str) -> str:
-    """A label within a sentence: lower case in English, unchanged in other languages."""
-    shown = tr(label)
-    return shown.lower() if shown == label else shown
 
 
 def symbol(key: str) -> str:

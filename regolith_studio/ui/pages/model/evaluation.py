@@ -98,10 +98,8 @@ class PanelGrid(QWidget):
         self._place()
         self._draw()
 
-    def set_theme(self, theme: Theme) -> None:
+    def set_theme(self, theme: Theme) -> None:  # noqa: ARG002
         """Take the colours of a theme."""
-        for plot in self.plots:
-            plot.set_theme(theme)
         self._draw()
 
     def resizeEvent(self, event: QResizeEvent) -> None:

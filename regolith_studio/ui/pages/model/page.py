@@ -43,7 +43,7 @@ from regolith_studio.ui.pages.model.controls import DrawControls, SourceControls
 from regolith_studio.ui.pages.model.evaluation import EvaluationPanel
 from regolith_studio.ui.pages.model.views import DistributionsPanel, LiveShape, ShapeGallery
 from regolith_studio.ui.theme import current_theme
-from regolith_studio.ui.translation import tr, translate
+from regolith_studio.ui.translation import in_a_sentence, tr, translate
 from regolith_studio.ui.views.factory import make_view
 from regolith_studio.ui.widgets.labels import rich_symbol
 from regolith_studio.ui.widgets.toast import Toast
@@ -150,7 +150,7 @@ class SourceBox:
                 words = tr("{count} particles up to l = {degree}.", count=len(content), degree=content.l_max)
                 return SourceKind("", content.l_max, words)
             case _:
-                words = tr("A fitted model: {name}.", name=_inside(MODELS[content.key].label))
+                words = tr("A fitted model: {name}.", name=in_a_sentence(MODELS[content.key].label))
                 return SourceKind(content.key, content.l_max, words)
 
     def origin(self, key: str) -> ModelOrigin:
@@ -167,12 +167,6 @@ class SourceBox:
                 raise InputError(tr("No particle is open: open some, or choose a material."))
             return particles
         return self._files[key] if key in self._files else ShapeSource(materials()[key], key)
-
-
-def _inside(label: str) -> str:
-    """A label within a sentence: lower case in English, unchanged in other languages."""
-    words = tr(label)
-    return label.lower() if words == label else words
 
 
 def usual_sizes(source: ShapeSource) -> tuple[float, float] | None:

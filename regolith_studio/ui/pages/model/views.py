@@ -79,9 +79,8 @@ class DistributionsPanel(QWidget):
             self.table.show_table(compared.table())
         self._show()
 
-    def set_theme(self, theme: Theme) -> None:
+    def set_theme(self, theme: Theme) -> None:  # noqa: ARG002
         """Take the colours of a theme."""
-        self.plot.set_theme(theme)
         self._show()
 
     def _show(self) -> None:
@@ -133,7 +132,7 @@ class LiveShape(QWidget):
         super().__init__()
         self.spectrum = SpectrumEditor(tr(NO_MODEL))
         self.spectrum.setObjectName("model_spectrum")
-        self.frame = ViewFrame(view, "drawn")
+        self.frame = ViewFrame(view, "drawn", colour="fit")
         self.reset, self.another = QPushButton(tr("Reset the spectrum")), QPushButton(tr("Another particle"))
         self.reset.setObjectName("model_reset_spectrum")
         self.another.setObjectName("model_another")
@@ -176,19 +175,13 @@ class LiveShape(QWidget):
             view.set_pose(framing_pose(mesh.vertices, "isometric", size.width() / max(size.height(), 1)))
             self._framed = True
 
-    def set_theme(self, theme: Theme) -> None:
-        """Take the colours of a theme."""
-        self.spectrum.set_theme(theme)
-        self.frame.view.set_surroundings(theme.surroundings)
-        self.frame.set_colour(theme.fit)
-
 
 class ShapeGallery(QWidget):
     """Measured particles above drawn ones."""
 
     def __init__(self, view: SceneView) -> None:
         super().__init__()
-        self.frame = ViewFrame(view, "gallery")
+        self.frame = ViewFrame(view, "gallery", colour="particle")
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(self.frame)
@@ -216,8 +209,3 @@ class ShapeGallery(QWidget):
         view = self.frame.view
         width, height = view.widget.width(), view.widget.height()
         view.set_pose(gallery_pose(*self._shown, width / max(height, 1)))
-
-    def set_theme(self, theme: Theme) -> None:
-        """Take the colours of a theme."""
-        self.frame.view.set_surroundings(theme.surroundings)
-        self.frame.set_colour(theme.particle)

@@ -77,10 +77,8 @@ class CalibrationPanel(RunPanel):
             lambda *_: self.range.setValue(PARAMETERS[str(self.key.currentData())][1])
         )
 
-    def set_theme(self, theme: Theme) -> None:
+    def set_theme(self, theme: Theme) -> None:  # noqa: ARG002
         """Take the colours of a theme."""
-        for plot in (self.prediction, self.posterior):
-            plot.set_theme(theme)
         self._draw()
 
     def request(self, dataset: Path | None, request: ReposeRequest) -> ReposeCalibrationRequest:

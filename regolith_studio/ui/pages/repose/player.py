@@ -37,7 +37,9 @@ class RunPlayer(QWidget):
 
     def __init__(self, views: str) -> None:
         super().__init__()
-        self.frame = ViewFrame(make_view(views, current_theme().surroundings), "repose_view")
+        self.frame = ViewFrame(
+            make_view(views, current_theme().surroundings), "repose_view", colour="polyhedron"
+        )
         self._camera = CameraLink([self.frame.view])
         self._theme = current_theme()
         self._shapes: tuple[Sequence[FloatArray], ...] = ()
@@ -78,8 +80,6 @@ class RunPlayer(QWidget):
     def set_theme(self, theme: Theme) -> None:
         """Take the colours of a theme."""
         self._theme = theme
-        self.frame.view.set_surroundings(theme.surroundings)
-        self.frame.set_colour(theme.polyhedron)
         self._draw()
 
     def set_scene(

@@ -65,9 +65,8 @@ class StudyPanel(RunPanel):
         self.key.currentIndexChanged.connect(lambda *_: self._propose())
         self.table.chosen.connect(self._announce)
 
-    def set_theme(self, theme: Theme) -> None:
+    def set_theme(self, theme: Theme) -> None:  # noqa: ARG002
         """Take the colours of a theme."""
-        self.plot.set_theme(theme)
         self._draw()
 
     def request(self) -> tuple[str, tuple[float | str, ...], int, int]:

@@ -30,7 +30,7 @@ from regolith_studio.ui.layout import equal_parts, side_by_side, stacked, tabs
 from regolith_studio.ui.page import PageContext, PageWidget
 from regolith_studio.ui.pages.sample.health import HealthPanel, translated_health
 from regolith_studio.ui.pages.sample.plots import ScatterPanel, StatisticsPanel
-from regolith_studio.ui.theme import Theme, current_theme
+from regolith_studio.ui.theme import current_theme
 from regolith_studio.ui.translation import rich, tr, with_decimal_point
 from regolith_studio.ui.views.factory import make_view
 from regolith_studio.ui.views.view import CameraLink
@@ -67,18 +67,14 @@ class SamplePage(PageWidget):
         self.statistics = StatisticsPanel()
         self.scatter = ScatterPanel()
         self.health = HealthPanel()
-        self.frame = ViewFrame(make_view(self._context.views, current_theme().surroundings), "sample_view")
+        self.frame = ViewFrame(
+            make_view(self._context.views, current_theme().surroundings), "sample_view", colour="particle"
+        )
         self._camera = CameraLink([self.frame.view])
         self._place()
         self._connect()
         bindings.refresh("particles", self._show_particles, slow=True, keeps_particles=True)
         bindings.refresh("choices", self._show_current, PARTICLE_CHOICES)
-
-    def set_theme(self, theme: Theme) -> None:
-        self.table.set_theme(theme)
-        self.scatter.set_theme(theme)
-        self.frame.view.set_surroundings(theme.surroundings)
-        self.frame.set_colour(theme.particle)
 
     def commands(self) -> Mapping[str, Callable[..., object]]:
         return {

@@ -85,9 +85,8 @@ class ScatterPanel(QWidget):
         self._chosen = frozenset(chosen)
         self._draw()
 
-    def set_theme(self, theme: Theme) -> None:
+    def set_theme(self, theme: Theme) -> None:  # noqa: ARG002
         """Take the colours of a theme."""
-        self.plot.set_theme(theme)
         self._draw()  # the names of Zingg's classes take the font of when they are drawn
 
     def _arrange(self) -> None:

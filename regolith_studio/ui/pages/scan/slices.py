@@ -162,10 +162,6 @@ class GrainsView:
         self._camera = CameraLink([self.frame.view])
         self._size = np.ones(3)
 
-    def set_theme(self, theme: Theme) -> None:
-        """Take the colours of a theme."""
-        self.frame.view.set_surroundings(theme.surroundings)
-
     def set_volume(self, volume: Volume) -> None:
         """Show the empty box of another volume."""
         self._size = np.array(volume.shape) * volume.voxel_size
@@ -289,13 +285,6 @@ class SlicesView(QWidget):
             view.placePicked.connect(lambda x, y, z, axis=view.axis: self.picked.emit(x, y, z, axis))
             view.sliceChosen.connect(self._turn)
             view.strokeDrawn.connect(self.strokeDrawn)
-
-    def set_theme(self, theme: Theme) -> None:
-        """Take the colours of a theme."""
-        for view in self.views:
-            view.set_theme(theme)
-        self.histogram.set_theme(theme)
-        self.grains.set_theme(theme)
 
     def set_scan(self, scan: Scan) -> None:
         """Show another volume, with slices through its centre."""

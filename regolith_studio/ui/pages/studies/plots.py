@@ -331,9 +331,8 @@ class CoarseningStudyPanel(QWidget):
             count += ", " + tr("box of {name}", name=study.box_metric)
         self.frame.set_remark(count + "; " + tr("computed with other choices") if outdated else count)
 
-    def set_theme(self, theme: Theme) -> None:
+    def set_theme(self, theme: Theme) -> None:  # noqa: ARG002
         """Take the colours of a theme."""
-        self.table.set_theme(theme)
         self._set_tool_tips()
 
     def _set_tool_tips(self) -> None:
