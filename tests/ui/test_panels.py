@@ -27,11 +27,11 @@ from regolith_studio.session.sample_table import health_word
 from regolith_studio.session.tasks import Task
 from regolith_studio.studies.lmax import LmaxStudy
 from regolith_studio.ui.activity import IDLE, TasksPanel
+from regolith_studio.ui.pages.explore.coarsening import CoarseningPanel
 from regolith_studio.ui.pages.explore.panels import FitPanel, LossPanel, VerdictPanel
 from regolith_studio.ui.pages.explore.particle_list import ParticleListPanel
 from regolith_studio.ui.pages.explore.plots import LossCurvePanel
 from regolith_studio.ui.pages.studies.plots import LmaxStudyPanel
-from regolith_studio.ui.panels.coarsening import CoarseningPanel
 from regolith_studio.ui.widgets.forms import SettingsForm
 from regolith_studio.ui.widgets.plots.bars import BarPlot, BarSeries
 

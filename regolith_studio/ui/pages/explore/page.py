@@ -24,11 +24,11 @@ from regolith_studio.studies.coarsening import CoarseningStudy
 from regolith_studio.studies.sweeps import GAIN, SWEEPS, sufficient_facets
 from regolith_studio.ui.layout import padded, scrolled_column, side_by_side, stacked
 from regolith_studio.ui.page import PageContext, PageWidget
+from regolith_studio.ui.pages.explore.coarsening import CoarseningPanel
 from regolith_studio.ui.pages.explore.panels import FitPanel, LossPanel, VerdictPanel
 from regolith_studio.ui.pages.explore.particle_list import ParticleListPanel
 from regolith_studio.ui.pages.explore.pictures import PictureExport
 from regolith_studio.ui.pages.explore.plots import PlotArea
-from regolith_studio.ui.panels.coarsening import CoarseningPanel
 from regolith_studio.ui.translation import tr
 from regolith_studio.ui.views.three_views import ThreeViews
 
