@@ -121,6 +121,8 @@ class Exporter:
         refused before anything is written.
     fills_mass
         Whether its script makes as many particles as have the mass of the test; others list `n_particles`.
+    general
+        Whether it is for viewers and own programs instead of a DEM program.
     """
 
     key: str
@@ -133,6 +135,7 @@ class Exporter:
     alters: str = ""
     convex_only: str = N_("Its particles are convex polyhedra.")
     fills_mass: bool = False
+    general: bool = False
 
 
 NOTES = "NOTES"

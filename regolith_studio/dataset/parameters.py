@@ -99,7 +99,7 @@ class LiftingCylinderTest:
 
     diameter: float = _number(0.02, N_("Cylinder diameter"), "cm", 1e-5, 10.0, N_("Table 2"), 1e2)
     height: float = _number(0.08, N_("Cylinder height"), "cm", 1e-5, 100.0, N_("Table 2"), 1e2)
-    mass: float = _number(0.015, N_("Particle mass"), "g", 1e-12, 1e6, N_("Table 2"), 1e3)
+    mass: float = _number(0.015, N_("Total mass"), "g", 1e-12, 1e6, N_("Table 2"), 1e3)
     lift_speed: float = _number(0.03, N_("Lift speed"), "cm/s", 1e-5, 10.0, factor=1e2)
     wall_friction: float = _number(0.3, N_("Wall friction"), "", 0.0, 5.0)
     plate_friction: float = _number(0.8, N_("Plate friction"), "", 0.0, 5.0)

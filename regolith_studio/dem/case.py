@@ -356,7 +356,7 @@ def _sentences(prepared: PreparedCase, bonds: tuple[float, float, float]) -> lis
     sentences: list[str] = [scale]
     across = test.diameter / mean
     if across < 20:
-        narrow = N_("The cylinder is only {across} particles wide; walls and single grains matter.")
+        narrow = N_("The cylinder is only {across} particles wide; walls and single particles matter.")
         sentences.append(Message(narrow, across=Number(across, ".1f")))
     if len(prepared) < RELIABLE_N:
         sentences.append(COARSE_PILE)

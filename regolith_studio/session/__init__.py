@@ -16,7 +16,6 @@ The cycle
                                                one drag to one undo step, until ``end_step()``
 ``undo()``, ``redo()``, ``can_undo``, ...      steps of choices
 ``start_study("lmax_study")``                  or ``"coarsening_study"``: over all open particles
-``export_dataset(folder, DatasetOptions())``   coarsen all and write the folder
 ``tasks``, ``cancel(task.id)``, ``close()``    what is running
 =============================================  ==================================================
 

@@ -138,5 +138,4 @@ class SessionEvents:
     """Files that were refused at opening, or particles that an export left out, as ``FileProblem``."""
     left_out = Signal(tuple)
     """Sentences about files in folders that no reader takes."""
-    exported = Signal(object)
     """Path of the folder that was written."""

@@ -7,7 +7,6 @@ from typing import Any
 
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.particle import Particle
-from regolith_studio.jobs.dataset_jobs import DatasetBuildResult, DatasetOptions, build_dataset_folder
 from regolith_studio.jobs.events import Failed, Job
 from regolith_studio.jobs.particle_jobs import (
     MeasuredParticle,
@@ -18,7 +17,7 @@ from regolith_studio.jobs.particle_jobs import (
 from regolith_studio.jobs.runners import Runner
 from regolith_studio.messages import N_
 from regolith_studio.readers.coefficient_tables import TableConvention, TableReading
-from regolith_studio.readers.particles import FileProblem, LoadedParticles, unique_names
+from regolith_studio.readers.particles import LoadedParticles, unique_names
 from regolith_studio.resources import SAMPLE
 from regolith_studio.session.choices import STUDIES, Choices, Kind, depends
 from regolith_studio.session.history import History
@@ -292,29 +291,6 @@ class Session:
 
         reactions = Reactions(show, partial=show, failed=self.failure_reporter(job.title))
         return self._board.start(kind, job.title, job.job, reactions)
-
-    def export_dataset(self, folder: Path | str, options: DatasetOptions | None = None) -> int:
-        """Coarsen every open particle with the present choices and write the dataset folder.
-
-        Returns the task's id; ``events.exported`` is emitted when it is done, ``events.problems``
-        with the particles that are not in it.
-        """
-        options = options or DatasetOptions()
-        if options.preset is None and not self.choices.preset_modified:
-            options = dataclasses.replace(options, preset=self.choices.preset)
-        job = Job(
-            build_dataset_folder,
-            (self._open_particles(), self.choices.coarsening_request, Path(folder), options),
-        )
-
-        def report(built: DatasetBuildResult) -> None:
-            failed = tuple(FileProblem(o.name, o.problem) for o in built.outcomes if not o.coarsened)
-            if failed:
-                self.events.problems.emit(failed)
-            self.events.exported.emit(built.folder)
-
-        title = N_("Building the dataset")
-        return self._board.start("export", title, job, Reactions(report, failed=self.failure_reporter(title)))
 
     def run(
         self,

@@ -137,12 +137,12 @@ ROWS: tuple[ActionSpec, ...] = (
     ActionSpec(BREAK, menu=FILE),
     ActionSpec(
         "export",
-        N_("&Export dataset …"),
+        N_("To &DEM …"),
         icon="export",
         shortcut="Ctrl+E",
-        tip=N_("Export a DEM dataset"),
+        tip=N_("Write a dataset and files for DEM programs"),
         bar="words",
-        label=N_("Export"),
+        label=N_("To DEM …"),
         menu=FILE,
     ),
     ActionSpec(

@@ -291,13 +291,9 @@ class ActivityDock(QDockWidget):
     def wire(self, session: Session, bindings: Bindings, toast: Toast) -> None:
         """Follow the session and what the toast says, from now on."""
         bindings.refresh("tasks", lambda: self.tasks.show_tasks(session.tasks), slow=True)
-        bindings.listen("exported", self._note_export)
         self.tasks.cancelRequested.connect(session.cancel)
         self.tasks.pauseRequested.connect(session.pause)
         toast.shown.connect(self.log.add)
-
-    def _note_export(self, folder: object) -> None:
-        self.log.add("note", tr("A dataset was written to {folder}.", folder=folder))
 
     def show_tab(self, name: str) -> None:
         """Show ``tasks`` or ``log``; hide the dock if that is seen already."""

@@ -37,10 +37,8 @@ from regolith_studio.session.provenance import (
 from regolith_studio.session.recipe import DatasetRequest, Recipe, read_recipe
 from regolith_studio.session.results import ParticleEntry
 from regolith_studio.session.session import Session
-from regolith_studio.session.verdict import cost_of_imitating_the_fit
-from regolith_studio.ui.dialogs.export import ExportDialog, ExportRequest
 from regolith_studio.ui.dialogs.opening import ADD, REPLACE, UnitDialog, ask_add_or_replace
-from regolith_studio.ui.translation import tr, translate
+from regolith_studio.ui.translation import tr
 from regolith_studio.ui.widgets.toast import Toast
 
 MESH_FILTERS = (
@@ -53,8 +51,6 @@ MESH_FILTERS = (
 T = TypeVar("T")
 LOOK = "look"
 """Lane of the job that reads one particle while its unit is asked."""
-EXPORT_FOLDER = "export_folder"
-"""In the preferences of the window: the folder that the last dataset was written into."""
 
 
 def without(session_recipe: SessionRecipe) -> tuple[str, ...]:
@@ -95,8 +91,6 @@ class Commands(QObject):
         super().__init__(window)
         self._session, self._preferences, self._toast, self._window = session, preferences, toast, window
         self.openers: dict[FileKind, Callable[[Path], object]] = {FileKind.RECIPE: self._open_recipe}
-        self._export: ExportDialog | None = None
-        self._export_task = 0
         self._models: Path | None = None
         self._before: Recipe | None = None
         self._after: Recipe | None = None
@@ -223,21 +217,6 @@ class Commands(QObject):
         QGuiApplication.clipboard().setText(as_python(self._session.choices, input_shown(self._session)))
         self._toast.note(tr("The script is on the clipboard."))
 
-    def export(self) -> None:
-        """Show what will be written, ask for the folder, and export."""
-        count = len(self._session.particles)
-        if not count:
-            self._toast.problem(tr("There is nothing to export: open a particle first."))
-            return
-        folder = Path(str(self._preferences.window.get(EXPORT_FOLDER, Path.home()))) / "dataset"
-        found = self._session.results.against_particle
-        cost = translate(cost_of_imitating_the_fit(found)) if found else ""
-        dialog = self._export = ExportDialog(count, self._session.choices, folder, self._window, cost)
-        dialog.started.connect(self._start_export)
-        dialog.stopped.connect(lambda: self._session.cancel(self._export_task))
-        dialog.finished.connect(self._forget_export)
-        dialog.open()
-
     def undo(self) -> None:
         """Undo the last change; where there is none, reopen what was open before the last opening."""
         if self._session.can_undo or self._before is None:
@@ -313,21 +292,6 @@ class Commands(QObject):
         """Stop one task."""
         self._session.cancel(task_id)
 
-    def show_tasks(self) -> None:
-        """Tell the export dialog how far the export is."""
-        dialog = self._export
-        if dialog is None or not self._export_task:
-            return
-        mine = [task for task in self._session.tasks if task.id == self._export_task]
-        if mine:
-            dialog.show_task(mine[0])
-        else:
-            dialog.finish()
-
-    def tell_exported(self, folder: Path) -> None:
-        """Say where the dataset is."""
-        self._toast.note(tr("The dataset is in {folder}.", folder=folder))
-
     def _open_recipe(self, path: Path) -> int | None:
         recipe = read_recipe(path)
         names = {each.name for each in dataclasses.fields(Choices)} - {"selected"}
@@ -343,19 +307,6 @@ class Commands(QObject):
             )
             return None
         return self._session.open_recipe(recipe, path.parent)
-
-    def _start_export(self, request: ExportRequest) -> None:
-        self._preferences.window[EXPORT_FOLDER] = str(request.folder.parent)
-        task = self._try(lambda: self._session.export_dataset(request.folder, request.options))
-        self._export_task = task or 0
-        if task is None and self._export:
-            self._export.finish()
-        self.show_tasks()
-
-    def _forget_export(self) -> None:
-        if self._export:
-            self._export.deleteLater()
-        self._export, self._export_task = None, 0
 
     def _ask_reading(self, paths: list[Path]) -> tuple[str, TableConvention] | None:
         """Unit of files without one, and convention of tables; asked where they are not known."""

@@ -97,12 +97,13 @@ class MainWindow(QMainWindow):
         )
 
     def _command_table(self) -> dict[str, Callable[..., object]]:
-        ours = ("open", "open_folder", "open_sample", "export", "save_recipe", "undo", "redo")
+        ours = ("open", "open_folder", "open_sample", "save_recipe", "undo", "redo")
         copying = ("copy_command", "copy_python")
         return {
             **{name: getattr(self.commands, name) for name in (*ours, *copying)},
             **{f"theme_{name}": partial(self.appearance.choose, theme=name) for name in ("system", *THEMES)},
             **{name: partial(self.activity.show_tab, name) for name in ("tasks", "log")},
+            "export": partial(self.go, "dataset"),
             "run_batch": self.batches.ask,
             "report": self.reports.ask,
             "save_project": self.projects.save,
@@ -132,14 +133,13 @@ class MainWindow(QMainWindow):
         self.window_state.restore_parts(self)
         self.projects.changed.connect(lambda: self.setWindowTitle(self.projects.title()))
         bindings.refresh("tasks", lambda: self.tasks.setValue(session.tasks), slow=True)
-        for show in (self.commands.show_tasks, self.batches.show_tasks, self.reports.show_tasks):
+        for show in (self.batches.show_tasks, self.reports.show_tasks):
             bindings.refresh("tasks", show, slow=True)
         for event in ("choices", "particles"):
             bindings.listen(event, self._show_choices)
         self._show_choices()
         bindings.listen("failed", lambda failure: self.toast.problem(failure.sentence, failure.details))
         bindings.listen("problems", lambda problems: report_file_problems(self.toast, problems))
-        bindings.listen("exported", self.commands.tell_exported)
         self.tasks.cancelRequested.connect(self.commands.stop)
         self.commands.stepped.connect(lambda: self.go("explore"))
         QGuiApplication.styleHints().colorSchemeChanged.connect(self._apply_theme)

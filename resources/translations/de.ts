@@ -20,10 +20,6 @@
         <translation>&amp;Hüllquader</translation>
     </message>
     <message>
-        <source>&amp;Build the dataset …</source>
-        <translation>Datensatz &amp;bauen …</translation>
-    </message>
-    <message>
         <source>&amp;Check the dataset</source>
         <translation>Datensatz &amp;prüfen</translation>
     </message>
@@ -66,10 +62,6 @@
     <message>
         <source>&amp;Explain this page</source>
         <translation>Diese Seite &amp;erklären</translation>
-    </message>
-    <message>
-        <source>&amp;Export dataset …</source>
-        <translation>Datensatz &amp;exportieren …</translation>
     </message>
     <message>
         <source>&amp;Export figure and JSON …</source>
@@ -268,8 +260,8 @@
         <translation>0: der ganze Kegel</translation>
     </message>
     <message>
-        <source>1  Representatives</source>
-        <translation>1  Repräsentanten</translation>
+        <source>1  Particles</source>
+        <translation>1  Partikel</translation>
     </message>
     <message>
         <source>1  Volume</source>
@@ -290,10 +282,6 @@
     <message>
         <source>1 face is duplicated.</source>
         <translation>1 Fläche ist doppelt vorhanden.</translation>
-    </message>
-    <message>
-        <source>1 format is written.</source>
-        <translation>1 Format ist geschrieben.</translation>
     </message>
     <message>
         <source>1 grain</source>
@@ -440,10 +428,6 @@
         <translation>Für jeden Wert wird aus den geöffneten Partikeln ein Datensatz gebaut.</translation>
     </message>
     <message>
-        <source>A dataset was written to {folder}.</source>
-        <translation>Ein Datensatz wurde nach {folder} geschrieben.</translation>
-    </message>
-    <message>
         <source>A drawn particle</source>
         <translation>Ein gezogenes Partikel</translation>
     </message>
@@ -540,10 +524,6 @@
         <translation>Die neuen hinzufügen oder die offenen ersetzen? Rückgängig stellt ersetzte wieder her.</translation>
     </message>
     <message>
-        <source>Additional files</source>
-        <translation>Weitere Dateien</translation>
-    </message>
-    <message>
         <source>Address of the scheduler</source>
         <translation>Adresse des Schedulers</translation>
     </message>
@@ -580,6 +560,10 @@
         <translation>Alle Dateien (*)</translation>
     </message>
     <message>
+        <source>All open particles</source>
+        <translation>Alle geöffneten Partikel</translation>
+    </message>
+    <message>
         <source>All open particles. Click a row to show one; the arrow keys move through the list. The icon shows the health of the mesh. Drop your own files anywhere in the window.</source>
         <translation>Alle geöffneten Partikel. Ein Klick auf eine Zeile zeigt eines davon; die Pfeiltasten bewegen sich durch die Liste. Das Symbol zeigt den Zustand des Netzes. Eigene Dateien lassen sich irgendwo im Fenster ablegen.</translation>
     </message>
@@ -598,10 +582,6 @@
     <message>
         <source>All weighted descriptors are met within 0.1 %.</source>
         <translation>Alle gewichteten Deskriptoren sind auf 0,1 % getroffen.</translation>
-    </message>
-    <message>
-        <source>Allow formats that change shapes</source>
-        <translation>Formate zulassen, die Formen ändern</translation>
     </message>
     <message>
         <source>Amplitude √A&lt;sub&gt;l&lt;/sub&gt; / c&lt;sub&gt;00&lt;/sub&gt; [%]</source>
@@ -836,14 +816,6 @@
         <translation>Pinsel</translation>
     </message>
     <message>
-        <source>Build the dataset in this folder</source>
-        <translation>Den Datensatz in diesem Ordner bauen</translation>
-    </message>
-    <message>
-        <source>Build the dataset …</source>
-        <translation>Datensatz bauen …</translation>
-    </message>
-    <message>
         <source>Building a dataset</source>
         <translation>Datensatz wird gebaut</translation>
     </message>
@@ -942,6 +914,10 @@
     <message>
         <source>Change of each error when one weight of the loss is changed.</source>
         <translation>Änderung jedes Fehlers, wenn ein Gewicht der Verlustfunktion geändert wird.</translation>
+    </message>
+    <message>
+        <source>Change shapes where a format needs it</source>
+        <translation>Formen ändern, wo ein Format es braucht</translation>
     </message>
     <message>
         <source>Changed from {preset}.</source>
@@ -1106,6 +1082,10 @@
     <message>
         <source>Closing</source>
         <translation>Schließung</translation>
+    </message>
+    <message>
+        <source>Clumps and rounded shapes</source>
+        <translation>Kugelhaufen und gerundete Formen</translation>
     </message>
     <message>
         <source>Coarse graining</source>
@@ -1588,10 +1568,6 @@
         <translation>Abstand von der Mitte des Partikels; auch der Rahmen in den Ansichten lässt sich ziehen.</translation>
     </message>
     <message>
-        <source>Distance to the population [deviations]</source>
-        <translation>Abstand zur Population [Abweichungen]</translation>
-    </message>
-    <message>
         <source>Distances</source>
         <translation>Abstände</translation>
     </message>
@@ -1824,10 +1800,6 @@
         <translation>Geben Sie einen Ordner für die Ergebnisse an.</translation>
     </message>
     <message>
-        <source>Enter the full path of a new or empty folder.</source>
-        <translation>Geben Sie den vollständigen Pfad eines neuen oder leeren Ordners ein.</translation>
-    </message>
-    <message>
         <source>Equivalent diameter [µm]</source>
         <translation>Äquivalentdurchmesser [µm]</translation>
     </message>
@@ -1932,20 +1904,12 @@
         <translation>Exaktes Verfahren:</translation>
     </message>
     <message>
+        <source>Exact polyhedra</source>
+        <translation>Exakte Polyeder</translation>
+    </message>
+    <message>
         <source>Explore</source>
         <translation>Erkunden</translation>
-    </message>
-    <message>
-        <source>Export</source>
-        <translation>Exportieren</translation>
-    </message>
-    <message>
-        <source>Export a DEM dataset</source>
-        <translation>Einen DEM-Datensatz exportieren</translation>
-    </message>
-    <message>
-        <source>Export dataset</source>
-        <translation>Datensatz exportieren</translation>
     </message>
     <message>
         <source>Export figure and JSON</source>
@@ -2304,10 +2268,6 @@
         <translation>Ordner der Läufe</translation>
     </message>
     <message>
-        <source>Folder of the dataset</source>
-        <translation>Ordner des Datensatzes</translation>
-    </message>
-    <message>
         <source>Folder of the results</source>
         <translation>Ordner der Ergebnisse</translation>
     </message>
@@ -2338,6 +2298,10 @@
     <message>
         <source>For slices that lie far apart: what is above and below does not count.</source>
         <translation>Für Schichten, die weit auseinander liegen: Was darüber und darunter liegt, zählt nicht.</translation>
+    </message>
+    <message>
+        <source>For viewers and own programs</source>
+        <translation>Für Betrachter und eigene Programme</translation>
     </message>
     <message>
         <source>Form</source>
@@ -3368,10 +3332,6 @@
         <translation>Lauf</translation>
     </message>
     <message>
-        <source>Name:</source>
-        <translation>Name:</translation>
-    </message>
-    <message>
         <source>Names of all columns in their order, such as x y z radius:</source>
         <translation>Namen aller Spalten in ihrer Reihenfolge, etwa x y z radius:</translation>
     </message>
@@ -3550,10 +3510,6 @@
     <message>
         <source>Nothing</source>
         <translation>Nichts</translation>
-    </message>
-    <message>
-        <source>Nothing can be written into {path}: choose another folder.</source>
-        <translation>In {path} kann nicht geschrieben werden: wählen Sie einen anderen Ordner.</translation>
     </message>
     <message>
         <source>Nothing is gained beyond {count} facets</source>
@@ -4040,12 +3996,12 @@
         <translation>Dichte der Partikel</translation>
     </message>
     <message>
-        <source>Particle l&amp;ist</source>
-        <translation>Partikell&amp;iste</translation>
+        <source>Particle diameter [mm]</source>
+        <translation>Partikeldurchmesser [mm]</translation>
     </message>
     <message>
-        <source>Particle mass</source>
-        <translation>Masse der Partikel</translation>
+        <source>Particle l&amp;ist</source>
+        <translation>Partikell&amp;iste</translation>
     </message>
     <message>
         <source>Particle, fit and polyhedron</source>
@@ -4074,6 +4030,10 @@
     <message>
         <source>Particles of labels</source>
         <translation>Partikel der Labels</translation>
+    </message>
+    <message>
+        <source>Particles of the dataset</source>
+        <translation>Partikel des Datensatzes</translation>
     </message>
     <message>
         <source>Particles of the heap</source>
@@ -4138,10 +4098,6 @@
     <message>
         <source>Poisson&apos;s ratio</source>
         <translation>Querkontraktionszahl</translation>
-    </message>
-    <message>
-        <source>Polyhedra</source>
-        <translation>Polyeder</translation>
     </message>
     <message>
         <source>Polyhedra (STL)</source>
@@ -4266,10 +4222,6 @@
     <message>
         <source>Progress of the coarsening</source>
         <translation>Verlauf der Vergröberung</translation>
-    </message>
-    <message>
-        <source>Progress of the export</source>
-        <translation>Fortschritt des Exports</translation>
     </message>
     <message>
         <source>Progress of the study</source>
@@ -4562,10 +4514,6 @@
     <message>
         <source>Replace the dataset</source>
         <translation>Datensatz ersetzen</translation>
-    </message>
-    <message>
-        <source>Replace the dataset that is there</source>
-        <translation>Den vorhandenen Datensatz ersetzen</translation>
     </message>
     <message>
         <source>Repor&amp;t …</source>
@@ -5736,8 +5684,8 @@
         <translation>Die abgeschnittene Probe ist die gemessene, abgeschnitten bei l_max = {degree}.</translation>
     </message>
     <message>
-        <source>The cylinder is only {across} particles wide; walls and single grains matter.</source>
-        <translation>Der Zylinder ist nur {across} Partikel breit; Wände und einzelne Körner wirken sich aus.</translation>
+        <source>The cylinder is only {across} particles wide; walls and single particles matter.</source>
+        <translation>Der Zylinder ist nur {across} Partikel breit; Wände und einzelne Partikel fallen ins Gewicht.</translation>
     </message>
     <message>
         <source>The dataset is in {folder}.</source>
@@ -5796,10 +5744,6 @@
         <translation>Die Datei nennt ihre {count} Bilder Kanäle; sie wurden als Schichten genommen.</translation>
     </message>
     <message>
-        <source>The file has no diameters; one for all, in mm:</source>
-        <translation>Die Datei hat keine Durchmesser; einer für alle, in mm:</translation>
-    </message>
-    <message>
         <source>The file has {count:,} bytes more than that.</source>
         <translation>Die Datei hat {count:,} Bytes mehr als das.</translation>
     </message>
@@ -5848,20 +5792,12 @@
         <translation>Der Ordner enthält einen unfertigen Lauf: setzen Sie ihn fort, oder wählen Sie einen anderen Ordner.</translation>
     </message>
     <message>
-        <source>The folder holds a dataset: choose another one, or tick that it is replaced.</source>
-        <translation>Der Ordner enthält einen Datensatz: wählen Sie einen anderen oder haken Sie an, dass er ersetzt wird.</translation>
-    </message>
-    <message>
         <source>The folder holds {count} series of slices; {name} was read.</source>
         <translation>Der Ordner enthält {count} Serien von Schichten; {name} wurde gelesen.</translation>
     </message>
     <message>
         <source>The folder holds {count} series; the longest was read.</source>
         <translation>Der Ordner enthält {count} Serien; die längste wurde gelesen.</translation>
-    </message>
-    <message>
-        <source>The folder is not empty and contains no dataset: choose another one.</source>
-        <translation>Der Ordner ist nicht leer und enthält keinen Datensatz: wählen Sie einen anderen.</translation>
     </message>
     <message>
         <source>The folder of your datasets</source>
@@ -6160,8 +6096,8 @@
         <translation>Es gibt keinen Datensatz zu prüfen: bauen oder öffnen Sie zuerst einen.</translation>
     </message>
     <message>
-        <source>There is no dataset to export: build or open one first.</source>
-        <translation>Es gibt keinen Datensatz zu exportieren: bauen oder öffnen Sie zuerst einen.</translation>
+        <source>There is no dataset to export: open particles or a dataset first.</source>
+        <translation>Es gibt keinen Datensatz zum Exportieren: zuerst Partikel oder einen Datensatz öffnen.</translation>
     </message>
     <message>
         <source>There is no dataset yet: open or build one first.</source>
@@ -6186,10 +6122,6 @@
     <message>
         <source>There is no run to play: run a test or choose a run in the list.</source>
         <translation>Es gibt keinen Lauf zum Abspielen: führen Sie einen Versuch durch oder wählen Sie einen Lauf der Liste.</translation>
-    </message>
-    <message>
-        <source>There is nothing to export: open a particle first.</source>
-        <translation>Es gibt nichts zu exportieren: öffnen Sie zuerst ein Partikel.</translation>
     </message>
     <message>
         <source>They are cut by the border. The others then have larger weights (Miles-Lantuéjoul).</source>
@@ -6244,6 +6176,14 @@
         <translation>Bis</translation>
     </message>
     <message>
+        <source>To &amp;DEM …</source>
+        <translation>Zu &amp;DEM …</translation>
+    </message>
+    <message>
+        <source>To DEM …</source>
+        <translation>Zu DEM …</translation>
+    </message>
+    <message>
         <source>To the beginning</source>
         <translation>An den Anfang</translation>
     </message>
@@ -6258,6 +6198,10 @@
     <message>
         <source>Top (from +z)</source>
         <translation>Oben (von +z)</translation>
+    </message>
+    <message>
+        <source>Total mass</source>
+        <translation>Gesamtmasse</translation>
     </message>
     <message>
         <source>Tour of the window</source>
@@ -6552,6 +6496,10 @@
         <translation>Gewünschte Schüttdichte</translation>
     </message>
     <message>
+        <source>Wasserstein distance / standard deviation</source>
+        <translation>Wasserstein-Abstand / Standardabweichung</translation>
+    </message>
+    <message>
         <source>Wasserstein distance {apart:.1%} of the mean, Kolmogorov-Smirnov distance {gap:.2f}; means {measured} measured, {drawn} drawn</source>
         <translation>Wasserstein-Distanz {apart:.1%} des Mittels, Kolmogorow-Smirnow-Distanz {gap:.2f}; Mittel {measured} gemessen, {drawn} gezogen</translation>
     </message>
@@ -6662,6 +6610,10 @@
     <message>
         <source>Working on particles</source>
         <translation>Partikel werden bearbeitet</translation>
+    </message>
+    <message>
+        <source>Write a dataset and files for DEM programs</source>
+        <translation>Datensatz und Dateien für DEM-Programme schreiben</translation>
     </message>
     <message>
         <source>Write all moments of the shown run for ParaView and OVITO, and the last one as GLB</source>
@@ -7476,10 +7428,6 @@
         <translation>Trägheitsmomente sind Summen über die Kugeln</translation>
     </message>
     <message>
-        <source>name of the folder</source>
-        <translation>Name des Ordners</translation>
-    </message>
-    <message>
         <source>nearly an ellipsoid</source>
         <translation>fast ein Ellipsoid</translation>
     </message>
@@ -7498,10 +7446,6 @@
     <message>
         <source>no flanks</source>
         <translation>keine Flanken</translation>
-    </message>
-    <message>
-        <source>no numbers needed</source>
-        <translation>keine Zahlen nötig</translation>
     </message>
     <message>
         <source>no polyhedron</source>
@@ -7960,16 +7904,8 @@
         <translation>das Partikel</translation>
     </message>
     <message>
-        <source>the particle itself</source>
-        <translation>das Partikel selbst</translation>
-    </message>
-    <message>
         <source>the particles when it was stopped</source>
         <translation>die Partikel beim Abbruch</translation>
-    </message>
-    <message>
-        <source>the surface of the spherical-harmonics fit at l&lt;sub&gt;max&lt;/sub&gt;&amp;nbsp;=&amp;nbsp;{l_max}</source>
-        <translation>die Oberfläche des Fits mit Kugelflächenfunktionen bei l&lt;sub&gt;max&lt;/sub&gt;&amp;nbsp;=&amp;nbsp;{l_max}</translation>
     </message>
     <message>
         <source>to</source>
@@ -8088,10 +8024,6 @@
         <translation>Gewichte und Größen (sizes.csv)</translation>
     </message>
     <message>
-        <source>weights, size distribution, descriptors, provenance (JSON)</source>
-        <translation>Gewichte, Größenverteilung, Deskriptoren, Herkunft (JSON)</translation>
-    </message>
-    <message>
         <source>without noise</source>
         <translation>ohne Rauschen</translation>
     </message>
@@ -8198,10 +8130,6 @@
     <message>
         <source>{count} files were written to {folder}.</source>
         <translation>{count} Dateien wurden nach {folder} geschrieben.</translation>
-    </message>
-    <message>
-        <source>{count} formats are written.</source>
-        <translation>{count} Formate sind geschrieben.</translation>
     </message>
     <message>
         <source>{count} grains</source>
@@ -8316,14 +8244,6 @@
         <translation>{count} Arbeitsprozesse</translation>
     </message>
     <message>
-        <source>{count}, as unit-volume STL files</source>
-        <translation>{count}, als STL-Dateien vom Volumen eins</translation>
-    </message>
-    <message>
-        <source>{count}, as unit-volume STL files, {size:,.0f} KiB in all</source>
-        <translation>{count}, als STL-Dateien mit Einheitsvolumen, zusammen {size:,.0f} KiB</translation>
-    </message>
-    <message>
         <source>{drawn} draws differ from {measured} measured particles by no more than sampling noise.</source>
         <translation>{drawn} Ziehungen unterscheiden sich von {measured} gemessenen Partikeln nicht stärker als durch Stichprobenrauschen.</translation>
     </message>
@@ -8362,6 +8282,10 @@
     <message>
         <source>{folder}: left out {count} files that no reader of meshes takes: {names}.</source>
         <translation>{folder}: {count} Dateien ausgelassen, die kein Leser für Netze annimmt: {names}.</translation>
+    </message>
+    <message>
+        <source>{formats} written to {folder}.</source>
+        <translation>{formats} nach {folder} geschrieben.</translation>
     </message>
     <message>
         <source>{grains} grains from 1 connected body</source>
@@ -8414,10 +8338,6 @@
     <message>
         <source>{low:.3g} to {high:.3g}</source>
         <translation>{low:.3g} bis {high:.3g}</translation>
-    </message>
-    <message>
-        <source>{method}, seed {seed}</source>
-        <translation>{method}, Startwert {seed}</translation>
     </message>
     <message>
         <source>{model}: indistinguishable from the sample in size and form.</source>
@@ -8564,10 +8484,6 @@
         <translation>{parts} Teile, {count} Facetten</translation>
     </message>
     <message>
-        <source>{path} is a file: enter a new or empty folder.</source>
-        <translation>{path} ist eine Datei: geben Sie einen neuen oder leeren Ordner ein.</translation>
-    </message>
-    <message>
         <source>{phase}, {time} s simulated</source>
         <translation>{phase}, {time} s simuliert</translation>
     </message>
@@ -8578,10 +8494,6 @@
     <message>
         <source>{preset} (modified)</source>
         <translation>{preset} (geändert)</translation>
-    </message>
-    <message>
-        <source>{preset}, modified</source>
-        <translation>{preset}, geändert</translation>
     </message>
     <message>
         <source>{real} of {asked} planes bound a facet: the others are redundant.</source>

@@ -10,12 +10,10 @@ import numpy as np
 import pytest
 
 from regolith_studio.coarsening.weights import LossWeights
-from regolith_studio.dataset.folder_io import read_dataset
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.io.stl import stl_bytes
-from regolith_studio.jobs.dataset_jobs import DatasetOptions
 from regolith_studio.jobs.runners import InlineRunner
 from regolith_studio.jobs.runners.thread import ThreadRunner
 from regolith_studio.session import recompute
@@ -207,26 +205,6 @@ def test_that_particles_of_the_same_name_are_told_apart(opened: Session, grains:
     assert opened.choices.selected == ids[3]
 
 
-def test_that_a_dataset_holds_every_particle(opened: Session, tmp_path: Path) -> None:
-    written: list[Path] = []
-    opened.events.exported.connect(written.append)
-    opened.export_dataset(tmp_path / "set", DatasetOptions(name="three"))
-    dataset = read_dataset(tmp_path / "set")
-    assert [path.name for path in written] == ["set"]
-    assert [one.name for one in dataset.representatives] == ["grain-0", "grain-1", "grain-2"]
-    assert dataset.provenance.coarsening is not None
-    assert dataset.provenance.coarsening.preset == "all"
-
-
-def test_that_an_export_refuses_a_folder_in_use_before_it_works(opened: Session, tmp_path: Path) -> None:
-    (tmp_path / "thesis.txt").write_text("important")
-    failures: list[str] = []
-    opened.events.failed.connect(lambda failure: failures.append(failure.sentence))
-    opened.export_dataset(tmp_path)
-    assert len(failures) == 1
-    assert (tmp_path / "thesis.txt").read_text() == "important"
-
-
 def test_that_a_study_is_outdated_by_another_l_max_and_fresh_again_after_undo(opened: Session) -> None:
     opened.start_study(Kind.LMAX_STUDY, degrees=(1, 2))
     assert opened.results.lmax_study is not None
@@ -237,11 +215,9 @@ def test_that_a_study_is_outdated_by_another_l_max_and_fresh_again_after_undo(op
     assert opened.results.outdated == frozenset()
 
 
-def test_that_work_without_particles_is_refused(session: Session, tmp_path: Path) -> None:
+def test_that_work_without_particles_is_refused(session: Session) -> None:
     with pytest.raises(InputError, match="open a mesh"):
         session.start_study("lmax_study")
-    with pytest.raises(InputError, match="open a mesh"):
-        session.export_dataset(tmp_path)
 
 
 class Desk:

@@ -15,6 +15,7 @@ from regolith_studio.imaging.segmentation.segment import SegmentationSettings
 from regolith_studio.imaging.settings import ExtractionSettings, SplittingSettings
 from regolith_studio.io.atomic import write_files
 from regolith_studio.io.stl import stl_bytes
+from regolith_studio.jobs.dataset_jobs import DatasetOptions, build_dataset_folder
 from regolith_studio.jobs.extraction_jobs import extract_file, extract_labels
 from regolith_studio.jobs.extraction_settings import GrainSettings, VolumeInput
 from regolith_studio.jobs.model_jobs import GenerationRequest, draw_shapes, fit_shapes, make_particles
@@ -52,10 +53,9 @@ def files(folder: Path) -> dict[str, bytes]:
 
 def assert_that_a_run_gives_the_dataset_of(session: Session, place: Path) -> SessionRecipe:
     """By way of the recipe on disk; the dataset of the session has the name of the run's folder."""
-    exported: list[Path] = []
-    session.events.exported.connect(exported.append)
-    session.export_dataset(place / "window" / "grains")
-    assert exported
+    particles, choices = [entry.particle for entry in session.particles], session.choices
+    options = DatasetOptions(preset=None if choices.preset_modified else choices.preset)
+    ended(build_dataset_folder(particles, choices.coarsening_request, place / "window" / "grains", options))
     session_recipe = SessionRecipe.of(session.particles, session.choices, ONLY_DATASET)
     saved = place / "recipe.json"
     recipe, models = session_recipe.files_for(saved)

@@ -26,7 +26,9 @@ from regolith_studio.ui.commands import Commands
 from regolith_studio.ui.dialogs.folder import FolderDialog
 from regolith_studio.ui.page import PageContext
 from regolith_studio.ui.pages.dataset import PAGE
+from regolith_studio.ui.pages.dataset.export_panel import groups
 from regolith_studio.ui.theme import DARK, LIGHT
+from regolith_studio.ui.widgets.result_view import ResultState
 from regolith_studio.ui.widgets.thumbnails import TRIANGLES_PER_STEP, paint_thumbnail, thumbnail
 from regolith_studio.ui.widgets.toast import Toast
 from tests.dataset.example import elbow_entry, entry
@@ -89,9 +91,9 @@ def test_that_the_button_of_the_export_is_seen_on_a_small_screen_without_scrolli
 def test_that_a_new_user_gets_to_a_rocky_script_and_a_yade_run(chosen, wait, tmp_path, monkeypatch) -> None:
     monkeypatch.setattr(FolderDialog, "ask", lambda *_: str(tmp_path))
     chosen.folder.name.setText("my regolith/1")
-    QTest.mouseClick(chosen.folder.build, Qt.MouseButton.LeftButton)
+    QTest.mouseClick(chosen.targets.export, Qt.MouseButton.LeftButton)
     folder = tmp_path / "my_regolith_1"
-    wait(lambda: chosen.targets.export.isEnabled())
+    wait(lambda: chosen._dataset is not None)
     assert validate_dataset(folder) == []
     assert len(read_dataset(folder)) == 3
     assert all(one.coarsened for one in chosen.gallery.shown)
@@ -109,13 +111,13 @@ def test_that_a_new_user_gets_to_a_rocky_script_and_a_yade_run(chosen, wait, tmp
 def test_that_building_finds_the_representatives_first(page, wait, tmp_path, monkeypatch) -> None:
     monkeypatch.setattr(FolderDialog, "ask", lambda *_: str(tmp_path))
     page.session.adopt(grains())
-    wait(lambda: page.folder.build.isEnabled())
+    wait(lambda: page.targets.export.isEnabled())
     page.representatives.count.setValue(3)
     page.sizes.set_text("classes:abc, -5")
-    assert not page.folder.build.isEnabled()
+    assert not page.targets.export.isEnabled()
     page.sizes.set_text("measured")
-    QTest.mouseClick(page.folder.build, Qt.MouseButton.LeftButton)
-    wait(lambda: page.targets.export.isEnabled())
+    QTest.mouseClick(page.targets.export, Qt.MouseButton.LeftButton)
+    wait(lambda: page._dataset is not None)
     assert len(read_dataset(tmp_path / "regolith")) == 3
     QTest.mouseClick(page.representatives.start, Qt.MouseButton.LeftButton)
     wait(lambda: not all(one.coarsened for one in page.gallery.shown))
@@ -151,7 +153,7 @@ def test_that_sizes_are_drawn_as_they_are_typed_and_nonsense_is_explained(chosen
 
 def test_that_shapes_are_changed_only_with_a_second_tick(chosen, tmp_path, wait) -> None:
     chosen.build_in(tmp_path / "set")
-    wait(lambda: chosen.targets.export.isEnabled())
+    wait(lambda: chosen._dataset is not None)
     chosen.targets.boxes["rockable"].setChecked(True)
     assert not chosen.targets.export.isEnabled()
     assert EXPORTERS["rockable"].alters in chosen.targets.export.toolTip()
@@ -159,7 +161,7 @@ def test_that_shapes_are_changed_only_with_a_second_tick(chosen, tmp_path, wait)
     chosen.targets.lossy.setChecked(True)
     assert chosen.targets.export.isEnabled()
     chosen.targets.setValue({"targets": []})
-    assert not chosen.targets.export.isEnabled()
+    assert chosen.targets.export.isEnabled(), "the dataset alone"
 
 
 def test_that_a_format_of_convex_particles_says_why_it_does_not_take_compounds(page, tmp_path) -> None:
@@ -195,7 +197,7 @@ def test_that_the_rows_of_many_exports_are_as_high_as_their_buttons(page, tmp_pa
 
 def test_that_settings_reach_the_exports(chosen, tmp_path, wait) -> None:
     chosen.build_in(tmp_path / "set")
-    wait(lambda: chosen.targets.export.isEnabled())
+    wait(lambda: chosen._dataset is not None)
     settings = {"targets": ["rocky"], "coarse_graining": 4, "contact": {"density": 2900.0}}
     chosen.targets.setValue(settings | {"test": {"lift_speed": 0.05}})
     chosen.export_to(tmp_path / "out")
@@ -219,29 +221,29 @@ def test_that_settings_of_contact_and_test_are_restored(page) -> None:
 
 def test_that_a_dataset_is_replaced_only_when_asked(chosen, tmp_path, wait, monkeypatch) -> None:
     monkeypatch.setattr(FolderDialog, "ask", lambda *_: str(tmp_path))
-    chosen.build_dataset()
+    chosen.export()
     wait(lambda: (tmp_path / "regolith" / "dataset.json").exists())
     before = (tmp_path / "regolith" / "dataset.json").read_bytes()
     slide(chosen.representatives.count, 5)
     monkeypatch.setattr(QMessageBox, "question", lambda *_: QMessageBox.StandardButton.No)
-    chosen.build_dataset()
+    chosen.export()
     assert (tmp_path / "regolith" / "dataset.json").read_bytes() == before
     monkeypatch.setattr(QMessageBox, "question", lambda *_: QMessageBox.StandardButton.Yes)
-    chosen.build_dataset()
+    chosen.export()
     wait(lambda: len(read_dataset(tmp_path / "regolith")) == 5)
 
 
 def test_that_a_folder_of_others_is_told_and_left_alone(chosen, tmp_path) -> None:
     (tmp_path / "thesis.txt").write_text("important")
     chosen.build_in(tmp_path)
-    assert chosen.targets.export.isEnabled() is False
+    assert chosen.result.record.state is ResultState.FAILED
     assert [path.name for path in tmp_path.iterdir()] == ["thesis.txt"]
 
 
 @pytest.mark.slow
 def test_that_a_dataset_can_be_opened_without_any_particle(page, chosen, tmp_path, wait) -> None:
     chosen.build_in(tmp_path / "set")
-    wait(lambda: chosen.targets.export.isEnabled())
+    wait(lambda: chosen._dataset is not None)
     page.session.adopt(grains(4, first=20))
     wait(lambda: not page.gallery.shown)
     page.open_folder(tmp_path / "set")
@@ -252,7 +254,7 @@ def test_that_a_dataset_can_be_opened_without_any_particle(page, chosen, tmp_pat
 
 def test_that_the_dataset_of_other_particles_is_neither_shown_nor_exported(chosen, tmp_path, wait) -> None:
     chosen.build_in(tmp_path / "set")
-    wait(lambda: chosen.targets.export.isEnabled())
+    wait(lambda: chosen._dataset is not None)
     chosen.export_to(tmp_path / "out")
     wait(lambda: len(chosen.exports.exports) == 2)
     chosen.sizes.set_text("log-normal:50,0.4")
@@ -263,10 +265,8 @@ def test_that_the_dataset_of_other_particles_is_neither_shown_nor_exported(chose
     chosen.session.adopt(grains(5, first=30))
     wait(lambda: not chosen.gallery.shown)
     assert [each.text() for each in chosen.result.figures] == ["–", "–"]
-    assert not chosen.targets.export.isEnabled()
     assert chosen.exports.exports == ()
-    chosen.export()
-    assert "no dataset to export" in chosen.toast.sentence.text()
+    assert chosen._folder is None, "the next export builds a dataset of these particles"
 
 
 def test_that_the_number_of_simulated_particles_is_stated_before_the_export(page, tmp_path, wait) -> None:
@@ -276,8 +276,10 @@ def test_that_the_number_of_simulated_particles_is_stated_before_the_export(page
     page.session.adopt([Particle(f"ball-{k}", sphere.moved(scale=radius)) for k in range(3)])
     wait(lambda: page.representatives.start.isEnabled())
     page.representatives.count.setValue(1)
+    before = page.targets.preview.text()
     page.build_in(tmp_path / "set")
-    wait(lambda: page.targets.export.isEnabled())
+    wait(lambda: page._dataset is not None)
+    assert page.targets.preview.text() == before, "stated for what will be built"
     density = page.targets.options().contact.density
     count = 0.015 / (density * np.pi / 6 * 22e-6**3)
     stated = int(page.targets.preview.text().split(": ")[1].split(" ")[0].replace(",", ""))
@@ -300,10 +302,10 @@ def test_that_other_particles_forget_the_choice(chosen, wait) -> None:
 def test_that_a_page_without_particles_says_what_to_do(page) -> None:
     assert "No particles are open" in page.representatives.population.text()
     assert not page.representatives.start.isEnabled()
-    assert not page.folder.build.isEnabled()
-    assert "open two or more" in page.folder.build.toolTip()
+    assert not page.targets.export.isEnabled()
+    assert "open particles or a dataset" in page.targets.export.toolTip()
     page.find_representatives()
-    page.build_dataset()
+    page.export()
     page.export()
     page.validate()
     assert not page.targets.export.isEnabled()
@@ -341,7 +343,7 @@ def test_that_themes_reach_every_part(chosen) -> None:
 @pytest.mark.slow
 def test_that_the_library_lists_datasets_with_what_came_from_them(chosen, tmp_path, wait) -> None:
     chosen.build_in(tmp_path / "set")
-    wait(lambda: chosen.targets.export.isEnabled())
+    wait(lambda: chosen._dataset is not None)
     chosen.targets.setValue({"targets": ["hoomd"]})
     chosen.export_to(tmp_path / "out")
     wait(lambda: len(chosen.exports.exports) == 1)
@@ -423,10 +425,10 @@ def test_that_a_saved_recipe_makes_the_dataset_and_the_exports_of_the_page(
     page.find_representatives()
     wait(lambda: len(page.gallery.shown) == 3)
     page.sizes.set_text("classes:abc, -5")
-    assert not page.folder.build.isEnabled()
-    assert page.folder.build.toolTip() == page.sizes.problem.text() != ""
+    assert not page.targets.export.isEnabled()
+    assert page.targets.export.toolTip() == page.sizes.problem.text() != ""
     page.sizes.set_text("classes:30,60,120")
-    assert page.folder.build.isEnabled()
+    assert page.targets.export.isEnabled()
     page.folder.name.setText("three")
     page.targets.setValue(
         {"targets": ["yade"], "coarse_graining": 4.0, "particles": 7, "contact": {"density": 2500.0}}
@@ -483,3 +485,26 @@ def test_that_a_format_that_may_not_change_shapes_is_in_no_recipe(chosen) -> Non
     chosen.session.adopt(grains(first=3))
     chosen._show_particles()
     assert chosen.session.dataset_request is None
+
+
+def test_that_all_open_particles_are_exported_by_one_click(page, wait, tmp_path, monkeypatch) -> None:
+    """Without representatives: each particle is a shape of its own."""
+    monkeypatch.setattr(FolderDialog, "ask", lambda *_: str(tmp_path))
+    page.session.adopt(grains(4))
+    wait(lambda: page.representatives.start.isEnabled())
+    page.representatives.which.setCurrentIndex(1)
+    assert not page.representatives.start.isEnabled()
+    assert page.state()["representatives"]["count"] == 0
+    QTest.mouseClick(page.targets.export, Qt.MouseButton.LeftButton)
+    wait(lambda: len(page.exports.exports) == 2)
+    assert len(read_dataset(tmp_path / "regolith")) == 4
+    assert (tmp_path / "rocky" / "rocky_case.py").exists()
+    assert page.session.dataset_request.representatives.count == 0
+
+
+def test_that_formats_are_listed_as_exact_approximate_or_general() -> None:
+    exact, approximate, general = groups().values()
+    assert {"rocky", "yade"} <= set(exact)
+    assert all(EXPORTERS[key].alters for key in approximate)
+    assert set(general) == {"gltf", "half-spaces"}
+    assert sorted((*exact, *approximate, *general)) == sorted(EXPORTERS)

@@ -307,9 +307,7 @@ def test_that_a_lesson_plays_its_steps_with_their_formulas(newcomer):
 @pytest.mark.slow
 def test_that_ten_shapes_are_exported_for_two_programs(newcomer, tmp_path):
     newcomer.click(QWidget, "page_dataset")
-    newcomer.answer(tmp_path, lambda: newcomer.click(QPushButton, "dataset_build"))
-    newcomer.rest()
-    newcomer.answer(None, lambda: newcomer.click(QPushButton, "dataset_export"))
+    newcomer.answer(tmp_path, lambda: newcomer.click(QPushButton, "dataset_export"))
     newcomer.rest()
     folder = newcomer.window.session.dataset_folder
     assert folder.parent == tmp_path
@@ -327,9 +325,7 @@ def test_that_drawn_particles_are_exported_for_two_programs(newcomer, tmp_path):
     newcomer.click(QPushButton, "model_adopt")
     newcomer.rest()
     newcomer.click(QWidget, "page_dataset")
-    newcomer.answer(tmp_path, lambda: newcomer.click(QPushButton, "dataset_build"))
-    newcomer.rest()
-    newcomer.answer(None, lambda: newcomer.click(QPushButton, "dataset_export"))
+    newcomer.answer(tmp_path, lambda: newcomer.click(QPushButton, "dataset_export"))
     newcomer.rest()
     dataset = read_dataset(newcomer.window.session.dataset_folder)
     assert sum(one.n_members for one in dataset.representatives) == 100

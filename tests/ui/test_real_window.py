@@ -17,7 +17,6 @@ from PySide6.QtWidgets import (
     QDialogButtonBox,
     QFileDialog,
     QLineEdit,
-    QPushButton,
     QSlider,
     QWidget,
 )
@@ -26,7 +25,6 @@ from regolith_studio.dataset.folder_io import read_dataset
 from regolith_studio.dataset.validation import validate_dataset
 from regolith_studio.resources import resource
 from regolith_studio.ui.app import open_window
-from regolith_studio.ui.dialogs.export import ExportDialog
 from regolith_studio.ui.dialogs.opening import UnitDialog
 from regolith_studio.ui.theme import current_theme
 from regolith_studio.ui.tour import Tour, start_tour
@@ -207,12 +205,10 @@ def test_that_a_file_becomes_a_dataset_by_mouse_and_keys_alone(window, wait, dra
     folder = tmp_path / "dataset"
     activate(window)
     QTest.keyClick(window, Qt.Key.Key_E, Qt.KeyboardModifier.ControlModifier)
-    wait(lambda: visible(ExportDialog) is not None)
-    dialog = visible(ExportDialog)
-    write(dialog.findChild(QLineEdit, "export_folder"), str(folder))
-    click(dialog.findChild(QPushButton, "export_go"))
-    wait(lambda: visible(QDialog) is None, SECONDS)
-    assert window.toast.sentence.text() == f"The dataset is in {folder}."
+    wait(lambda: window.pages.current == "dataset")
+    window.page.representatives.which.setCurrentIndex(1)
+    window.page.build_in(folder)
+    wait(lambda: window.session.dataset_folder == folder, SECONDS)
     assert list(validate_dataset(folder)) == []
     assert read_dataset(folder) is not None
 

@@ -21,7 +21,6 @@ from regolith_studio.ui.actions import CommandPalette
 from regolith_studio.ui.app import open_window
 from regolith_studio.ui.appearance import PreferencesDialog
 from regolith_studio.ui.dialogs.batch import BatchDialog
-from regolith_studio.ui.dialogs.export import ExportDialog
 from regolith_studio.ui.dialogs.help import about_dialog
 from regolith_studio.ui.dialogs.opening import UnitDialog
 from regolith_studio.ui.dialogs.report import ReportDialog
@@ -56,7 +55,6 @@ def opened(shown, preferences, settled):
 def dialogs_of(window):
     """One of each dialog, filled."""
     folder = Path("/tmp")
-    yield ExportDialog(7, Choices(), folder, window)
     yield PreferencesDialog({}, window)
     yield ShortcutsDialog(window.shortcuts, window.menus.places(), window)
     yield UnitDialog([folder, folder], "voxel:2", window)

@@ -9,7 +9,7 @@ from psygnal import EmitLoopError
 from PySide6.QtCore import QMimeData, QPointF, Qt, QTimer, QUrl
 from PySide6.QtGui import QDropEvent
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QApplication, QLineEdit, QSlider, QWidget
+from PySide6.QtWidgets import QApplication, QSlider
 
 from regolith_studio.errors import InputError, MissingRequirement
 from regolith_studio.geometry.sphere_points import icosphere
@@ -17,7 +17,6 @@ from regolith_studio.jobs.events import Job, Progress
 from regolith_studio.resources import resource
 from regolith_studio.session.results import SessionEvents
 from regolith_studio.ui.app import make_excepthook, open_window
-from regolith_studio.ui.dialogs.export import ExportDialog
 from regolith_studio.ui.dialogs.opening import UnitDialog
 from regolith_studio.ui.page_stack import PageStack
 from regolith_studio.ui.startup import check_display
@@ -265,37 +264,10 @@ def test_that_the_recipe_is_what_is_chosen(window, tmp_path, monkeypatch):
     assert {task.id for task in window.session.tasks if task.lane == "load"} <= set(reading)
 
 
-def test_that_the_export_tells_what_it_will_write_and_refuses_a_used_folder(window, tmp_path):
-    (tmp_path / "used").mkdir()
-    (tmp_path / "used" / "thesis.txt").write_text("mine")
+def test_that_to_dem_shows_where_datasets_are_exported(window):
     window.menus.by_name["export"].trigger()
-    dialog = window.findChild(ExportDialog)
-    text = " ".join(label.text() for label in dialog.findChildren(QWidget) if hasattr(label, "text"))
-    assert "12, as unit-volume STL files" in text
-    folder = dialog.findChild(QLineEdit, "export_folder")
-    for path, sentence in (
-        (tmp_path / "used", "contains no dataset"),
-        (tmp_path / "used" / "thesis.txt" / "in a file", "thesis.txt is a file"),
-        ("", "full path"),
-        ("name alone", "full path"),
-        ("~nobody of this name/data", "full path"),
-        (f"/{'a' * 5000}", "full path"),
-    ):
-        folder.setText(str(path))
-        assert not dialog.go.isEnabled(), path
-        assert sentence in dialog.state.text()
-    for path in (tmp_path / "new", tmp_path / "a" / "b", "~/no such folder"):
-        folder.setText(str(path))
-        assert dialog.go.isEnabled(), path
-    dialog.reject()
-
-
-def test_that_the_export_is_no_higher_than_its_texts(window):
-    window.menus.by_name["export"].trigger()
-    dialog = window.findChild(ExportDialog)
-    assert dialog.height() == dialog.layout().heightForWidth(dialog.width())
-    assert dialog.state.geometry().top() - dialog.name.geometry().bottom() < 40
-    dialog.reject()
+    assert window.pages.current == "dataset"
+    assert window.page.targets.export.isEnabled()
 
 
 @pytest.mark.slow

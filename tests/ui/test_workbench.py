@@ -10,7 +10,6 @@ from PySide6.QtCore import Qt, QTimer
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import (
     QApplication,
-    QLineEdit,
     QMessageBox,
     QPushButton,
     QScrollArea,
@@ -25,12 +24,12 @@ from regolith_studio.session.tasks import Task
 from regolith_studio.ui.actions import CommandPalette
 from regolith_studio.ui.activity import TaskListPanel, time_left
 from regolith_studio.ui.app import FILLED_CHECK, open_window, show_recovery_and_tour
-from regolith_studio.ui.dialogs.export import ExportDialog
 from regolith_studio.ui.pages.explore.particle_list import ParticleListPanel
 from regolith_studio.ui.pages.lecture.page import LESSONS
 from regolith_studio.ui.project_files import autosave_path, needs_confirmation, stale_autosaves
 from regolith_studio.ui.shortcuts import plain
 from regolith_studio.ui.tour import TOUR_SEEN, Tour, start_tour, steps
+from regolith_studio.ui.widgets.result_view import ResultState
 
 SECONDS = 120.0
 
@@ -171,21 +170,19 @@ def test_that_what_cannot_be_written_leaves_the_earlier_project_and_no_export(
     kept, limits = target.read_bytes(), resource.getrlimit(resource.RLIMIT_FSIZE)
     window.session.choose(method="quadric", n_facets=15)
     window.menus.by_name["export"].trigger()
-    dialog = window.findChild(ExportDialog)
-    dialog.findChild(QLineEdit, "export_folder").setText(str(tmp_path / "dataset"))
+    window.page.representatives.which.setCurrentIndex(1)
     resource.setrlimit(resource.RLIMIT_FSIZE, (200, limits[1]))
     try:
         saved = window.projects.save()
         said = window.toast.sentence.text()
-        dialog.go.click()
-        wait(lambda: "dataset" in window.toast.sentence.text(), SECONDS)
+        window.page.build_in(tmp_path / "dataset")
+        wait(lambda: window.page.result.record.state is ResultState.FAILED, SECONDS)
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, limits)
     assert not saved
     assert said.startswith(f"The file {target} cannot be written")
     assert f"{tmp_path / 'dataset'} cannot be written" in window.toast.sentence.text()
     assert [(path.name, path.read_bytes()) for path in tmp_path.iterdir()] == [(target.name, kept)]
-    dialog.reject()
 
 
 def test_that_a_project_whose_name_was_completed_replaces_none_without_asking(window, tmp_path, monkeypatch):

@@ -79,6 +79,7 @@ _LOAD = "blender --python-expr \"import bpy; bpy.ops.import_scene.gltf(filepath=
 EXPORTER = Exporter(
     key="gltf",
     label="glTF (Blender)",
+    general=True,
     units=N_("m, coarse graining applied; y up"),
     carries=(N_("drawn particles: shape, size, orientation"), N_("flat shading of facets")),
     loses=(

@@ -42,6 +42,7 @@ def _files(dataset: Dataset, options: ExportOptions) -> dict[str, bytes]:
 EXPORTER = Exporter(
     key="half-spaces",
     label="Half-spaces (JSON, CSV)",
+    general=True,
     units=N_("shapes of volume 1 without a length unit; diameters in micrometres"),
     carries=(N_("shapes exactly"), N_("class weights by number and mass"), N_("sizes")),
     loses=(N_("provenance of the particles (in dataset.json)"),),

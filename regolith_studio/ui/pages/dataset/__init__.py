@@ -14,11 +14,10 @@ PAGE = Page(
     opens=(FileKind.DATASET,),
     actions=(
         ActionSpec("find", N_("&Find representatives"), shortcut="F5"),
-        ActionSpec("build", N_("&Build the dataset …"), shortcut="Ctrl+Return"),
         ActionSpec("open_dataset", N_("&Open a dataset …")),
         ActionSpec("validate", N_("&Check the dataset")),
         ActionSpec(BREAK),
-        ActionSpec("export", N_("&Export to DEM programs …"), shortcut="Ctrl+Shift+E"),
+        ActionSpec("export", N_("&Export to DEM programs …"), shortcut="Ctrl+Return"),
         ActionSpec("library", N_("Show the &library")),
     ),
 )

@@ -5,7 +5,7 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from PySide6.QtCore import QSignalBlocker, Signal
-from PySide6.QtWidgets import QComboBox, QHBoxLayout, QLineEdit, QPushButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QComboBox, QLineEdit, QPushButton, QVBoxLayout, QWidget
 
 from regolith_studio.dataset.size_parsing import SizeRule, parse_sizes
 from regolith_studio.errors import InputError
@@ -48,13 +48,20 @@ class RepresentativesPanel(QWidget):
     countChanged = Signal(int)  # noqa: N815
     orderChanged = Signal()  # noqa: N815
     findRequested = Signal()  # noqa: N815
+    whichChanged = Signal()  # noqa: N815
 
     def __init__(self) -> None:
         super().__init__()
         self.setObjectName("dataset_representatives")
+        self._several = False
         self.population = remark()
         self.start = QPushButton(tr("Find representatives"))
         self.count = NumberSlider(COUNT)
+        self.which = QComboBox()
+        self.which.addItem(tr("Representatives"), True)
+        self.which.addItem(tr("All open particles"), False)
+        self.which.setObjectName("dataset_which")
+        self.which.setAccessibleName(tr("Particles of the dataset"))
         self.weighting = QComboBox()
         for key, label in WEIGHTINGS.items():
             self.weighting.addItem(tr(label), key)
@@ -65,8 +72,9 @@ class RepresentativesPanel(QWidget):
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         for widget in (
-            heading(tr("1  Representatives")),
+            heading(tr("1  Particles")),
             FixedHeightText((self.population,)),
+            self.which,
             self.weighting,
             self.count,
             self.start,
@@ -77,6 +85,12 @@ class RepresentativesPanel(QWidget):
         self.count.valueChanged.connect(self._count_changed)
         self.weighting.currentIndexChanged.connect(lambda _: self.orderChanged.emit())
         self.start.clicked.connect(self.findRequested)
+        self.which.currentIndexChanged.connect(lambda _: self._show_which())
+
+    @property
+    def every(self) -> bool:
+        """Whether each particle is its own representative."""
+        return not self.which.currentData()
 
     def request(self) -> RepresentativesRequest:
         """The requested number and weighting."""
@@ -84,7 +98,8 @@ class RepresentativesPanel(QWidget):
 
     def recipe_part(self, sizes: str, name: str) -> Representatives:
         """The fields of a recipe for representatives and dataset."""
-        return Representatives(**asdict(self.request()), sizes=sizes, name=name)
+        fields = asdict(self.request()) | ({"count": 0} if self.every else {})
+        return Representatives(**fields, sizes=sizes, name=name)
 
     def show_population(self, n_particles: int) -> None:
         """Set the number of open particles, the upper limit of representatives."""
@@ -93,7 +108,8 @@ class RepresentativesPanel(QWidget):
             if n_particles
             else tr("No particles are open: open files, the sample, or draw some on the page Shape model.")
         )
-        self.start.setEnabled(n_particles > 1)
+        self._several = n_particles > 1
+        self._enable()
         top = max(1, min(MAX_REPRESENTATIVES, n_particles or MAX_REPRESENTATIVES))
         self.count.slider.setMaximum(top)
         self.count.field.setMaximum(top)
@@ -101,18 +117,31 @@ class RepresentativesPanel(QWidget):
 
     def value(self) -> dict[str, Any]:
         """Plain JSON."""
-        return {"count": int(self.count.value()), "weighting": self.weighting.currentData()}
+        count = 0 if self.every else int(self.count.value())
+        return {"count": count, "weighting": self.weighting.currentData()}
 
     def setValue(self, value: Mapping[str, Any]) -> None:
         """Show other choices without emitting a signal.
 
-        A number above that of the open particles is remembered until there are more; 0 makes each
-        particle its own representative.
+        A number above that of the open particles is remembered until there are more; 0 are all particles.
         """
-        self._wanted = int(value.get("count", 10)) or MAX_REPRESENTATIVES
-        self.count.setValue(self._wanted)
+        if count := int(value.get("count", 10)):
+            self._wanted = count
+            self.count.setValue(count)
+        with QSignalBlocker(self.which):
+            self.which.setCurrentIndex(0 if count else 1)
+        self._enable()
         with QSignalBlocker(self.weighting):
             self.weighting.setCurrentIndex(max(0, self.weighting.findData(value.get("weighting"))))
+
+    def _show_which(self) -> None:
+        self._enable()
+        self.whichChanged.emit()
+
+    def _enable(self) -> None:
+        self.start.setEnabled(self._several and not self.every)
+        for each in (self.count, self.weighting):
+            each.setEnabled(not self.every)
 
     def _count_changed(self, _value: object) -> None:
         self._wanted = int(self.count.value())
@@ -185,7 +214,6 @@ class SizesPanel(QWidget):
         example = SIZES[key][1]
         self.numbers.setEnabled(bool(example))
         self.numbers.setValue(example)
-        self.numbers.setPlaceholderText("" if example else tr("no numbers needed"))
         self.hint.setText(tr(HINTS.get(key, "")))
         self.hint.setVisible(key in HINTS)
         self._emit_sizes()
@@ -196,9 +224,8 @@ class SizesPanel(QWidget):
 
 
 class FolderPanel(QWidget):
-    """Name of the dataset, its shapes, and the buttons that build or open one."""
+    """Name of the dataset, its shapes, and the button that opens one."""
 
-    buildRequested = Signal()  # noqa: N815
     openRequested = Signal()  # noqa: N815
 
     def __init__(self) -> None:
@@ -208,8 +235,7 @@ class FolderPanel(QWidget):
         self.name.setObjectName("dataset_name")
         self.name.setAccessibleName(tr("Name of the dataset"))
         self.shapes, self.state = remark(), remark()
-        self.build, self.open = QPushButton(tr("Build the dataset …")), QPushButton(tr("Open a dataset …"))
-        self.build.setObjectName("dataset_build")
+        self.open = QPushButton(tr("Open a dataset …"))
         self.open.setObjectName("dataset_open")
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
@@ -219,12 +245,8 @@ class FolderPanel(QWidget):
         )
         for widget in (heading(tr("3  Dataset")), self.name, asked):
             layout.addWidget(widget)
-        buttons = QHBoxLayout()
-        for button in (self.build, self.open):
-            buttons.addWidget(button, 1)
-        layout.addLayout(buttons)
+        layout.addWidget(self.open)
         layout.addWidget(there)
-        self.build.clicked.connect(self.buildRequested)
         self.open.clicked.connect(self.openRequested)
         self.show_dataset("")
 

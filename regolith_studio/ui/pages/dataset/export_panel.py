@@ -33,6 +33,7 @@ from regolith_studio.ui.widgets.numbers import NumberSlider, NumberSpec
 from regolith_studio.ui.widgets.presets import PresetForm
 
 FIRST = ("rocky", "yade")
+GROUPS = (N_("Exact polyhedra"), N_("Clumps and rounded shapes"), N_("For viewers and own programs"))
 NARROW = 84
 COARSE_GRAINING = NumberSpec(
     "",
@@ -64,7 +65,7 @@ class ExportPanel(QWidget):
         self.contact = PresetForm(ContactParameters, "export_contact", tr("Published contact parameters"))
         self.test = PresetForm(LiftingCylinderTest, "export_test", tr("Published cylinder"))
         self.times = ParameterForm(ScriptTimes, "export")
-        self.lossy = QCheckBox(tr("Allow formats that change shapes"))
+        self.lossy = QCheckBox(tr("Change shapes where a format needs it"))
         self.lossy.setObjectName("dataset_lossy")
         self.export = QPushButton(tr("Export …"))
         self.export.setObjectName("dataset_export")
@@ -75,8 +76,10 @@ class ExportPanel(QWidget):
         layout.setContentsMargins(0, 0, 0, 0)
         layout.setSpacing(4)
         layout.addWidget(heading(tr("4  Export to")))
-        for box in self.boxes.values():
-            layout.addWidget(box)
+        for title, keys in groups().items():
+            layout.addWidget(remark(tr(title)))
+            for key in keys:
+                layout.addWidget(self.boxes[key])
         layout.addLayout(form)
         layout.addWidget(
             Collapsible(
@@ -108,7 +111,7 @@ class ExportPanel(QWidget):
         self.export.clicked.connect(self.exportRequested)
         self.enlarge.clicked.connect(self._take_sufficient_factor)
         self.optionsChanged.connect(self._show_preview)
-        self._ready = self._compounds = False
+        self._reason, self._compounds = "", False
         self.setValue({"targets": FIRST})
 
     def show_filling(self, fill: Callable[[ExportOptions], CylinderFilling] | None) -> None:
@@ -156,9 +159,9 @@ class ExportPanel(QWidget):
         """Whether the user allows formats that change shapes."""
         return self.lossy.isChecked()
 
-    def set_ready(self, ready: bool, compounds: bool = False) -> None:
-        """Set whether there is a dataset to export, and whether it holds compounds."""
-        self._ready, self._compounds = ready, compounds
+    def set_ready(self, reason: str, compounds: bool = False) -> None:
+        """Set why nothing can be exported, or nothing, and whether the dataset holds compounds."""
+        self._reason, self._compounds = reason, compounds
         self._show()
 
     def value(self) -> dict[str, Any]:
@@ -228,16 +231,16 @@ class ExportPanel(QWidget):
     def _show(self) -> None:
         altering = [key for key in self.chosen() if EXPORTERS[key].alters]
         self.lossy.setEnabled(bool(altering))
-        problem = ""
-        if refusing := self.refusing():
+        problem = getattr(self, "_reason", "")
+        if not problem and (refusing := self.refusing()):
             problem = tr(
                 "{label} cannot hold the compounds of this dataset: {why}",
                 label=tr(EXPORTERS[refusing[0]].label),
                 why=tr(EXPORTERS[refusing[0]].convex_only),
             )
-        elif not self._allowed():
+        elif not problem and not self._allowed():
             problem = f"{tr(EXPORTERS[altering[0]].label)}: {tr(EXPORTERS[altering[0]].alters)}"
-        self.export.setEnabled(getattr(self, "_ready", False) and bool(self.chosen()) and not problem)
+        self.export.setEnabled(not problem)
         self.export.setToolTip(inert(problem))
         if hasattr(self, "_fill"):
             self._show_preview()
@@ -247,6 +250,15 @@ class ExportPanel(QWidget):
         """Keys of the selected formats that cannot hold the dataset's compounds."""
         compounds = getattr(self, "_compounds", False)
         return [key for key in self.chosen() if compounds and EXPORTERS[key].convex_only]
+
+
+def groups() -> dict[str, list[str]]:
+    """Keys of the formats below the title of their group."""
+    found: dict[str, list[str]] = {title: [] for title in GROUPS}
+    exact, approximate, general = found.values()
+    for key, each in EXPORTERS.items():
+        (general if each.general else approximate if each.alters else exact).append(key)
+    return found
 
 
 def _filling_text(label: str, found: CylinderFilling) -> str:

@@ -5,6 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from PySide6.QtCore import Qt, QUrl
 from PySide6.QtGui import QDesktopServices
 from PySide6.QtWidgets import QFileDialog, QHBoxLayout, QMessageBox, QPushButton, QVBoxLayout, QWidget
@@ -12,6 +13,7 @@ from PySide6.QtWidgets import QFileDialog, QHBoxLayout, QMessageBox, QPushButton
 from regolith_studio.dataset.build import ShapeClass, singleton_class
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.export import ExportOptions, ExportResult
+from regolith_studio.dataset.exporters import EXPORTERS
 from regolith_studio.dataset.lifting_cylinder import CylinderFilling, cylinder_filling
 from regolith_studio.dataset.quality import QualityPoint
 from regolith_studio.errors import RegolithError
@@ -24,7 +26,7 @@ from regolith_studio.jobs.dataset_jobs import (
     open_dataset_folder,
     validate_dataset_folder,
 )
-from regolith_studio.jobs.events import Job
+from regolith_studio.jobs.events import Failed, Job
 from regolith_studio.jobs.representatives_jobs import (
     ChosenParticles,
     RepresentativesSurvey,
@@ -55,7 +57,7 @@ from regolith_studio.ui.pages.dataset.views import (
     dataset_title,
     shapes,
 )
-from regolith_studio.ui.translation import inert, tr, tr_count
+from regolith_studio.ui.translation import tr, tr_count
 from regolith_studio.ui.widgets.result_view import ResultRecord, ResultState, ResultView
 
 FIND, BUILD, EXPORT = "find", "build", "export"
@@ -81,7 +83,8 @@ class DatasetPage(PageWidget):
         self._exports: list[ExportResult] = []
         self._made_with: tuple[Any, ...] | None = None
         self._opened: DatasetRequest | None = None
-        self._to_build: tuple[Path, bool] | None = None
+        self._to_build: tuple[Path, bool, Path | None] | None = None
+        self._classes_to_build: list[ShapeClass] = []
 
     def build(self) -> None:
         self.representatives, self.sizes = RepresentativesPanel(), SizesPanel()
@@ -102,14 +105,13 @@ class DatasetPage(PageWidget):
         self._context.bindings.refresh("opened_request", self._take_opened)
         self._show_losses()
         self._forget_dataset()
-        self._enable_build()
+        self._enable_export()
 
     # --- the page of the window ----------------------------------------------------------------
 
     def commands(self) -> Mapping[str, Callable[..., object]]:
         return {
             "find": self.find_representatives,
-            "build": self.build_dataset,
             "open_dataset": self.open_dataset,
             "validate": self.validate,
             "export": self.export,
@@ -143,7 +145,7 @@ class DatasetPage(PageWidget):
         """Choose representatives for many numbers, and draw the curve."""
         self._find()
 
-    def _find(self, to_build: tuple[Path, bool] | None = None) -> None:
+    def _find(self, to_build: tuple[Path, bool, Path | None] | None = None) -> None:
         """Choose representatives; then build their dataset in a folder, if one is given."""
         if not self._particles:
             self._context.toast.problem(tr("There are no particles to choose from: open some first."))
@@ -155,44 +157,47 @@ class DatasetPage(PageWidget):
             tr("Finding representatives"), job, self._show_survey, partial=self._show_point, lane=FIND
         )
 
-    def build_dataset(self) -> None:
-        """Ask for a folder and build the dataset in a new folder below it."""
-        if not self.folder.build.isEnabled():  # asked for by its key or from the palette
-            self._context.toast.problem(self.folder.build.toolTip())
-            return
-        name = FolderDialog.ask(self, tr("Build the dataset in this folder"), self._place_before())
-        if not name:
-            return
-        folder = Path(name) / self.folder.folder_name()
-        replaced = folder.is_dir() and any(folder.iterdir())
-        if replaced and not self._confirm(
-            tr("There is a folder {folder} already. Replace the dataset in it?", folder=folder)
-        ):
-            return
-        self.build_in(folder, replaced)
+    def build_in(self, folder: Path, overwrite: bool = False, exports: Path | None = None) -> None:
+        """Coarsen the representatives, which are found where there are none, and write the dataset.
 
-    def build_in(self, folder: Path, overwrite: bool = False) -> None:
-        """Coarsen the representatives, which are found where there are none, and write the dataset."""
+        Parameters
+        ----------
+        exports
+            Folder that the selected formats are written into afterwards; by default none are.
+        """
         session, survey_now = self._context.session, self._survey
         if self.sizes.sizing() is None:
             return
-        if self._chosen is None or survey_now is None:
-            self._find(to_build=(folder, overwrite))
+        every = self.representatives.every
+        if not every and (self._chosen is None or survey_now is None):
+            self._find(to_build=(folder, overwrite, exports))
             return
         preset = None if session.choices.preset_modified else session.choices.preset
         options = DatasetOptions(
             self.folder.name.text().strip(),
             preset,
             overwrite=overwrite,
-            representatives=self.representatives.request(),
+            representatives=None if every else self.representatives.request(),
             sizes=self.sizes.text(),
         )
-        job = Job(
-            build_dataset_folder,
-            (self._particles, session.choices.coarsening_request, folder, options, survey_now.population),
-        )
+        population = None if every or survey_now is None else survey_now.population
+        arguments = (self._particles, session.choices.coarsening_request, folder, options, population)
         self._context.remember("place", str(folder.parent))
-        self._context.start(tr("Building the dataset"), job, self._take_built, lane=BUILD)
+        self.result.show_record(ResultRecord(state=ResultState.RUNNING, note=str(folder)))
+        self._context.start(
+            tr("Building the dataset"),
+            Job(build_dataset_folder, arguments),
+            lambda built: self._take_built(built, exports),
+            failed=self._show_failure,
+            stopped=self._forget_dataset,
+            lane=BUILD,
+        )
+
+    def _show_failure(self, failure: Failed) -> None:
+        """Keep on the card why nothing was written."""
+        self._show_result()
+        self.result.show_record(replace(self.result.record, state=ResultState.FAILED, note=failure.sentence))
+        self._context.toast.problem(failure.sentence, failure.details)
 
     def open_dataset(self) -> None:
         """Ask for a dataset folder and show it."""
@@ -228,17 +233,29 @@ class DatasetPage(PageWidget):
         self._context.start(tr("Checking the dataset"), job, self._report_problems, lane="validate")
 
     def export(self) -> None:
-        """Ask for a folder and export the dataset there."""
-        if self._folder is None:
-            self._context.toast.problem(tr("There is no dataset to export: build or open one first."))
+        """Ask for a folder, and write the selected formats there, and the dataset unless it is written."""
+        if not self.targets.export.isEnabled():  # asked for by its key or from the palette
+            self._context.toast.problem(self.targets.export.toolTip())
             return
         name = FolderDialog.ask(self, tr("Export into this folder"), self._place_before())
-        if name:
+        if not name:
+            return
+        if self._is_current():
             self.export_to(Path(name))
+            return
+        folder = Path(name) / self.folder.folder_name()
+        replaced = folder.is_dir() and any(folder.iterdir())
+        question = tr("There is a folder {folder} already. Replace the dataset in it?", folder=folder)
+        if not replaced or self._confirm(question):
+            self.build_in(folder, replaced, Path(name))
+
+    def _is_current(self) -> bool:
+        """Whether the dataset on disk is that of the settings shown."""
+        return self._folder is not None and self._made_with in (None, self._settings())
 
     def export_to(self, folder: Path) -> None:
         """Write the selected formats, each into its own folder below `folder`."""
-        if self._folder is None:
+        if self._folder is None or not self.targets.chosen():
             return
         self._exports = []
         arguments = (
@@ -253,6 +270,7 @@ class DatasetPage(PageWidget):
             Job(export_dataset_folder, arguments),
             self._take_exports,
             self._add_export,
+            failed=self._show_failure,
             lane=EXPORT,
         )
 
@@ -273,7 +291,7 @@ class DatasetPage(PageWidget):
             self.quality.show_curve(None)
             self._show_chosen()
         self.representatives.show_population(len(now))
-        self._enable_build()
+        self._enable_export()
 
     def _show_point(self, point: QualityPoint) -> None:
         self._points.append(point)
@@ -316,12 +334,13 @@ class DatasetPage(PageWidget):
         self.folder.show_dataset("")
         self.result.show_record(ResultRecord(note=tr("No dataset of these particles has been written yet.")))
         self.open_written.setEnabled(False)
-        self.targets.show_filling(None)
-        self.targets.set_ready(False)
+        self._enable_export()
 
     def _show_chosen(self) -> None:
         self._forget_dataset()
-        shown = chosen_particles(self._particles, self._chosen) if self._chosen is not None else []
+        every = self.representatives.every
+        chosen = None if every else self._chosen
+        shown = chosen_particles(self._particles, chosen) if chosen is not None else []
         title = tr_count(N_("1 representative"), N_("{count} representatives"), len(shown))
         self.gallery.show_shapes(title if shown else tr("Representatives"), shown)
         self._show_sizes()
@@ -335,28 +354,34 @@ class DatasetPage(PageWidget):
         except RegolithError as error:
             self.sizes.show_problem(str(error))
             made = []
+        self._classes_to_build = made
         self.distribution.show_classes(made)
-        self._enable_build()
+        self._enable_export()
         self._show_result()
 
-    def _enable_build(self) -> None:
-        """Let the dataset be built, or say at the button why it cannot."""
+    def _enable_export(self) -> None:
+        """Let the dataset be exported, or say at the button why it cannot."""
         reason = self.sizes.reason()
-        if not self.representatives.start.isEnabled():
+        if not self._particles:
+            reason = tr("There is no dataset to export: open particles or a dataset first.")
+        elif len(self._particles) < 2 and not self.representatives.every:
             reason = tr("There are too few particles to choose from: open two or more.")
-        self.folder.build.setEnabled(not reason)
-        self.folder.build.setToolTip(inert(reason))
+        if self._is_current():
+            reason = ""
+        compounds = bool(self._dataset.compounds) if self._dataset is not None else False
+        self.targets.set_ready(reason, compounds)
+        self.targets.show_filling(self._filling if self._dataset or self._classes_to_build else None)
 
     def _classes(self) -> Sequence[ShapeClass]:
         if self._dataset is not None:
             return [ShapeClass(one.weight, one.sizes, one.n_members) for one in self._dataset.representatives]
-        if self._chosen is not None:
+        if self._chosen is not None and not self.representatives.every:
             return self._chosen.representatives.classes
         if len(self._particles) > MAX_MEASURED:
             return []
         return [singleton_class(particle) for particle in self._particles if particle.mesh.volume > 0.0]
 
-    def _take_built(self, built: DatasetBuildResult) -> None:
+    def _take_built(self, built: DatasetBuildResult, exports: Path | None = None) -> None:
         self._take_dataset(built.folder, built.dataset)
         self._made_with = self._settings()
         self._show_result()
@@ -364,6 +389,9 @@ class DatasetPage(PageWidget):
             tr("{count} shapes in {folder}.", count=len(built.dataset), folder=built.folder)
         )
         self.library.suggest(built.folder.parent)
+        self._enable_export()
+        if exports is not None:
+            self.export_to(exports)
 
     def _refresh_library(self) -> None:
         if self.library.entries:
@@ -382,19 +410,24 @@ class DatasetPage(PageWidget):
         self.exports.show_exports(())
         self._show_result()
         self.distribution.show_classes(self._classes())
-        self.targets.set_ready(True, bool(dataset.compounds))
-        self.targets.show_filling(self._filling)
+        self._enable_export()
 
     def _filling(self, options: ExportOptions) -> CylinderFilling:
         """The particles of a script that fills a cylinder with the dataset."""
-        assert self._dataset is not None, "it is asked of a dataset"
-        sizes = [one.sizes for one in self._dataset.representatives]
-        return cylinder_filling(self._dataset.class_weights("number").tolist(), sizes, options)
+        if self._dataset is not None:
+            sizes = [one.sizes for one in self._dataset.representatives]
+            return cylinder_filling(self._dataset.class_weights("number").tolist(), sizes, options)
+        classes = self._classes_to_build
+        weights = np.array([one.weight for one in classes])
+        if self.representatives.request().weighting == "volume" and not self.representatives.every:
+            weights /= [one.sizes.mean_cube() for one in classes]
+        return cylinder_filling(weights.tolist(), [one.sizes for one in classes], options)
 
     def _settings(self) -> tuple[Any, ...]:
         """What a dataset that is built now depends on, besides the particles and their number."""
         weighting = self.representatives.weighting.currentData()
-        return self.sizes.text(), weighting, self._context.session.choices.coarsening_request
+        every, choices = self.representatives.every, self._context.session.choices
+        return self.sizes.text(), every, weighting, choices.coarsening_request
 
     def _show_result(self) -> None:
         """What has been written, and where."""
@@ -404,7 +437,7 @@ class DatasetPage(PageWidget):
         if self._exports:
             place = self._exports[0].folder.parent
             written += " " + tr("The exports are in {folder}.", folder=place)
-        current = self._made_with in (None, self._settings())
+        current = self._is_current()
         if not current:
             written = tr("Built with other settings than those shown.") + " " + written
         values = (str(len(self._dataset)), str(len(self._exports)))
@@ -434,8 +467,9 @@ class DatasetPage(PageWidget):
         self._exports = list(done)
         self.exports.show_exports(done)
         self._show_result()
+        labels = [tr(EXPORTERS[each.key].label) for each in done]
         self._context.toast.note(
-            tr_count(N_("1 format is written."), N_("{count} formats are written."), len(done))
+            tr("{formats} written to {folder}.", formats=", ".join(labels), folder=done[0].folder.parent)
         )
         self._refresh_library()
 
@@ -454,7 +488,8 @@ class DatasetPage(PageWidget):
 
     def _update_request(self) -> None:
         """Set the session's request of a dataset; ``None`` before representatives are chosen."""
-        is_complete = self._chosen is not None and self.sizes.sizing() is not None
+        is_chosen = self._chosen is not None or (self.representatives.every and bool(self._particles))
+        is_complete = is_chosen and self.sizes.sizing() is not None
         self._context.session.dataset_request = self._controls.request() if is_complete else None
 
     def _show_losses(self) -> None:
@@ -467,7 +502,7 @@ class DatasetPage(PageWidget):
             lambda: self.find_representatives() if self._survey else None
         )
         self.sizes.sizesChanged.connect(self._show_sizes)
-        self.folder.buildRequested.connect(self.build_dataset)
+        self.representatives.whichChanged.connect(self._show_chosen)
         self.folder.openRequested.connect(self.open_dataset)
         self.open_written.clicked.connect(self._open_written)
         self.library.openRequested.connect(self._use)

@@ -16,9 +16,8 @@ from regolith_studio.geometry.particle import Particle
 from regolith_studio.jobs.representatives_jobs import ChosenParticles
 from regolith_studio.messages import N_
 from regolith_studio.session.choices import Choices
-from regolith_studio.ui.dialogs.export import facet_limit_text
 from regolith_studio.ui.theme import Theme, current_theme
-from regolith_studio.ui.translation import localized, tr, tr_count
+from regolith_studio.ui.translation import localized, number_text, tr, tr_count
 from regolith_studio.ui.widgets.labels import heading
 from regolith_studio.ui.widgets.plots.curves import CurvePlot, PlotCurve
 from regolith_studio.ui.widgets.thumbnails import Painting, paint_thumbnail
@@ -143,7 +142,7 @@ class QualityPlot(CurvePlot):
         self._noise: float | None = None
         super().__init__(
             tr("Number of representatives"),
-            tr("Distance to the population [deviations]"),
+            tr("Wasserstein distance / standard deviation"),
             tr("Press Find representatives to plot the error against their number."),
             log_y=True,
         )
@@ -316,6 +315,15 @@ def coarsening_text(choices: Choices) -> str:
         fineness=facet_limit_text(choices),
         method=tr(known.label) if known else choices.method,
     )
+
+
+def facet_limit_text(choices: Choices) -> str:
+    """What each polyhedron will have, to be put behind a heading."""
+    if choices.stop_at == "error":
+        limit = number_text(100 * choices.largest_error, "g")
+        return tr("the fewest facets with all errors below {limit} %", limit=limit)
+    faces = choices.facet_count
+    return tr("at most {faces} facets, {triangles} triangles", faces=faces, triangles=4 * faces - 12)
 
 
 def _by_share(shown: list[tuple[float, GalleryItem]]) -> list[GalleryItem]:

@@ -61,7 +61,7 @@ def read_other(parent: QWidget, toast: Toast) -> tuple[Path, ParticleState] | No
             number, sure = QInputDialog.getDouble(
                 parent,
                 tr("Diameter"),
-                tr("The file has no diameters; one for all, in mm:"),
+                tr("Particle diameter [mm]"),
                 1.0,
                 1e-6,
                 1e6,
