@@ -143,7 +143,8 @@ def _record(calibration: ReposeCalibration) -> ResultRecord:
     """What is known of the parameter, the next run, and warnings."""
     usable, runs = len(calibration.usable_runs), len(calibration.runs)
     following = tr("next run at {next:.3g}", next=calibration.next_values[0])
-    made_from = f"{tr_count(N_('1 run'), N_('{count} runs'), runs)}; {following}" if runs else ""
+    counted = tr_count(N_("1 run"), N_("{count} runs"), runs)
+    made_from = f"{counted}; {following}" if runs else ""
     values: tuple[str, ...] = ()
     if usable:
         low, high = calibration.posterior.intervals[0]
