@@ -9,7 +9,7 @@ import pytest
 import shiboken6
 from PySide6.QtCore import QPointF, Qt
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QSplitter, QWidget
+from PySide6.QtWidgets import QWidget
 
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
@@ -342,12 +342,3 @@ def test_that_german_nouns_keep_their_capitals_within_a_sentence(speaking):
     assert texts.in_a_sentence("Volume") == "Volumen"
     sentence = texts.degree_sentence(DegreeStep(3, icosphere(0), {"volume": 0.2}, 0.1, 1.0))
     assert sentence.endswith("Volumen 20,0\N{NO-BREAK SPACE}%.")
-
-
-def test_that_all_formulas_of_a_step_are_seen_in_a_low_window(page, wait):
-    page.resize(1160, 702)
-    texts_above = page.annealing.findChild(QSplitter, "lecture_annealing_texts").widget(0)
-    for step in (0, 7, 20):
-        page.annealing.playback.go(step)
-        wait(lambda: page.annealing.rule.missing() is None)
-        wait(lambda: texts_above.verticalScrollBar().maximum() == 0, 10.0)
