@@ -15,8 +15,7 @@ import mujoco
 import numpy as np
 
 from benchmarks.result_files import Rows, add_result, show_row
-from regolith_studio.dataset.alignment import Frame
-from regolith_studio.dataset.dataset import Dataset, Representative
+from regolith_studio.dataset.dataset import Dataset, Frame, Representative
 from regolith_studio.dataset.parameters import LiftingCylinderTest
 from regolith_studio.dataset.size_distributions import DiscreteSizeDistribution
 from regolith_studio.dem.case import ReposeCase, prepare

@@ -396,7 +396,7 @@ def sensitivity(
 
 def check_box(box: str) -> None:
     """Raise an error for an unknown box metric."""
-    from regolith_studio.descriptors.shape_cache import BOX_METRICS
+    from regolith_studio.descriptors.catalogue import BOX_METRICS
 
     if box not in BOX_METRICS:
         raise typer.BadParameter(f"The box must be one of {', '.join(BOX_METRICS)}, got {box!r}.")

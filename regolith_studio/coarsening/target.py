@@ -7,13 +7,11 @@ import numpy as np
 
 from regolith_studio.coarsening.core.overlap import jaccard, shared_volume
 from regolith_studio.coarsening.core.rays import cast, fibonacci_bundle
-from regolith_studio.descriptors.catalogue import CATALOGUE, DEFAULT_KEYS
+from regolith_studio.descriptors.catalogue import CATALOGUE, DEFAULT_KEYS, ShapeCache
 from regolith_studio.descriptors.describe import Descriptors
-from regolith_studio.descriptors.shape_cache import ShapeCache
 from regolith_studio.errors import GeometryError
 from regolith_studio.geometry.arrays import FloatArray, IntArray
-from regolith_studio.geometry.exits import exits
-from regolith_studio.geometry.half_spaces import HalfSpaces
+from regolith_studio.geometry.half_spaces import HalfSpaces, exits
 from regolith_studio.geometry.kernels import kernel
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.oriented_box import OrientedBox

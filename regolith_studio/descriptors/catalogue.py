@@ -7,15 +7,96 @@ D_min <= D_int <= D_max of the minimum-volume bounding box.
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from regolith_studio.descriptors.shape_cache import ShapeCache
+from regolith_studio.errors import GeometryError
+from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats
+from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.feret import feret_max, feret_min
-from regolith_studio.geometry.mean_incidence import mean_incidence
+from regolith_studio.geometry.kernels import kernel
+from regolith_studio.geometry.mass_properties import ellipsoid_area, equal_ellipsoid, volume_and_area
+from regolith_studio.geometry.mesh import Mesh
+from regolith_studio.geometry.oriented_box import OrientedBox, heuristic_box, minimum_volume_box
+from regolith_studio.geometry.three_chords import length_width_thickness
+from regolith_studio.geometry.vectors import cross, dot, length, mixed, row
 from regolith_studio.messages import N_
 
-__all__ = ["CATALOGUE", "DEFAULT_KEYS", "LOSS_KEYS", "Descriptor", "ShapeCache"]
+FLAT = 1e-9
+"""A mesh whose volume is below this share of its size cubed encloses nothing."""
+
+BOX_METRICS: dict[str, Callable[[Mesh | ConvexPolyhedron], OrientedBox]] = {
+    "exact": minimum_volume_box,
+    "trimesh": heuristic_box,
+}
+"""Bounding boxes to take D_min and D_max from; ``trimesh`` only for comparison with the paper's program."""
+
+
+class ShapeCache:
+    """Lazily computed facts about one particle, read by the functions of the catalogue.
+
+    Parameters
+    ----------
+    solid
+        Closed and outward-oriented.
+    box_metric
+        A key of `BOX_METRICS`.
+
+    Raises
+    ------
+    GeometryError
+        If the solid has no faces, is flat or is inside out.
+    """
+
+    def __init__(self, solid: Mesh | ConvexPolyhedron, box_metric: str = "exact") -> None:
+        if box_metric not in BOX_METRICS:
+            raise ValueError(f"box_metric must be one of {sorted(BOX_METRICS)}, got {box_metric!r}")
+        self._solid = solid
+        self.box_metric = box_metric
+        self.mesh = solid.mesh if isinstance(solid, ConvexPolyhedron) else solid
+        self.volume, self.surface_area = volume_and_area(self.mesh.vertices, self.mesh.faces)
+        _check_volume(self.mesh, self.volume)
+
+    @cached_property
+    def hull(self) -> Mesh:
+        """Convex hull, triangulated."""
+        return self.mesh if isinstance(self._solid, ConvexPolyhedron) else self.mesh.hull
+
+    @cached_property
+    def box(self) -> OrientedBox:
+        """Oriented bounding box by `box_metric`."""
+        return BOX_METRICS[self.box_metric](self._solid)
+
+    @cached_property
+    def three_chords(self) -> tuple[float, float, float]:
+        """Length, width and thickness of the hull by chords."""
+        return length_width_thickness(self.hull)
+
+    @cached_property
+    def principal_moments(self) -> FloatArray:
+        """Principal moments of inertia at density 1, rising, shape (3,)."""
+        moments = np.linalg.eigvalsh(self.mesh.normalised().inertia)
+        return np.asarray(moments * self.volume ** (5 / 3))
+
+    @cached_property
+    def hull_ellipsoid_area(self) -> float:
+        """Surface area of the ellipsoid with the volume and the ratios of second moments of the hull."""
+        return ellipsoid_area(equal_ellipsoid(self.hull.normalised().inertia, self.hull.volume))
+
+
+def _check_volume(mesh: Mesh, volume: float) -> None:
+    if len(mesh.faces) < 4:
+        raise GeometryError(f"The mesh has {len(mesh.faces)} faces; a solid needs at least 4.")
+    low, high = mesh.bounds
+    size = float((high - low).max())
+    if not abs(volume) > FLAT * size**3:
+        raise GeometryError(
+            f"The mesh is flat: it encloses a volume of {abs(volume):.3g} at a size of {size:.3g}."
+        )
+    if volume < 0.0:
+        raise GeometryError(f"The mesh is inside out: its signed volume is {volume:.3g}.")
 
 
 _RAISED = str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")
@@ -364,3 +445,60 @@ LOSS_KEYS: tuple[str, ...] = tuple(row.key for row in _ROWS if row.in_loss)
 
 DEFAULT_KEYS: tuple[str, ...] = tuple(row.key for row in _ROWS if not row.costly)
 """What :func:`describe` works out unless told."""
+
+
+def mean_incidence(mesh: Mesh, centre: ArrayLike) -> float:
+    """Mean over the surface of |n . x| / |x|, x from `centre` and n the unit normal; 1 for a sphere.
+
+    Exact for triangles: the distance of a triangle's plane times the integral of 1 / |x| over it, which
+    has a closed form (Wilton et al. 1984), so that cutting a facet in triangles changes nothing.
+    """
+    origin = locked_floats(centre, (3,), "centre")
+    size = float(np.ptp(mesh.bounds, axis=0).max())
+    return _incidence((mesh.vertices - origin) / size, mesh.faces) * size**2 / mesh.surface_area
+
+
+@kernel
+def _incidence(points: FloatArray, faces: IntArray) -> float:
+    """Integral of |n . x| / |x| over the triangles."""
+    total = 0.0
+    for f in range(len(faces)):
+        corners = row(points, faces[f, 0]), row(points, faces[f, 1]), row(points, faces[f, 2])
+        normal = cross(mixed(corners[1], 1.0, corners[0], -1.0), mixed(corners[2], 1.0, corners[0], -1.0))
+        doubled = length(normal)
+        if doubled == 0.0:
+            continue
+        normal = mixed(normal, 1.0 / doubled, normal, 0.0)
+        height = dot(normal, corners[0])
+        total += abs(height) * _potential(corners[0], corners[1], corners[2], normal, height)
+    return total
+
+
+@kernel
+def _potential(
+    a: tuple[float, float, float],
+    b: tuple[float, float, float],
+    c: tuple[float, float, float],
+    normal: tuple[float, float, float],
+    height: float,
+) -> float:
+    """Integral of 1 / |x| over a triangle with unit `normal` at the signed distance `height` of its plane."""
+    total = 0.0
+    for k in range(3):
+        start, end = (a, b) if k == 0 else ((b, c) if k == 1 else (c, a))
+        edge = mixed(end, 1.0, start, -1.0)
+        size = length(edge)
+        if size == 0.0:
+            continue
+        edge = mixed(edge, 1.0 / size, edge, 0.0)
+        outward = dot(start, cross(edge, normal))
+        before, behind = dot(start, edge), dot(end, edge)
+        far, near = length(end) + behind, length(start) + before
+        if before < 0.0 and behind < 0.0:
+            far, near = length(start) - before, length(end) - behind
+        if outward != 0.0 and near > 0.0 and far > 0.0:
+            total += outward * np.log(far / near)
+    volume = dot(a, cross(b, c))
+    la, lb, lc = length(a), length(b), length(c)
+    angle = 2.0 * np.arctan2(volume, la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb)
+    return float(total - height * angle)

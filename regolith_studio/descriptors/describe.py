@@ -3,8 +3,7 @@
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping
 from typing import Any
 
-from regolith_studio.descriptors.catalogue import CATALOGUE, DEFAULT_KEYS
-from regolith_studio.descriptors.shape_cache import ShapeCache
+from regolith_studio.descriptors.catalogue import CATALOGUE, DEFAULT_KEYS, ShapeCache
 from regolith_studio.geometry.convex_compound import ConvexCompound
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.mesh import Mesh

@@ -1,4 +1,4 @@
-"""Distributions of a descriptor over a sample, each particle counting once or by its volume.
+"""Distributions of a descriptor over a sample, each particle counting once or by its volume; classes of form.
 
 ``weighting="number"`` gives each particle the weight 1, ``"volume"`` its volume: a sieve weighs grains,
 a picture counts them, and the two differ much where sizes do.
@@ -6,6 +6,7 @@ a picture counts them, and the two differ much where sizes do.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from enum import StrEnum
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -120,3 +121,25 @@ def kolmogorov_smirnov_distance(one: Distribution, other: Distribution) -> float
     """Largest difference of the two ECDFs, 0 to 1."""
     places = np.union1d(one.values, other.values)
     return float(np.abs(one.ecdf(places) - other.ecdf(places)).max())
+
+
+THRESHOLD = 2 / 3
+"""Where Zingg drew both lines."""
+
+
+class ZinggClass(StrEnum):
+    """Form of a particle by its three diameters."""
+
+    EQUANT = "equant"
+    DISC = "disc"
+    ROD = "rod"
+    BLADE = "blade"
+
+
+def zingg_class(descriptors: Mapping[str, float]) -> ZinggClass:
+    """Class from the keys ``elongation`` (I/L) and ``flatness`` (S/I)."""
+    wide = descriptors["elongation"] >= THRESHOLD
+    thick = descriptors["flatness"] >= THRESHOLD
+    if wide:
+        return ZinggClass.EQUANT if thick else ZinggClass.DISC
+    return ZinggClass.ROD if thick else ZinggClass.BLADE

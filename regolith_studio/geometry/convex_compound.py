@@ -12,9 +12,8 @@ from numpy.typing import ArrayLike
 from regolith_studio.errors import GeometryError
 from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
-from regolith_studio.geometry.merge_vertices import merged_vertices
 from regolith_studio.geometry.mesh import Mesh
-from regolith_studio.geometry.topology import Connectivity
+from regolith_studio.geometry.topology import Connectivity, merged_vertices
 
 LEDGE = 1e-7
 """Edges of the union shorter than this share of its size are collapsed: parts that touch overlap by less."""

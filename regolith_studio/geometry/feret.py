@@ -1,15 +1,16 @@
 """Feret diameters of a convex solid: its largest and smallest width between parallel tangent planes."""
 
+from typing import Any
+
 import numpy as np
+from scipy.spatial import cKDTree
 
 from regolith_studio.errors import GeometryError
 from regolith_studio.geometry.arrays import FloatArray, IntArray
-from regolith_studio.geometry.kernels import kernel_noalloc
-from regolith_studio.geometry.longest_chord import longest_chord
+from regolith_studio.geometry.kernels import inline_kernel, kernel_noalloc
 from regolith_studio.geometry.mesh import Mesh
-from regolith_studio.geometry.minimum_box.extents import extreme_vertices_of_each
-from regolith_studio.geometry.minimum_box.hull_topology import facets_of_hull
-from regolith_studio.geometry.vectors import along, cross, dot, length, mixed, row
+from regolith_studio.geometry.minimum_box.hull_topology import extreme_vertices_of_each, facets_of_hull
+from regolith_studio.geometry.vectors import Vector, along, cross, dot, length, mixed, row
 
 PARALLEL = 1e-8
 """Sine of the angle between edges below which the planes through both are those through a face."""
@@ -76,3 +77,140 @@ def _width_between(start: FloatArray, way: FloatArray, sides: FloatArray, i: int
     if turn * (along(sides[j], 0, normal) + along(sides[j], 1, normal)) > 0.0:
         return np.inf
     return turn * dot(mixed(row(start, i), 1.0, row(start, j), -1.0), normal) / size
+
+
+LEAF = 24
+"""Points in a cell that is not divided."""
+DEPTH = 4096
+"""Pairs of cells that may wait: many times the square of the depth of a tree that fits into memory."""
+ENLARGED = 1e-12
+"""By how much a bound is enlarged, as a share of it, so that rounding hides no chord."""
+
+
+def longest_chord(points: FloatArray) -> float:
+    """Largest distance between two points.
+
+    A search through all pairs takes the square of the number of points: 80 s for 160,000 on an ellipsoid.
+    Here cells of a tree are compared in pairs from the root on, and only pairs that may hold a longer chord
+    than the longest so far are divided. A cell is bounded by its radius, and by its height along the
+    direction in which it lies, which is small on a surface that faces that way.
+
+    Parameters
+    ----------
+    points
+        Shape (n, 3), about the origin, which lies among them.
+    """
+    order, cells = _tree(points)
+    ordered = np.ascontiguousarray(points[order])
+    bounds = np.zeros((len(cells), 8))
+    _fill_bounds(ordered, cells, bounds)
+    return _longest(ordered, cells, bounds, np.empty((DEPTH, 2), dtype=np.int64))
+
+
+def _tree(points: FloatArray) -> tuple[IntArray, IntArray]:
+    """Order of the points, and the cells: first point, one after the last, and both halves or -1."""
+    tree = cKDTree(points, leafsize=LEAF)
+    cells: list[tuple[int, int, int, int]] = [(0, 0, -1, -1)]
+    waiting: list[tuple[Any, int]] = [(tree.tree, 0)]
+    while waiting:
+        node, place = waiting.pop()
+        if node.split_dim < 0:
+            cells[place] = node.start_idx, node.end_idx, -1, -1
+            continue
+        lesser = len(cells)
+        cells += [(0, 0, -1, -1)] * 2
+        cells[place] = node.start_idx, node.end_idx, lesser, lesser + 1
+        waiting += [(node.lesser, lesser), (node.greater, lesser + 1)]
+    return np.asarray(tree.indices, dtype=np.int64), np.array(cells, dtype=np.int64)
+
+
+@kernel_noalloc
+def _fill_bounds(points: FloatArray, cells: IntArray, bounds: FloatArray) -> None:
+    """For each cell its centre, the direction in which it lies, its height along that, and its radius."""
+    for c in range(len(cells)):
+        first, end = cells[c, 0], cells[c, 1]
+        for i in range(first, end):
+            for k in range(3):
+                bounds[c, k] += points[i, k] / (end - first)
+        away = np.sqrt(bounds[c, 0] ** 2 + bounds[c, 1] ** 2 + bounds[c, 2] ** 2)
+        for k in range(3):
+            bounds[c, 3 + k] = bounds[c, k] / away if away > 0.0 else 0.0
+        for i in range(first, end):
+            offset = mixed(row(points, i), 1.0, row(bounds, c), -1.0)
+            height = abs(offset[0] * bounds[c, 3] + offset[1] * bounds[c, 4] + offset[2] * bounds[c, 5])
+            bounds[c, 6] = max(bounds[c, 6], height)
+            bounds[c, 7] = max(bounds[c, 7], length(offset))
+
+
+@inline_kernel
+def _reach(bounds: FloatArray, c: int, direction: Vector) -> float:
+    """How far a cell reaches from its centre along a direction of length one."""
+    turn = abs(direction[0] * bounds[c, 3] + direction[1] * bounds[c, 4] + direction[2] * bounds[c, 5])
+    tilted = bounds[c, 6] * turn + bounds[c, 7] * np.sqrt(max(0.0, 1.0 - turn * turn))
+    return float(min(bounds[c, 7], tilted))
+
+
+@inline_kernel
+def _bound(bounds: FloatArray, a: int, b: int) -> float:
+    """Square of a distance that no two points of two cells exceed."""
+    between = mixed(row(bounds, a), 1.0, row(bounds, b), -1.0)
+    distance, radii = length(between), bounds[a, 7] + bounds[b, 7]
+    if distance == 0.0:
+        return float(radii * radii * (1.0 + ENLARGED))
+    direction = (between[0] / distance, between[1] / distance, between[2] / distance)
+    chord = distance + _reach(bounds, a, direction) + _reach(bounds, b, direction)
+    whole = distance + radii
+    return float(min(whole * whole, chord * chord + radii * radii) * (1.0 + ENLARGED))
+
+
+@kernel_noalloc
+def _longest(points: FloatArray, cells: IntArray, bounds: FloatArray, waiting: IntArray) -> float:
+    """Largest distance between points of one cell or of two, from the root on."""
+    longest = _first_guess(points)
+    n_waiting, waiting[0, 0], waiting[0, 1] = 1, 0, 0
+    while n_waiting:
+        n_waiting -= 1
+        a, b = waiting[n_waiting, 0], waiting[n_waiting, 1]
+        if _bound(bounds, a, b) <= longest:
+            continue
+        if cells[a, 2] < 0 and cells[b, 2] < 0:
+            longest = max(longest, _longest_between(points, cells, a, b))
+            continue
+        if cells[b, 2] < 0 or (cells[a, 2] >= 0 and bounds[a, 7] >= bounds[b, 7]):
+            divided, other = a, b
+        else:
+            divided, other = b, a
+        for half in range(2):
+            waiting[n_waiting, 0], waiting[n_waiting, 1] = cells[divided, 2 + half], other
+            if a == b:
+                waiting[n_waiting, 1] = cells[divided, 2 + half]
+            n_waiting += 1
+        if a == b:
+            waiting[n_waiting, 0], waiting[n_waiting, 1] = cells[a, 2], cells[a, 3]
+            n_waiting += 1
+    return float(np.sqrt(longest))
+
+
+@inline_kernel
+def _longest_between(points: FloatArray, cells: IntArray, a: int, b: int) -> float:
+    """Square of the largest distance between points of two leaves."""
+    longest = 0.0
+    for i in range(cells[a, 0], cells[a, 1]):
+        for j in range(cells[b, 0], cells[b, 1]):
+            chord = mixed(row(points, i), 1.0, row(points, j), -1.0)
+            longest = max(longest, dot(chord, chord))
+    return longest
+
+
+@inline_kernel
+def _first_guess(points: FloatArray) -> float:
+    """Square of the distance of a point from the farthest one, taken from one to the next a few times."""
+    longest, start = 0.0, 0
+    for _ in range(4):
+        farthest = start
+        for i in range(len(points)):
+            chord = mixed(row(points, i), 1.0, row(points, start), -1.0)
+            if dot(chord, chord) > longest:
+                longest, farthest = dot(chord, chord), i
+        start = farthest
+    return longest

@@ -12,7 +12,6 @@ from numpy.typing import ArrayLike
 
 from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray
 from regolith_studio.geometry.kernels import kernel
-from regolith_studio.geometry.merge_vertices import merged_vertices
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.self_intersection import count_self_intersections, crossing_pairs
 from regolith_studio.geometry.topology import (
@@ -20,6 +19,7 @@ from regolith_studio.geometry.topology import (
     EdgeTable,
     edge_table,
     find_bodies,
+    merged_vertices,
     neighbours,
     pinched_corners,
 )

@@ -14,10 +14,9 @@ from scipy.sparse.csgraph import connected_components
 from regolith_studio.errors import GeometryError
 from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray
 from regolith_studio.geometry.hole_filling import fill_holes, require_closed_volume
-from regolith_studio.geometry.merge_vertices import merged_vertices
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.mesh_health import MeshHealth, body_volumes, inspect, unit_size
-from regolith_studio.geometry.topology import EdgeTable, edge_table, find_bodies, neighbours
+from regolith_studio.geometry.topology import EdgeTable, edge_table, find_bodies, merged_vertices, neighbours
 from regolith_studio.messages import N_, Message, Number, count_message
 
 MIN_ROUNDS = 10

@@ -12,7 +12,7 @@ from scipy.spatial.distance import cdist
 
 from regolith_studio.errors import GeometryError
 from regolith_studio.geometry.arrays import FloatArray, IntArray
-from regolith_studio.geometry.longest_chord import longest_chord
+from regolith_studio.geometry.feret import longest_chord
 from regolith_studio.geometry.mesh import Mesh
 
 ROUNDING = 1e-12

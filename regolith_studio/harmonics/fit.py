@@ -20,9 +20,13 @@ from regolith_studio.harmonics.radius_function import (
     require_solid,
     sample_radius,
 )
-from regolith_studio.harmonics.star_point import STAR_POINT_RULES, centre_of_mass, least_hidden_volume
+from regolith_studio.harmonics.star_point import (
+    STAR_POINT_RULES,
+    centre_of_mass,
+    hidden_surface_share,
+    least_hidden_volume,
+)
 from regolith_studio.harmonics.transform import SAMPLING_DEGREE, RayGrid, analyse, band_limited, ray_grid
-from regolith_studio.harmonics.visibility import hidden_surface_share
 from regolith_studio.messages import N_, Message, Number
 
 HIDDEN_TOLERANCE = 0.01

@@ -94,3 +94,9 @@ def cut_name(name: str, n_bytes: int = MAX_NAME_BYTES) -> str:
 
 def _printable(name: str) -> str:
     return cut_name("".join(sign if sign.isprintable() else "_" for sign in name)) or "_"
+
+
+def natural_key(name: str) -> list[tuple[int, int, str]]:
+    """Sort key by which ``slice10`` comes after ``slice9``."""
+    parts = re.split(r"(\d+)", name)
+    return [(1, int(part), "") if part.isdigit() and part.isascii() else (0, 0, part) for part in parts]

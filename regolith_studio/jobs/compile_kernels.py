@@ -94,8 +94,8 @@ def run_task(name: str) -> None:
     from regolith_studio.geometry.mesh_health import inspect
     from regolith_studio.geometry.sphere_points import icosphere
     from regolith_studio.harmonics.fit import fit_harmonics
+    from regolith_studio.harmonics.star_point import star_point_visibility
     from regolith_studio.harmonics.surface import gallery, reconstruct
-    from regolith_studio.harmonics.visibility import star_point_visibility
     from regolith_studio.readers.particles import sample_particles
 
     sphere = icosphere(2)
@@ -155,9 +155,9 @@ def _extract_two_balls() -> None:
 
 
 def _choose_medoids() -> None:
-    from regolith_studio.dataset.k_medoids import k_medoids
+    from regolith_studio.dataset.representatives import medoid_series
 
-    k_medoids(np.arange(12.0).reshape(6, 2) ** 2, 2)
+    next(medoid_series(np.arange(12.0).reshape(6, 2) ** 2, (2,)))
 
 
 _PAGES = {"model": _draw_particles, "scan": _extract_two_balls, "representatives": _choose_medoids}

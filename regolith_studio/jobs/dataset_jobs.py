@@ -25,9 +25,8 @@ from regolith_studio.dataset.streaming import check_count
 from regolith_studio.dataset.validation import validate_dataset
 from regolith_studio.errors import DatasetError, InputError
 from regolith_studio.geometry.particle import Particle
-from regolith_studio.harmonics.coefficients import ShCoefficients
+from regolith_studio.harmonics.coefficients import ShCoefficients, sample_spectrum
 from regolith_studio.harmonics.fit_options import DEFAULT_FIT_OPTIONS, FitOptions
-from regolith_studio.harmonics.spectrum import sample_spectrum
 from regolith_studio.jobs.coarsening_jobs import CoarsenedParticle, CoarseningRequest, coarsen_sample
 from regolith_studio.jobs.events import Partial, Progress, Started, Step, Steps
 from regolith_studio.jobs.executor import Executor

@@ -18,8 +18,8 @@ from regolith_studio.geometry.particle import Particle, defect_triangles
 from regolith_studio.harmonics.coefficients import checked_degree
 from regolith_studio.harmonics.fit import HarmonicFit
 from regolith_studio.harmonics.fit_options import DEFAULT_FIT_OPTIONS, FIT_DEGREE, FitOptions
+from regolith_studio.harmonics.star_point import StarPointVisibility, hidden_faces, star_point_visibility
 from regolith_studio.harmonics.surface import reconstruct
-from regolith_studio.harmonics.visibility import StarPointVisibility, hidden_faces, star_point_visibility
 from regolith_studio.jobs.compile_kernels import compile_first
 from regolith_studio.jobs.events import Failed, Job, Partial, Progress, Started, Steps, result_of
 from regolith_studio.jobs.executor import Executor, open_executor, value_of

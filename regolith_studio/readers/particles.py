@@ -11,13 +11,12 @@ from pathlib import Path
 
 from regolith_studio.errors import FileError, GeometryError, MissingRequirement
 from regolith_studio.geometry import repair as mesh_repair
-from regolith_studio.geometry.merge_vertices import merged_vertices
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.mesh_health import inspect
 from regolith_studio.geometry.particle import Particle, Source
+from regolith_studio.geometry.topology import merged_vertices
 from regolith_studio.io.atomic import check_listed, listed_hashes
-from regolith_studio.io.file_names import file_stem, name_key, unique_name
-from regolith_studio.io.natural_order import natural_key
+from regolith_studio.io.file_names import file_stem, name_key, natural_key, unique_name
 from regolith_studio.io.tables import read_csv
 from regolith_studio.messages import N_, count_message
 from regolith_studio.readers.coefficient_tables import (

@@ -17,7 +17,7 @@ from regolith_studio.harmonics.fit import HarmonicFit
 from regolith_studio.harmonics.sphere_grid import sphere_grid
 from regolith_studio.harmonics.surface import radii
 from regolith_studio.io.atomic import check_listed, listed_hashes
-from regolith_studio.io.json_arrays import arrays_from
+from regolith_studio.io.own_files import arrays_from
 from regolith_studio.readers.error_messages import lower_first, message_about, printable
 from regolith_studio.readers.file_bytes import read_bytes
 from regolith_studio.readers.units import unit_factor

@@ -7,8 +7,8 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from regolith_studio.dataset.exporters.mujoco import MjcfShape, mjcf_model
-from regolith_studio.dataset.packing import PackedParticles
 from regolith_studio.dataset.parameters import ContactParameters, LiftingCylinderTest
+from regolith_studio.dataset.sampling import PackedParticles
 from regolith_studio.dem.run_io import RunSummary, read_shapes
 from regolith_studio.dem.snapshot import ParticleState
 from regolith_studio.errors import FileError

@@ -15,7 +15,7 @@ from regolith_studio.coarsening.coarsen import (
 from regolith_studio.coarsening.settings import DEFAULT_PRESET, CoarseningSettings
 from regolith_studio.coarsening.stopping_criteria import check_limit
 from regolith_studio.coarsening.weights import LossWeights
-from regolith_studio.descriptors.shape_cache import BOX_METRICS
+from regolith_studio.descriptors.catalogue import BOX_METRICS
 from regolith_studio.errors import InputError
 from regolith_studio.harmonics.fit_options import FitOptions, FitSurfaceSettings
 from regolith_studio.jobs.coarsening_jobs import CoarseningRequest

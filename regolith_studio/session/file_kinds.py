@@ -8,7 +8,7 @@ from pathlib import Path
 from regolith_studio.errors import InputError
 from regolith_studio.readers.coefficient_tables import TABLE_SUFFIXES, TEXT_SUFFIXES
 from regolith_studio.readers.formats import mesh_suffixes
-from regolith_studio.readers.voxels.folders import dicom_names, is_zarr
+from regolith_studio.readers.voxels.slice_series import dicom_names, is_zarr
 from regolith_studio.session.project import SUFFIX
 
 _SNIFFED = 200_000

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from regolith_studio.descriptors.describe import Descriptors
     from regolith_studio.geometry.mesh_health import MeshHealth
     from regolith_studio.harmonics.fit import HarmonicFit
-    from regolith_studio.harmonics.visibility import StarPointVisibility
+    from regolith_studio.harmonics.star_point import StarPointVisibility
     from regolith_studio.jobs.coarsening_jobs import ParticleComparison
     from regolith_studio.session.provenance import ParticleRef
     from regolith_studio.studies.coarsening import CoarseningStudy

@@ -6,8 +6,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 
 from regolith_studio.descriptors.catalogue import CATALOGUE
-from regolith_studio.descriptors.distributions import distribution
-from regolith_studio.descriptors.zingg import zingg_class
+from regolith_studio.descriptors.distributions import distribution, zingg_class
 from regolith_studio.errors import InputError
 from regolith_studio.imaging.extraction import is_remark
 from regolith_studio.io.tables import Column, Table

@@ -15,7 +15,7 @@ from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.export import ExportOptions, write_export
 from regolith_studio.dataset.exporters import EXPORTERS
 from regolith_studio.dataset.multisphere import fit_spheres, sphere_fit_errors
-from regolith_studio.dataset.packing import fitted_cylinder, pack_on_lattice
+from regolith_studio.dataset.sampling import fitted_cylinder, pack_on_lattice
 from regolith_studio.errors import DatasetError
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.jobs.dataset_jobs import export_dataset_folder

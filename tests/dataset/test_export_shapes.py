@@ -26,8 +26,8 @@ from regolith_studio.dataset.multisphere import (
     sphere_masses,
     union_moments,
 )
-from regolith_studio.dataset.packing import pack_on_lattice
 from regolith_studio.dataset.rounded_polyhedra import rounded
+from regolith_studio.dataset.sampling import pack_on_lattice
 from regolith_studio.dataset.size_distributions import (
     DiscreteSizeDistribution,
     LogNormalSizeDistribution,

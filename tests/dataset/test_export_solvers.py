@@ -14,7 +14,7 @@ from regolith_studio.dataset.build import build_dataset
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.export import ExportOptions, write_export
 from regolith_studio.dataset.exporters import EXPORTERS
-from regolith_studio.dataset.packing import fitted_cylinder, pack_on_lattice
+from regolith_studio.dataset.sampling import fitted_cylinder, pack_on_lattice
 from regolith_studio.dataset.size_distributions import PAPER_CLASSES_UM, DiscreteSizeDistribution
 from regolith_studio.errors import DatasetError, InputError
 from regolith_studio.geometry.particle import Particle

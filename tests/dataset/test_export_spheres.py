@@ -16,7 +16,7 @@ from regolith_studio.dataset.build import build_dataset
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.export import NOTES, ExportOptions, write_export
 from regolith_studio.dataset.exporters import EXPORTERS
-from regolith_studio.dataset.packing import pack_on_lattice
+from regolith_studio.dataset.sampling import pack_on_lattice
 from regolith_studio.errors import DatasetError
 from tests.tolerance import relative
 

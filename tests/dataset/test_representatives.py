@@ -1,15 +1,18 @@
 """Representatives of populations: shares, sizes and quality."""
 
 import csv
+from itertools import combinations
 
 import numpy as np
 import pytest
+from scipy.spatial.distance import cdist
 from scipy.stats import norm, wasserstein_distance
 
 from regolith_studio.dataset.build import build_dataset
 from regolith_studio.dataset.quality import polyhedra_errors, representation_of
 from regolith_studio.dataset.representatives import (
     choose_representatives,
+    medoid_series,
     representation_error,
     sampling_noise,
     shape_features,
@@ -99,13 +102,14 @@ def test_that_a_bigger_population_is_nearer_to_its_material() -> None:
         assert noise < 0.1
 
 
-def test_that_the_noise_of_normal_values_is_that_of_theory() -> None:
+def test_that_the_noise_of_normal_values_is_that_of_theory(monkeypatch) -> None:
     """800 normal values are as far from the normal law as other 800 are."""
     generator = np.random.default_rng(0)
     rows = [row | {"aspect_ratio": 10 + generator.standard_normal()} for row in population(800)]
     law = norm.ppf((np.arange(20_000) + 0.5) / 20_000)
     draws = [wasserstein_distance(generator.standard_normal(800), law) for _ in range(200)]
-    assert sampling_noise(rows, repeats=200)["aspect_ratio"] == pytest.approx(np.mean(draws), rel=0.2)
+    monkeypatch.setattr("regolith_studio.dataset.representatives.HALVINGS", 200)
+    assert sampling_noise(rows)["aspect_ratio"] == pytest.approx(np.mean(draws), rel=0.2)
 
 
 def test_that_size_separates_classes_when_it_is_asked_to() -> None:
@@ -169,3 +173,75 @@ def test_that_errors_of_the_written_shapes_are_those_of_their_polyhedra_and_not_
     diameters = np.cbrt(6 / np.pi * np.array([row["volume"] for row in rows]))
     expected = wasserstein_distance(lengths, scale * diameters) / lengths.std()
     assert found["min_diameter"] == pytest.approx(expected, rel=0.03)
+
+
+def cost(points: np.ndarray, chosen, weights=None) -> float:
+    nearest = cdist(points, points[list(chosen)]).min(axis=1)
+    return float(nearest.sum() if weights is None else nearest @ weights)
+
+
+def k_medoids(points: np.ndarray, k: int, *weights: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    return next(medoid_series(points, (k,), *weights))
+
+
+@pytest.mark.parametrize("k", [1, 2, 3])
+@pytest.mark.parametrize("seed", range(4))
+def test_that_the_choice_is_within_two_per_cent_of_the_best_of_all(k: int, seed: int) -> None:
+    generator = np.random.default_rng(seed)
+    points, weights = generator.standard_normal((25, 2)), generator.uniform(0.5, 2.0, 25)
+    chosen, _ = k_medoids(points, k, weights)
+    best = min(cost(points, group, weights) for group in combinations(range(25), k))
+    assert cost(points, chosen, weights) <= best * (1.02 if k > 1 else 1 + 1e-12)
+
+
+def test_that_separate_clusters_get_one_medoid_each() -> None:
+    generator = np.random.default_rng(0)
+    centres = np.array([[0, 0], [10, 0], [0, 10], [10, 10]])
+    points = np.concatenate([centre + 0.5 * generator.standard_normal((30, 2)) for centre in centres])
+    chosen, labels = k_medoids(points, 4)
+    assert sorted(chosen // 30) == [0, 1, 2, 3]
+    assert all(len(set(labels[30 * c : 30 * c + 30])) == 1 for c in range(4))
+
+
+def test_that_every_point_belongs_to_its_nearest_medoid_and_medoids_to_themselves() -> None:
+    points = np.random.default_rng(1).standard_normal((200, 3))
+    chosen, labels = k_medoids(points, 12)
+    assert np.array_equal(labels[chosen], np.arange(12))
+    assert np.array_equal(labels, cdist(points, points[chosen]).argmin(axis=1))
+
+
+def test_that_no_single_swap_improves_the_choice() -> None:
+    points = np.random.default_rng(2).standard_normal((40, 2))
+    chosen, _ = k_medoids(points, 5)
+    total = cost(points, chosen)
+    for out in range(5):
+        for new in range(40):
+            assert cost(points, [*np.delete(chosen, out), new]) >= total - 1e-9
+
+
+def test_that_heavy_points_attract_the_medoid() -> None:
+    points = np.array([[0.0], [1.0], [10.0]])
+    assert k_medoids(points, 1)[0].tolist() == [1]
+    assert k_medoids(points, 1, np.array([1.0, 1.0, 5.0]))[0].tolist() == [2]
+
+
+def test_that_all_points_can_be_chosen_and_twins_keep_their_own_class() -> None:
+    points = np.zeros((4, 2))
+    chosen, labels = k_medoids(points, 4)
+    assert chosen.tolist() == labels.tolist() == [0, 1, 2, 3]
+
+
+def test_that_large_populations_are_searched_on_a_subset(monkeypatch) -> None:
+    monkeypatch.setattr("regolith_studio.dataset.representatives.MAX_TABLE_SIZE", 100)
+    points = np.random.default_rng(3).standard_normal((1000, 2))
+    chosen, labels = k_medoids(points, 5)
+    again, _ = k_medoids(points, 5)
+    assert np.array_equal(chosen, again)
+    assert len(labels) == 1000
+    assert cost(points, chosen) < 1.3 * cost(points, k_medoids(points[:1000], 5)[0])
+
+
+@pytest.mark.parametrize("k", [0, 4])
+def test_that_an_impossible_number_is_refused(k: int) -> None:
+    with pytest.raises(InputError, match="Between 1 and 3"):
+        k_medoids(np.zeros((3, 2)), k)

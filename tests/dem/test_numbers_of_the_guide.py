@@ -10,8 +10,7 @@ import pytest
 
 from benchmarks.repose_intervals import ANGLES, line, measured
 from benchmarks.sliding_friction import box
-from regolith_studio.dataset.alignment import Frame
-from regolith_studio.dataset.dataset import Dataset, Representative
+from regolith_studio.dataset.dataset import Dataset, Frame, Representative
 from regolith_studio.dataset.export import ExportOptions
 from regolith_studio.dataset.multisphere import COUNTS
 from regolith_studio.dataset.parameters import ContactParameters, LiftingCylinderTest, ScriptTimes

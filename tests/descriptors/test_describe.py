@@ -5,9 +5,8 @@ import pickle
 import numpy as np
 import pytest
 
-from regolith_studio.descriptors.catalogue import CATALOGUE, DEFAULT_KEYS
+from regolith_studio.descriptors.catalogue import CATALOGUE, DEFAULT_KEYS, ShapeCache
 from regolith_studio.descriptors.describe import Descriptors, describe
-from regolith_studio.descriptors.shape_cache import ShapeCache
 from regolith_studio.errors import GeometryError
 from regolith_studio.geometry import ConvexPolyhedron, HalfSpaces, Mesh
 from tests.geometry.solids import cuboid, random_polyhedron, rough_stone

@@ -4,12 +4,15 @@ import numpy as np
 import pytest
 from scipy.stats import ks_2samp
 
+from regolith_studio.descriptors.describe import describe
 from regolith_studio.descriptors.distributions import (
     Distribution,
     distribution,
     kolmogorov_smirnov_distance,
     wasserstein_1,
+    zingg_class,
 )
+from tests.geometry.solids import cuboid
 
 SAMPLE = [
     {"volume": 8.0, "sphericity": 0.5},
@@ -84,3 +87,16 @@ def test_that_the_kolmogorov_smirnov_distance_of_equal_weights_is_that_of_scipy(
     one, other = rng.normal(size=40), rng.normal(0.5, 2.0, size=25)
     weighted = [Distribution(values, np.ones(len(values))) for values in (one, other)]
     assert kolmogorov_smirnov_distance(*weighted) == pytest.approx(ks_2samp(one, other).statistic)
+
+
+@pytest.mark.parametrize(
+    ("edges", "form"),
+    [
+        ((1.0, 1.0, 1.0), "equant"),
+        ((3.0, 3.0, 1.0), "disc"),
+        ((3.0, 1.0, 1.0), "rod"),
+        ((9.0, 3.0, 1.0), "blade"),
+    ],
+)
+def test_that_a_cuboid_falls_in_its_class(edges: tuple[float, float, float], form: str) -> None:
+    assert zingg_class(describe(cuboid(*edges))) == form

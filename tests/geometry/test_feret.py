@@ -5,8 +5,7 @@ import pytest
 from scipy.optimize import minimize
 from scipy.spatial.distance import pdist
 
-from regolith_studio.geometry.feret import feret_max, feret_min
-from regolith_studio.geometry.longest_chord import longest_chord
+from regolith_studio.geometry.feret import feret_max, feret_min, longest_chord
 from regolith_studio.geometry.sphere_points import fibonacci_directions, icosphere
 from tests.geometry.solids import cuboid, random_polyhedron, rotation, rough_stone, tetrahedron
 

@@ -9,11 +9,10 @@ from scipy.ndimage import generate_binary_structure, label
 
 from regolith_studio.errors import GeometryError
 from regolith_studio.geometry.hole_filling import fill_holes, hole_boundaries, least_area_triangles
-from regolith_studio.geometry.merge_vertices import merged_vertices
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.repair import repair, wedge_neighbours
 from regolith_studio.geometry.sphere_points import icosphere
-from regolith_studio.geometry.topology import edge_table, neighbours
+from regolith_studio.geometry.topology import edge_table, merged_vertices, neighbours
 from tests.filling import filled
 
 CORNERS = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], dtype=float)

@@ -178,7 +178,7 @@ def test_that_chunks_too_large_for_the_memory_are_refused(path) -> None:
 
 def test_that_slabs_end_where_chunks_do(path, monkeypatch) -> None:
     """A chunk is unpacked once if no slab ends inside it."""
-    from regolith_studio.readers.volumes import slabs
+    from regolith_studio.readers.volumes import read as slabs
 
     with h5py.File(path, "w") as file:
         file.create_dataset("data", data=SLICES, chunks=(4, 11, 13), compression="gzip")

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from regolith_studio.errors import FileError, GeometryError
-from regolith_studio.geometry.merge_vertices import merged_vertices
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.repair import repair
+from regolith_studio.geometry.topology import merged_vertices
 from regolith_studio.readers.sandbox.tasks import parse_mesh
 
 NAMES = [

@@ -15,7 +15,7 @@ from regolith_studio.errors import FileError
 from regolith_studio.jobs.extraction_jobs import volume_sha256
 from regolith_studio.readers.sandbox.parent import Sandbox
 from regolith_studio.readers.volume_formats.ome_zarr import FORMAT
-from regolith_studio.readers.volumes import slabs
+from regolith_studio.readers.volumes import read as slabs
 from regolith_studio.readers.volumes.files import volume_files
 from regolith_studio.readers.volumes.read import describe_volume, open_slabs, read_volume
 from regolith_studio.readers.voxels.header import VoxelHeader

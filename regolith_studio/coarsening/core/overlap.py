@@ -89,7 +89,7 @@ def add_shared_charges(
     Parameters
     ----------
     radius, plane
-        Where each ray leaves the polyhedron, as from :func:`regolith_studio.geometry.exits.exits`.
+        Where each ray leaves the polyhedron, as from :func:`regolith_studio.geometry.half_spaces.exits`.
     charges
         As in :mod:`regolith_studio.coarsening.core.polyhedron_measures`, shape (n, 4).
     """

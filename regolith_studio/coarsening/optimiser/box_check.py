@@ -10,18 +10,16 @@ import numpy as np
 
 from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray
 from regolith_studio.geometry.kernels import kernel_noalloc
-from regolith_studio.geometry.minimum_box.extents import (
+from regolith_studio.geometry.minimum_box.hull_topology import (
     BLOCK,
+    QUARTER_TURNS,
+    Facets,
     SpanTable,
     cell_directions,
     extreme_vertices,
+    fill_edges_that_may_bound,
     fill_extreme_vertices,
     n_cells,
-)
-from regolith_studio.geometry.minimum_box.hull_topology import (
-    QUARTER_TURNS,
-    Facets,
-    fill_edges_that_may_bound,
 )
 from regolith_studio.geometry.minimum_box.search import (
     FIRST_FACETS,

@@ -43,7 +43,7 @@ from regolith_studio.coarsening.optimiser.box_check import BoxMemory, box_memory
 from regolith_studio.coarsening.optimiser.followed_boxes import check_boxes
 from regolith_studio.coarsening.optimiser.multipliers import fill_multipliers, solve_in_place
 from regolith_studio.geometry.arrays import FloatArray, IntArray
-from regolith_studio.geometry.exits import exits
+from regolith_studio.geometry.half_spaces import exits
 from regolith_studio.geometry.kernels import kernel, kernel_noalloc
 
 LOCK = 100.0

@@ -6,7 +6,7 @@ import numpy as np
 
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.export import NOTES, Exporter, ExportOptions, shape_names
-from regolith_studio.dataset.packing import pack_on_lattice
+from regolith_studio.dataset.sampling import pack_on_lattice
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.convex_compound import Polyhedron
 from regolith_studio.io.glb import Z_UP_TO_Y_UP, MeshBuffer, glb_bytes

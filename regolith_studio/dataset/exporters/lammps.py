@@ -4,8 +4,8 @@ import numpy as np
 
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.export import NOTES, Exporter, ExportOptions, number_row, sizes_csv
-from regolith_studio.dataset.packing import PackedParticles, pack_on_lattice
 from regolith_studio.dataset.rounded_polyhedra import RoundedPolyhedron, rounded
+from regolith_studio.dataset.sampling import PackedParticles, pack_on_lattice
 from regolith_studio.errors import DatasetError
 from regolith_studio.messages import N_
 

@@ -5,7 +5,7 @@ import numpy as np
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.export import NOTES, Exporter, ExportOptions, number_row, shape_names, sizes_csv
 from regolith_studio.dataset.multisphere import fit_spheres_by, sphere_fit_errors
-from regolith_studio.dataset.packing import PackedParticles, pack_on_lattice
+from regolith_studio.dataset.sampling import PackedParticles, pack_on_lattice
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.messages import N_
 

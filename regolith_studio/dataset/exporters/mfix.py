@@ -6,7 +6,7 @@ from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.export import NOTES, Exporter, ExportOptions, shape_names, sizes_csv
 from regolith_studio.dataset.lifting_cylinder import MICROMETRE
 from regolith_studio.dataset.multisphere import bare_areas, fit_spheres_by, sphere_fit_errors
-from regolith_studio.dataset.packing import PackedParticles, pack_on_lattice
+from regolith_studio.dataset.sampling import PackedParticles, pack_on_lattice
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.convex_compound import Polyhedron
 from regolith_studio.io.tables import csv_bytes

@@ -8,8 +8,8 @@ import numpy as np
 
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.export import NOTES, Exporter, ExportOptions, number_row, shape_names, sizes_csv
-from regolith_studio.dataset.packing import PackedParticles, pack_on_lattice
 from regolith_studio.dataset.parameters import ContactParameters, LiftingCylinderTest
+from regolith_studio.dataset.sampling import PackedParticles, pack_on_lattice
 from regolith_studio.errors import DatasetError
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.mesh import Mesh

@@ -14,8 +14,7 @@ from regolith_studio.dataset.export import (
     sizes_csv,
 )
 from regolith_studio.dataset.lifting_cylinder import MICROMETRE
-from regolith_studio.dataset.packing import PackedParticles, fitted_cylinder, pack_on_lattice
-from regolith_studio.dataset.sampling import sample_dataset
+from regolith_studio.dataset.sampling import PackedParticles, fitted_cylinder, pack_on_lattice, sample_dataset
 from regolith_studio.errors import DatasetError
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.convex_compound import Polyhedron

@@ -30,20 +30,18 @@ from regolith_studio.geometry.minimum_box.edge_pair import (
     unit,
     value,
 )
-from regolith_studio.geometry.minimum_box.extents import (
-    SpanTable,
-    between,
-    extreme_vertices,
-    span_near,
-    span_table,
-)
 from regolith_studio.geometry.minimum_box.hull_topology import (
     Facets,
+    SpanTable,
     arcs_of,
+    between,
     edges_that_may_bound,
+    extreme_vertices,
     facet_excluded,
     facets_with_all_edges,
     min_third_extent,
+    span_near,
+    span_table,
 )
 from regolith_studio.geometry.vectors import Vector, along, cross, dot, length, mixed, row
 
@@ -352,7 +350,7 @@ def min_on_curve(
     points
         Vertices of the solid, shape (3, n).
     table
-        As from :func:`regolith_studio.geometry.minimum_box.extents.span_table`.
+        As from :func:`regolith_studio.geometry.minimum_box.hull_topology.span_table`.
     foot_a, foot_b
         A vertex of each edge.
     """

@@ -19,7 +19,6 @@ from regolith_studio.messages import N_, Message
 from regolith_studio.readers.error_messages import printable
 from regolith_studio.readers.units import in_one_unit
 from regolith_studio.readers.volume_formats import VolumeFormat
-from regolith_studio.readers.voxels.folders import is_zarr
 from regolith_studio.readers.voxels.header import (
     MAX_CACHED_BYTES,
     DatasetEntry,
@@ -30,6 +29,7 @@ from regolith_studio.readers.voxels.header import (
     three_dimensions,
     voxel_type,
 )
+from regolith_studio.readers.voxels.slice_series import is_zarr
 
 CODECS = frozenset(
     ("blosc", "bz2", "bytes", "crc32c", "delta", "gzip", "lz4", "lzma", "sharding_indexed", "shuffle",

@@ -4,12 +4,18 @@ import os
 from pathlib import Path
 
 from regolith_studio.errors import FileError
-from regolith_studio.io.natural_order import natural_key
+from regolith_studio.io.file_names import natural_key
 from regolith_studio.readers.error_messages import display_name, message_about
 from regolith_studio.readers.sandbox.parent import checked_size
 from regolith_studio.readers.volume_formats import VOLUME_FORMATS, volume_suffixes
-from regolith_studio.readers.voxels.folders import dicom_names, is_dicom, is_zarr, zarr_names
-from regolith_studio.readers.voxels.slice_series import number_ranges, slice_series
+from regolith_studio.readers.voxels.slice_series import (
+    dicom_names,
+    is_dicom,
+    is_zarr,
+    number_ranges,
+    slice_series,
+    zarr_names,
+)
 
 
 def volume_files(path: str | Path) -> tuple[Path, ...]:

@@ -9,21 +9,26 @@ from regolith_studio.descriptors.catalogue import CATALOGUE, LOSS_KEYS
 from regolith_studio.errors import GeometryError
 from regolith_studio.geometry.particle import Particle, Source
 from regolith_studio.harmonics import io as fit_io
+from regolith_studio.harmonics.coefficients import (
+    PowerSpectrum,
+    power_spectrum,
+    roughness_split,
+    sample_spectrum,
+)
 from regolith_studio.harmonics.fit import HarmonicFit
 from regolith_studio.harmonics.roundness import wadell_roundness
-from regolith_studio.harmonics.spectrum import PowerSpectrum, power_spectrum, roughness_split, sample_spectrum
 from regolith_studio.harmonics.surface import reconstruct
 from regolith_studio.io.atomic import staged_together, write_bytes, write_in_stage
 from regolith_studio.io.file_names import file_stem
-from regolith_studio.io.json_arrays import arrays_document
 from regolith_studio.io.json_text import json_bytes
+from regolith_studio.io.own_files import arrays_document
 from regolith_studio.io.stl import stl_bytes
 from regolith_studio.io.tables import Column, Table
 from regolith_studio.jobs.particle_jobs import MeasuredParticle
 
 SHARES = ("hidden_surface_share", "unrepresentable_volume_share")
 """Shares that no radius function represents, of
-:class:`~regolith_studio.harmonics.visibility.StarPointVisibility`."""
+:class:`~regolith_studio.harmonics.star_point.StarPointVisibility`."""
 NO_VISIBILITY = dict.fromkeys((*SHARES, "star_point", "star_point_rule"))
 """In place of ``StarPointVisibility.as_dict`` where a mesh has no inside."""
 

@@ -14,7 +14,7 @@ from regolith_studio.geometry.arrays import BoolArray, FloatArray
 from regolith_studio.geometry.convex_compound import ConvexCompound
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.oriented_box import minimum_volume_box
-from regolith_studio.harmonics.visibility import hidden_faces
+from regolith_studio.harmonics.star_point import hidden_faces
 from regolith_studio.jobs.events import Job
 from regolith_studio.messages import N_
 from regolith_studio.scene import facets, overlays, surfaces

@@ -21,7 +21,7 @@ from PySide6.QtWidgets import QAbstractItemView, QTableView
 
 from regolith_studio.coarsening.weights import JACCARD
 from regolith_studio.descriptors.catalogue import CATALOGUE, Descriptor
-from regolith_studio.io.natural_order import natural_key
+from regolith_studio.io.file_names import natural_key
 from regolith_studio.messages import N_
 from regolith_studio.session.results import ParticleEntry
 from regolith_studio.session.sample_table import Filter, form_of, has_weights, health_sentences, health_word

@@ -15,8 +15,7 @@ from regolith_studio.coarsening.core.polyhedron_measures import measure_polyhedr
 from regolith_studio.coarsening.core.rays import bundle_of, cast
 from regolith_studio.coarsening.target import Target
 from regolith_studio.geometry.arrays import FloatArray
-from regolith_studio.geometry.exits import exits
-from regolith_studio.geometry.half_spaces import HalfSpaces
+from regolith_studio.geometry.half_spaces import HalfSpaces, exits
 from regolith_studio.geometry.ray_casting import jaccard_distance, radial_hits
 from regolith_studio.geometry.sphere_points import fibonacci_directions, icosphere
 from tests.filling import filled

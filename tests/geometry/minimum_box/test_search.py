@@ -19,19 +19,17 @@ from regolith_studio.geometry.minimum_box.edge_pair import (
     numerator,
     value,
 )
-from regolith_studio.geometry.minimum_box.extents import (
-    extreme_vertices,
-    extreme_vertices_of_each,
-    span_near,
-    span_table,
-)
 from regolith_studio.geometry.minimum_box.hull_topology import (
     Facets,
     arcs_of,
+    extreme_vertices,
+    extreme_vertices_of_each,
     facet_excluded,
     facets_of_hull,
     facets_with_all_edges,
     min_third_extent,
+    span_near,
+    span_table,
 )
 from regolith_studio.geometry.minimum_box.search import empty_record, min_on_curve
 from regolith_studio.geometry.oriented_box import minimum_volume_box

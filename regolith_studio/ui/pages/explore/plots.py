@@ -24,7 +24,7 @@ from regolith_studio.coarsening.lower_bounds import bounds_in_force
 from regolith_studio.coarsening.weights import JACCARD
 from regolith_studio.descriptors.catalogue import CATALOGUE, LOSS_KEYS
 from regolith_studio.geometry.cross_section import CrossSection
-from regolith_studio.harmonics.spectrum import power_spectrum
+from regolith_studio.harmonics.coefficients import power_spectrum
 from regolith_studio.messages import N_
 from regolith_studio.scene.clipping import DIRECTIONS
 from regolith_studio.scene.shapes import LABELS, NAMES, PARTICLE

@@ -21,8 +21,7 @@ from PySide6.QtWidgets import (
 )
 
 from regolith_studio.descriptors.catalogue import CATALOGUE
-from regolith_studio.descriptors.distributions import WEIGHTINGS
-from regolith_studio.descriptors.zingg import THRESHOLD
+from regolith_studio.descriptors.distributions import THRESHOLD, WEIGHTINGS
 from regolith_studio.io.tables import Column, Table
 from regolith_studio.messages import N_
 from regolith_studio.scene.palette import DESCRIPTOR_COLOURS
