@@ -5,8 +5,8 @@ from dataclasses import dataclass, replace
 from importlib.metadata import PackageNotFoundError, version
 from typing import Protocol
 
-from regolith_studio.dataset.alignment import aligned
-from regolith_studio.dataset.dataset import Approximation, Dataset, Provenance, Representative
+from regolith_studio.dataset.dataset import Dataset, Provenance, Representative, aligned
+from regolith_studio.dataset.schema import Approximation
 from regolith_studio.dataset.size_distributions import (
     DiscreteSizeDistribution,
     SizeDistribution,

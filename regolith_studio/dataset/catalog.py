@@ -9,7 +9,7 @@ from typing import Any
 from regolith_studio.dataset.export import FORMAT as EXPORT_FORMAT
 from regolith_studio.dataset.export import RECORD
 from regolith_studio.dataset.folder_io import DOCUMENT, dataset_hash, read_document
-from regolith_studio.dataset.schema import CoarseningRecordModel, DatasetDocument
+from regolith_studio.dataset.schema import CoarseningRecord, DatasetDocument
 from regolith_studio.dataset.serialization import shape_of
 from regolith_studio.errors import DatasetError, RegolithError, os_error_reason
 from regolith_studio.geometry.mesh import Mesh
@@ -188,7 +188,7 @@ def _record(path: Path, format: str) -> dict[str, Any]:
     return content
 
 
-def _resolution(coarsening: CoarseningRecordModel) -> str:
+def _resolution(coarsening: CoarseningRecord) -> str:
     if coarsening.max_error is None:
         return f"{coarsening.n_facets} facets"
     return f"errors below {100 * coarsening.max_error:g} %"

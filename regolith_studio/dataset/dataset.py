@@ -1,55 +1,129 @@
-"""The dataset of section 2.5 as a value: representative shapes P_i, class weights, size distributions."""
+"""The dataset of section 2.5 as a value: representative shapes P_i, class weights, size distributions.
+
+A shape has unit volume, its centroid at the origin, and its principal axes along x, y and z.
+"""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
 
-from regolith_studio.dataset.alignment import Frame
+from regolith_studio.dataset.schema import Approximation, CoarseningRecord, Representation
 from regolith_studio.dataset.size_distributions import (
     WEIGHT_TOLERANCE,
     SizeDistribution,
     Weighting,
     normalised_shares,
 )
-from regolith_studio.errors import DatasetError
-from regolith_studio.geometry.arrays import FloatArray
+from regolith_studio.errors import DatasetError, GeometryError
+from regolith_studio.geometry.arrays import FloatArray, locked_floats
 from regolith_studio.geometry.convex_compound import ConvexCompound, Polyhedron
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
+from regolith_studio.geometry.half_spaces import HalfSpaces
+from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Source
 
-SHAPE_TOLERANCE = 1e-9
-"""Tolerance of a shape's volume (1) and centroid (the origin)."""
 
-Setting = bool | int | float | str | None
-
-
-@dataclass(frozen=True)
-class Approximation:
-    """How a shape approximates its particle.
+@dataclass(frozen=True, eq=False)
+class Frame:
+    """Pose of a unit-volume shape in its particle: x_shape = rotation @ (x_particle - centroid) / scale.
 
     Parameters
     ----------
-    method
-        Key of the coarsening method.
-    n_facets_asked
-        Requested number of facets; the shape has the real one.
-    errors
-        Relative error of each descriptor of the loss (Eq. 8).
-    jaccard_distance
-        Eq. 7 (the paper's IoU): 0 same, 1 disjoint.
-    loss
-        Eq. 9.
-    reason
-        Why a request was not met, in one sentence, or ``None``.
+    rotation
+        Proper rotation, shape (3, 3); its rows are the shape's axes in the particle's frame.
+    centroid
+        Centre of mass of the polyhedron in the particle's frame, in micrometres, shape (3,).
+    scale
+        Cube root of the polyhedron's volume, in micrometres.
     """
 
-    method: str
-    n_facets_asked: int
-    errors: Mapping[str, float]
-    jaccard_distance: float
-    loss: float
-    reason: str | None = None
+    rotation: FloatArray
+    centroid: FloatArray
+    scale: float
+
+    def __post_init__(self) -> None:
+        rotation = locked_floats(self.rotation, (3, 3), "rotation")
+        proper = np.allclose(rotation @ rotation.T, np.eye(3), atol=1e-9) and np.linalg.det(rotation) > 0
+        if not proper or not self.scale > 0.0:
+            raise ValueError("a frame needs a proper rotation and a positive scale")
+        object.__setattr__(self, "rotation", rotation)
+        object.__setattr__(self, "centroid", locked_floats(self.centroid, (3,), "centroid"))
+
+
+def aligned(polyhedron: Polyhedron, centre: FloatArray | None = None) -> tuple[Polyhedron, Frame]:
+    """The polyhedron at unit volume about its centroid, longest axis along x, shortest along z; and its pose.
+
+    Parameters
+    ----------
+    polyhedron
+        About an origin in its interior, in micrometres; of a compound the union is aligned.
+    centre
+        Position of that origin in the particle's frame; (0, 0, 0) if not given.
+
+    Raises
+    ------
+    GeometryError
+        If the polyhedron encloses no volume.
+    """
+    if not polyhedron.volume > 0.0:
+        raise GeometryError("The polyhedron encloses no volume.")
+    scale = polyhedron.volume ** (1 / 3)
+    rotation = principal_axes(polyhedron.mesh)
+    moved = polyhedron.moved(shift=-polyhedron.centroid, rotation=rotation, scale=1.0 / scale)
+    origin = np.zeros(3) if centre is None else np.asarray(centre, dtype=np.float64)
+    frame = Frame(rotation, origin + polyhedron.centroid, scale)
+    if isinstance(moved, ConvexPolyhedron):
+        return rebuilt(moved.half_spaces), frame
+    return ConvexCompound(tuple(rebuilt(part.half_spaces) for part in moved.parts), moved.places), frame
+
+
+def rebuilt(half_spaces: HalfSpaces) -> ConvexPolyhedron:
+    """The polyhedron of half-spaces, with numbers that a second reconstruction does not change.
+
+    Normals are normalised until they no longer change, and redundant half-spaces are removed, so that a
+    shape read from a file is bit for bit the one that was written.
+    """
+    solid = ConvexPolyhedron.from_half_spaces(half_spaces)
+    # Normalising a unit vector may change its last bit; two or three times and it does not any more.
+    for _ in range(10):
+        again = ConvexPolyhedron.from_half_spaces(
+            HalfSpaces(solid.half_spaces.normals, solid.half_spaces.offsets)
+        )
+        if np.array_equal(again.half_spaces.normals, solid.half_spaces.normals):
+            return again
+        solid = again
+    return solid
+
+
+def principal_axes(mesh: Mesh) -> FloatArray:
+    """Rows: axes of minimum, intermediate and maximum moment of inertia, right-handed, shape (3, 3).
+
+    Sign: the third moment of the mass along the first two axes is positive; for a symmetric shape their
+    largest component is.
+    """
+    _, columns = np.linalg.eigh(mesh.inertia)
+    axes = columns.T
+    for axis in axes[:2]:
+        skew = _third_moment(mesh, axis)
+        # Of a symmetric shape the moment is rounding, whose sign differs from one processor to the next.
+        lean = skew if abs(skew) > 1e-9 * abs(mesh.volume) ** 2 else axis[np.abs(axis).argmax()]
+        axis *= np.sign(lean)
+    axes[2] = np.cross(axes[0], axes[1])
+    return np.asarray(axes)
+
+
+def _third_moment(mesh: Mesh, axis: FloatArray) -> float:
+    """Integral of <x - centroid, axis>^3 over the solid: signed tetrahedra about the centroid."""
+    corners = mesh.triangles - mesh.centroid
+    six_volumes = np.einsum("ij,ij->i", corners[:, 0], np.cross(corners[:, 1], corners[:, 2]))
+    a, b, c = (corners @ axis).T
+    homogeneous = (a + b + c) * (a * a + b * b + c * c) + a * b * c
+    return float(six_volumes @ homogeneous / 120)
+
+
+SHAPE_TOLERANCE = 1e-9
+"""Tolerance of a shape's volume (1) and centroid (the origin)."""
 
 
 @dataclass(frozen=True)
@@ -111,65 +185,6 @@ class Representative:
 
 
 @dataclass(frozen=True)
-class CoarseningRecord:
-    """Settings of the coarsening of all shapes.
-
-    Parameters
-    ----------
-    method, seed
-        Of the method, and of its random numbers.
-    n_facets
-        Requested; if `max_error` is given, the upper limit.
-    target
-        ``particle`` or ``fit``: which surface was approximated.
-    preset, weights
-        Name of the preset, if one was used, and the loss weights of Eq. 9.
-    settings
-        Of the method, by name.
-    max_error
-        If given, each shape has the minimum number of facets with all weighted relative errors below it.
-    """
-
-    method: str
-    n_facets: int
-    seed: int
-    target: str = "particle"
-    preset: str | None = None
-    weights: Mapping[str, float] = field(default_factory=dict)
-    settings: Mapping[str, Setting] = field(default_factory=dict)
-    max_error: float | None = None
-
-
-@dataclass(frozen=True)
-class Representation:
-    """How well a dataset reproduces the population that its representatives were chosen from.
-
-    Parameters
-    ----------
-    n_particles
-        Of the population.
-    errors
-        Of the shapes in the dataset: Wasserstein distance per descriptor, in standard deviations of the
-        population.
-    source_errors
-        The same of the particles that the shapes were made from.
-    sampling_noise
-        The same between the population and its material.
-    population
-        Quantiles of each descriptor of the population, at even shares.
-    deviations
-        Standard deviation of each descriptor of the population.
-    """
-
-    n_particles: int
-    errors: Mapping[str, float]
-    source_errors: Mapping[str, float]
-    sampling_noise: Mapping[str, float]
-    population: Mapping[str, tuple[float, ...]]
-    deviations: Mapping[str, float]
-
-
-@dataclass(frozen=True)
 class Provenance:
     """Origin of a dataset (the metadata of section 2.5).
 
@@ -185,7 +200,7 @@ class Provenance:
         Stochastic model of the shapes, or ``None`` for measured ones.
     l_max
         Highest degree of the spherical harmonics.
-    angular_power_spectrum
+    angular_power_spectrum_um2
         A_l for l = 0..l_max, in square micrometres: variance per order at degree l (real orthonormal
         harmonics).
     coarsening
@@ -201,7 +216,7 @@ class Provenance:
     seed: int | None = None
     model: str | None = None
     l_max: int | None = None
-    angular_power_spectrum: tuple[float, ...] | None = None
+    angular_power_spectrum_um2: tuple[float, ...] | None = None
     coarsening: CoarseningRecord | None = None
     representation: Representation | None = None
     software: Mapping[str, str] = field(default_factory=dict)

@@ -1,19 +1,42 @@
 """Read and write a dataset as a folder: ``dataset.json``, ``meshes/*.stl`` and a README (section 2.5).
 
-Sizes, links and foreign files are checked before anything is read.
+Sizes, links and foreign files are checked before anything is read. A dataset is written shape by shape, with
+one in memory at a time; each particle can be reduced to a :class:`StoredShape` earlier, in any process.
 """
 
 import hashlib
 import json
 import os
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
-from regolith_studio.dataset.dataset import Dataset
-from regolith_studio.dataset.schema import SCHEMA_VERSION, DatasetDocument
-from regolith_studio.dataset.serialization import dataset_of, document_text, mesh_files, parsed_document
-from regolith_studio.errors import DatasetError, SchemaVersionError, os_error_reason
-from regolith_studio.io.atomic import recover_folder, replace_folder
+from pydantic import ValidationError
+
+from regolith_studio.dataset.build import (
+    CoarsenedShape,
+    representative_of,
+    singleton_class,
+    software_versions,
+)
+from regolith_studio.dataset.dataset import Dataset, Provenance, Representative
+from regolith_studio.dataset.schema import SCHEMA_VERSION, DatasetDocument, RepresentativeRecord
+from regolith_studio.dataset.serialization import (
+    dataset_of,
+    head_document,
+    mesh_header,
+    mesh_path,
+    parsed_document,
+    record_of,
+    shape_bytes,
+)
+from regolith_studio.dataset.size_distributions import normalised_shares
+from regolith_studio.errors import DatasetError, InputError, SchemaVersionError, os_error_reason
+from regolith_studio.geometry.particle import Particle
+from regolith_studio.io.atomic import Content, recover_folder, replace_folder
+from regolith_studio.io.json_text import canonical_json
+from regolith_studio.io.stl import HEADER_SIZE
 
 DOCUMENT, README = "dataset.json", "README.txt"
 IGNORED_FILES = {".DS_Store", "Thumbs.db", "desktop.ini"}
@@ -106,45 +129,6 @@ def _read(path: Path, largest: int) -> bytes:
         raise DatasetError(f"{path} cannot be read: {os_error_reason(error)}.") from error
 
 
-def write_dataset(folder: Path | str, dataset: Dataset, *, overwrite: bool = True) -> Path:
-    """Write the dataset; the folder then holds nothing else, or is unchanged if an error occurs.
-
-    Parameters
-    ----------
-    folder
-        New, empty, or holding a dataset of this program and nothing else.
-    overwrite
-        Whether an existing dataset may be replaced.
-
-    Returns
-    -------
-    Path
-        The folder.
-
-    Raises
-    ------
-    DatasetError
-        If the folder holds anything else, or something cannot be written.
-    """
-    target = Path(folder).resolve()
-    files = dataset_files(dataset)
-    try:
-        recover_folder(target)
-        check_replaceable(target, overwrite)
-        replace_folder(target, files)
-    except OSError as error:
-        raise DatasetError(f"The dataset {target} cannot be written ({os_error_reason(error)}).") from error
-    return target
-
-
-def dataset_files(dataset: Dataset) -> dict[str, bytes]:
-    """Content of every file by its relative path; equal datasets give equal bytes."""
-    meshes = mesh_files(dataset)
-    texts = {DOCUMENT: document_text(dataset, meshes), README: readme_text(dataset)}
-    files = {name: content for own in meshes for name, content in own.items()}
-    return files | {name: text.encode("utf-8") for name, text in texts.items()}
-
-
 def read_dataset(folder: Path | str) -> Dataset:
     """Read a dataset folder: shapes from their exact half-spaces; hashes of the meshes are checked.
 
@@ -225,7 +209,194 @@ In Python:             import regolith_studio; regolith_studio.read_dataset(".")
 """.replace("{version}", str(SCHEMA_VERSION))
 
 
-def readme_text(dataset: Dataset) -> str:
-    """The text of the README.txt of a dataset."""
-    counted = "particles" if dataset.weighting == "number" else "volume, not particles"
-    return README_TEMPLATE.format(name=dataset.name, count=len(dataset), counted=counted)
+_PLACE = "representatives"
+_RECORD_BYTES, _FACET_BYTES = 1_150, 95
+"""Measured size of a particle and of each of its facets in ``dataset.json``."""
+
+
+@dataclass(frozen=True)
+class StoredShape:
+    """One representative as it is stored in a dataset.
+
+    Parameters
+    ----------
+    record
+        Its entry in ``dataset.json``, without its weight, and paths and hashes of its files.
+    meshes
+        Binary STL of the shape, then of each part of a compound.
+    """
+
+    record: Mapping[str, Any]
+    meshes: tuple[bytes, ...]
+
+
+def stored_shape(particle: Particle, coarsened: CoarsenedShape) -> StoredShape:
+    """The shape of a particle that represents only itself, aligned and at unit volume."""
+    return _stored(representative_of(particle.name, particle, coarsened, singleton_class(particle)))
+
+
+def _stored(representative: Representative) -> StoredShape:
+    return StoredShape(record_of(representative), shape_bytes(representative.shape, 0, 1))
+
+
+def check_count(count: int, n_facets: int) -> None:
+    """Check, before hours of work, that a dataset would not be too large to be read.
+
+    Raises
+    ------
+    InputError
+        If it would, with the maximum number of particles.
+    """
+    most = MAX_DOCUMENT_BYTES // (_RECORD_BYTES + _FACET_BYTES * n_facets)
+    if count > most:
+        raise InputError(
+            f"A dataset of {count:,} particles of {n_facets} facets is larger than can be read again; make "
+            f"several of at most {most:,}, or leave the dataset out."
+        )
+
+
+def write_dataset(folder: Path | str, dataset: Dataset, *, overwrite: bool = True) -> Path:
+    """Write the dataset; the folder then holds nothing else, or is unchanged if an error occurs.
+
+    Parameters
+    ----------
+    folder
+        New, empty, or holding a dataset of this program and nothing else.
+    overwrite
+        Whether an existing dataset may be replaced.
+
+    Returns
+    -------
+    Path
+        The folder.
+
+    Raises
+    ------
+    DatasetError
+        If the folder holds anything else, or something cannot be written.
+    """
+    return _write(folder, _files_of(dataset), overwrite)
+
+
+def dataset_files(dataset: Dataset) -> dict[str, bytes]:
+    """Content of every file by its relative path; equal datasets give equal bytes."""
+    return {
+        name: content if isinstance(content, bytes) else b"".join(content)
+        for name, content in _files_of(dataset)
+    }
+
+
+def write_stored(
+    folder: Path | str,
+    shapes: Callable[[], Iterable[StoredShape]],
+    count: int,
+    *,
+    name: str,
+    provenance: Provenance,
+) -> Path:
+    """Write a dataset in which each of `count` shapes has the same weight.
+
+    Parameters
+    ----------
+    shapes
+        Returns a new iterator over all shapes in order; their names must differ.
+
+    Raises
+    ------
+    DatasetError
+        If there is no shape, one violates the schema, the folder holds anything else than a dataset, or
+        something cannot be written.
+    """
+    if count < 1:
+        raise DatasetError("A dataset needs at least one particle.")
+    origin = provenance if provenance.software else replace(provenance, software=software_versions())
+    files = _files(shapes, normalised_shares([1.0] * count), head_document(name, "number", origin))
+    return _write(folder, files, overwrite=True)
+
+
+def _write(folder: Path | str, files: Iterable[tuple[str, Content]], overwrite: bool) -> Path:
+    target = Path(folder).resolve()
+    try:
+        recover_folder(target)
+        check_replaceable(target, overwrite)
+        replace_folder(target, files)
+    except OSError as error:
+        raise DatasetError(f"The dataset {target} cannot be written ({os_error_reason(error)}).") from error
+    return target
+
+
+def _files_of(dataset: Dataset) -> Iterator[tuple[str, Content]]:
+    shapes = [_stored(representative) for representative in dataset.representatives]
+    head = head_document(dataset.name, dataset.weighting, dataset.provenance)
+    return _files(lambda: shapes, dataset.weights.tolist(), head)
+
+
+def _files(
+    shapes: Callable[[], Iterable[StoredShape]], weights: Sequence[float], head: dict[str, Any]
+) -> Iterator[tuple[str, Content]]:
+    count = len(weights)
+    files: list[list[dict[str, Any]]] = []
+    for index, shape in enumerate(shapes()):
+        files.append([])
+        for part, mesh in enumerate(shape.meshes):
+            header = mesh_header(index, count, part).encode("ascii").ljust(HEADER_SIZE)
+            file, content = mesh_path(index, count, part), header + mesh[HEADER_SIZE:]
+            files[-1].append({"file": file, "sha256": hashlib.sha256(content).hexdigest()})
+            yield file, content
+    yield DOCUMENT, _document(_records(shapes(), weights, files), head)
+    counted = "particles" if head["weighting"] == "number" else "volume, not particles"
+    yield README, README_TEMPLATE.format(name=head["name"], count=count, counted=counted).encode("utf-8")
+
+
+def _records(
+    shapes: Iterable[StoredShape], weights: Sequence[float], files: list[list[dict[str, Any]]]
+) -> Iterator[dict[str, Any]]:
+    """The entries with weight, and with path and hash of each file."""
+    for shape, weight, (whole, *others) in zip(shapes, weights, files, strict=True):
+        record = {**shape.record, "weight": weight, "mesh": {**shape.record["mesh"], **whole}}
+        if compound := shape.record["compound"]:
+            pairs = zip(compound["parts"], others, strict=True)
+            parts = [{**part, "mesh": {**part["mesh"], **file}} for part, file in pairs]
+            record["compound"] = {**compound, "parts": parts}
+        yield record
+
+
+def _document(records: Iterable[dict[str, Any]], head: dict[str, Any]) -> Iterator[bytes]:
+    """``dataset.json`` piece by piece; the rest of the document is checked together with the first record."""
+    before, after = _strict_json(head | {_PLACE: ""}).split(f'\n  "{_PLACE}": ""')
+    yield f'{before}\n  "{_PLACE}": ['.encode()
+    size = 0
+    for index, record in enumerate(records):
+        if index == 0:
+            alone = head | {_PLACE: [{**record, "weight": 1.0}]}
+            parsed_document(_strict_json(alone), "The new dataset.json")
+        text = _checked_record(record).rstrip("\n").replace("\n", "\n    ")
+        piece = f"{',' if index else ''}\n    {text}".encode()
+        size += len(piece)
+        if size > MAX_DOCUMENT_BYTES:
+            raise DatasetError(
+                f"A dataset of more than {index:,} such particles is too large to be read; write "
+                "several, or choose representatives."
+            )
+        yield piece
+    yield f"\n  ]{after}".encode()
+
+
+def _checked_record(record: dict[str, Any]) -> str:
+    text = _strict_json(record)
+    try:
+        RepresentativeRecord.model_validate_json(text)
+    except ValidationError as error:
+        first = error.errors(include_url=False)[0]
+        place = ".".join(map(str, first["loc"]))
+        raise DatasetError(
+            f"The dataset cannot be written: {record['name']}, {place}: {first['msg']}."
+        ) from error
+    return text
+
+
+def _strict_json(content: dict[str, Any]) -> str:
+    try:
+        return canonical_json(content)
+    except ValueError as error:  # NaN or an infinity
+        raise DatasetError(f"The dataset cannot be written: {error}.") from error

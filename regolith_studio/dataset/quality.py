@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from regolith_studio.dataset.dataset import Dataset, Representation
+from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.representatives import (
     LENGTHS,
     RepresentativeSelection,
@@ -17,6 +17,7 @@ from regolith_studio.dataset.representatives import (
     representative_series,
     sampling_noise,
 )
+from regolith_studio.dataset.schema import Representation
 from regolith_studio.dataset.size_distributions import Weighting
 from regolith_studio.descriptors.describe import describe
 from regolith_studio.geometry.arrays import FloatArray

@@ -90,8 +90,11 @@ class FrameRecord(SchemaModel):
     scale_um: Annotated[float, Field(gt=0.0, description="Cube root of the polyhedron's volume.")]
 
 
-class ApproximationRecord(SchemaModel):
+class Approximation(SchemaModel):
     """How the shape approximates its particle."""
+
+    # A loss or an error may be infinite until the dataset is written, which then refuses it by name.
+    model_config = ConfigDict(allow_inf_nan=True)
 
     method: str
     n_facets_asked: int = Field(description="Requested number of facets.")
@@ -121,7 +124,7 @@ class RepresentativeRecord(SchemaModel):
     half_spaces: HalfSpacesRecord | None = Field(description="Of one convex polyhedron of unit volume.")
     compound: CompoundRecord | None = Field(description="Of a shape of several convex parts.")
     frame: FrameRecord
-    approximation: ApproximationRecord | None
+    approximation: Approximation | None
     source: SourceRecord | None
 
     @model_validator(mode="after")
@@ -137,7 +140,7 @@ class RepresentativeRecord(SchemaModel):
         return (self.mesh, *(part.mesh for part in parts))
 
 
-class CoarseningRecordModel(SchemaModel):
+class CoarseningRecord(SchemaModel):
     """Settings of the coarsening of all shapes."""
 
     method: str
@@ -153,7 +156,7 @@ class CoarseningRecordModel(SchemaModel):
     )
 
 
-class RepresentationRecord(SchemaModel):
+class Representation(SchemaModel):
     """How well the dataset reproduces the population that its representatives were chosen from."""
 
     n_particles: Annotated[int, Field(ge=1, description="Of the population.")]
@@ -186,8 +189,8 @@ class MetadataRecord(SchemaModel):
     angular_power_spectrum_um2: tuple[Annotated[float, Field(ge=0.0)], ...] | None = Field(
         description="A_l, l = 0..l_max, variance per order (real orthonormal, no Condon-Shortley phase)."
     )
-    coarsening: CoarseningRecordModel | None
-    representation: RepresentationRecord | None = Field(
+    coarsening: CoarseningRecord | None
+    representation: Representation | None = Field(
         description="Null if every particle represents only itself."
     )
     software: dict[str, str] = Field(description="Versions by package.")

@@ -1,21 +1,11 @@
 """Convert a dataset to ``dataset.json`` and back."""
 
-import hashlib
-from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 from pydantic import ValidationError
 
-from regolith_studio.dataset.alignment import Frame
-from regolith_studio.dataset.dataset import (
-    Approximation,
-    CoarseningRecord,
-    Dataset,
-    Provenance,
-    Representation,
-    Representative,
-)
+from regolith_studio.dataset.dataset import Dataset, Frame, Provenance, Representative
 from regolith_studio.dataset.schema import (
     FORMAT,
     SCHEMA_VERSION,
@@ -38,20 +28,8 @@ from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.half_spaces import HalfSpaces
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Source
-from regolith_studio.io.json_text import canonical_json, parse_strict_json
+from regolith_studio.io.json_text import parse_strict_json
 from regolith_studio.io.stl import stl_bytes
-
-
-def mesh_files(dataset: Dataset) -> list[dict[str, bytes]]:
-    """Relative path and content of the STL files of each representative, in order."""
-    count = len(dataset)
-    return [
-        {
-            mesh_path(index, count, part): content
-            for part, content in enumerate(shape_bytes(representative.shape, index, count))
-        }
-        for index, representative in enumerate(dataset.representatives)
-    ]
 
 
 def shape_bytes(shape: Polyhedron, index: int, count: int) -> tuple[bytes, ...]:
@@ -88,28 +66,7 @@ def _numbered(index: int, count: int) -> str:
     return f"{index:0{max(4, len(str(count - 1)))}d}"
 
 
-def document_text(dataset: Dataset, files: Sequence[Mapping[str, bytes]]) -> str:
-    """The content of ``dataset.json``; equal datasets give equal text; `files` are those of each shape.
-
-    Raises
-    ------
-    DatasetError
-        If the dataset violates the schema, for example by an error that is not finite.
-    """
-    records = [
-        record_of(representative, own)
-        for representative, own in zip(dataset.representatives, files, strict=True)
-    ]
-    content = frame_of(dataset.name, dataset.weighting, dataset.provenance) | {"representatives": records}
-    try:
-        text = canonical_json(content)
-    except ValueError as error:
-        raise DatasetError(f"The dataset cannot be written: {error}.") from error
-    parsed_document(text, "The new dataset.json")
-    return text
-
-
-def frame_of(name: str, weighting: Weighting, provenance: Provenance) -> dict[str, Any]:
+def head_document(name: str, weighting: Weighting, provenance: Provenance) -> dict[str, Any]:
     """The entries of ``dataset.json`` without the representatives."""
     return {
         "format": FORMAT,
@@ -165,7 +122,7 @@ def dataset_of(document: DatasetDocument, where: str) -> Dataset:
         name=document.name,
         representatives=tuple(_representative(record, where) for record in document.representatives),
         weighting=document.weighting,
-        provenance=_provenance(document),
+        provenance=Provenance(**dict(document.metadata)),
     )
 
 
@@ -208,9 +165,7 @@ def _representative(record: RepresentativeRecord, where: str) -> Representative:
                 np.array(record.frame.rotation), np.array(record.frame.centroid_um), record.frame.scale_um
             ),
             n_members=record.n_members,
-            approximation=None
-            if record.approximation is None
-            else Approximation(**record.approximation.model_dump()),
+            approximation=record.approximation,
             group=record.group,
             source=None if record.source is None else Source(**record.source.model_dump()),
         )
@@ -219,44 +174,26 @@ def _representative(record: RepresentativeRecord, where: str) -> Representative:
         raise DatasetError(f"{where}: the representative {record.name} cannot be used: {reason}.") from error
 
 
-def _provenance(document: DatasetDocument) -> Provenance:
-    fields = document.metadata.model_dump()
-    coarsening, representation = fields.pop("coarsening"), fields.pop("representation")
-    return Provenance(
-        angular_power_spectrum=fields.pop("angular_power_spectrum_um2"),
-        coarsening=None if coarsening is None else CoarseningRecord(**coarsening),
-        representation=None if representation is None else Representation(**representation),
-        **fields,
-    )
-
-
-def record_of(representative: Representative, files: Mapping[str, bytes]) -> dict[str, Any]:
-    """The entry of one representative in ``dataset.json``; `files` are its STL files in order."""
+def record_of(representative: Representative) -> dict[str, Any]:
+    """The entry of one representative in ``dataset.json``, without its weight and its files."""
     shape, frame = representative.shape, representative.frame
-    whole, *parts = [mesh_record(file, content) for file, content in files.items()]
     approximation, source = representative.approximation, representative.source
     return {
         "name": representative.name,
         "group": representative.group,
-        "weight": representative.weight,
         "n_members": representative.n_members,
         "sizes": representative.sizes.model_dump(mode="json"),
-        "mesh": whole | _counts(shape),
+        "mesh": _counts(shape),
         "half_spaces": None if isinstance(shape, ConvexCompound) else _half_spaces(shape),
-        "compound": _compound(shape, parts) if isinstance(shape, ConvexCompound) else None,
+        "compound": _compound(shape) if isinstance(shape, ConvexCompound) else None,
         "frame": {
             "rotation": frame.rotation.tolist(),
             "centroid_um": frame.centroid.tolist(),
             "scale_um": frame.scale,
         },
-        "approximation": None if approximation is None else _plain(vars(approximation)),
+        "approximation": approximation and approximation.model_dump(),
         "source": source and {"path": source.path, "sha256": source.sha256, "unit": source.unit},
     }
-
-
-def mesh_record(file: str, content: bytes) -> dict[str, Any]:
-    """Path and hash of an STL file."""
-    return {"file": file, "sha256": hashlib.sha256(content).hexdigest()}
 
 
 def _counts(shape: Polyhedron) -> dict[str, int]:
@@ -274,13 +211,12 @@ def _half_spaces(shape: ConvexPolyhedron) -> dict[str, Any]:
     return {"normals": planes.normals.tolist(), "offsets": planes.offsets.tolist()}
 
 
-def _compound(shape: ConvexCompound, files: Sequence[dict[str, Any]]) -> dict[str, Any]:
-    """Parts and properties of the union; `files` are the mesh records of the parts."""
-    parts = zip(shape.parts, shape.places.tolist(), files, strict=True)
+def _compound(shape: ConvexCompound) -> dict[str, Any]:
+    """Parts and properties of the union."""
     return {
         "parts": [
-            {"origin": place, "half_spaces": _half_spaces(part), "mesh": file | _counts(part)}
-            for part, place, file in parts
+            {"origin": place, "half_spaces": _half_spaces(part), "mesh": _counts(part)}
+            for part, place in zip(shape.parts, shape.places.tolist(), strict=True)
         ],
         **union_properties(shape),
     }
@@ -297,27 +233,9 @@ def union_properties(shape: ConvexCompound) -> dict[str, Any]:
 
 
 def _metadata(provenance: Provenance) -> dict[str, Any]:
-    fields = _plain(vars(provenance))
-    fields["angular_power_spectrum_um2"] = fields.pop("angular_power_spectrum")
-    if provenance.coarsening is not None:
-        fields["coarsening"] = _plain(vars(provenance.coarsening))
-    if provenance.representation is not None:
-        fields["representation"] = _plain(vars(provenance.representation))
-    return fields
-
-
-def _plain(fields: dict[str, Any]) -> dict[str, Any]:
-    """Mappings as dictionaries, numpy scalars as Python numbers."""
-    plain: dict[str, Any] = {}
-    for key, value in fields.items():
-        if hasattr(value, "items"):
-            plain[key] = {name: _number(inner) for name, inner in value.items()}
-        elif isinstance(value, tuple):
-            plain[key] = [_number(inner) for inner in value]
-        else:
-            plain[key] = _number(value)
-    return plain
-
-
-def _number(value: Any) -> Any:
-    return value.item() if isinstance(value, np.generic) else value
+    coarsening, representation = provenance.coarsening, provenance.representation
+    return vars(provenance) | {
+        "coarsening": coarsening and coarsening.model_dump(),
+        "representation": representation and representation.model_dump(),
+        "software": dict(provenance.software),
+    }

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from regolith_studio.dataset.build import ShapeClass, build_dataset, singleton_class
 from regolith_studio.dataset.catalog import CatalogEntry, scan_catalog
-from regolith_studio.dataset.dataset import CoarseningRecord, Dataset, Provenance
+from regolith_studio.dataset.dataset import Dataset, Provenance
 from regolith_studio.dataset.export import (
     Exporter,
     ExportOptions,
@@ -17,11 +17,11 @@ from regolith_studio.dataset.export import (
     prepared_export,
 )
 from regolith_studio.dataset.exporters import EXPORTERS
-from regolith_studio.dataset.folder_io import dataset_hash, read_dataset, write_dataset
+from regolith_studio.dataset.folder_io import check_count, dataset_hash, read_dataset, write_dataset
 from regolith_studio.dataset.quality import polyhedra_errors
+from regolith_studio.dataset.schema import CoarseningRecord
 from regolith_studio.dataset.size_distributions import Weighting
 from regolith_studio.dataset.size_parsing import SizeRule, parse_sizes
-from regolith_studio.dataset.streaming import check_count
 from regolith_studio.dataset.validation import validate_dataset
 from regolith_studio.errors import DatasetError, InputError
 from regolith_studio.geometry.particle import Particle
@@ -211,7 +211,7 @@ def dataset_of(
     dataset = build_dataset(good, classes, name=name, weighting=weighting, provenance=source)
     if (known := source.representation) is None:
         return dataset
-    known = replace(known, errors=polyhedra_errors(dataset, known))
+    known = known.model_copy(update={"errors": polyhedra_errors(dataset, known)})
     return replace(dataset, provenance=replace(dataset.provenance, representation=known))
 
 
@@ -249,7 +249,7 @@ def dataset_provenance(
         ),
         seed=request.seed,
         l_max=request.l_max if fitted else None,
-        angular_power_spectrum=(
+        angular_power_spectrum_um2=(
             tuple(sample_spectrum(fitted).values) if len(fitted) > 1 and lengths else None
         ),
         coarsening=record,

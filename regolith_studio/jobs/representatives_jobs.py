@@ -4,13 +4,13 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from regolith_studio.dataset.dataset import Representation
 from regolith_studio.dataset.quality import QualityCurve, curve_counts, quality_steps, representation_of
 from regolith_studio.dataset.representatives import (
     NEEDED,
     RepresentativeSelection,
     choose_representatives,
 )
+from regolith_studio.dataset.schema import Representation
 from regolith_studio.dataset.size_distributions import Weighting
 from regolith_studio.descriptors.describe import Descriptors
 from regolith_studio.errors import InputError

@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any
 
 from regolith_studio.dataset.build import software_versions
-from regolith_studio.dataset.streaming import check_count, write_stored
+from regolith_studio.dataset.folder_io import check_count, write_stored
 from regolith_studio.errors import FileError, RegolithError
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.io.atomic import JOURNAL, staged_folder, write_bytes, write_in_stage

@@ -5,7 +5,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from regolith_studio.dataset.build import build_dataset
-from regolith_studio.dataset.dataset import CoarseningRecord, Dataset, Provenance
+from regolith_studio.dataset.dataset import Dataset, Provenance
+from regolith_studio.dataset.schema import CoarseningRecord
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.convex_compound import ConvexCompound, Polyhedron
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
@@ -81,8 +82,16 @@ def example_dataset(count: int = 3, first: int = 0, name: str = "test set") -> D
         processing_steps=("Drew polyhedra.", "Aligned them."),
         seed=7,
         l_max=10,
-        angular_power_spectrum=(3.0, 0.2, 0.1),
-        coarsening=CoarseningRecord("annealing", 20, 7, weights={"volume": 1.0}, settings={"steps": 100}),
+        angular_power_spectrum_um2=(3.0, 0.2, 0.1),
+        coarsening=CoarseningRecord(
+            method="annealing",
+            n_facets=20,
+            seed=7,
+            target="particle",
+            preset=None,
+            weights={"volume": 1.0},
+            settings={"steps": 100},
+        ),
         software={"regolith-studio": "0.1.0"},
     )
     return build_dataset([entry(first + index) for index in range(count)], name=name, provenance=story)

@@ -9,14 +9,12 @@ import numpy as np
 import pytest
 import trimesh
 
-from regolith_studio.dataset.alignment import aligned
 from regolith_studio.dataset.build import build_dataset
-from regolith_studio.dataset.dataset import Dataset
+from regolith_studio.dataset.dataset import Dataset, aligned
 from regolith_studio.dataset.export import write_export
 from regolith_studio.dataset.exporters import EXPORTERS
-from regolith_studio.dataset.folder_io import read_dataset, write_dataset
+from regolith_studio.dataset.folder_io import read_dataset, stored_shape, write_dataset, write_stored
 from regolith_studio.dataset.sampling import sample_dataset
-from regolith_studio.dataset.streaming import stored_shape, write_stored
 from regolith_studio.dataset.validation import validate_dataset
 from regolith_studio.errors import DatasetError
 from regolith_studio.geometry.convex_compound import ConvexCompound

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from regolith_studio.dataset.streaming import stored_shape
+from regolith_studio.dataset.folder_io import stored_shape
 from regolith_studio.errors import JobCancelled
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.harmonics.fit import HarmonicFit
