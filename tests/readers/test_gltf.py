@@ -85,6 +85,22 @@ def test_that_a_mirrored_node_still_faces_outwards(accepted):
     assert particle.notes[1:] == ("Its numbers were multiplied by 1 µm instead, as was asked.",)
 
 
+def test_that_normalised_bytes_are_coordinates_between_zero_and_one(accepted):
+    """As compressing programs write positions: bytes in steps of four, 255 for one."""
+    corners = np.zeros((8, 4), dtype="u1")
+    corners[:, :3] = 255 * CORNERS
+    accessors = [
+        {**DOCUMENT["accessors"][0], "componentType": 5121, "normalized": True},
+        DOCUMENT["accessors"][1],
+    ]
+    views = [
+        {"buffer": 0, "byteLength": 32, "byteStride": 4},
+        {"buffer": 0, "byteOffset": 32, "byteLength": 72},
+    ]
+    data = glb(changed(accessors=accessors, bufferViews=views), corners.tobytes() + FACES.tobytes())
+    assert accepted("cube.glb", data, unit="voxel:1").mesh.volume == pytest.approx(1.0)
+
+
 def test_that_a_file_of_trimesh_is_read(accepted):
     solid = trimesh.creation.icosphere(subdivisions=2)
     mesh = accepted("ball.glb", solid.export(file_type="glb"), unit="voxel:1").mesh

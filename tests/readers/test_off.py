@@ -109,3 +109,14 @@ def test_that_a_cube_in_any_proper_off_has_volume_one_and_area_six(kind, accepte
     mesh = accepted("cube.off", GOOD[kind].encode()).mesh
     assert mesh.volume == pytest.approx(1.0, abs=1e-12)
     assert mesh.surface_area == pytest.approx(6.0, abs=1e-12)
+
+
+def test_that_facets_of_six_corners_are_read_convex_or_not(accepted):
+    """A prism one high over an L of three squares: its two hexagons have a corner that turns inwards."""
+    outline = [(1, 1), (1, 2), (0, 2), (0, 0), (2, 0), (2, 1)]
+    vertices = "".join(f"{x} {y} {z}\n" for z in (0, 1) for x, y in outline)
+    sides = "".join(f"4 {i} {(i + 1) % 6} {6 + (i + 1) % 6} {6 + i}\n" for i in range(6))
+    text = f"OFF\n12 8 0\n{vertices}6 5 4 3 2 1 0\n6 6 7 8 9 10 11\n{sides}"
+    mesh = accepted("prism.off", text.encode()).mesh
+    assert mesh.volume == pytest.approx(3.0, abs=1e-12)
+    assert mesh.surface_area == pytest.approx(14.0, abs=1e-12)

@@ -45,6 +45,21 @@ def test_that_placements_and_components_are_transformed(accepted):
     assert mesh.bounds.tolist() == [[8, 0, 0], [10, 2, 2]]
 
 
+def test_that_each_object_of_another_part_is_built_once(accepted):
+    """The production extension, as slicing programs save projects: objects in a part of their own."""
+    production = "http://schemas.microsoft.com/3dmanufacturing/production/2015/06"
+    objects = f'<object id="1">{MESH}</object><object id="2">{MESH}</object>'
+    components = "".join(
+        f'<component p:path="/3D/parts.model" objectid="{key}" transform="1 0 0 0 1 0 0 0 1 {10 * key} 0 0"/>'
+        for key in (1, 2)
+    )
+    root = model('<item objectid="3"/>', f'<object id="3"><components>{components}</components></object>')
+    data = io.BytesIO(archive(root.replace(" xmlns=", f' xmlns:p="{production}" xmlns=', 1)))
+    with zipfile.ZipFile(data, "a") as file:
+        file.writestr("3D/parts.model", model("", objects))
+    assert accepted("cubes.3mf", data.getvalue()).mesh.volume == pytest.approx(2.0)
+
+
 BOMB = archive(b"\0" * (1 << 26))
 CIRCLE = '<object id="1"><components><component objectid="1"/></components></object>'
 
