@@ -171,7 +171,6 @@ def write_export(
     folder: Path | str,
     options: ExportOptions | None = None,
     *,
-    dataset_hash: str | None = None,
     accept_loss: bool = False,
 ) -> ExportResult:
     """Write one format into `folder`, which then holds nothing else, or is unchanged if an error occurs.
@@ -180,8 +179,6 @@ def write_export(
     ----------
     folder
         New, empty, or holding an export of this program and nothing else.
-    dataset_hash
-        Of the dataset's folder, stored in the record.
     accept_loss
         Required for formats that change the shapes.
 
@@ -191,9 +188,7 @@ def write_export(
         If the format changes shapes and that was not accepted, cannot hold the dataset's compounds, the
         folder holds anything else, or something cannot be written.
     """
-    with prepared_export(
-        dataset, exporter, folder, options, dataset_hash=dataset_hash, accept_loss=accept_loss
-    ) as finish:
+    with prepared_export(dataset, exporter, folder, options, accept_loss=accept_loss) as finish:
         return finish()
 
 
@@ -207,7 +202,13 @@ def prepared_export(
     dataset_hash: str | None = None,
     accept_loss: bool = False,
 ) -> Iterator[Callable[[], ExportResult]]:
-    """As :func:`write_export`, complete under a hidden name; what it yields lets it take its place."""
+    """As :func:`write_export`, complete under a hidden name; what it yields lets it take its place.
+
+    Parameters
+    ----------
+    dataset_hash
+        Of the dataset's folder, stored in the record.
+    """
     chosen, target = options or ExportOptions(), Path(folder).resolve()
     check_loss_accepted(exporter, accept_loss)
     check_compounds(dataset, [exporter])

@@ -114,20 +114,23 @@ def _two_digits_up(value: float) -> float:
     return float(f"{np.ceil(value / step - 1e-9) * step:.2g}")
 
 
-def tube_mesh(diameter: float, height: float, sides: int = 96, thickness: float = 0.05) -> Mesh:
+TUBE_SIDES, TUBE_THICKNESS = 96, 0.05
+"""Sides of the polygon of a tube, and thickness of its wall as a fraction of the inner diameter."""
+
+
+def tube_mesh(diameter: float, height: float) -> Mesh:
     """An upright tube on z = 0 as a closed surface; its inner polygon has the area of the circle.
 
     Parameters
     ----------
     diameter
         Inner.
-    thickness
-        Of the wall, as a fraction of the diameter.
     """
+    sides = TUBE_SIDES
     angles = 2 * np.pi * np.arange(sides) / sides
     circle = np.column_stack([np.cos(angles), np.sin(angles)])
     inner = diameter / 2 * np.sqrt(2 * np.pi / sides / np.sin(2 * np.pi / sides))
-    rings = [(inner, 0.0), (inner + thickness * diameter, 0.0)]
+    rings = [(inner, 0.0), (inner + TUBE_THICKNESS * diameter, 0.0)]
     rings = [*rings, *((radius, height) for radius, _ in reversed(rings))]
     vertices = np.vstack([np.column_stack([circle * r, np.full(sides, z)]) for r, z in rings])
     here, there = np.arange(sides), (np.arange(sides) + 1) % sides

@@ -127,18 +127,12 @@ class Checkpoint:
             self._connection.executemany("INSERT INTO records VALUES (?, ?, ?)", rows)
             self._connection.executemany("INSERT INTO blobs VALUES (?, ?, ?)", blobs)
 
-    def records(self, blobs: bool = True) -> Iterator[CheckpointRecord]:
-        """All records by position, one in memory at a time.
-
-        Parameters
-        ----------
-        blobs
-            Whether to read the byte strings too.
-        """
+    def records(self) -> Iterator[CheckpointRecord]:
+        """All records by position, one in memory at a time."""
         with _errors_of(self.path):
             rows = self._connection.execute("SELECT position, content FROM records ORDER BY position")
             for position, content in rows:
-                yield CheckpointRecord(position, json.loads(content), self._blobs(position) if blobs else {})
+                yield CheckpointRecord(position, json.loads(content), self._blobs(position))
 
     def note(self, name: str) -> Any:
         """The value that :meth:`set_note` kept under a name, or ``None``."""

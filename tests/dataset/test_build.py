@@ -65,7 +65,7 @@ def test_that_a_turned_and_scaled_particle_gives_the_same_shape(seed: int) -> No
 def test_that_the_frame_leads_back_to_the_particle() -> None:
     particle, coarse = entry(3)
     shape, frame = aligned(coarse.polyhedron, coarse.centre)
-    back = frame.to_particle(shape.vertices)
+    back = shape.vertices @ frame.rotation * frame.scale + frame.centroid
     assert np.ptp(back, axis=0) == pytest.approx(np.ptp(particle.mesh.vertices, axis=0))
     assert ConvexHull(back).volume == pytest.approx(particle.mesh.volume)
     assert back.mean(axis=0) == pytest.approx(coarse.polyhedron.vertices.mean(axis=0) + coarse.centre)
@@ -155,7 +155,7 @@ def test_that_a_particle_coarsened_by_the_program_becomes_a_dataset(tmp_path) ->
     (one,) = dataset.representatives
     assert one.shape.n_facets == coarse.n_facets
     assert one.approximation.errors == dict(coarse.errors)
-    back = one.frame.to_particle(one.shape.vertices)
+    back = one.shape.vertices @ one.frame.rotation * one.frame.scale + one.frame.centroid
     assert np.sort(back, axis=0) == pytest.approx(np.sort(coarse.mesh.vertices, axis=0), abs=1e-6)
 
 

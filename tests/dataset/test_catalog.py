@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from regolith_studio.dataset.catalog import provenance_tree, scan_catalog
-from regolith_studio.dataset.export import write_export
+from regolith_studio.dataset.export import prepared_export
 from regolith_studio.dataset.exporters import EXPORTERS
 from regolith_studio.dataset.folder_io import dataset_hash, write_dataset
 from regolith_studio.errors import DatasetError
@@ -19,8 +19,10 @@ def library(tmp_path: Path, make_dataset) -> Path:
     for name, first in (("mare", 0), ("highland", 10)):
         write_dataset(root / "sets" / name, make_dataset(2, first=first, name=name))
     digest = dataset_hash(root / "sets" / "mare")
-    write_export(make_dataset(2), EXPORTERS["hoomd"], root / "out" / "hoomd", dataset_hash=digest)
-    write_export(make_dataset(1), EXPORTERS["half-spaces"], root / "out" / "planes", dataset_hash="f" * 64)
+    for name, count, key, source in (("hoomd", 2, "hoomd", digest), ("planes", 1, "half-spaces", "f" * 64)):
+        folder = root / "out" / name
+        with prepared_export(make_dataset(count), EXPORTERS[key], folder, dataset_hash=source) as finish:
+            finish()
     run = {
         "format": "regolith-studio-repose",
         "state": "finished",

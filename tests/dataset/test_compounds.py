@@ -49,7 +49,7 @@ def test_that_the_record_of_an_elbow_has_the_mass_centre_and_inertia_of_its_unio
 
 def test_that_the_frame_of_an_elbow_leads_back_to_the_particle(dataset: Dataset) -> None:
     one = dataset.representatives[0]
-    back = one.frame.to_particle(one.shape.vertices)
+    back = one.shape.vertices @ one.frame.rotation * one.frame.scale + one.frame.centroid
     assert one.frame.scale == pytest.approx(20 ** (1 / 3))
     far = np.abs(back[:, None] - elbow().vertices[None]).max(axis=2).min(axis=1)
     assert far.max() < 1e-9

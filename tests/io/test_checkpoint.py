@@ -30,7 +30,6 @@ def test_that_numbers_and_bytes_are_kept_to_the_last_bit(path: Path) -> None:
         bare, record = checkpoint.records()
         assert (record.index, dict(record.values), record.blobs["b"]) == (7, values, b"\0\xff")
         assert (bare.index, bare.values, bare.blobs) == (2, {}, {})
-        assert all(not each.blobs for each in checkpoint.records(blobs=False))
 
 
 def test_that_a_value_that_is_not_finite_never_reaches_the_disk(path: Path) -> None:

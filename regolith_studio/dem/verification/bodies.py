@@ -5,8 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from regolith_studio.dataset.alignment import Frame
-from regolith_studio.dataset.dataset import Dataset, Representative
+from regolith_studio.dataset.dataset import Dataset, Frame, Representative
 from regolith_studio.dataset.parameters import ContactParameters, LiftingCylinderTest
 from regolith_studio.dataset.size_distributions import DiscreteSizeDistribution
 from regolith_studio.dem.case import PreparedCase, ReposeCase
