@@ -4,6 +4,10 @@ Legendre sums across the rings and sums of waves along them are separate product
 twentieth of the work of one product with all harmonics at all nodes.
 """
 
+# Not the transforms of single fits, because of the tables: made once, they let models draw thousands of
+# particles; at the degrees that fits may have, up to 500, they would need gigabytes. And a fit is the input
+# of coarsening, whose results must not depend on the processor, as products by BLAS do.
+
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache
@@ -11,7 +15,7 @@ from functools import lru_cache
 import numpy as np
 
 from regolith_studio.geometry.arrays import FloatArray, IntArray
-from regolith_studio.harmonics.legendre import harmonics
+from regolith_studio.harmonics.legendre import harmonics, ring_nodes
 
 GRIDS_KEPT = 8
 """As many as the models use for one l_max."""
@@ -125,11 +129,7 @@ def sphere_grid(degree: int, l_max: int) -> SphereGrid:
     """The Gauss-Legendre grid of `degree` with harmonics up to `l_max`, kept and read-only."""
     cosines, weights = np.polynomial.legendre.leggauss(degree + 1)
     n_longitudes = 2 * degree + 1
-    longitudes = np.tile(2 * np.pi * np.arange(n_longitudes) / n_longitudes, degree + 1)
-    z = np.repeat(cosines, n_longitudes)
-    ring = np.sqrt(1 - z**2)
-    directions = np.column_stack([ring * np.cos(longitudes), ring * np.sin(longitudes), z])
-    solid_angles = np.repeat(weights * 2 * np.pi / n_longitudes, n_longitudes)
+    directions, solid_angles = ring_nodes(cosines, weights, n_longitudes)
     for array in (directions, solid_angles):
         array.flags.writeable = False
     return SphereGrid(directions, solid_angles, ring_basis(cosines, n_longitudes, l_max))

@@ -1,7 +1,7 @@
 """From coefficients to a closed surface: radii, mesh and volume (Eq. 4)."""
 
 from collections.abc import Iterable, Iterator
-from functools import cache
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,7 +13,7 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.harmonics.coefficients import ShCoefficients
 from regolith_studio.harmonics.fit import HarmonicFit
-from regolith_studio.harmonics.legendre import fill_legendre, legendre_factors
+from regolith_studio.harmonics.legendre import ring_nodes, synthesise_rings
 from regolith_studio.harmonics.radius_function import Ellipsoid
 from regolith_studio.harmonics.synthesis import (
     icosphere_edges,
@@ -148,40 +148,13 @@ def enclosed_volume(coefficients: ShCoefficients, reference: Ellipsoid | None = 
 
 def _volume_on_grid(coefficients: ShCoefficients, reference: Ellipsoid, degree: int) -> float:
     """Volume of expansion times reference, on a Gauss-Legendre grid of `degree`."""
-    cosines, weights = _gauss_legendre(degree)
-    n_longitudes = 2 * degree + 1
-    radius = np.zeros((len(cosines), n_longitudes))
-    _fill_radius(coefficients.values, coefficients.l_max, cosines, radius)
-    phi = 2 * np.pi / n_longitudes * np.arange(n_longitudes)[None, :]
-    z = np.broadcast_to(cosines[:, None], radius.shape)
-    ring = np.sqrt(1 - z**2)
-    directions = np.stack([ring * np.cos(phi), ring * np.sin(phi), z], axis=-1).reshape(-1, 3)
-    radius = radius * reference.radii(directions).reshape(radius.shape)
-    return float(weights * 2 * np.pi / n_longitudes @ (radius**3).sum(axis=1)) / 3
+    cosines, directions, solid_angles = _nodes(degree)
+    radius = synthesise_rings(coefficients.values, cosines, 2 * degree + 1).ravel()
+    return float(solid_angles @ (radius * reference.radii(directions)) ** 3) / 3
 
 
-@cache
-def _gauss_legendre(degree: int) -> tuple[FloatArray, FloatArray]:
-    """Cosines of the polar angles and weights (sum 2), shapes (degree + 1,)."""
+@lru_cache(maxsize=2)  # a study takes one degree after the other; at l_max = 500 each has 60 MB
+def _nodes(degree: int) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Cosines of the rings (degree + 1,), directions (n, 3) and solid angles (n,) of a Gauss grid."""
     cosines, weights = np.polynomial.legendre.leggauss(degree + 1)
-    return cosines, weights
-
-
-@kernel
-def _fill_radius(values: FloatArray, l_max: int, cosines: FloatArray, radius: FloatArray) -> None:
-    """Add the radius on rings of latitude to `radius`, shape (rings, longitudes)."""
-    n_longitudes = radius.shape[1]
-    cosine = np.cos(2 * np.pi / n_longitudes * np.arange(n_longitudes))
-    sines = np.sin(2 * np.pi / n_longitudes * np.arange(n_longitudes))
-    factors, p = legendre_factors(l_max), np.zeros((l_max + 1, l_max + 1))
-    for j in range(len(cosines)):
-        fill_legendre(cosines[j], np.sqrt(1 - cosines[j] ** 2), factors, p)
-        for m in range(l_max + 1):
-            a, b = 0.0, 0.0
-            for degree in range(m, l_max + 1):
-                k = degree * degree + degree
-                a += values[k + m] * p[degree, m]
-                if m > 0:
-                    b += values[k - m] * p[degree, m]
-            for i in range(n_longitudes):
-                radius[j, i] += a * cosine[(m * i) % n_longitudes] + b * sines[(m * i) % n_longitudes]
+    return (cosines, *ring_nodes(cosines, weights, 2 * degree + 1))

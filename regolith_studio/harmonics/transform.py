@@ -1,14 +1,25 @@
 """Gauss-Legendre grids on the sphere, and the transforms between samples on them and coefficients.
 
-The grids are those of SHTOOLS, rotated by a fixed angle so that rays do not run along the edges of a mesh
-that was built on coordinate planes; the coefficients are rotated back exactly.
+The nodes are those of SHTOOLS, from the north to the south, rotated by a fixed angle so that rays do not run
+along the edges of a mesh that was built on coordinate planes; the coefficients are rotated back exactly,
+degree by degree, by SHTOOLS too.
 
-Rotation of coefficients: exact, degree by degree, without sampling.
+Its Fortran is loaded on first use, and never run in two threads at once: the routines keep tables and plans
+in saved variables, yet release the interpreter while they run, so that two threads corrupt memory (one run in
+six of a loop over four threads was killed). All that the program asks of pyshtools goes through
+:func:`call_shtools`.
 """
 
+import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
+from importlib import import_module
+from importlib.util import find_spec
+from pathlib import Path
+from threading import RLock
+from types import ModuleType
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -16,14 +27,47 @@ from scipy.spatial.transform import Rotation
 
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray, locked_floats
-from regolith_studio.harmonics import shtools
 from regolith_studio.harmonics.coefficients import (
     ShCoefficients,
     checked_degree,
     from_pyshtools,
     to_pyshtools,
 )
-from regolith_studio.harmonics.legendre import analyse_rings, synthesise_rings
+from regolith_studio.harmonics.legendre import analyse_rings, ring_nodes, synthesise_rings
+
+_one_at_a_time = RLock()
+
+
+def call_shtools(routine: str, *arguments: Any, **options: Any) -> Any:
+    """What a routine of SHTOOLS returns, by its place in the package, such as ``expand.SHGLQ``."""
+    with _one_at_a_time:
+        return getattr(_routines(), routine.rpartition(".")[2])(*arguments, **options)
+
+
+@cache
+def _routines() -> ModuleType:
+    """The module of the wrapped Fortran, under empty packages that are taken away again.
+
+    The package around it imports matplotlib, pandas and xarray: a second and 90 MB in a command, many seconds
+    in a window, where PySide reads the source of every module that is imported.
+    """
+    found = find_spec("pyshtools")
+    if "pyshtools" in sys.modules or found is None or not found.submodule_search_locations:
+        return import_module("pyshtools.backends.shtools")
+    place = Path(found.submodule_search_locations[0])
+    sys.modules["pyshtools"] = _package("pyshtools", place)
+    sys.modules["pyshtools.backends"] = _package("pyshtools.backends", place / "backends")
+    try:
+        return import_module("pyshtools.backends.shtools")
+    finally:
+        for name in [name for name in sys.modules if name.split(".")[0] == "pyshtools"]:
+            del sys.modules[name]
+
+
+def _package(name: str, folder: Path) -> ModuleType:
+    package = ModuleType(name)
+    package.__path__ = [str(folder)]
+    return package
 
 
 def rotated(coefficients: ShCoefficients, rotation: ArrayLike) -> ShCoefficients:
@@ -42,7 +86,7 @@ def rotated(coefficients: ShCoefficients, rotation: ArrayLike) -> ShCoefficients
     if coefficients.l_max == 0:
         return coefficients
     angles = -np.array(_euler_angles(matrix)[::-1])
-    turned = shtools.call(
+    turned = call_shtools(
         "rotate.SHRotateRealCoef", to_pyshtools(coefficients), angles, _quarter_turn(coefficients.l_max)
     )
     return from_pyshtools(turned)
@@ -63,7 +107,7 @@ def _quarter_turn(l_max: int) -> FloatArray:
 
     ``djpi2(0)`` of pyshtools 4.14 writes behind its array and kills the process later.
     """
-    return np.asarray(shtools.call("rotate.djpi2", max(l_max, 2)), dtype=np.float64)
+    return np.asarray(call_shtools("rotate.djpi2", max(l_max, 2)), dtype=np.float64)
 
 
 SAMPLING_DEGREE = 60
@@ -108,7 +152,7 @@ class RayGrid:
 @cache
 def _rings(degree: int) -> tuple[FloatArray, FloatArray, int]:
     """Cosines of the polar angles of the rings, their weights (sum 2), and the number of longitudes."""
-    zeros, weights = shtools.call("expand.SHGLQ", degree)
+    zeros, weights = call_shtools("expand.SHGLQ", degree)
     return np.asarray(zeros, dtype=np.float64), np.asarray(weights, dtype=np.float64), 2 * degree + 1
 
 
@@ -127,13 +171,7 @@ def ray_grid(degree: int = SAMPLING_DEGREE) -> RayGrid:
 
 @cache
 def _ray_grid(degree: int) -> RayGrid:
-    cosine, weights, n_longitudes = _rings(degree)
-    longitude = 2 * np.pi * np.arange(n_longitudes) / n_longitudes
-    z = np.repeat(cosine, n_longitudes)
-    ring = np.sqrt(1 - z**2)
-    angle = np.tile(longitude, len(cosine))
-    untilted = np.column_stack([ring * np.cos(angle), ring * np.sin(angle), z])
-    solid_angles = np.repeat(weights * 2 * np.pi / n_longitudes, n_longitudes)
+    untilted, solid_angles = ring_nodes(*_rings(degree))
     return RayGrid(degree, untilted @ TILT.T, solid_angles)
 
 
@@ -145,12 +183,12 @@ def analyse(grid: RayGrid, samples: FloatArray, l_max: int) -> ShCoefficients:
     InputError
         If `l_max` is above the grid's degree, or a sample is not finite.
     """
-    return rotated(_upright(grid, samples, l_max), TILT)
+    return rotated(_untilted(grid, samples, l_max), TILT)
 
 
 def band_limited(grid: RayGrid, samples: FloatArray, l_max: int) -> FloatArray:
     """The function cut at degree `l_max`, on the same grid, shape (n,)."""
-    return _on_rings(grid, _upright(grid, samples, l_max))
+    return _on_rings(grid, _untilted(grid, samples, l_max))
 
 
 def evaluate_on_grid(grid: RayGrid, coefficients: ShCoefficients) -> FloatArray:
@@ -159,7 +197,7 @@ def evaluate_on_grid(grid: RayGrid, coefficients: ShCoefficients) -> FloatArray:
     return _on_rings(grid, rotated(coefficients, TILT.T))
 
 
-def _upright(grid: RayGrid, samples: FloatArray, l_max: int) -> ShCoefficients:
+def _untilted(grid: RayGrid, samples: FloatArray, l_max: int) -> ShCoefficients:
     """Coefficients in the frame of the rings."""
     checked_degree(l_max, grid.degree)
     if samples.shape != grid.solid_angles.shape:
@@ -168,6 +206,6 @@ def _upright(grid: RayGrid, samples: FloatArray, l_max: int) -> ShCoefficients:
     return ShCoefficients(analyse_rings(samples.reshape(-1, n_longitudes), cosines, weights, l_max))
 
 
-def _on_rings(grid: RayGrid, upright: ShCoefficients) -> FloatArray:
+def _on_rings(grid: RayGrid, untilted: ShCoefficients) -> FloatArray:
     cosines, _, n_longitudes = _rings(grid.degree)
-    return synthesise_rings(upright.values, cosines, n_longitudes).ravel()
+    return synthesise_rings(untilted.values, cosines, n_longitudes).ravel()

@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 from numpy.polynomial.legendre import leggauss
 
-from regolith_studio.harmonics import shtools
+from regolith_studio.harmonics.transform import call_shtools
 
 ALONE = """
 import sys
-from regolith_studio.harmonics import shtools
-zeros, weights = shtools.call("expand.SHGLQ", 6)
+from regolith_studio.harmonics.transform import call_shtools
+zeros, weights = call_shtools("expand.SHGLQ", 6)
 assert abs(weights.sum() - 2) < 1e-14
 heavy = {"pandas", "xarray", "matplotlib", "pyshtools"} & set(sys.modules)
 assert not heavy, heavy
@@ -53,7 +53,7 @@ def test_that_only_the_fortran_is_loaded_and_the_package_can_still_be_imported()
 
 
 def test_that_the_nodes_are_those_of_gauss_and_legendre() -> None:
-    zeros, weights = shtools.call("expand.SHGLQ", 12)
+    zeros, weights = call_shtools("expand.SHGLQ", 12)
     nodes, expected = leggauss(13)
     assert np.allclose(np.sort(zeros), nodes, atol=1e-14)
     assert np.allclose(np.sort(weights), np.sort(expected), atol=1e-14)
