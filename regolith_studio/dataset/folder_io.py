@@ -367,10 +367,11 @@ def _document(records: Iterable[dict[str, Any]], head: dict[str, Any]) -> Iterat
     yield f'{before}\n  "{_PLACE}": ['.encode()
     size = 0
     for index, record in enumerate(records):
+        text = _checked_record(record)
         if index == 0:
             alone = head | {_PLACE: [{**record, "weight": 1.0}]}
             parsed_document(_strict_json(alone), "The new dataset.json")
-        text = _checked_record(record).rstrip("\n").replace("\n", "\n    ")
+        text = text.rstrip("\n").replace("\n", "\n    ")
         piece = f"{',' if index else ''}\n    {text}".encode()
         size += len(piece)
         if size > MAX_DOCUMENT_BYTES:

@@ -68,7 +68,7 @@ def test_that_the_same_dataset_gives_the_same_bytes_and_so_does_the_one_read_bac
 def test_that_a_max_error_is_written_and_read_back(tmp_path, make_dataset) -> None:
     """What was written before there was that choice stays the same bytes when it is written again."""
     by_count = make_dataset()
-    asked = replace(by_count.provenance.coarsening, max_error=0.02)
+    asked = by_count.provenance.coarsening.model_copy(update={"max_error": 0.02})
     by_error = replace(by_count, provenance=replace(by_count.provenance, coarsening=asked))
     records = []
     for name, dataset in (("count", by_count), ("error", by_error)):
