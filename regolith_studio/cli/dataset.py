@@ -98,7 +98,7 @@ def build(
 ) -> None:
     """Coarsen the meshes, or N representatives of them, and write a dataset folder."""
     from regolith_studio.dataset.quality import quality_table
-    from regolith_studio.dataset.size_parsing import parse_sizes
+    from regolith_studio.dataset.size_distributions import parse_sizes
     from regolith_studio.io.atomic import write_bytes
     from regolith_studio.io.tables import csv_text
     from regolith_studio.jobs.dataset_jobs import DatasetOptions, build_dataset_folder, check_place

@@ -1,7 +1,7 @@
 """Build a dataset from particles and the polyhedra that approximate them."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from importlib.metadata import PackageNotFoundError, version
 from typing import Protocol
 
@@ -9,6 +9,7 @@ from regolith_studio.dataset.dataset import Dataset, Provenance, Representative,
 from regolith_studio.dataset.schema import Approximation
 from regolith_studio.dataset.size_distributions import (
     DiscreteSizeDistribution,
+    ShapeClass,
     SizeDistribution,
     Weighting,
     equivalent_diameter,
@@ -58,25 +59,6 @@ class CoarsenedShape(Protocol):
     @property
     def reason(self) -> str | None:
         """Why a request was not met, if it was not."""
-
-
-@dataclass(frozen=True)
-class ShapeClass:
-    """The class of particles that a representative stands for.
-
-    Parameters
-    ----------
-    weight
-        Any positive number; the weights of all classes are divided by their sum.
-    sizes
-        F_i.
-    n_members
-        Number of particles in the class.
-    """
-
-    weight: float
-    sizes: SizeDistribution
-    n_members: int = 1
 
 
 def build_dataset(

@@ -11,8 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial.distance import cdist
 
-from regolith_studio.dataset.build import ShapeClass
-from regolith_studio.dataset.size_distributions import DiscreteSizeDistribution, Weighting
+from regolith_studio.dataset.size_distributions import DiscreteSizeDistribution, ShapeClass, Weighting
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray, IntArray
 from regolith_studio.geometry.kernels import kernel

@@ -13,8 +13,8 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.harmonics.coefficients import ShCoefficients
 from regolith_studio.harmonics.fit import HarmonicFit
-from regolith_studio.harmonics.legendre import ring_nodes, synthesise_rings
 from regolith_studio.harmonics.radius_function import Ellipsoid
+from regolith_studio.harmonics.sphere_grid import ring_nodes, synthesise_rings
 from regolith_studio.harmonics.synthesis import (
     icosphere_edges,
     radii_along,

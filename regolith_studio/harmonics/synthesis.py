@@ -11,7 +11,7 @@ from regolith_studio.geometry.arrays import FloatArray, IntArray
 from regolith_studio.geometry.kernels import kernel
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.harmonics.coefficients import ShCoefficients
-from regolith_studio.harmonics.legendre import fill_legendre, harmonics, legendre_factors
+from regolith_studio.harmonics.sphere_grid import fill_legendre, harmonics, legendre_factors
 
 Basis = NDArray[np.float64] | NDArray[np.float32]
 

@@ -33,7 +33,7 @@ from regolith_studio.harmonics.coefficients import (
     from_pyshtools,
     to_pyshtools,
 )
-from regolith_studio.harmonics.legendre import analyse_rings, ring_nodes, synthesise_rings
+from regolith_studio.harmonics.sphere_grid import analyse_rings, ring_nodes, synthesise_rings
 
 _one_at_a_time = RLock()
 

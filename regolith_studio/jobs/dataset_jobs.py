@@ -5,7 +5,7 @@ from contextlib import ExitStack
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
-from regolith_studio.dataset.build import ShapeClass, build_dataset, singleton_class
+from regolith_studio.dataset.build import build_dataset, singleton_class
 from regolith_studio.dataset.catalog import CatalogEntry, scan_catalog
 from regolith_studio.dataset.dataset import Dataset, Provenance
 from regolith_studio.dataset.export import (
@@ -20,8 +20,7 @@ from regolith_studio.dataset.exporters import EXPORTERS
 from regolith_studio.dataset.folder_io import check_count, dataset_hash, read_dataset, write_dataset
 from regolith_studio.dataset.quality import polyhedra_errors
 from regolith_studio.dataset.schema import CoarseningRecord
-from regolith_studio.dataset.size_distributions import Weighting
-from regolith_studio.dataset.size_parsing import SizeRule, parse_sizes
+from regolith_studio.dataset.size_distributions import ShapeClass, SizeRule, Weighting, parse_sizes
 from regolith_studio.dataset.validation import validate_dataset
 from regolith_studio.errors import DatasetError, InputError
 from regolith_studio.geometry.particle import Particle
@@ -57,7 +56,7 @@ class DatasetOptions:
     representatives
         How representatives are chosen; ``None`` if each particle represents itself.
     sizes
-        Size distributions of the classes, as :mod:`regolith_studio.dataset.size_parsing` writes them.
+        Size distributions of the classes, as :mod:`regolith_studio.dataset.size_distributions` writes them.
     """
 
     name: str = ""

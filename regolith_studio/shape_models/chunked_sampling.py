@@ -16,9 +16,9 @@ import numpy as np
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray
 from regolith_studio.io.machine_memory import check_memory
-from regolith_studio.shape_models.log_radius import sized
 from regolith_studio.shape_models.protocol import SizeRange
 from regolith_studio.shape_models.realizations import Realizations, Scale, acceptable, positive_rows
+from regolith_studio.shape_models.sample import sized
 from regolith_studio.shape_models.shape_features import powers
 from regolith_studio.shape_models.size_law import SizeLaw, checked_bounds
 

@@ -13,8 +13,7 @@ from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray, loc
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.harmonics.coefficients import ShCoefficients
-from regolith_studio.harmonics.legendre import harmonics
-from regolith_studio.harmonics.sphere_grid import expanded_volumes, sphere_grid
+from regolith_studio.harmonics.sphere_grid import expanded_volumes, harmonics, sphere_grid
 from regolith_studio.harmonics.surface import DEFAULT_LEVEL, reconstruct
 from regolith_studio.harmonics.synthesis import (
     icosphere_edges,

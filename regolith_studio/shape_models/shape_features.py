@@ -16,7 +16,7 @@ import numpy as np
 
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.harmonics.coefficients import degrees
-from regolith_studio.harmonics.legendre import harmonics
+from regolith_studio.harmonics.sphere_grid import harmonics
 from regolith_studio.shape_models.convex_hull import HullGrid, hull_grid
 from regolith_studio.shape_models.inertia_ellipsoid import forms, log_ellipsoids, principal_axes
 

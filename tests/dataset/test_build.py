@@ -5,12 +5,13 @@ import pytest
 from scipy.spatial import ConvexHull
 
 from regolith_studio.coarsening.coarsen import coarsen
-from regolith_studio.dataset.build import ShapeClass, build_dataset, software_versions
+from regolith_studio.dataset.build import build_dataset, software_versions
 from regolith_studio.dataset.dataset import Dataset, Frame, aligned, principal_axes, rebuilt
 from regolith_studio.dataset.folder_io import write_dataset
 from regolith_studio.dataset.size_distributions import (
     DiscreteSizeDistribution,
     LogNormalSizeDistribution,
+    ShapeClass,
     equivalent_diameter,
 )
 from regolith_studio.dataset.validation import validate_dataset

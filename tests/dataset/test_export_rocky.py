@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 import trimesh
 
-from regolith_studio.dataset.build import ShapeClass, build_dataset
+from regolith_studio.dataset.build import build_dataset
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.export import ExportOptions, write_export
 from regolith_studio.dataset.exporters import EXPORTERS
@@ -19,6 +19,7 @@ from regolith_studio.dataset.size_distributions import (
     PAPER_CLASSES_UM,
     DiscreteSizeDistribution,
     LogNormalSizeDistribution,
+    ShapeClass,
 )
 from regolith_studio.readers.positions import read_positions
 

@@ -3,9 +3,13 @@
 import numpy as np
 import pytest
 
-from regolith_studio.dataset.build import ShapeClass, build_dataset
+from regolith_studio.dataset.build import build_dataset
 from regolith_studio.dataset.sampling import sample_dataset
-from regolith_studio.dataset.size_distributions import DiscreteSizeDistribution, LogNormalSizeDistribution
+from regolith_studio.dataset.size_distributions import (
+    DiscreteSizeDistribution,
+    LogNormalSizeDistribution,
+    ShapeClass,
+)
 from regolith_studio.errors import InputError
 
 from .example import entry

@@ -5,7 +5,7 @@ import pytest
 
 from regolith_studio.geometry import Mesh
 from regolith_studio.geometry.arrays import FloatArray
-from regolith_studio.geometry.mass_properties import ellipsoid_area, equal_ellipsoid, volume_and_area
+from regolith_studio.geometry.mesh import ellipsoid_area, equal_ellipsoid, volume_and_area
 from regolith_studio.geometry.sphere_points import icosphere
 from tests.geometry.solids import cuboid, folded_stone, rotation
 

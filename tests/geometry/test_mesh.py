@@ -8,7 +8,7 @@ from scipy.spatial import ConvexHull
 
 from regolith_studio.errors import GeometryError
 from regolith_studio.geometry import Mesh
-from regolith_studio.geometry.mass_properties import volume_moments
+from regolith_studio.geometry.mesh import volume_moments
 from regolith_studio.geometry.sphere_points import icosphere
 from tests.filling import filled
 from tests.geometry.solids import cloud, cuboid, folded_stone, rotation, rough_stone, tetrahedron

@@ -20,7 +20,7 @@ from regolith_studio.harmonics.coefficients import (
     sample_spectrum,
     to_pyshtools,
 )
-from regolith_studio.harmonics.legendre import harmonics
+from regolith_studio.harmonics.sphere_grid import harmonics
 from regolith_studio.harmonics.transform import evaluate_on_grid, ray_grid, rotated
 
 

@@ -11,8 +11,8 @@ from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.harmonics import synthesis
 from regolith_studio.harmonics.coefficients import ShCoefficients
 from regolith_studio.harmonics.fit import HarmonicFit, fit_harmonics
-from regolith_studio.harmonics.legendre import harmonics
 from regolith_studio.harmonics.radius_function import Ellipsoid, is_closed, sample_radius
+from regolith_studio.harmonics.sphere_grid import harmonics
 from regolith_studio.harmonics.surface import (
     enclosed_volume,
     gallery,

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from regolith_studio.errors import InputError
-from regolith_studio.harmonics.legendre import harmonics
+from regolith_studio.harmonics.sphere_grid import harmonics
 from regolith_studio.harmonics.transform import (
     analyse,
     band_limited,

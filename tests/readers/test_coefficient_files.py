@@ -6,7 +6,7 @@ from scipy.special import sph_harm_y
 
 from regolith_studio.errors import FileError
 from regolith_studio.harmonics.coefficients import ShCoefficients
-from regolith_studio.harmonics.legendre import harmonics
+from regolith_studio.harmonics.sphere_grid import harmonics
 from regolith_studio.readers.coefficient_tables import read_coefficients
 from tests.harmonics.tables import complex_rows, shtools_rows
 

@@ -23,8 +23,7 @@ from regolith_studio.geometry.particle import Particle
 from regolith_studio.geometry.sphere_points import icosphere
 from regolith_studio.harmonics.fit import fit_harmonics
 from regolith_studio.readers.coefficient_tables import read_coefficients
-from regolith_studio.readers.sandbox.tasks import read_number_rows
-from regolith_studio.readers.sandbox.volume_tasks import open_volume_file, read_checked_slices
+from regolith_studio.readers.sandbox.tasks import open_volume_file, read_checked_slices, read_number_rows
 from regolith_studio.readers.shape_files import read_shape_source
 from regolith_studio.session.outputs.measurements import FittedSample, write_fits
 from regolith_studio.session.project import Project, read_project

@@ -18,7 +18,7 @@ import tifffile
 
 from regolith_studio.errors import FileError
 from regolith_studio.readers.sandbox.parent import Sandbox
-from regolith_studio.readers.sandbox.volume_tasks import open_volume_file, read_checked_slices
+from regolith_studio.readers.sandbox.tasks import open_volume_file, read_checked_slices
 from regolith_studio.readers.volumes.read import describe_volume, open_slabs
 from tests.readers.test_txm import txm
 

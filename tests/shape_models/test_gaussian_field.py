@@ -5,7 +5,7 @@ import pytest
 
 from regolith_studio.errors import InputError
 from regolith_studio.harmonics.coefficients import sample_spectrum
-from regolith_studio.harmonics.legendre import harmonics
+from regolith_studio.harmonics.sphere_grid import harmonics
 from regolith_studio.shape_models.models.gaussian_field import MODEL, GaussianField, GaussianFieldSettings
 from regolith_studio.shape_models.realizations import positive_rows
 from regolith_studio.shape_models.sample import Sample

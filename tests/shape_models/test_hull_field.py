@@ -18,12 +18,11 @@ from regolith_studio.shape_models.calibration import (
 )
 from regolith_studio.shape_models.convex_hull import ROWS, hull_grid, supports
 from regolith_studio.shape_models.inertia_ellipsoid import forms, log_ellipsoids, with_forms
-from regolith_studio.shape_models.log_radius import log_shapes
 from regolith_studio.shape_models.materials import materials
 from regolith_studio.shape_models.models import MODELS
 from regolith_studio.shape_models.models.hull_field import HullFieldSettings
 from regolith_studio.shape_models.realizations import Realizations, virtual_mesh
-from regolith_studio.shape_models.sample import Sample
+from regolith_studio.shape_models.sample import Sample, log_shapes
 from regolith_studio.shape_models.shape_features import (
     CONVEXITY,
     FORM,

@@ -5,7 +5,6 @@ import pytest
 
 from regolith_studio.errors import InputError
 from regolith_studio.harmonics.coefficients import degrees
-from regolith_studio.shape_models.log_radius import directed, log_shapes, sized
 from regolith_studio.shape_models.mixture import MixtureSettings
 from regolith_studio.shape_models.models.gaussian_field import MODEL as GAUSSIAN_FIELD
 from regolith_studio.shape_models.models.gaussian_mixture import MODEL as GAUSSIAN_MIXTURE
@@ -13,7 +12,7 @@ from regolith_studio.shape_models.models.log_field import MODEL as LOG_FIELD
 from regolith_studio.shape_models.models.log_field import LogField, LogFieldSettings
 from regolith_studio.shape_models.models.mixture_field import MODEL as MIXTURE
 from regolith_studio.shape_models.realizations import Realizations
-from regolith_studio.shape_models.sample import Sample
+from regolith_studio.shape_models.sample import Sample, directed, log_shapes, sized
 from regolith_studio.shape_models.size_law import LogNormalSizes
 
 

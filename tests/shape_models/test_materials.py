@@ -13,11 +13,10 @@ from scipy.stats import norm
 from regolith_studio.errors import FileError, InputError
 from regolith_studio.harmonics.sphere_grid import sphere_grid
 from regolith_studio.shape_models.inertia_ellipsoid import principal_axes
-from regolith_studio.shape_models.log_radius import sized
 from regolith_studio.shape_models.materials import MaterialCard, materials, read_card, write_card
 from regolith_studio.shape_models.models.log_field import MODEL, LogFieldSettings
 from regolith_studio.shape_models.realizations import Realizations, virtual_mesh
-from regolith_studio.shape_models.sample import Sample
+from regolith_studio.shape_models.sample import Sample, sized
 from regolith_studio.shape_models.size_law import size_law_from
 from regolith_studio.studies.population import descriptors_of
 from tools.make_lunar_card import lunar_card, size_law

@@ -17,7 +17,7 @@ from regolith_studio.errors import RegolithError, os_error_reason
 from regolith_studio.io.child_process import private_pipes
 from regolith_studio.readers.error_messages import message_about
 from regolith_studio.readers.formats import MESH_FORMATS
-from regolith_studio.readers.sandbox import tasks, volume_tasks
+from regolith_studio.readers.sandbox import tasks
 from regolith_studio.readers.sandbox.messages import SandboxMessage, receive, send
 
 Task = Callable[[dict[str, Any]], SandboxMessage]
@@ -25,9 +25,9 @@ Task = Callable[[dict[str, Any]], SandboxMessage]
 
 TASKS: dict[str, Task] = {
     "mesh": tasks.read_mesh_file,
-    "volume-prepare": volume_tasks.prepare_volume,
-    "volume-open": volume_tasks.open_volume,
-    "volume-slices": volume_tasks.read_slices,
+    "volume-prepare": tasks.prepare_volume,
+    "volume-open": tasks.open_volume,
+    "volume-slices": tasks.read_slices,
     "positions": tasks.read_positions_file,
     "numbers": tasks.read_number_rows,
     "sleep": tasks.sleep,

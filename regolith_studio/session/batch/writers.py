@@ -10,7 +10,7 @@ import numpy as np
 
 from regolith_studio.dataset.export import ExportOptions, check_loss_accepted
 from regolith_studio.dataset.folder_io import StoredShape
-from regolith_studio.dataset.size_parsing import parse_sizes
+from regolith_studio.dataset.size_distributions import parse_sizes
 from regolith_studio.descriptors.catalogue import CATALOGUE
 from regolith_studio.errors import InputError
 from regolith_studio.geometry.particle import Particle, Source

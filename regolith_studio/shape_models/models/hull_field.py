@@ -32,8 +32,7 @@ from regolith_studio.shape_models.calibration import (
 )
 from regolith_studio.shape_models.chunked_sampling import CHUNK, SizedSampler
 from regolith_studio.shape_models.inertia_ellipsoid import log_ellipsoids, with_forms
-from regolith_studio.shape_models.log_radius import log_shapes
-from regolith_studio.shape_models.sample import Sample
+from regolith_studio.shape_models.sample import Sample, log_shapes
 from regolith_studio.shape_models.shape_features import (
     CONVEXITY,
     FORM,

@@ -17,9 +17,8 @@ from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats
 from regolith_studio.harmonics.coefficients import degrees
 from regolith_studio.messages import N_
 from regolith_studio.shape_models.chunked_sampling import SizedSampler
-from regolith_studio.shape_models.log_radius import directed, log_shapes
 from regolith_studio.shape_models.protocol import checked_amplitudes
-from regolith_studio.shape_models.sample import Sample
+from regolith_studio.shape_models.sample import Sample, directed, log_shapes
 from regolith_studio.shape_models.size_law import SIZE_LAWS, SizeLaw, size_law_from
 
 KEY = "log_field"

@@ -16,14 +16,13 @@ from regolith_studio.geometry.arrays import FloatArray, IntArray
 from regolith_studio.harmonics.coefficients import degrees
 from regolith_studio.messages import N_
 from regolith_studio.shape_models.chunked_sampling import SizedSampler
-from regolith_studio.shape_models.log_radius import log_shapes
 from regolith_studio.shape_models.mixture import (
     MixtureSettings,
     NamedComponents,
     chosen_mixture,
     restored_components,
 )
-from regolith_studio.shape_models.sample import Sample
+from regolith_studio.shape_models.sample import Sample, log_shapes
 from regolith_studio.shape_models.size_law import LogNormalSizes
 
 KEY = "mixture_field"

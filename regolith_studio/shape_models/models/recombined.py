@@ -30,8 +30,7 @@ from regolith_studio.errors import InputError
 from regolith_studio.geometry.arrays import FloatArray, IntArray, locked_floats
 from regolith_studio.geometry.kernels import kernel
 from regolith_studio.geometry.sphere_points import icosphere
-from regolith_studio.harmonics.legendre import harmonics
-from regolith_studio.harmonics.sphere_grid import enclosed_volumes, sphere_grid
+from regolith_studio.harmonics.sphere_grid import enclosed_volumes, harmonics, sphere_grid
 from regolith_studio.messages import N_
 from regolith_studio.shape_models.chunked_sampling import CHUNK
 from regolith_studio.shape_models.convex_hull import hull_grid

@@ -7,7 +7,7 @@ from typing import Any
 from PySide6.QtCore import QSignalBlocker, Signal
 from PySide6.QtWidgets import QComboBox, QLineEdit, QPushButton, QVBoxLayout, QWidget
 
-from regolith_studio.dataset.size_parsing import SizeRule, parse_sizes
+from regolith_studio.dataset.size_distributions import SizeRule, parse_sizes
 from regolith_studio.errors import InputError
 from regolith_studio.io.file_names import file_stem
 from regolith_studio.jobs.representatives_jobs import RepresentativesRequest
@@ -174,7 +174,7 @@ class SizesPanel(QWidget):
         self._show_kind()
 
     def text(self) -> str:
-        """As :mod:`regolith_studio.dataset.size_parsing` writes it."""
+        """As :mod:`regolith_studio.dataset.size_distributions` writes it."""
         key = self.kind.currentData()
         return f"{key}:{self.numbers.value().strip()}" if SIZES[key][1] else str(key)
 

@@ -10,12 +10,13 @@ from PySide6.QtCore import Qt, QUrl
 from PySide6.QtGui import QDesktopServices
 from PySide6.QtWidgets import QFileDialog, QHBoxLayout, QMessageBox, QPushButton, QVBoxLayout, QWidget
 
-from regolith_studio.dataset.build import ShapeClass, singleton_class
+from regolith_studio.dataset.build import singleton_class
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.export import ExportOptions, ExportResult
 from regolith_studio.dataset.exporters import EXPORTERS
 from regolith_studio.dataset.lifting_cylinder import CylinderFilling, cylinder_filling
 from regolith_studio.dataset.quality import QualityPoint
+from regolith_studio.dataset.size_distributions import ShapeClass
 from regolith_studio.errors import RegolithError
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.jobs.dataset_jobs import (

@@ -8,9 +8,9 @@ from PySide6.QtCore import QSize, Qt, QTimer
 from PySide6.QtWidgets import QLabel, QListView, QListWidget, QListWidgetItem, QVBoxLayout, QWidget
 
 from regolith_studio.coarsening.methods import METHODS
-from regolith_studio.dataset.build import ShapeClass
 from regolith_studio.dataset.dataset import Dataset
 from regolith_studio.dataset.quality import QualityCurve, QualityPoint
+from regolith_studio.dataset.size_distributions import ShapeClass
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.particle import Particle
 from regolith_studio.jobs.representatives_jobs import ChosenParticles
