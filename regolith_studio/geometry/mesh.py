@@ -3,6 +3,7 @@
 Cached properties that hold arrays, within a limit on the memory that all of them take.
 """
 
+import hashlib
 from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -309,6 +310,13 @@ class Mesh:
         used, faces = np.empty(len(unit), np.int64), np.empty((len(hull.simplices), 3), np.int64)
         n_used = _turn_outwards(unit, hull.simplices, hull.equations, used, faces)
         return Mesh(self.vertices[used[:n_used]], faces)
+
+    @cached_property
+    def content_hash(self) -> str:
+        """SHA-256 of vertices and faces, as hexadecimal digits."""
+        digest = hashlib.sha256(self.vertices.astype("<f8").tobytes())
+        digest.update(self.faces.astype("<i8").tobytes())
+        return digest.hexdigest()
 
     def moved(
         self, *, shift: ArrayLike = (0.0, 0.0, 0.0), rotation: ArrayLike | None = None, scale: float = 1.0
