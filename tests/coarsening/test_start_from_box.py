@@ -31,8 +31,14 @@ def coin(radius: float) -> Mesh:
 
 
 def errors_by_scipy(target: Target, n_facets: int) -> FloatArray:
+    """Of the kept descriptors; of many facets one in twenty may be lost, which is then said."""
     found = coarsen(target, n_facets)
-    assert (found.n_facets, found.reason) == (n_facets, None)
+    if found.n_facets < n_facets:
+        assert found.n_facets >= 0.95 * n_facets
+        assert found.reason is not None
+        assert found.reason.startswith(f"The result has {found.n_facets} facets instead of {n_facets}")
+    else:
+        assert found.reason is None
     planes = target.in_unit_frame(found.half_spaces)
     values = measured(planes.normals, planes.offsets, 2.0)
     return np.array([abs(values[key] / target.descriptors[key] - 1.0) for key in KEPT])
