@@ -181,7 +181,9 @@ def with_table(scans: Path, *lines: str) -> Path:
 
 
 def test_that_a_table_gives_single_scans_settings_of_their_own(command, scans: Path, tmp_path: Path) -> None:
-    table = with_table(scans, "scan,voxel-size,Crop,border", "fine.npy,3,,", "scans/coarse.npy,,:26%,keep")
+    table = with_table(
+        scans, "scan,voxel-size,Crop,exclude-border", "fine.npy,3,,", "scans/coarse.npy,,:26%,no"
+    )
     table.write_text(table.read_text().replace(":26%", '":26,:,:"'))
     output = tmp_path / "all"
     call = ("extract", scans, "-o", output, *ASKED, "--settings", table)

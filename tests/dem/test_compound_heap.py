@@ -124,7 +124,7 @@ def test_that_yade_refuses_compounds(elbows: Dataset) -> None:
     yade = engine_named("yade")
     with pytest.raises(
         InputError,
-        match="elbows holds compounds of convex parts; take one of the engines MuJoCo, Rapier, LAMMPS",
+        match="elbows holds compounds of convex parts; take one of the engines MuJoCo, Rapier, Box3D, LAMMPS",
     ):
         check_shapes(prepare(elbows, CASE), yade)
     check_shapes(prepare(elbows, ReposeCase(n_particles=40, test=CASE.test, shapes="spheres")), yade)

@@ -177,7 +177,8 @@ def test_that_every_command_of_the_pages_has_the_options_that_are_told(page: str
         name = rest.pop(0)
         assert name in command.commands, (page, name)
         command = command.commands[name]
-    known = {option for each in command.params for option in each.opts} | {"-h", "--help", "--version"}
+    options = {option for each in command.params for option in (*each.opts, *each.secondary_opts)}
+    known = options | {"-h", "--help", "--version"}
     given = {word.split("=")[0] for word in rest if re.match(r"--?[a-z]", word)}
     assert given <= known, page
 

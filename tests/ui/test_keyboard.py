@@ -170,7 +170,7 @@ def test_that_a_view_shows_that_it_has_the_keys_and_turns_with_them(window, sett
 
 
 DIALOGS = (
-    *("run_batch", "export", "preferences", "palette", "shortcuts", "about"),
+    *("run_batch", "preferences", "palette", "shortcuts", "about"),
     "explore.save_picture",
 )
 """Commands that ask by a dialog of their own."""
