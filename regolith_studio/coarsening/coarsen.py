@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from regolith_studio.coarsening.compound.conditions import KEYS as KNOWN
-from regolith_studio.coarsening.compound.line_overlap import compound_distance
+from regolith_studio.coarsening.core.line_overlap import compound_distance
 from regolith_studio.coarsening.loss import loss
 from regolith_studio.coarsening.lower_bounds import attainable_errors
 from regolith_studio.coarsening.methods import METHODS, CoarseningMethod
+from regolith_studio.coarsening.optimiser.search import TERMS
 from regolith_studio.coarsening.polyhedra import polyhedron_of
 from regolith_studio.coarsening.progress import CoarseningProgress, MethodStep
 from regolith_studio.coarsening.result import CoarseningResult, MethodResult
@@ -248,7 +248,7 @@ def _check(method: CoarseningMethod, weights: Any, seed: Any) -> None:
         kind = type(weights).__name__
         raise InputError(f"The weights must be LossWeights, such as LossWeights.of(volume=1), got {kind}.")
     check_kept(method.key, weights)
-    foreign = [key for key in LOSS_KEYS if key not in KNOWN and (weights[key] or key in (weights.keep or ()))]
+    foreign = [key for key in LOSS_KEYS if key not in TERMS and (weights[key] or key in (weights.keep or ()))]
     if foreign and method.keeps_terms:
         raise InputError(
             f"The method {method.key} does not know the term {foreign[0]}; give it the weight 0, or take"

@@ -8,7 +8,7 @@ from functools import lru_cache
 from typing import Any
 
 from regolith_studio.coarsening.coarsen import coarsening_steps
-from regolith_studio.coarsening.compound.line_overlap import compound_distance
+from regolith_studio.coarsening.core.line_overlap import compound_distance
 from regolith_studio.coarsening.methods import METHODS
 from regolith_studio.coarsening.progress import CoarseningProgress
 from regolith_studio.coarsening.result import CoarseningResult

@@ -23,8 +23,8 @@ from regolith_studio.messages import N_, Message
 if TYPE_CHECKING:
     pass
 
-TASKS = {"read": 10, "fit": 27, "describe": 34, "quadric": 18, "annealing": 12, "exact": 112, "compound": 44}
-TASKS |= {"degrees": 3, "model": 7, "scan": 10, "representatives": 3}
+TASKS = {"read": 10, "fit": 27, "describe": 32, "quadric": 18, "annealing": 12, "exact": 119, "compound": 63}
+TASKS |= {"degrees": 2, "model": 7, "scan": 10, "representatives": 3}
 """What can be compiled, in the order in which the window needs it, and the files of machine code that each
 adds to those of the tasks before it. Annealing has no kernel that the exact method does not need too.
 The second line is for single pages. What is compiled in the window instead keeps 2 MB a kernel there."""

@@ -30,7 +30,7 @@ from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.sphere_points import icosphere
 from tests.coarsening.conftest import bumpy
 
-WANTED = np.array([1.0, 0.9, 0.8, 1.4, 1.75])
+WANTED = np.array([1.0, 0.9, 0.8, 1.4, 1.75, 1.0])
 
 
 @pytest.mark.parametrize("seed", range(5))
@@ -77,10 +77,10 @@ def test_that_rows_are_the_derivatives_of_the_terms() -> None:
         rng.uniform(0.5, 0.7, n),
         tangents_of(normals),
     )
-    bound = np.full(5, 1.0)
+    bound = np.full(6, 1.0)
     prices = Prices(WANTED, -bound, bound, 1.0)
     assert fill_body(here, WANTED, True, scratch)
-    assert check_boxes(here, prices, np.eye(3), box_memory(n), scratch)
+    assert check_boxes(here, prices, np.eye(3), box_memory(n, 2 * n), scratch)
     here.counts[N_BOXES] = 1
     step = rng.normal(size=3 * n)
     ahead, behind = (
@@ -93,7 +93,11 @@ def test_that_rows_are_the_derivatives_of_the_terms() -> None:
         assert here.numbers[at] == pytest.approx((ahead[1][at] + behind[1][at]) / 2, rel=1e-9)
 
 
-PROCESSORS = ({}, {"OPENBLAS_CORETYPE": "Nehalem"}, {"NUMBA_CPU_NAME": "generic"})
+PROCESSORS = (
+    {},
+    *({"OPENBLAS_CORETYPE": each} for each in ("Nehalem", "Sandybridge", "Haswell", "SkylakeX")),
+    {"NUMBA_CPU_NAME": "generic"},
+)
 CHILD = """
 import json, sys
 from regolith_studio.coarsening.coarsen import coarsen
@@ -101,6 +105,8 @@ from regolith_studio.readers.particles import sample_particles
 names = ("agglutinate-2", "bead-2", "angular-3")
 meshes = {each.name: each.mesh for each in sample_particles()}
 found = {name: coarsen(meshes[name], 20) for name in names}
+for name, joint in (("agglutinate-1", "overlap"), ("agglutinate-2", "touch")):
+    found[name + joint] = coarsen(meshes[name], 40, "compound", settings={"joint": joint})
 print(json.dumps({name: [each.jaccard_distance, each.n_facets] for name, each in found.items()}))
 """
 

@@ -6,19 +6,17 @@ from functools import partial
 
 import numpy as np
 
-from regolith_studio.coarsening.compound.conditions import KEYS
-from regolith_studio.coarsening.compound.line_overlap import compound_distance
-from regolith_studio.coarsening.compound.search import (
+from regolith_studio.coarsening.core.line_overlap import compound_distance
+from regolith_studio.coarsening.loss import loss
+from regolith_studio.coarsening.optimiser.compound_search import (
     CompoundCandidate,
-    Effort,
     asked_terms,
     compound_of,
     search_compound,
 )
-from regolith_studio.coarsening.compound.start import MIN_FACETS
-from regolith_studio.coarsening.loss import loss
+from regolith_studio.coarsening.optimiser.compound_starts import MIN_FACETS
 from regolith_studio.coarsening.optimiser.search import EFFORTS as CONVEX_EFFORTS
-from regolith_studio.coarsening.optimiser.search import Search
+from regolith_studio.coarsening.optimiser.search import TERMS, Search, SearchEffort
 from regolith_studio.coarsening.progress import MethodStep
 from regolith_studio.coarsening.reasons import missed_terms, named_errors
 from regolith_studio.coarsening.result import MethodResult
@@ -37,7 +35,7 @@ CONVEX = 1e-6
 """Particles whose volume is less below that of their hull, as a share, are convex."""
 RETRIES = 8
 JOINTS = ("overlap", "touch")
-EFFORTS = {"fast": Effort(5, 2), "best": Effort(16, 5)}
+EFFORTS = {"fast": SearchEffort(8, 3), "best": SearchEffort(16, 5)}
 """By level."""
 
 
@@ -53,7 +51,7 @@ class CompoundSettings:
         Parts ``overlap``, so that a solver sees a welded body, or ``touch`` in planes between them, so that
         their volumes and masses add up.
     level
-        ``fast`` (5 starts, the best 2 of which descend further) or ``best`` (16 and 5: better overlap).
+        ``fast`` (8 starts, the best 3 of which descend further) or ``best`` (16 and 5: better overlap).
 
     Raises
     ------
@@ -147,7 +145,7 @@ def _compound(
     n_facets: int,
     weights: LossWeights,
     parts: int,
-    effort: Effort,
+    effort: SearchEffort,
     run: Generator[CompoundCandidate, None, CompoundCandidate],
 ) -> Generator[MethodStep, None, MethodResult]:
     history: list[float] = []
@@ -157,10 +155,10 @@ def _compound(
         except StopIteration as end:
             best: CompoundCandidate = end.value
             break
-        history.append(_loss(target, weights, found))
+        history.append(_loss(weights, found))
         step = min(len(history), effort.starts)
-        yield MethodStep(step, effort.starts, history[-1], compound=partial(compound_of, found.point.planes))
-    solid = compound_of(best.point.planes)
+        yield MethodStep(step, effort.starts, history[-1], compound=partial(compound_of, found.planes))
+    solid = compound_of(best.planes)
     achieved = describe(solid)
     steps = {"starts": float(min(len(history), effort.starts)), "better": float(len(history))}
     return MethodResult(
@@ -172,13 +170,10 @@ def _compound(
     )
 
 
-def _loss(target: Target, weights: LossWeights, found: CompoundCandidate) -> float:
+def _loss(weights: LossWeights, found: CompoundCandidate) -> float:
     """Eq. 9 by what the search has measured; descriptors that no condition is about count as met."""
-    logs = np.where(
-        np.isnan(found.point.logs), np.log([target.descriptors[key] for key in KEYS]), found.point.logs
-    )
-    measured = dict(zip(KEYS, np.exp(logs).tolist(), strict=True))
-    return loss(weights, relative_errors(target.descriptors, measured), found.distance)
+    missed = dict(zip(TERMS, np.abs(found.residuals).tolist(), strict=True))
+    return loss(weights, missed, found.distance)
 
 
 def _reason(

@@ -1,1 +1,1 @@
-"""The optimiser of Eq. 9: half-spaces measured with derivatives, multipliers, descent, starts and search."""
+"""The optimiser of Eq. 9 for convex polyhedra and unions: measures, multipliers, descent, starts, search."""

@@ -1,6 +1,9 @@
 """A polyhedron with all that a step of the optimiser needs: measures, boxes, residuals and derivatives.
 
-Terms stand in the order V, S, D_min, D_max, AR. A residual is a relative error, value / wanted - 1; the
+It is convex, or a union of convex parts. Where it has no parts, numba leaves out what is about them: a
+compiled function with ``None`` for its parts is another one than with parts.
+
+Terms stand in the order V, S, D_min, D_max, AR, CH. A residual is a relative error, value / wanted - 1; the
 derivatives of all are with the coordinates (shift and two tilts) of every plane. D_min, D_max and AR have a
 kink where two edges of the box are equal; four further rows say what the middle edge must not pass there.
 D_min and D_max have another where two vertices are equally far out at one end; four rows more say how far out
@@ -20,25 +23,35 @@ from regolith_studio.coarsening.core.box_contacts import (
     touched,
     walk_to_minimum,
 )
-from regolith_studio.coarsening.core.box_gradient import extent_forces
-from regolith_studio.coarsening.core.box_search import likeness_of
+from regolith_studio.coarsening.core.box_following import (
+    ALIKE,
+    extent_forces,
+    likeness_of,
+    update_vertex_ids,
+)
 from regolith_studio.coarsening.core.intersection import FINE, IntersectionWorkspace, workspace_for
+from regolith_studio.coarsening.core.parts import (
+    Parts,
+    add_hull_charges,
+    add_union_surface_charges,
+    fill_hull,
+    fill_union,
+)
 from regolith_studio.coarsening.core.plane_coordinates import fill_gradient, fill_tilt_scales
 from regolith_studio.coarsening.core.polyhedron_measures import (
     add_surface_charges,
     add_vertex_charges,
     fill_measures,
 )
-from regolith_studio.coarsening.core.tracked_boxes import ALIKE, update_vertex_ids
 from regolith_studio.geometry.arrays import FloatArray, IntArray
 from regolith_studio.geometry.kernels import kernel_noalloc
 from regolith_studio.geometry.vectors import along, row
 
-VOLUME, SPHERICITY, SHORTEST, LONGEST, RATIO = 0, 1, 2, 3, 4
-N_TERMS, N_FIXED = 5, 13
-MIDDLE_LONGEST, MIDDLE_SHORTEST, MIDDLE_SHORT, LONG_MIDDLE = 5, 6, 7, 8
+VOLUME, SPHERICITY, SHORTEST, LONGEST, RATIO, HULL = 0, 1, 2, 3, 4, 5
+N_TERMS, N_FIXED = 6, 14
+MIDDLE_LONGEST, MIDDLE_SHORTEST, MIDDLE_SHORT, LONG_MIDDLE = 6, 7, 8, 9
 """Rows of the middle edge: it is at most D_max, at least D_min, and neither makes AR larger."""
-FIRST_TIE = 9
+FIRST_TIE = 10
 """Rows of D_min and then D_max, each with another vertex at the upper, then at the lower end of the edge."""
 FAR_BELOW = -1.0
 """Residual of a row of a vertex that is not there."""
@@ -50,7 +63,7 @@ GONE = 1.0
 """Slack of a rival that is no local minimum any more."""
 SAME_VOLUME, SAME_FRAME = 1e-6, 1.0 - 1e-9
 """Boxes that differ by less, as shares and by the cosine of the angle between their axes, are one."""
-STATUS, N_VERTICES, N_BOXES = 0, 1, 2
+N_VERTICES, N_BOXES = 0, 1
 BODY_VOLUME, SURFACE, JACCARD = 0, 1, 2
 
 
@@ -60,9 +73,10 @@ class Prices(NamedTuple):
     Parameters
     ----------
     wanted
-        Values of V, S, D_min, D_max, AR, shape (5,).
+        Values of V, S, D_min, D_max, AR, CH, shape (6,).
     low, high
-        Derivatives of the loss below and above a residual of 0, shape (5,): low <= 0 <= high.
+        Derivatives of the loss below and above a residual of 0, shape (6,): low <= 0 <= high. Both are 0 for
+        CH of a convex polyhedron, which is V.
     overlap
         Price of the Jaccard distance, above 0.
     """
@@ -84,15 +98,18 @@ class Body(NamedTuple):
         As in :class:`regolith_studio.coarsening.core.polyhedron_measures.MeasuredPolyhedron`, the first three
         with room to spare.
     counts
-        Status, number of vertices, number of boxes.
+        Number of vertices, number of boxes.
     numbers
         Volume, surface area, Jaccard distance.
     frames, contacts, planes, extents
         Of the boxes, the measured one first; shapes (b, 3, 3), (b, 13), (b, 9, 3) and (b, 3).
     residuals, rows
-        Of the terms, the middle edge and vertices that nearly tie, shapes (13,) and (13, 3 n).
+        Of the terms, the middle edge and vertices that nearly tie, shapes (14,) and (14, 3 n).
     slack, rival_rows
         volume / volume of the measured box - 1 of the boxes, and the derivatives; the first is 0.
+    parts
+        Of a union, whose vertices are those of all parts, and whose areas are exposed ones; ``None`` of a
+        convex polyhedron.
     """
 
     normals: FloatArray
@@ -114,6 +131,7 @@ class Body(NamedTuple):
     rows: FloatArray
     slack: FloatArray
     rival_rows: FloatArray
+    parts: Parts | None
 
 
 class BodyScratch(NamedTuple):
@@ -143,7 +161,7 @@ class BodyScratch(NamedTuple):
     contact: IntArray
 
 
-def empty_body(n: int) -> Body:
+def empty_body(n: int, parts: Parts | None = None) -> Body:
     """Room for n half-spaces."""
     return Body(
         np.empty((n, 3)),
@@ -155,7 +173,7 @@ def empty_body(n: int) -> Body:
         np.empty((3 * n, 4), np.int64),
         np.empty(n),
         np.empty((n, 3)),
-        np.zeros(3, np.int64),
+        np.zeros(2, np.int64),
         np.zeros(3),
         np.empty((MAX_BOXES, 3, 3)),
         np.empty((MAX_BOXES, ROW), np.int64),
@@ -165,6 +183,7 @@ def empty_body(n: int) -> Body:
         np.zeros((N_FIXED, 3 * n)),
         np.zeros(MAX_BOXES),
         np.zeros((MAX_BOXES, 3 * n)),
+        parts,
     )
 
 
@@ -190,29 +209,71 @@ def fill_body(body: Body, wanted: FloatArray, needs_box: bool, scratch: BodyScra
     Parameters
     ----------
     wanted
-        Values of the terms, shape (5,).
+        Values of the terms, shape (6,).
     needs_box
         Whether the terms of the box are to be measured.
     """
-    status, count, volume, surface = fill_measures(
-        body.normals,
-        body.offsets,
-        scratch.intersection,
+    if not _fill_shape(body, body.parts, scratch):
+        return False
+    fill_tilt_scales(body.areas, body.scales)
+    _fill_volume_and_sphericity(body, wanted, scratch)
+    if not _fill_hull_term(body, body.parts, wanted, scratch):
+        return False
+    if needs_box and body.counts[N_BOXES] > 0:
+        _follow_boxes(body, scratch)
+        fill_box_terms(body, wanted, scratch)
+    return True
+
+
+@kernel_noalloc
+def _fill_shape(body: Body, parts: Parts | None, scratch: BodyScratch) -> bool:
+    """Vertices, facets, volume and surface area; False where there is no polyhedron."""
+    normals, offsets, work = body.normals, body.offsets, scratch.intersection
+    vertices, triples, edges, areas, centroids = (
         body.vertices,
         body.triples,
         body.edges,
         body.areas,
         body.centroids,
     )
-    body.counts[STATUS], body.counts[N_VERTICES] = status, count
-    if status != FINE:
-        return False
+    if parts is None:
+        status, count, volume, surface = fill_measures(
+            normals, offsets, work, vertices, triples, edges, areas, centroids
+        )
+        sound = status == FINE
+    else:
+        sound, count, volume, surface = fill_union(
+            normals, offsets, work, vertices, triples, edges, areas, centroids, parts
+        )
+    body.counts[N_VERTICES] = count
     body.numbers[BODY_VOLUME], body.numbers[SURFACE] = volume, surface
-    fill_tilt_scales(body.areas, body.scales)
-    _fill_volume_and_sphericity(body, wanted, scratch)
-    if needs_box and body.counts[N_BOXES] > 0:
-        _follow_boxes(body, scratch)
-        fill_box_terms(body, wanted, scratch)
+    return sound
+
+
+@kernel_noalloc
+def _add_surface(body: Body, parts: Parts | None, size: float, charges: FloatArray) -> None:
+    """Add `size` times the derivative of the surface area, shape (n, 4)."""
+    if parts is None:
+        edges = body.edges[: 3 * body.counts[N_VERTICES] // 2]
+        add_surface_charges(body.normals, body.vertices, edges, body.centroids, size, charges)
+    else:
+        add_union_surface_charges(body.normals, body.centroids, size, parts, charges)
+
+
+@kernel_noalloc
+def _fill_hull_term(body: Body, parts: Parts | None, wanted: FloatArray, scratch: BodyScratch) -> bool:
+    """Residual and row of CH of a union; False where its hull is flat."""
+    if parts is not None:
+        vertices, charges = body.vertices[: body.counts[N_VERTICES]], scratch.charges
+        volume = fill_hull(vertices, parts.counts, parts.hull)
+        if not volume > 0.0:
+            return False
+        charges[:] = 0.0
+        add_hull_charges(
+            body.normals, body.triples, vertices, body.centroids, 1.0 / wanted[HULL], parts, charges
+        )
+        fill_gradient(charges, body.tangents, body.scales, body.rows[HULL])
+        body.residuals[HULL] = volume / wanted[HULL] - 1.0
     return True
 
 
@@ -234,10 +295,7 @@ def _fill_volume_and_sphericity(body: Body, wanted: FloatArray, scratch: BodyScr
     n, volume, surface = len(body.offsets), body.numbers[BODY_VOLUME], body.numbers[SURFACE]
     charges, rows = scratch.charges, body.rows
     charges[:] = 0.0
-    n_edges = 3 * body.counts[N_VERTICES] // 2
-    add_surface_charges(
-        body.normals, body.vertices, body.edges[:n_edges], body.centroids, 1.0 / surface, charges
-    )
+    _add_surface(body, body.parts, 1.0 / surface, charges)
     fill_gradient(charges, body.tangents, body.scales, rows[SPHERICITY])
     # S^3 = 36 pi V^2 / A^3, so that one cube root remains
     sphericity = cube_root_near_one(36.0 * np.pi * volume * volume / (surface * surface * surface))
@@ -245,7 +303,7 @@ def _fill_volume_and_sphericity(body: Body, wanted: FloatArray, scratch: BodyScr
     body.residuals[SPHERICITY] = sphericity / wanted[SPHERICITY] - 1.0
     share = sphericity / wanted[SPHERICITY]
     for i in range(n):
-        rows[VOLUME, 3 * i] = body.areas[i] / wanted[VOLUME]
+        rows[VOLUME, 3 * i] = max(body.areas[i], 0.0) / wanted[VOLUME]
         rows[VOLUME, 3 * i + 1] = rows[VOLUME, 3 * i + 2] = 0.0
     for j in range(3 * n):
         growth = rows[VOLUME, j] * wanted[VOLUME] / volume

@@ -53,19 +53,20 @@ class BoxMemory(NamedTuple):
     best: BestBox
 
 
-def box_memory(n: int) -> BoxMemory:
-    """Memory for n half-spaces."""
-    directions = cell_directions(n_cells(2 * n))
+def box_memory(n: int, n_vertices: int) -> BoxMemory:
+    """Memory for polyhedra with so many facets and vertices."""
+    n_edges = n + n_vertices  # Euler's formula
+    directions = cell_directions(n_cells(n_vertices))
     angles = np.linspace(0.0, np.pi / 2.0, QUARTER_TURNS, endpoint=False)
     return BoxMemory(
-        np.empty((3, 2 * n)),
+        np.empty((3, n_vertices)),
         directions,
         np.empty((directions.shape[1], 3)),
         np.empty((2, directions.shape[1]), np.int64),
         np.empty((4, BLOCK)),
-        np.empty((3 * n, 4), np.int64),
-        np.empty((3 * n, 11)),
-        np.empty(3 * n, np.bool_),
+        np.empty((n_edges, 4), np.int64),
+        np.empty((n_edges, 11)),
+        np.empty(n_edges, np.bool_),
         np.empty(n, np.bool_),
         np.array([np.cos(angles), np.sin(angles)]),
         Work(np.empty((2, n)), np.empty(n, np.int64), np.empty((2, 2, 2))),

@@ -9,20 +9,20 @@ Boxes are followed from step to step; the proven search looks for a smaller one 
 rival from then on: a condition that keeps it above the measured box.
 """
 
-from typing import NamedTuple
-
 import numpy as np
 
+from regolith_studio.coarsening.core.line_overlap import fill_shared_with_lines
 from regolith_studio.coarsening.core.overlap import add_shared_charges, shared_volume
+from regolith_studio.coarsening.core.parts import Parts
 from regolith_studio.coarsening.core.plane_coordinates import fill_gradient, fill_moved
 from regolith_studio.coarsening.core.polyhedron_measures import add_volume_charges
+from regolith_studio.coarsening.core.scan_lines import ScanLines
 from regolith_studio.coarsening.optimiser.body import (
     BODY_VOLUME,
     FIRST_TIE,
     GONE,
     JACCARD,
     LONGEST,
-    MAX_BOXES,
     MIDDLE_LONGEST,
     MIDDLE_SHORTEST,
     N_BOXES,
@@ -34,17 +34,16 @@ from regolith_studio.coarsening.optimiser.body import (
     Body,
     BodyScratch,
     Prices,
-    body_scratch,
     copy_boxes,
-    empty_body,
     fill_body,
 )
-from regolith_studio.coarsening.optimiser.box_check import BoxMemory, box_memory
 from regolith_studio.coarsening.optimiser.followed_boxes import check_boxes
+from regolith_studio.coarsening.optimiser.memory import Memory, Rays, Steps
 from regolith_studio.coarsening.optimiser.multipliers import fill_multipliers, solve_in_place
-from regolith_studio.geometry.arrays import FloatArray, IntArray
+from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.half_spaces import exits
 from regolith_studio.geometry.kernels import kernel, kernel_noalloc
+from regolith_studio.geometry.vectors import cross, dot
 
 LOCK = 100.0
 """Price of a term that is kept exactly, in units of the Jaccard distance: multipliers of terms that can be
@@ -56,6 +55,8 @@ CLEARANCE, PRESSING = 2e-4, 1e-4
 way between them keeps rivals that only come near from deciding over steps."""
 CHECK_EVERY = 8
 """Accepted steps between two searches for smaller boxes."""
+SOFTNESS = 0.05
+"""Added to second derivatives of a union: hidden facets have none of their own."""
 MET = 1e-9
 """Residuals of terms at a kink after the corrections of a step."""
 CORRECTIONS, CURVATURE = 5, 0.03
@@ -67,105 +68,12 @@ NEAR_KINK = -0.1
 """Rows of the middle edge and of the next vertex with a larger residual take part in the steps."""
 TIED = 1e-3
 """Where corrections lead nowhere, vertices that tie up to this residual are corrected together."""
-N_ROWS = N_FIXED + MAX_BOXES
 STEPS, CHECKS = 0, 1
-
-
-class Rays(NamedTuple):
-    """Crossings of rays with the particle, as :class:`regolith_studio.coarsening.target.RayTable`."""
-
-    directions: FloatArray
-    first: IntArray
-    distance: FloatArray
-    sign: FloatArray
-    weight: float
-
-
-class Steps(NamedTuple):
-    """Memory of the steps, for n half-spaces and k rays.
-
-    Parameters
-    ----------
-    metric
-        Approximate inverse of the Lagrangian's second derivative, shape (3 n, 3 n).
-    gradient, trial_gradient, step, total, change
-        Shape (3 n,): of the overlap at both bodies, the step, with its corrections, and of the Lagrangian.
-    rows, across
-        Rows and their products with the metric, shapes (21, 3 n) and (22, 3 n), the gradient's last.
-    residuals, low, high, multipliers, slopes
-        Of the rows, shape (21,).
-    products, factor
-        Shapes (21, 21) and (21, 22).
-    diagonal
-        Of the metric that a descent begins with, (3 n,).
-    radius, plane
-        Where each ray leaves the polyhedron, shape (k,).
-    charges
-        Shape (n, 4).
-    """
-
-    metric: FloatArray
-    gradient: FloatArray
-    trial_gradient: FloatArray
-    step: FloatArray
-    total: FloatArray
-    change: FloatArray
-    rows: FloatArray
-    across: FloatArray
-    residuals: FloatArray
-    low: FloatArray
-    high: FloatArray
-    multipliers: FloatArray
-    slopes: FloatArray
-    products: FloatArray
-    factor: FloatArray
-    diagonal: FloatArray
-    radius: FloatArray
-    plane: IntArray
-    charges: FloatArray
-
-
-class Memory(NamedTuple):
-    """All memory of descents with n half-spaces."""
-
-    one: Body
-    two: Body
-    scratch: BodyScratch
-    boxes: BoxMemory
-    steps: Steps
-    counts: IntArray
-
-
-def memory_for(n: int, n_rays: int) -> Memory:
-    """Memory for n half-spaces and so many rays."""
-    size = 3 * n
-    steps = Steps(
-        np.empty((size, size)),
-        np.zeros(size),
-        np.zeros(size),
-        np.zeros(size),
-        np.zeros(size),
-        np.zeros(size),
-        np.zeros((N_ROWS, size)),
-        np.zeros((N_ROWS + 1, size)),
-        np.zeros(N_ROWS),
-        np.zeros(N_ROWS),
-        np.zeros(N_ROWS),
-        np.zeros(N_ROWS),
-        np.zeros(N_ROWS),
-        np.zeros((N_ROWS, N_ROWS)),
-        np.zeros((N_ROWS, N_ROWS + 1)),
-        np.zeros(size),
-        np.empty(n_rays),
-        np.empty(n_rays, np.int64),
-        np.empty((n, 4)),
-    )
-    return Memory(empty_body(n), empty_body(n), body_scratch(n), box_memory(n), steps, np.zeros(2, np.int64))
 
 
 @kernel
 def descend(
-    rays: Rays,
+    rays: Rays | ScanLines,
     prices: Prices,
     start_axes: FloatArray,
     max_steps: int,
@@ -196,7 +104,8 @@ def descend(
     normals, offsets, tangents
         In place, shapes (n, 3), (n,) and (n, 2, 3).
     memory
-        ``memory.scratch.start`` takes the axes of the measured box, if there is one.
+        ``memory.scratch.start`` takes the axes of the measured box, if there is one, ``memory.residuals``
+        those of the terms, and ``memory.one.parts.inner``, if there are parts, holds their inner points.
 
     Returns
     -------
@@ -209,19 +118,19 @@ def descend(
     jaccard_distance
         By the rays.
     """
-    here, there, scratch, boxes, work, counts = memory
+    here, there, scratch, boxes, work, counts, residuals = memory
     here.normals[:], here.offsets[:], here.tangents[:] = normals, offsets, tangents
     here.counts[N_BOXES] = 0
     needs_box = False
-    for r in range(SHORTEST, N_TERMS):
+    for r in range(SHORTEST, RATIO + 1):
         needs_box = needs_box or prices.low[r] < prices.high[r]
     if not fill_body(here, prices.wanted, needs_box, scratch):
         return False, np.inf, np.inf, 1.0
     if needs_box:
         check_boxes(here, prices, start_axes, boxes, scratch)
-    fill_overlap(here, rays, work)
+    fill_overlap(here, here.parts, rays, work)
     pull = 0.0 if restoring else prices.overlap
-    fill_overlap_gradient(here, rays, pull, work, work.gradient)
+    fill_overlap_gradient(here, here.parts, rays, pull, work, work.gradient)
     fill_first_metric(here, prices.overlap, held, steady, work)
     merit = merit_of(here, prices)
     unchecked, failures, small = 0, 0, 0
@@ -252,10 +161,12 @@ def descend(
     if needs_box and unchecked > 0 and check_boxes(here, prices, start_axes, boxes, scratch):
         merit = merit_of(here, prices)
     normals[:], offsets[:], tangents[:] = here.normals, here.offsets, here.tangents
+    _carry_inner(here.parts, here, memory.one.parts)
     if needs_box:
         scratch.start[:] = here.frames[0]
     worst = 0.0
     for r in range(N_TERMS):
+        residuals[r] = here.residuals[r]
         if prices.high[r] > KEPT * prices.overlap:
             worst = max(worst, abs(here.residuals[r]))
     for b in range(1, here.counts[N_BOXES]):
@@ -264,34 +175,58 @@ def descend(
 
 
 @kernel
-def fill_overlap(body: Body, rays: Rays, work: Steps) -> None:
+def fill_overlap(body: Body, parts: Parts | None, rays: Rays | ScanLines, work: Steps) -> None:
     """Jaccard distance to the particle of unit volume; the rays' exits stay in `work`."""
-    exits(body.normals, body.offsets, rays.directions, work.radius, work.plane)
-    shared = shared_volume(rays.first, rays.distance, rays.sign, rays.weight, work.radius)
+    if parts is None:
+        exits(body.normals, body.offsets, rays.directions, work.radius, work.plane)
+        shared = shared_volume(rays.first, rays.distance, rays.sign, rays.weight, work.radius)
+    else:
+        shared = fill_shared_with_lines(
+            body.normals,
+            body.offsets,
+            body.centroids,
+            body.tangents,
+            body.scales,
+            rays,  # type: ignore[arg-type]
+            parts,
+        )
     body.numbers[JACCARD] = 1.0 - shared / (1.0 + body.numbers[BODY_VOLUME] - shared)
 
 
 @kernel_noalloc
-def fill_overlap_gradient(body: Body, rays: Rays, price: float, work: Steps, gradient: FloatArray) -> None:
+def fill_overlap_gradient(
+    body: Body,
+    parts: Parts | None,
+    rays: Rays | ScanLines,
+    price: float,
+    work: Steps,
+    gradient: FloatArray,
+) -> None:
     """Fill `price` times the derivative of the Jaccard distance, shape (3 n,)."""
     union = (1.0 + body.numbers[BODY_VOLUME]) / (2.0 - body.numbers[JACCARD])
     shared = 1.0 + body.numbers[BODY_VOLUME] - union
-    work.charges[:] = 0.0
-    add_volume_charges(body.areas, price * shared / (union * union), work.charges)
-    add_shared_charges(
-        rays.directions,
-        rays.first,
-        rays.distance,
-        rays.sign,
-        rays.weight,
-        body.offsets,
-        work.radius,
-        work.plane,
-        body.centroids,
-        -price * (union + shared) / (union * union),
-        work.charges,
-    )
-    fill_gradient(work.charges, body.tangents, body.scales, gradient)
+    factor, charges = -price * (union + shared) / (union * union), work.charges
+    charges[:] = 0.0
+    add_volume_charges(body.areas, price * shared / (union * union), charges)
+    if parts is None:
+        add_shared_charges(
+            rays.directions,
+            rays.first,
+            rays.distance,
+            rays.sign,
+            rays.weight,
+            body.offsets,
+            work.radius,
+            work.plane,
+            body.centroids,
+            factor,
+            charges,
+        )
+    else:
+        for i in range(len(charges)):
+            for c in range(4):
+                charges[i, c] += factor * parts.charges[i, c]
+    fill_gradient(charges, body.tangents, body.scales, gradient)
 
 
 @kernel_noalloc
@@ -312,19 +247,49 @@ def fill_first_metric(body: Body, price: float, held: int, steady: bool, work: S
     floor = max(0.3 * body.numbers[SURFACE] / n, 1e-12)
     work.metric[:, :] = 0.0
     for i in range(n):
-        shift = CURVATURE / max(body.areas[i], floor) / price if i >= held else 0.0
+        shift = CURVATURE / max(body.areas[i], floor) / price if i >= held and is_free(i, body.parts) else 0.0
         if steady:
             shift *= min(1.0, body.areas[i] / floor)
         for c in range(3):
             j = 3 * i + c
             work.diagonal[j] = work.metric[j, j] = shift if c == 0 else 3.0 * shift
+        if shift > 0.0:
+            _fill_metric_of_plane(body, body.parts, i, price, work)
+
+
+@kernel_noalloc
+def _fill_metric_of_plane(body: Body, parts: Parts | None, i: int, price: float, work: Steps) -> None:
+    """Of a union, the inverse second derivative for half-space i alone: lines know it."""
+    if parts is None:
+        return
+    union = (1.0 + body.numbers[BODY_VOLUME]) / (2.0 - body.numbers[JACCARD])
+    block = parts.curvature[i]
+    one = (block[0, 0] / union + SOFTNESS, block[0, 1] / union, block[0, 2] / union)
+    two = (block[1, 0] / union, block[1, 1] / union + SOFTNESS, block[1, 2] / union)
+    three = (block[2, 0] / union, block[2, 1] / union, block[2, 2] / union + SOFTNESS)
+    columns = (cross(two, three), cross(three, one), cross(one, two))
+    size = dot(one, columns[0]) * price
+    for b in range(3):
+        for c in range(3):
+            value = columns[0][c] if b == 0 else (columns[1][c] if b == 1 else columns[2][c])
+            work.metric[3 * i + c, 3 * i + b] = value / size
+        work.diagonal[3 * i + b] = work.metric[3 * i + b, 3 * i + b]
+
+
+@kernel_noalloc
+def is_free(i: int, parts: Parts | None) -> bool:
+    """Whether half-space i may move: those between parts that touch may not."""
+    free = True
+    if parts is not None:
+        free = parts.partner[i] < 0
+    return free
 
 
 @kernel
 def _step(
     here: Body,
     there: Body,
-    rays: Rays,
+    rays: Rays | ScanLines,
     prices: Prices,
     pull: float,
     needs_box: bool,
@@ -349,10 +314,10 @@ def _step(
         work.total[j] = work.step[j]
     if not correct(there, prices, needs_box, scratch, work):
         return 0.0, length
-    fill_overlap(there, rays, work)
+    fill_overlap(there, there.parts, rays, work)
     gain = merit - merit_of(there, prices)
     if gain > 1e-3 * predicted:
-        fill_overlap_gradient(there, rays, pull, work, work.trial_gradient)
+        fill_overlap_gradient(there, there.parts, rays, pull, work, work.trial_gradient)
         if pull > 0.0:
             update_metric(here, there, m, work)
         work.slopes[0] = gain / predicted
@@ -473,11 +438,24 @@ def move(
         there.offsets,
         there.tangents,
     )
-    for i in range(len(there.offsets)):
-        if not there.offsets[i] > 0.0:
-            return False
+    if not _carry_inner(here.parts, there, there.parts):
+        return False
     copy_boxes(here, there)
     return fill_body(there, prices.wanted, needs_box, scratch)
+
+
+@kernel_noalloc
+def _carry_inner(source: Parts | None, there: Body, to: Parts | None) -> bool:
+    """Take over the inner points of parts; without parts, whether the origin is inside."""
+    if source is None or to is None:
+        for i in range(len(there.offsets)):
+            if not there.offsets[i] > 0.0:
+                return False
+    else:
+        for j in range(len(to.inner)):
+            for c in range(3):
+                to.inner[j, c] = source.inner[j, c]
+    return True
 
 
 @kernel_noalloc

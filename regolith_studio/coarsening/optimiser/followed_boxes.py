@@ -2,13 +2,14 @@
 
 import numpy as np
 
+from regolith_studio.coarsening.core.parts import N_FACES, Parts
 from regolith_studio.coarsening.optimiser.body import (
     GONE,
     LONGEST,
     MAX_BOXES,
     N_BOXES,
-    N_TERMS,
     N_VERTICES,
+    RATIO,
     SHORTEST,
     Body,
     BodyScratch,
@@ -36,13 +37,11 @@ def check_boxes(
     Of a body without boxes the least one is found, and the one that lies as the particle's. The measured box
     is the one that is nearest to the wanted size and to the least.
     """
-    vertices = body.vertices[: body.counts[N_VERTICES]]
-    edges = body.edges[: 3 * body.counts[N_VERTICES] // 2]
     n_boxes, known = body.counts[N_BOXES], np.inf
     for b in range(n_boxes):
         if body.slack[b] != GONE:
             known = min(known, box_volume(body, b) * (1.0 - UNDERCUT))
-    if not find_smaller_box(vertices, body.normals, edges, known, memory):
+    if not _find_smaller(body, body.parts, known, memory):
         return False
     add_box(body, memory.best.axes, scratch)
     if n_boxes == 0:
@@ -50,6 +49,19 @@ def check_boxes(
     choose_box(body, prices)
     fill_box_terms(body, prices.wanted, scratch)
     return True
+
+
+@kernel_noalloc
+def _find_smaller(body: Body, parts: Parts | None, known: float, memory: BoxMemory) -> bool:
+    """Whether a box around the body, or the hull of its parts, is smaller than `known`."""
+    vertices = body.vertices[: body.counts[N_VERTICES]]
+    if parts is None:
+        edges = body.edges[: 3 * len(vertices) // 2]
+        found = find_smaller_box(vertices, body.normals, edges, known, memory)
+    else:
+        hull, m = parts.hull, parts.counts[N_FACES]
+        found = find_smaller_box(vertices, hull.normals[:m], hull.edges[: 3 * m // 2], known, memory)
+    return found
 
 
 @kernel_noalloc
@@ -90,7 +102,7 @@ def choose_box(body: Body, prices: Prices) -> None:
         short = min(body.extents[b, 0], body.extents[b, 1], body.extents[b, 2])
         long = max(body.extents[b, 0], body.extents[b, 1], body.extents[b, 2])
         off = box_volume(body, b) / least - 1.0
-        for r in range(SHORTEST, N_TERMS):
+        for r in range(SHORTEST, RATIO + 1):
             if prices.low[r] < prices.high[r]:
                 value = short if r == SHORTEST else (long if r == LONGEST else long / short)
                 off += abs(value / prices.wanted[r] - 1.0)

@@ -19,11 +19,9 @@ from regolith_studio.coarsening.optimiser.body import Prices
 from regolith_studio.coarsening.optimiser.descent import (
     LOCK,
     MAX_RADIUS,
-    Memory,
-    Rays,
     descend,
-    memory_for,
 )
+from regolith_studio.coarsening.optimiser.memory import Memory, Rays, memory_for
 from regolith_studio.coarsening.optimiser.starts import (
     N_SIDES,
     box_start,
@@ -47,7 +45,7 @@ from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.half_spaces import HalfSpaces
 
-TERMS = ("volume", "sphericity", "min_diameter", "max_diameter", "aspect_ratio")
+TERMS = ("volume", "sphericity", "min_diameter", "max_diameter", "aspect_ratio", "convex_hull_volume")
 """Rows of the descent."""
 VOLUME_SHARE, SPHERICITY_SHARE = 3.0, 0.3
 """Of the price of the box's edges: where not all can be kept, the sphericity gives way, and the volume, which
@@ -148,22 +146,26 @@ class Candidate:
         return not self.met, self.n_facets < n_facets, self.merit
 
 
-def prices_of(target: Target, weights: LossWeights, keep: frozenset[str]) -> Prices:
-    """What the descent pays: LOCK for a term that is to be kept, its weight for another.
-
-    V and CH of a convex polyhedron are one number. Where neither is to be kept, the loss is least where the
-    one is met for which more is paid; beyond it the other pays back (section 2 of the guide's method page).
-    """
+def prices_of_union(target: Target, weights: LossWeights, keep: frozenset[str]) -> Prices:
+    """What the descent of a union pays: LOCK for a term that is to be kept, its weight for another."""
     wanted = np.array([round(target.descriptors[key] / WORD_LENGTH) * WORD_LENGTH for key in TERMS])
     overlap = weights[JACCARD] or TIE_BREAK_PRICE
     high = np.array([LOCK * overlap if key in keep else weights[key] for key in TERMS])
-    if "sphericity" in keep:
-        high[1] *= SPHERICITY_SHARE
-    if "volume" in keep:
-        high[0] *= VOLUME_SHARE
-    low = -high
+    high[1] *= SPHERICITY_SHARE if "sphericity" in keep else 1.0
+    high[0] *= VOLUME_SHARE if "volume" in keep else 1.0
     if {"min_diameter", "max_diameter", "aspect_ratio"} <= keep:
-        low[4] = high[4] = 0.0  # it follows from the two
+        high[4] = 0.0  # it follows from the two
+    return Prices(wanted, -high, high, overlap)
+
+
+def prices_of(target: Target, weights: LossWeights, keep: frozenset[str]) -> Prices:
+    """What the descent of a convex polyhedron pays, of which V and CH are one number.
+
+    Where neither is to be kept, the loss is least where the one is met for which more is paid; beyond it the
+    other pays back (section 2 of the guide's method page).
+    """
+    wanted, low, high, overlap = prices_of_union(target, weights, keep)
+    low[5] = high[5] = 0.0
     if "volume" not in keep:
         hull = target.descriptors["convex_hull_volume"]
         if "convex_hull_volume" in keep:

@@ -7,10 +7,9 @@ import pytest
 import trimesh
 
 from regolith_studio.coarsening.coarsen import coarsen
-from regolith_studio.coarsening.compound.line_overlap import compound_distance
-from regolith_studio.coarsening.compound.measures import measure_compound, parts_overlap
-from regolith_studio.coarsening.compound.search import numbers_of_parts
-from regolith_studio.coarsening.compound.start import shared_out
+from regolith_studio.coarsening.core.line_overlap import compound_distance
+from regolith_studio.coarsening.optimiser.compound_search import numbers_of_parts
+from regolith_studio.coarsening.optimiser.compound_starts import shared_out
 from regolith_studio.coarsening.stopping_criteria import coarsen_below
 from regolith_studio.coarsening.weights import LossWeights
 from regolith_studio.descriptors.catalogue import LOSS_KEYS
@@ -21,7 +20,7 @@ from regolith_studio.geometry.convex_compound import ConvexCompound
 from regolith_studio.geometry.convex_polyhedron import ConvexPolyhedron
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.readers.particles import sample_particles
-from tests.coarsening.compound.unions import dumbbell, manifold_of, random_planes
+from tests.coarsening.compound.unions import dumbbell, manifold_of, measured, random_planes
 from tests.geometry.solids import cuboid
 
 
@@ -79,16 +78,8 @@ def test_that_parts_touch_on_demand_so_that_their_volumes_add_up(mesh: Mesh) -> 
 
 def test_that_parts_which_no_plane_separates_must_not_meet() -> None:
     apart = random_planes(0, 2)._replace(partner=np.full(20, -1))
-    overlapping = measure_compound(apart)
-    assert overlapping is not None
-    assert parts_overlap(overlapping)
-    far = apart._replace(
-        inner=apart.inner + np.array([[0.0], [9.0]]),
-        offsets=apart.offsets + 9.0 * apart.normals.sum(axis=1) * np.repeat([0, 1], 10),
-    )
-    separate = measure_compound(far)
-    assert separate is not None
-    assert not parts_overlap(separate)
+    assert measured(apart._replace(partner=None))[2]
+    assert not measured(apart)[2]
 
 
 @pytest.mark.slow
@@ -118,7 +109,11 @@ def test_that_a_weight_of_zero_frees_a_descriptor(mesh: Mesh) -> None:
 
 
 def test_that_only_the_terms_named_are_kept_exactly(mesh: Mesh) -> None:
-    weights = LossWeights.from_preset("all").keeping(["volume", "convex_hull_volume"])
+    """What is not named costs its weight, so that of a small one little is kept."""
+    named = ["volume", "convex_hull_volume"]
+    weights = LossWeights.of(
+        jaccard_distance=10.0, volume=1.0, convex_hull_volume=1.0, sphericity=0.1
+    ).keeping(named)
     found = coarsen(mesh, 16, "compound", weights, settings={"parts": 2})
     assert found.reason is None
     assert max(found.errors["volume"], found.errors["convex_hull_volume"]) <= 1e-6

@@ -4,7 +4,9 @@ import manifold3d
 import numpy as np
 from scipy.spatial import ConvexHull, HalfspaceIntersection
 
-from regolith_studio.coarsening.compound.measures import Planes
+from regolith_studio.coarsening.core.parts import Parts, Planes, parts_for
+from regolith_studio.coarsening.core.plane_coordinates import tangents_of
+from regolith_studio.coarsening.optimiser.body import Body, body_scratch, empty_body, fill_body
 from regolith_studio.geometry.mesh import Mesh
 from regolith_studio.geometry.sphere_points import icosphere
 from tests.geometry.solids import rotation
@@ -23,6 +25,18 @@ def random_planes(seed: int, parts: int = 4, planes: int = 10) -> Planes:
         offsets.append(rng.uniform(0.4, 0.6, planes) + sides @ place)
     first = np.arange(parts + 1) * planes
     return Planes(np.concatenate(normals), np.concatenate(offsets), first, inner)
+
+
+WANTED = np.array([1.0, 0.9, 0.8, 1.4, 1.75, 1.2])
+
+
+def measured(planes: Planes) -> tuple[Body, Parts, bool]:
+    """The union as the descent measures it, and whether it is one body."""
+    n, parts = len(planes.offsets), parts_for(planes)
+    body = empty_body(n, parts)
+    body.normals[:], body.offsets[:] = planes.normals, planes.offsets
+    body.tangents[:] = tangents_of(planes.normals)
+    return body, parts, fill_body(body, WANTED, True, body_scratch(n))
 
 
 def solid_of(planes: Planes) -> manifold3d.Manifold:

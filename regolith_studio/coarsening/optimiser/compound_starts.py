@@ -3,8 +3,9 @@
 import numpy as np
 from scipy.spatial import ConvexHull
 
-from regolith_studio.coarsening.compound.measures import Planes
-from regolith_studio.coarsening.compound.scan_lines import ScanLines
+from regolith_studio.coarsening.core.parts import Planes
+from regolith_studio.coarsening.core.scan_lines import ScanLines
+from regolith_studio.coarsening.optimiser.starts import products
 from regolith_studio.geometry.arrays import BoolArray, FloatArray, IntArray
 
 N_POINTS = 4000
@@ -156,7 +157,7 @@ def _few_planes(
     middles = (a + b + c) / 3.0
     means = normals[_spread_out(normals, areas, n, rng)]
     for _ in range(NORMAL_STEPS):
-        label = (normals @ means.T).argmax(axis=1)
+        label = products(normals, means).argmax(axis=1)
         sums = np.column_stack([np.bincount(label, areas * normals[:, x], minlength=n) for x in range(3)])
         lengths = np.linalg.norm(sums, axis=1)[:, None]
         means = np.where(lengths > 0.0, sums / np.maximum(lengths, 1e-300), means)
