@@ -160,6 +160,10 @@ class Solver(Protocol):
         ...
 
 
+NOT_FILLED = (0.0, 0.0)
+"""Height and solid fraction of a filling that has not settled yet."""
+
+
 @dataclass(eq=False)
 class LiftingRun:
     """A test on its way, with the records of the run."""
@@ -176,7 +180,7 @@ class LiftingRun:
     steps: int = 0
     next_picture: float = 0.0
     calm_since: float | None = None
-    fill: tuple[float, float] = (0.0, 0.0)
+    fill: tuple[float, float] = NOT_FILLED
     times: dict[float, float] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -244,7 +248,6 @@ def fill_cylinder(run: LiftingRun) -> Generator[Snapshot, None, None]:
         run.solver.place(filling.points / run.units.length, filling.orientations)
     yield _snapshot(run)
     yield from _phases(run, last="settle")
-    yield _snapshot(run)
 
 
 def lift_cylinder(run: LiftingRun) -> Generator[Snapshot, None, SimulationResult]:
@@ -322,8 +325,9 @@ def _phases(run: LiftingRun, last: str, *, resumed: bool = False) -> Generator[S
         if not (resumed and run.steps and done(run)):  # a snapshot comes before this question
             yield from advance(run, done)
         resumed = False
-        if run.phase == "settle":
+        if run.phase == "settle" and run.fill == NOT_FILLED:  # a state of this very moment knows the filling
             run.fill = measure_filling(run.prepared, particles_of(run))
+            yield _snapshot(run)
         if run.phase == last:
             return
         _begin(run, PHASES[PHASES.index(run.phase) + 1])
