@@ -377,7 +377,8 @@ def certificate_in_words(document: dict[str, Any]) -> str:
     lines = [f"{document['engine']} {document['version']}"]
     for each in document["lines"]:
         verdict = "passed" if each["passed"] else "FAILED"
-        lines.append(f"{verdict}  {each['what']}: {each['value']:.3g} {each['unit']}".rstrip())
+        value = "no value" if each["value"] is None else f"{each['value']:.3g} {each['unit']}".rstrip()
+        lines.append(f"{verdict}  {each['what']}: {value}")
         details = [
             f"band: {each['band']}",
             *([each["note"]] if each["note"] else []),

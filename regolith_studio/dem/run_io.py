@@ -18,7 +18,7 @@ from regolith_studio.dem.case import PreparedCase, ReposeCase, scaling_report
 from regolith_studio.dem.engine import Engine, RunChecks, SimulationResult
 from regolith_studio.dem.evaluation.section import NotAPileError
 from regolith_studio.dem.heap_packing import HeapPacking, packing_document
-from regolith_studio.dem.shipped_certificates import engine_remarks
+from regolith_studio.dem.shipped_certificates import engine_notes
 from regolith_studio.dem.snapshot import ParticleState, particle_state_bytes, read_particle_state
 from regolith_studio.errors import FileError, RegolithError, os_error_reason
 from regolith_studio.geometry.arrays import FloatArray
@@ -166,7 +166,7 @@ def run_key(prepared: PreparedCase, engine: Engine, settings: Any) -> str:
 
 
 def filling_hash(prepared: PreparedCase) -> str | None:
-    """SHA-256 of the filling that a case begins with, as hexadecimal; ``None`` where it is filled anew."""
+    """SHA-256 of the filling that a case begins with, as hexadecimal; ``None`` where the run fills it."""
     if prepared.filling is None:
         return None
     return hashlib.sha256(particle_state_bytes(prepared.filling)).hexdigest()
@@ -401,7 +401,7 @@ def run_document(
             "steps": ending.steps if ending else None,
             "simulated_time": ending.simulated_time if ending else None,
             "n_snapshots": n_snapshots,
-            "notes": [*ending.notes, *engine_remarks(engine)] if ending else [],
+            "notes": [*ending.notes, *engine_notes(engine)] if ending else [],
         },
         "checks": _checks(ending.checks) if ending else None,
         "packing": packing_document(

@@ -128,3 +128,11 @@ def test_that_cohesion_is_refused() -> None:
     sticky = replace(prepared, case=replace(prepared.case, cohesion="given"))
     with pytest.raises(InputError, match="no cohesion"):
         engine_named("box3d").solver(sticky, Box3dSettings())  # type: ignore[attr-defined]
+
+
+def test_that_no_friction_between_particles_is_refused_where_the_plate_has_one() -> None:
+    smooth = with_values(scene([cuboid(1, 1, 1)], 0.5, 1), static_friction=0.0)
+    with pytest.raises(InputError, match="geometric mean"):
+        engine_named("box3d").solver(smooth, Box3dSettings())  # type: ignore[attr-defined]
+    everywhere = with_values(smooth, wall_friction=0.0, plate_friction=0.0)
+    engine_named("box3d").solver(everywhere, Box3dSettings())  # type: ignore[attr-defined]

@@ -1,5 +1,6 @@
 """The lines of the verification against bodies whose motion is known in closed form."""
 
+import json
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -7,13 +8,15 @@ import numpy as np
 import pytest
 from scipy.spatial import ConvexHull
 
+from regolith_studio.cli.repose import certificate_in_words
+from regolith_studio.cli.terminal import print_json
 from regolith_studio.dem import shipped_certificates
 from regolith_studio.dem.case import PreparedCase
 from regolith_studio.dem.engines import ENGINES
 from regolith_studio.dem.engines.rapier.settings import RapierSettings
 from regolith_studio.dem.verification import scenes
 from regolith_studio.dem.verification.bodies import N_FACETS, polyhedra_dataset
-from regolith_studio.dem.verification.certificate import Certificate, verifiable_engine
+from regolith_studio.dem.verification.certificate import Certificate, certificate_document, verifiable_engine
 from regolith_studio.dem.verification.dice import CLOSE, LOOSE, platonic_solids
 from regolith_studio.dem.verification.heaps import _paired_line
 from regolith_studio.dem.verification.lines import MeasuredLine
@@ -117,6 +120,19 @@ def test_that_a_heap_without_an_angle_fails_the_line() -> None:
     assert not _paired_line("half_step", "", pairs).passed
 
 
+def test_that_what_has_no_value_is_said_and_written_as_json(capsys: pytest.CaptureFixture[str]) -> None:
+    """Infinities and NaN are no JSON: a friction 20 % off, and heaps without an angle."""
+    nothing = _paired_line("half_step", "Change", [(float("nan"), 30.0)] * 5)
+    far = measured(scenes.incline, CoulombEngine(0.8))
+    document = certificate_document(Certificate("rapier", "1", (far, nothing)))
+    print_json(document)
+    assert [each["value"] for each in json.loads(capsys.readouterr().out)["lines"]] == [None, None]
+    words = certificate_in_words(document)
+    assert "FAILED  Change: no value" in words
+    assert "0 heaps with an angle are too few" in words
+    assert "more than 2° off" in words
+
+
 @pytest.mark.parametrize(
     ("name", "vertices", "surface"),
     [
@@ -164,15 +180,15 @@ def test_that_an_angle_comes_with_the_lines_that_its_engine_fails(monkeypatch: p
     lines = [{"key": "half_step", "passed": False}, {"key": "rest", "passed": True}]
     known: dict[str, Any] = {"rapier": {"version": version, "lines": lines}}
     monkeypatch.setattr(shipped_certificates, "shipped_certificates", lambda: known)
-    assert shipped_certificates.engine_remarks(engine) == [
+    assert shipped_certificates.engine_notes(engine) == [
         "Rapier does not pass these lines of its verification: half step."
     ]
     known["rapier"] |= {"version": "0.1", "lines": []}
-    assert shipped_certificates.engine_remarks(engine) == [
+    assert shipped_certificates.engine_notes(engine) == [
         f"Rapier was verified in version 0.1, not in {version}."
     ]
     del known["rapier"]
-    assert shipped_certificates.engine_remarks(engine) == ["Rapier was not verified."]
+    assert shipped_certificates.engine_notes(engine) == ["Rapier was not verified."]
 
 
 @pytest.mark.parametrize("key", ["rapier", "mujoco"])

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from scipy.stats import t
 
-from regolith_studio.dataset.parameters import LiftingCylinderTest
+from regolith_studio.dataset.parameters import GRAVITIES, LiftingCylinderTest
 from regolith_studio.dem.angle_of_repose import measure_repose
 from regolith_studio.dem.case import PreparedCase, ReposeCase, prepare
 from regolith_studio.dem.engine import SimulationResult
@@ -35,11 +35,11 @@ MEDIAN_WAY, MOST_WAY, MOST = 1e-3, 1e-2, 0.9
 """Largest displacement of half and of nine in ten particles, in mean diameters."""
 DEEP, DEEPEST, MAX_DEEP_SHARE = 0.02, 0.05, 0.01
 """Depth of a contact in mean diameters above which it is deep, depth that none has, and share of the deep."""
-GRAVITIES = {"Earth": 9.81, "Moon": 1.62}
+EARTH, MOON = GRAVITIES["Earth"], GRAVITIES["Moon"]
 CONFIDENCE = 0.95
 
 
-def heap_case(seed: int, gravity: float = GRAVITIES["Earth"]) -> PreparedCase:
+def heap_case(seed: int, gravity: float = EARTH) -> PreparedCase:
     """The cylinder test of Table 2 with 500 polyhedra; it is lifted at the same Froude number everywhere."""
     usual = LiftingCylinderTest()
     speed = usual.lift_speed * float(np.sqrt(gravity / usual.gravity))
@@ -132,10 +132,10 @@ def gravities(engine: VerifiableEngine) -> Generator[None, None, MeasuredLine]:
     """The angle under the gravity of the Moon against that of the Earth, with one step in seconds."""
     pairs = []
     usual = engine.Settings()
-    shorter = replace(usual, time_step=usual.time_step * (GRAVITIES["Moon"] / GRAVITIES["Earth"]) ** 0.5)
+    shorter = replace(usual, time_step=usual.time_step * (MOON / EARTH) ** 0.5)
     for seed in SEEDS:
         angles = []
-        for gravity, settings in ((GRAVITIES["Earth"], usual), (GRAVITIES["Moon"], shorter)):
+        for gravity, settings in ((EARTH, usual), (MOON, shorter)):
             prepared = heap_case(seed, gravity)
             run = LiftingRun(prepared, settings, engine.solver(prepared, settings))
             angles.append(_angle((yield from _turns(simulate_lifting(run)))))
@@ -173,16 +173,17 @@ def _paired_line(key: str, what: str, pairs: Sequence[tuple[float, float]]) -> M
     known = np.array([pair for pair in pairs if np.isfinite(pair).all()]).reshape(-1, 2)
     differences = known[:, 1] - known[:, 0]
     n = len(differences)
-    mean, half = float("nan"), float("inf")
+    mean, half, note = None, 0.0, f"{n} heaps with an angle are too few"
     if n >= 2:
         mean = float(differences.mean())
         half = float(t.ppf(0.5 + CONFIDENCE / 2, n - 1) * differences.std(ddof=1) / np.sqrt(n))
+        note = f"± {half:.1f}° from {n} heaps"
     return MeasuredLine(
         key=key,
         what=what,
         value=mean,
         unit="°",
         band="its 95 % interval contains 0",
-        passed=n == len(pairs) and abs(mean) <= half,
-        note=f"± {half:.1f}° from {n} heaps",
+        passed=mean is not None and n == len(pairs) and abs(mean) <= half,
+        note=note,
     )

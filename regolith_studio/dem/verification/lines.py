@@ -20,7 +20,7 @@ class MeasuredLine:
     key, what
         What is measured, for programs and in words.
     value, unit
-        What was found.
+        What was found; ``None`` where nothing could be measured.
     band
         Where the value passes, in words.
     passed
@@ -33,7 +33,7 @@ class MeasuredLine:
 
     key: str
     what: str
-    value: float
+    value: float | None
     unit: str
     band: str
     passed: bool

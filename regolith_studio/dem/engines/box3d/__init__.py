@@ -54,6 +54,12 @@ class Box3dEngine(SteppedEngine):
         """
         if prepared.surface_energy > 0.0:
             raise InputError("Box3D has no cohesion; take LAMMPS, or cohesion none.")
+        case = prepared.case
+        if case.contact.static_friction == 0.0 < max(case.test.wall_friction, case.test.plate_friction):
+            raise InputError(
+                "Box3D takes the geometric mean of two frictions, so that wall and plate have none where the "
+                "particles have none; take Rapier or MuJoCo, or a friction above 0."
+            )
         from regolith_studio.dem.engines.box3d.simulation import Box3dSolver
 
         return Box3dSolver(prepared, settings)

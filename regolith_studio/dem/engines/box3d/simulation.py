@@ -196,7 +196,7 @@ class Box3dSolver:
         lib.b3World_SetGravity(self.world, _vector(gravity))
 
     def state(self) -> bytes:
-        """Places and velocities; the impulses of contacts are found anew when the run goes on."""
+        """Places and velocities; the impulses of contacts are computed again when the run goes on."""
         return np.concatenate(
             [[self.time, self.rim], self._poses().ravel(), self._velocities().ravel()]
         ).tobytes()
