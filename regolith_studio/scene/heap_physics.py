@@ -49,19 +49,19 @@ def heap_mjcf(run: RunSummary, shapes: Sequence[MjcfShape], pile: ParticleState)
 def heap_usd(run: RunSummary, shapes: Sequence[MjcfShape], pile: ParticleState) -> bytes:
     """The heap as USD text: rigid bodies of convex hulls by UsdPhysics, in metres and kg, z up.
 
-    Each body states mass, principal moments and their axes, as parts that overlap would count twice.
+    Each body states mass, principal moments and their axes, as parts that overlap would count twice, and
+    refers to the hulls of its shape, which stand in the file once.
     """
     contact, test = _parameters(run)
     scales = pile.diameters * (np.pi / 6) ** (1 / 3)
-    lines = [_HEAD.format(gravity=test.gravity)]
+    lines = [_HEAD, *map(_prototype, shapes), _SCENE.format(gravity=test.gravity)]
     lines += [_material("grains", contact.static_friction, contact.dynamic_friction, contact.restitution)]
     lines += [_material("plate", test.plate_friction, test.plate_friction, contact.restitution)]
     reach = 2.0 * float(np.abs(pile.points[:, :2]).max()) + 10.0 * float(pile.diameters.max())
     lines += [_PLATE.format(reach=reach, half=reach / 2)]
+    frames = [_principal_frame(shape.inertia) for shape in shapes]
     for number, (kind, scale) in enumerate(zip(pile.class_index.tolist(), scales.tolist(), strict=True)):
-        shape = shapes[kind]
-        moments, axes = np.linalg.eigh(shape.inertia)
-        turned = axes * np.linalg.det(axes)
+        moments, axes = frames[kind]
         lines.append(
             _BODY.format(
                 number=number,
@@ -69,8 +69,9 @@ def heap_usd(run: RunSummary, shapes: Sequence[MjcfShape], pile: ParticleState) 
                 turn=_row(pile.orientations[number]),
                 mass=contact.density * scale**3,
                 moments=_row(moments * contact.density * scale**5),
-                axes=_row(_quaternion(turned)),
-                hulls="\n".join(_hull(k, part, scale) for k, part in enumerate(shape.parts)),
+                axes=_row(axes),
+                shape=shapes[kind].name,
+                scale=scale,
             )
         )
     return ("\n".join([*lines, "}", ""])).encode("ascii")
@@ -95,8 +96,11 @@ def _row(values: FloatArray) -> str:
     return ", ".join(f"{value:.9g}" for value in values.tolist())
 
 
-def _quaternion(matrix: FloatArray) -> FloatArray:
-    return np.asarray(Rotation.from_matrix(matrix).as_quat(scalar_first=True))
+def _principal_frame(inertia: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Principal moments, shape (3,), and the quaternion (w, x, y, z) of their axes."""
+    moments, axes = np.linalg.eigh(inertia)
+    turn = Rotation.from_matrix(axes * np.linalg.det(axes))
+    return moments, np.asarray(turn.as_quat(scalar_first=True))
 
 
 def _material(name: str, static: float, dynamic: float, restitution: float) -> str:
@@ -110,19 +114,24 @@ def _material(name: str, static: float, dynamic: float, restitution: float) -> s
     }}"""
 
 
-def _hull(number: int, part: Mesh, scale: float) -> str:
-    points = ", ".join(f"({_row(point)})" for point in scale * part.vertices)
-    return f"""        def Mesh "hull_{number}" (
-            prepend apiSchemas = ["PhysicsCollisionAPI", "PhysicsMeshCollisionAPI"]
-        )
-        {{
-            uniform token physics:approximation = "convexHull"
-            uniform token subdivisionScheme = "none"
-            int[] faceVertexCounts = [{", ".join("3" for _ in part.faces)}]
-            int[] faceVertexIndices = [{", ".join(map(str, part.faces.ravel().tolist()))}]
-            point3f[] points = [{points}]
-            rel material:binding:physics = </heap/grains_material>
-        }}"""
+def _prototype(shape: MjcfShape) -> str:
+    """The hulls of a unit-volume shape, which are in no scene by themselves."""
+    hulls = "\n".join(_hull(number, part) for number, part in enumerate(shape.parts))
+    return f'class Xform "{shape.name}"\n{{\n{hulls}\n}}'
+
+
+def _hull(number: int, part: Mesh) -> str:
+    points = ", ".join(f"({_row(point)})" for point in part.vertices)
+    return f"""    def Mesh "hull_{number}" (
+        prepend apiSchemas = ["PhysicsCollisionAPI", "PhysicsMeshCollisionAPI"]
+    )
+    {{
+        uniform token physics:approximation = "convexHull"
+        uniform token subdivisionScheme = "none"
+        int[] faceVertexCounts = [{", ".join("3" for _ in part.faces)}]
+        int[] faceVertexIndices = [{", ".join(map(str, part.faces.ravel().tolist()))}]
+        point3f[] points = [{points}]
+    }}"""
 
 
 _HEAD = """#usda 1.0
@@ -132,8 +141,9 @@ _HEAD = """#usda 1.0
     metersPerUnit = 1
     upAxis = "Z"
 )
+"""
 
-def Xform "heap"
+_SCENE = """def Xform "heap"
 {{
     def PhysicsScene "scene"
     {{
@@ -142,7 +152,7 @@ def Xform "heap"
     }}"""
 
 _PLATE = """    def Cube "plate" (
-        prepend apiSchemas = ["PhysicsCollisionAPI"]
+        prepend apiSchemas = ["PhysicsCollisionAPI", "MaterialBindingAPI"]
     )
     {{
         double size = {reach:.9g}
@@ -162,5 +172,13 @@ _BODY = """    def Xform "particle_{number}" (
         point3f physics:centerOfMass = (0, 0, 0)
         float3 physics:diagonalInertia = ({moments})
         quatf physics:principalAxes = ({axes})
-{hulls}
+        def "shape" (
+            prepend references = </{shape}>
+            prepend apiSchemas = ["MaterialBindingAPI"]
+        )
+        {{
+            double3 xformOp:scale = ({scale:.9g}, {scale:.9g}, {scale:.9g})
+            uniform token[] xformOpOrder = ["xformOp:scale"]
+            rel material:binding:physics = </heap/grains_material>
+        }}
     }}"""

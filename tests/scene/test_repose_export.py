@@ -333,6 +333,7 @@ def test_that_usd_opens_the_heap_with_its_masses_inertia_and_hulls(heap: Path, t
     usd = pytest.importorskip("pxr.Usd")
     physics = pytest.importorskip("pxr.UsdPhysics")
     geometry = pytest.importorskip("pxr.UsdGeom")
+    shade = pytest.importorskip("pxr.UsdShade")
     export_repose(heap, tmp_path / "export")
     stage = usd.Stage.Open(str(tmp_path / "export" / "heap.usda"))
     assert geometry.GetStageMetersPerUnit(stage) == 1.0
@@ -346,11 +347,15 @@ def test_that_usd_opens_the_heap_with_its_masses_inertia_and_hulls(heap: Path, t
         assert mass.GetMassAttr().Get() == pytest.approx(expected, rel=1e-6)
         place = geometry.Xformable(body).ComputeLocalToWorldTransform(0)
         assert tuple(place.ExtractTranslation()) == pytest.approx(pile.points[number], abs=1e-8)
-        hulls = [geometry.Mesh(each) for each in body.GetChildren()]
+        (shape,) = body.GetChildren()
+        scale = geometry.Xformable(shape).GetLocalTransformation().GetRow(0).GetLength()
+        hulls = [geometry.Mesh(each) for each in shape.GetChildren()]
         assert len(hulls) == (2 if number % 3 == 2 else 1)
+        bound, _ = shade.MaterialBindingAPI(hulls[0]).ComputeBoundMaterial("physics")
+        assert str(bound.GetPath()) == "/heap/grains_material"
         if len(hulls) == 1:
             solid = trimesh.Trimesh(
-                np.array(hulls[0].GetPointsAttr().Get()),
+                scale * np.array(hulls[0].GetPointsAttr().Get()),
                 np.array(hulls[0].GetFaceVertexIndicesAttr().Get()).reshape(-1, 3),
             )
             turn = mass.GetPrincipalAxesAttr().Get()
