@@ -218,6 +218,24 @@ def lift_speed(prepared: PreparedCase) -> float:
     return prepared.case.test.lift_speed / Units.of(prepared).speed
 
 
+N_WALLS = 32
+
+
+def wall_ring(
+    prepared: PreparedCase, height: float, thickness: float
+) -> list[tuple[tuple[float, float, float], tuple[float, float, float], float]]:
+    """Half edges, centre and turn about z of each box of the cylinder, in mean diameters and radians.
+
+    A box is so wide that it overlaps its neighbours: no gap is between them.
+    """
+    radius = prepared.case.test.diameter / 2 / prepared.mean_diameter
+    half_width = float((radius + thickness) * np.tan(np.pi / N_WALLS))
+    distance = radius + thickness / 2
+    angles = (2 * np.pi * np.arange(N_WALLS) / N_WALLS).tolist()
+    half = thickness / 2, half_width, height / 2
+    return [(half, (distance * float(np.cos(a)), distance * float(np.sin(a)), height / 2), a) for a in angles]
+
+
 def expected_duration(prepared: PreparedCase) -> float:
     """Of the whole test: what falls is limited to 6 sqrt(g d), and the rim must rise above the pile, which is
     about 0.6 of the filling's height."""

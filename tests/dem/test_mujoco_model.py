@@ -12,7 +12,6 @@ from regolith_studio.dem.engines.mujoco import simulation
 from regolith_studio.dem.engines.mujoco.settings import MujocoSettings
 from regolith_studio.dem.engines.mujoco.simulation import (
     ADHESION_GAP,
-    N_WALLS,
     PARTICLE,
     PLATE,
     POINTS_PER_PAIR,
@@ -20,7 +19,7 @@ from regolith_studio.dem.engines.mujoco.simulation import (
     adhesion,
     build_model,
 )
-from regolith_studio.dem.lifting_cylinder import Units
+from regolith_studio.dem.lifting_cylinder import N_WALLS, Units
 from regolith_studio.errors import InputError
 
 

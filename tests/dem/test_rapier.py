@@ -19,10 +19,10 @@ from regolith_studio.dem.engine import SimulationResult
 from regolith_studio.dem.engine_process import run_task
 from regolith_studio.dem.engines import engine_named
 from regolith_studio.dem.engines.rapier.settings import RapierSettings
-from regolith_studio.dem.engines.rapier.simulation import N_WALLS, RapierSolver, inner_parallel_body
+from regolith_studio.dem.engines.rapier.simulation import RapierSolver, inner_parallel_body
 from regolith_studio.dem.evaluation.settings import EvaluationSettings
 from regolith_studio.dem.initial_packing import enclosing_radii
-from regolith_studio.dem.lifting_cylinder import LiftingSettings
+from regolith_studio.dem.lifting_cylinder import N_WALLS, LiftingSettings
 from regolith_studio.dem.run_io import read_run, snapshot_files
 from regolith_studio.dem.separation import overlap_depths
 from regolith_studio.dem.snapshot import EngineState, Snapshot, read_particle_state

@@ -12,15 +12,22 @@ from regolith_studio.dem.case import PreparedCase
 from regolith_studio.dem.engine import ENGINE_THREADS, lowest_corners
 from regolith_studio.dem.engines.box3d.settings import Box3dSettings
 from regolith_studio.dem.initial_packing import enclosing_radii, loose_column
-from regolith_studio.dem.lifting_cylinder import Units, friction_in, halved_step, lift_speed, steps_note
+from regolith_studio.dem.lifting_cylinder import (
+    Units,
+    friction_in,
+    halved_step,
+    lift_speed,
+    steps_note,
+    wall_ring,
+)
 from regolith_studio.dem.separation import overlap_depths
 from regolith_studio.dem.snapshot import PHASES, ParticleState
 from regolith_studio.errors import InputError, RegolithError
 from regolith_studio.geometry.arrays import FloatArray
 
 SHIM: Any = shim
-N_WALLS, WALL_THICKNESS, PLATE_WIDTH = 32, 0.6, 12.0
-"""Boxes of the cylinder, thickness of these and of the plate in mean diameters; width of the plate in
+WALL_THICKNESS, PLATE_WIDTH = 0.6, 12.0
+"""Thickness of the boxes of the cylinder and of the plate in mean diameters; width of the plate in
 diameters of the cylinder. Box3D resists rolling by the larger of two bodies' radii, so these must be thin."""
 ROLLING_RADIUS = 0.25
 """Radius by which Box3D resists the rolling of a hull, in radii of its largest inner ball (measured)."""
@@ -74,8 +81,8 @@ class Box3dSolver:
         self.cylinder = self._body(lib.b3_kinematicBody, np.zeros(3), IDENTITY)
         test = prepared.case.test
         self.walls = [
-            _add_box(self.cylinder, half, place, turn, _definition(prepared, test.wall_friction))
-            for half, place, turn in _walls(prepared, 1.1 * self.top + 2.0)
+            _add_box(self.cylinder, half, place, _about_z(turn), _definition(prepared, test.wall_friction))
+            for half, place, turn in wall_ring(prepared, 1.1 * self.top + 2.0, WALL_THICKNESS)
         ]
         half = test.diameter / length * PLATE_WIDTH / 2
         plate = self._body(lib.b3_staticBody, np.zeros(3), IDENTITY)
@@ -295,22 +302,12 @@ def _add_box(body: Any, half: Any, place: Any, turn: Any, definition: Any) -> An
     return lib.b3CreateHullShape(body, definition, ffi.addressof(box.base))
 
 
-def _walls(prepared: PreparedCase, height: float) -> list[tuple[Any, Any, Any]]:
-    """Half widths, place and turn of each box of a ring; each overlaps its neighbours, so that no gap is
-    between them."""
-    radius = prepared.case.test.diameter / 2 / prepared.mean_diameter
-    half_width = (radius + WALL_THICKNESS) * np.tan(np.pi / N_WALLS)
-    distance = radius + WALL_THICKNESS / 2
-    rows = []
-    for angle in 2 * np.pi * np.arange(N_WALLS) / N_WALLS:
-        place = (distance * np.cos(angle), distance * np.sin(angle), height / 2)
-        turn = (0.0, 0.0, np.sin(angle / 2), np.cos(angle / 2))
-        rows.append(((WALL_THICKNESS / 2, half_width, height / 2), place, turn))
-    return rows
-
-
 def _vector(values: Any) -> Any:
     return ffi.new("b3Vec3*", [float(each) for each in values])[0]
+
+
+def _about_z(angle: float) -> Any:
+    return (0.0, 0.0, np.sin(angle / 2), np.cos(angle / 2))
 
 
 def _quaternion(xyzw: Any) -> Any:

@@ -14,13 +14,13 @@ from regolith_studio.dem.lifting_cylinder import (
     halved_step,
     lift_speed,
     steps_note,
+    wall_ring,
 )
 from regolith_studio.dem.snapshot import PHASES
 from regolith_studio.errors import RegolithError
 from regolith_studio.geometry.arrays import FloatArray, IntArray
 from regolith_studio.messages import N_, Message
 
-N_WALLS = 32
 WALL_THICKNESS = 2.0
 PARTICLE, WALL, PLATE = 1, 2, 4
 """Bits of contact: particles meet all, walls and plate only particles."""
@@ -60,13 +60,12 @@ def build_model(prepared: PreparedCase, settings: MujocoSettings) -> BuiltModel:
     spec = mujoco.MjSpec()
     _set_options(spec, settings)
     spec.memory = ARENA + ARENA_PER_PARTICLE * len(prepared)
-    radius = prepared.case.test.diameter / 2 / units.length
     sizes = prepared.scales / units.length
     column = loose_column(prepared)
     places, turns = column.points / units.length, column.orientations
     top = float((places[:, 2] + enclosing_radii(prepared) / units.length).max())
     _add_plate(spec, prepared, settings)
-    _add_walls(spec, prepared, settings, radius, 1.1 * top + 2.0)
+    _add_walls(spec, prepared, settings, 1.1 * top + 2.0)
     _add_particles(spec, prepared, settings, sizes, places, turns)
     model = spec.compile()
     walls = np.flatnonzero(model.geom_contype == WALL)
@@ -108,18 +107,13 @@ def _add_plate(spec: mujoco.MjSpec, prepared: PreparedCase, settings: MujocoSett
     )
 
 
-def _add_walls(
-    spec: mujoco.MjSpec, prepared: PreparedCase, settings: MujocoSettings, radius: float, height: float
-) -> None:
+def _add_walls(spec: mujoco.MjSpec, prepared: PreparedCase, settings: MujocoSettings, height: float) -> None:
     frame = spec.worldbody.add_body(name="cylinder", mocap=True)
-    half_width = (radius + WALL_THICKNESS) * np.tan(np.pi / N_WALLS)
-    for k in range(N_WALLS):
-        angle = 2 * np.pi * k / N_WALLS
-        distance = radius + WALL_THICKNESS / 2
+    for half, place, angle in wall_ring(prepared, height, WALL_THICKNESS):
         frame.add_geom(
             type=mujoco.mjtGeom.mjGEOM_BOX,
-            size=[WALL_THICKNESS / 2, half_width, height / 2],
-            pos=[distance * np.cos(angle), distance * np.sin(angle), height / 2],
+            size=half,
+            pos=place,
             quat=[np.cos(angle / 2), 0.0, 0.0, np.sin(angle / 2)],
             contype=WALL,
             conaffinity=0,

@@ -18,6 +18,7 @@ from regolith_studio.dem.lifting_cylinder import (
     halved_step,
     lift_speed,
     steps_note,
+    wall_ring,
 )
 from regolith_studio.dem.separation import overlap_depths
 from regolith_studio.dem.snapshot import PHASES, ParticleState
@@ -25,7 +26,6 @@ from regolith_studio.errors import InputError, RegolithError
 from regolith_studio.geometry.arrays import FloatArray
 from regolith_studio.geometry.half_spaces import inscribed_ball
 
-N_WALLS = 32
 WALL_THICKNESS = 2.0
 PLATE_WIDTH = 12.0
 """In diameters of the cylinder; a box, since contacts of a half-space with polyhedra get lost."""
@@ -278,14 +278,10 @@ def inner_parallel_body(vertices: FloatArray, distance: float) -> FloatArray:
 
 def _walls(prepared: PreparedCase, height: float) -> list[rapier.Collider | rapier.ColliderBuilder]:
     """A ring of boxes; each is so wide that it overlaps its neighbours, and no gap is between them."""
-    radius = prepared.case.test.diameter / 2 / prepared.mean_diameter
-    half_width = (radius + WALL_THICKNESS) * np.tan(np.pi / N_WALLS)
-    distance = radius + WALL_THICKNESS / 2
     walls: list[rapier.Collider | rapier.ColliderBuilder] = []
-    for angle in 2 * np.pi * np.arange(N_WALLS) / N_WALLS:
-        place = (distance * np.cos(angle), distance * np.sin(angle), height / 2)
+    for half, place, angle in wall_ring(prepared, height, WALL_THICKNESS):
         turn = (0.0, 0.0, np.sin(angle / 2), np.cos(angle / 2))
-        wall = rapier.Collider.cuboid(WALL_THICKNESS / 2, half_width, height / 2).position((place, turn))
+        wall = rapier.Collider.cuboid(*half).position((place, turn))
         friction = prepared.case.test.wall_friction
         walls.append(_with_friction(wall, prepared, friction, of_particles=False))
     return walls
