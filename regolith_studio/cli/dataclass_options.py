@@ -18,13 +18,7 @@ from regolith_studio.settings import setting_of
 
 
 def with_dataclass_options(command: Callable[..., None]) -> Callable[..., None]:
-    """The command with the options of its groups in place of the groups, for typer.
-
-    Raises
-    ------
-    ValueError
-        If two options have the same name.
-    """
+    """The command with the options of its groups in place of the groups, for typer."""
     hints = get_type_hints(command, include_extras=True)
     parameters = inspect.signature(command).parameters.values()
     groups = {each.name: hints[each.name] for each in parameters if is_dataclass(hints[each.name])}

@@ -29,10 +29,7 @@ class StopSignals:
     The first one raises :class:`KeyboardInterrupt` in the main thread, so that nothing half-written stays;
     later ones do not disturb that. A signal that is ignored, as nohup ignores SIGHUP, stays ignored.
 
-    Attributes
-    ----------
-    ended
-        Set by the caller once it has said how the command ended.
+    ``ended``: set by the caller once it has said how the command ended.
     """
 
     def __init__(self) -> None:

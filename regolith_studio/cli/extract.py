@@ -63,11 +63,6 @@ def read_scan_table(path: Path) -> tuple[ScanRow, ...]:
     """The rows of a CSV file whose columns are ``scan`` and options of ``extract``, such as ``h-maxima``.
 
     An empty cell leaves the option as it is for all scans. Files are looked up beside the table.
-
-    Raises
-    ------
-    FileError
-        If it cannot be read, a column is no option, or a value is none of that option.
     """
     from regolith_studio.readers.file_bytes import read_bytes
 
@@ -90,11 +85,6 @@ def rows_of_scans(
     """The row of each scan that has one, by the scan's path.
 
     A row names its scan by the file, the file without its suffix, the group, or the path from the table on.
-
-    Raises
-    ------
-    FileError
-        If a row names no scan or several, or a scan has two rows.
     """
     found: dict[Path, ScanRow] = {}
     for row in rows:
@@ -262,13 +252,7 @@ def _settings(grains: GrainOptions, recipe: Path | None) -> "GrainSettings":
 def _extract_groups(
     scans: "Sequence[tuple[VolumeInput, GrainSettings]]", output: Path, executor: "Executor", as_json: bool
 ) -> None:
-    """Extract several volumes, each into a folder of its own, and print what became of them.
-
-    Raises
-    ------
-    Exit
-        If a volume could not be used.
-    """
+    """Extract several volumes, each into a folder of its own, and print what became of them."""
     from regolith_studio.io.tables import json_text
     from regolith_studio.session.batch.scan_groups import extract_groups
 

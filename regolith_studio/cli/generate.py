@@ -197,11 +197,6 @@ def shape_source(
     """What the arguments of a command name, and its exit code: one fit, card or model, or meshes.
 
     Meshes are expanded; the code is 1 where some could not be read or expanded.
-
-    Raises
-    ------
-    FileError
-        If nothing can be read.
     """
     from regolith_studio.jobs.model_jobs import fit_request_for, sample_of_meshes
     from regolith_studio.readers.shape_files import is_shape_source, read_shape_source

@@ -22,15 +22,7 @@ class ReadingOptions(ReadingSettings):
     def read(self, paths: Sequence[Path], l_max: int | None = None) -> "LoadedParticles":
         """The particles in files and folders; unreadable files are reported on stderr.
 
-        Parameters
-        ----------
-        l_max
-            Degree above which coefficients of tables are left out.
-
-        Raises
-        ------
-        FileError
-            If nothing can be read.
+        ``l_max``: degree above which coefficients of tables are left out.
         """
         from regolith_studio.jobs.particle_jobs import load_particles
         from regolith_studio.readers.coefficient_tables import TableReading, table_convention

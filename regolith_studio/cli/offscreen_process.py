@@ -23,13 +23,7 @@ _TIMEOUT = 120.0
 def draw_three_views(
     particle: "Particle", outcome: "CoarsenedParticle", choices: "Choices", path: Path
 ) -> None:
-    """Draw particle, fit and polyhedron into a PNG file.
-
-    Raises
-    ------
-    MissingRequirement
-        If this machine cannot draw.
-    """
+    """Draw particle, fit and polyhedron into a PNG file."""
     from regolith_studio.harmonics.surface import reconstruct
 
     coarse = outcome.coarsened
@@ -42,17 +36,7 @@ def draw_three_views(
 def draw_in_process(draw: Callable[..., None], arguments: tuple[Any, ...], path: Path) -> None:
     """Call ``draw(*arguments, stage)`` in a fresh process; what it wrote to `stage` becomes `path`.
 
-    Parameters
-    ----------
-    draw
-        Function of a module, which is imported in the new process.
-
-    Raises
-    ------
-    MissingRequirement
-        If this machine cannot draw.
-    OSError
-        If the picture cannot be written.
+    ``draw``: function of a module, which is imported in the new process.
     """
     stage = path.with_name(f".{path.stem}-drawn{path.suffix}")
     context = multiprocessing.get_context("spawn")

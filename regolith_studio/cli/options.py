@@ -61,13 +61,7 @@ def output_path(text: str) -> Path:
 
 
 def claim_folder(context: typer.Context, folder: Path | None) -> Path | None:
-    """The folder, locked against other processes, if it can be written: checked before hours of work.
-
-    Raises
-    ------
-    FileError
-        If a file stands there, the place may not be written, or another process is writing to it.
-    """
+    """The folder, locked against other processes, if it can be written: checked before hours of work."""
     if folder is not None:
         _check_folder(folder)
         context.with_resource(output_lock(folder))
@@ -85,15 +79,7 @@ def claim_file(context: typer.Context, path: Path | None) -> Path | None:
 
 
 def claim_labels(context: typer.Context, path: Path | None) -> Path | None:
-    """The same for a label volume, whose suffix says the format.
-
-    Raises
-    ------
-    BadParameter
-        If the suffix is unknown.
-    FileError
-        If its folder is not there, which staged results make only at the end.
-    """
+    """The same for a label volume, whose suffix says the format."""
     if path is not None:
         from regolith_studio.imaging.label_files import check_label_place, label_suffix
 
@@ -278,12 +264,8 @@ class CoarseningOptions:
     def choices(self, preset: str = "", **others: object) -> "Choices":
         """The choices that the options define; a wrong value is a usage error.
 
-        Parameters
-        ----------
-        preset
-            Key of the preset whose weights ``--weight`` changes; without one, all other weights are 0.
-        others
-            Further choices, ``seed`` and ``n_facets`` say.
+        ``preset``: key of the preset whose weights ``--weight`` changes; without one, all other weights are
+        0. ``others``: further choices, ``seed`` and ``n_facets`` say.
         """
         from regolith_studio.errors import InputError
         from regolith_studio.session.choices import Choices

@@ -171,13 +171,7 @@ def measure(
 
 
 def positions_in(file: Path, unit: str, diameter: float, columns: str = "") -> tuple[Any, Any]:
-    """Points (n, 3) and diameters (n,) in metres.
-
-    Raises
-    ------
-    FileError
-        If the file holds no positions, or no diameters and none is given.
-    """
+    """Points (n, 3) and diameters (n,) in metres."""
     from regolith_studio.dem.run_io import read_final_state
     from regolith_studio.errors import FileError
     from regolith_studio.readers.positions import read_positions

@@ -156,10 +156,7 @@ class RunOptions:
     def finish(self, kind: str, study: Callable[..., "Steps"], folder: Path) -> Any:
         """Run a study, write its files, print its table (or the list of files); returns its result.
 
-        Parameters
-        ----------
-        study
-            Makes the steps; takes the number of `workers` and the checkpoint of `answers`.
+        ``study``: makes the steps; takes the number of `workers` and the checkpoint of `answers`.
         """
         from regolith_studio.io.atomic import JOURNAL, staged_folder
         from regolith_studio.jobs.study_jobs import StudyCheckpoint

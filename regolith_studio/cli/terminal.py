@@ -26,10 +26,7 @@ _LINE_INTERVAL = 30.0
 def run_with_progress(steps: "Steps", logged: bool = False) -> Any:
     """Drive a job to its result; on a terminal with a progress bar that disappears in the end.
 
-    Parameters
-    ----------
-    logged
-        Whether to write a line now and then where there is no terminal, as long batches do.
+    ``logged``: whether to write a line now and then where there is no terminal, as long batches do.
     """
     if sys.stderr.isatty():
         return _with_bar(steps)

@@ -61,12 +61,8 @@ def chunk_size(n_items: int) -> int:
 class Batch:
     """The items of a batch in chunks, with the results of those that are done in a checkpoint.
 
-    Attributes
-    ----------
-    checkpoint
-        Holds a record for each item that is done; to be closed by the caller.
-    n_items
-        Of the whole batch.
+    ``checkpoint``: holds a record for each item that is done; to be closed by the caller. ``n_items``: of
+    the whole batch.
     """
 
     def __init__(self, checkpoint: Checkpoint, n_items: int) -> None:
@@ -78,26 +74,14 @@ class Batch:
     def create(
         cls, path: Path, n_items: int, subject: Mapping[str, Any], chunk: int | None = None
     ) -> "Batch":
-        """A batch of which nothing is done yet.
-
-        Raises
-        ------
-        FileError
-            As :meth:`~regolith_studio.io.checkpoint.Checkpoint.create`.
-        """
+        """A batch of which nothing is done yet."""
         checkpoint = Checkpoint.create(path, {**subject, _N_ITEMS: n_items})
         checkpoint.set_note(_CHUNK_SIZE, chunk or chunk_size(n_items))
         return cls(checkpoint, n_items)
 
     @classmethod
     def resume(cls, path: Path, n_items: int, subject: Mapping[str, Any]) -> "Batch":
-        """The batch that was begun here, with what is done of it.
-
-        Raises
-        ------
-        FileError
-            As :meth:`~regolith_studio.io.checkpoint.Checkpoint.resume`.
-        """
+        """The batch that was begun here, with what is done of it."""
         return cls(Checkpoint.resume(path, {**subject, _N_ITEMS: n_items}), n_items)
 
     @property
@@ -127,10 +111,7 @@ def run_batch(
     An item that ends the process that works on it is found by doing the items of its chunk one by one;
     its record holds the message under :data:`LOST`.
 
-    Parameters
-    ----------
-    count_failures
-        Number of failures in a record, for the progress message.
+    ``count_failures``: number of failures in a record, for the progress message.
     """
     rate = ProgressRate(batch.n_items, batch.n_done)
     missing = batch.missing

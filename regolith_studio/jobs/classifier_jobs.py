@@ -74,21 +74,8 @@ def train_on_labels(
 ) -> Steps:
     """Train a classifier on painted voxels; returns its :class:`TrainingSet`.
 
-    Parameters
-    ----------
-    painted
-        A volume of labels: 0 where nothing is painted, 1 for the first of `classes`, and so on.
-    outside
-        Grey value outside of the scanner's circle, as :func:`find_outside` takes it.
-
-    Raises
-    ------
-    FileError
-        If a file is no volume.
-    InputError
-        If the volumes differ in size, a class is not painted, or nothing lies outside that has the value.
-    MissingRequirement
-        If scikit-learn is not installed.
+    ``painted``: a volume of labels: 0 where nothing is painted, 1 for the first of `classes`, and so on.
+    ``outside``: grey value outside of the scanner's circle, as :func:`find_outside` takes it.
     """
     yield Started(Message(N_("Reading {name}"), name=scan.path.name), 2)
     source, labels = scan.opened(), painted.opened()
@@ -115,22 +102,9 @@ def map_probabilities(
 
     The map of a large scan goes on where an earlier call for the same file was interrupted.
 
-    Parameters
-    ----------
-    path
-        TIFF, NRRD, HDF5 or OME-Zarr by its suffix.
-    scratch
-        Folder for temporary files where the volume is too large for the memory.
-    outside
-        Grey value outside of the scanner's circle, as :func:`find_outside` takes it.
-
-    Raises
-    ------
-    FileError
-        If the scan is no volume, or the file cannot be written.
-    InputError
-        If the voxels have another size than those that the classifier was trained on, or nothing lies
-        outside that has the value.
+    - ``path``: TIFF, NRRD, HDF5 or OME-Zarr by its suffix.
+    - ``scratch``: folder for temporary files where the volume is too large for the memory.
+    - ``outside``: grey value outside of the scanner's circle, as :func:`find_outside` takes it.
     """
     yield Started(Message(N_("Reading {name}"), name=scan.path.name))
     source = scan.opened()
@@ -158,17 +132,7 @@ def map_probabilities(
 def write_painted(scan: VolumeInput, training: TrainingSet, path: Path) -> Steps:
     """Write the painted voxels of a classifier as a volume of labels; returns the path.
 
-    Parameters
-    ----------
-    path
-        TIFF, NRRD, HDF5 or OME-Zarr by its suffix.
-
-    Raises
-    ------
-    FileError
-        If the scan is no volume, or the file cannot be written.
-    InputError
-        If they were painted on a scan of other voxels.
+    ``path``: TIFF, NRRD, HDF5 or OME-Zarr by its suffix.
     """
     yield Started(Message(N_("Writing {name}"), name=path.name))
     for done, total in write_label_file(path, PaintedLabels(training, scan.opened()), len(training.classes)):
@@ -179,21 +143,9 @@ def write_painted(scan: VolumeInput, training: TrainingSet, path: Path) -> Steps
 def read_strokes(labels: VolumeInput, volume: Volume, n_classes: int, region: RegionSettings) -> Steps:
     """Read painted labels, as ilastik and label editors keep them, as strokes: a tuple of one for each class.
 
-    Parameters
-    ----------
-    labels
-        0 where nothing is painted, 1 for the first class, and so on.
-    volume
-        The region of the scan that was painted on, or the whole.
-    region
-        Applied to labels of the whole scan.
-
-    Raises
-    ------
-    FileError
-        If the file is no volume.
-    InputError
-        If it differs from the scan in size, holds more classes, or nothing is painted.
+    - ``labels``: 0 where nothing is painted, 1 for the first class, and so on.
+    - ``volume``: the region of the scan that was painted on, or the whole.
+    - ``region``: applied to labels of the whole scan.
     """
     yield Started(Message(N_("Reading {name}"), name=labels.path.name))
     painted: SliceSource = labels.opened()
@@ -214,14 +166,9 @@ Vectors = Mapping[Stroke, NDArray[np.float32]]
 class TrainedStrokes:
     """What was learned from strokes.
 
-    Parameters
-    ----------
-    training
-        ``None`` while there are only grains, or none.
-    vectors
-        Features of the voxels of each stroke.
-    missing
-        What is to be painted first, if anything: one sentence.
+    - ``training``: ``None`` while there are only grains, or none.
+    - ``vectors``: features of the voxels of each stroke.
+    - ``missing``: what is to be painted first, if anything: one sentence.
     """
 
     training: TrainingSet | None
@@ -233,15 +180,10 @@ class TrainedStrokes:
 class SlicePrediction:
     """The probabilities of one slice.
 
-    Parameters
-    ----------
-    axis, number
-        The slice.
-    probabilities
-        Of each class, shape (n_across, n_down, n_classes), zeros for classes that are not painted; of every
-        n-th voxel in a first picture.
-    grain
-        Their sum over the classes that are grains, shape (n_across, n_down).
+    - ``axis``, ``number``: the slice.
+    - ``probabilities``: of each class, shape (n_across, n_down, n_classes), zeros for classes that are not
+      painted; of every n-th voxel in a first picture.
+    - ``grain``: their sum over the classes that are grains, shape (n_across, n_down).
     """
 
     axis: int
@@ -259,10 +201,7 @@ def train_on_strokes(
 ) -> Steps:
     """Train a classifier on brush strokes; returns :class:`TrainedStrokes`.
 
-    Parameters
-    ----------
-    known
-        Features of strokes of an earlier call, which are not computed again.
+    ``known``: features of strokes of an earlier call, which are not computed again.
     """
     yield Started(N_("Training the classifier"))
     vectors = {each: _vectors_of(volume, each, known, settings.features) for each in strokes}
@@ -318,26 +257,14 @@ def _slice_probabilities(
 
 
 def save_classifier(path: Path, training: TrainingSet, scan: Path) -> Steps:
-    """Write a classifier's file with the SHA-256 of the scan that was painted; returns the path.
-
-    Raises
-    ------
-    FileError
-        If it cannot be written.
-    """
+    """Write a classifier's file with the SHA-256 of the scan that was painted; returns the path."""
     yield Started(Message(N_("Writing {name}"), name=path.name))
     write_classifier(path, replace(training, scan=volume_sha256(scan)))
     return path
 
 
 def write_classifier(path: Path, training: TrainingSet) -> None:
-    """Write a classifier's file.
-
-    Raises
-    ------
-    FileError
-        If it cannot be written.
-    """
+    """Write a classifier's file."""
     write_bytes(path, canonical_json(training_document(training)).encode("ascii"))
 
 
@@ -348,14 +275,9 @@ Examples = Sequence[tuple[tuple[int, int, int], int]]
 class ClassifiedObjects:
     """What examples say of all objects.
 
-    Parameters
-    ----------
-    training
-        ``None`` while fewer than two classes have an example.
-    kinds
-        Class of each object in the order of their labels, shape (n,); empty without a training set.
-    missing
-        What is to be chosen first, if anything: one sentence.
+    - ``training``: ``None`` while fewer than two classes have an example.
+    - ``kinds``: class of each object in the order of their labels, shape (n,); empty without a training set.
+    - ``missing``: what is to be chosen first, if anything: one sentence.
     """
 
     training: ObjectTraining | None
@@ -371,21 +293,9 @@ class ClassifiedObjects:
 def train_on_objects(given: VolumeInput, settings: GrainSettings, examples: Examples, scratch: Path) -> Steps:
     """Segment a scan and classify its objects by examples; returns :class:`ClassifiedObjects`.
 
-    Parameters
-    ----------
-    settings
-        Of the region and the segmentation; an object classifier or edits in it are left out.
-    examples
-        Voxels in objects, in the region, each with its class.
-    scratch
-        Folder for temporary files where the volume is too large for the memory.
-
-    Raises
-    ------
-    FileError
-        If the scan is no volume.
-    InputError
-        If it holds labels, a voxel lies in no object, or fewer than two classes have an example.
+    - ``settings``: of the region and the segmentation; an object classifier or edits in it are left out.
+    - ``examples``: voxels in objects, in the region, each with its class.
+    - ``scratch``: folder for temporary files where the volume is too large for the memory.
     """
     yield Started(Message(N_("Reading {name}"), name=given.path.name))
     source = settings.region.of(given.opened())
@@ -435,13 +345,7 @@ def correct_grains(
     settings: SegmentationSettings,
     objects: ObjectTable | None = None,
 ) -> Steps:
-    """Apply the objects and edits of `settings` to a segmentation; returns :class:`GrainSegmentation`.
-
-    Raises
-    ------
-    InputError
-        If an edit does not find its grains, or no grain is left.
-    """
+    """Apply the objects and edits of `settings` to a segmentation; returns :class:`GrainSegmentation`."""
     scratch = scratch_arrays(grey, scratch_folder())
     try:
         made: Segmentation = yield from reported(correction_steps(found, grey, settings, scratch, objects))
@@ -454,24 +358,12 @@ def correct_grains(
 
 
 def save_objects(path: Path, training: ObjectTraining, scan: Path) -> Steps:
-    """Write the file of an object classifier with the SHA-256 of the scan of its examples; returns the path.
-
-    Raises
-    ------
-    FileError
-        If it cannot be written.
-    """
+    """Write the file of an object classifier with the SHA-256 of the scan of its examples; returns the path."""
     yield Started(Message(N_("Writing {name}"), name=path.name))
     write_objects(path, replace(training, scan=volume_sha256(scan)))
     return path
 
 
 def write_objects(path: Path, training: ObjectTraining) -> None:
-    """Write the file of an object classifier.
-
-    Raises
-    ------
-    FileError
-        If it cannot be written.
-    """
+    """Write the file of an object classifier."""
     write_bytes(path, canonical_json(objects_document(training)).encode("ascii"))

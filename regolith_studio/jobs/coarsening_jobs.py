@@ -51,19 +51,13 @@ N_RECENT = 200
 class CoarseningRequest:
     """Parameters of a coarsening; picklable.
 
-    Parameters
-    ----------
-    weights
-        Of the loss, Eq. 9.
-    settings
-        The method's settings that differ from its defaults, as (name, value) pairs.
-    target
-        ``particle``: the mesh itself is imitated; ``fit``: the surface at degree `l_max`, drawn at `level`
-        (section 3.2).
-    fit_options
-        How the fit is made, to degree 30 or `l_max`.
-    largest_error
-        Where given, the fewest facets whose weighted errors are all below it, instead of `n_facets`.
+    - ``weights``: of the loss, Eq. 9.
+    - ``settings``: the method's settings that differ from its defaults, as (name, value) pairs.
+    - ``target``: ``particle``: the mesh itself is imitated; ``fit``: the surface at degree `l_max`, drawn at
+      `level` (section 3.2).
+    - ``fit_options``: how the fit is made, to degree 30 or `l_max`.
+    - ``largest_error``: where given, the fewest facets whose weighted errors are all below it, instead of
+      `n_facets`.
     """
 
     weights: LossWeights
@@ -99,18 +93,11 @@ class CoarseningRequest:
 class CoarsenedParticle:
     """Result of coarsening one particle of a sample.
 
-    Parameters
-    ----------
-    coarsened
-        ``None`` if it failed.
-    problem
-        Why it failed, in one sentence.
-    coefficients
-        Of the fit cut at the request's l_max; ``None`` where none was made.
-    notes
-        What to know about the particle: repairs of its mesh, warnings of its fit.
-    seconds
-        Time of fit and coarsening together.
+    - ``coarsened``: ``None`` if it failed.
+    - ``problem``: why it failed, in one sentence.
+    - ``coefficients``: of the fit cut at the request's l_max; ``None`` where none was made.
+    - ``notes``: what to know about the particle: repairs of its mesh, warnings of its fit.
+    - ``seconds``: time of fit and coarsening together.
     """
 
     name: str
@@ -140,12 +127,7 @@ def coarsen_one(mesh: Mesh, request: CoarseningRequest) -> Steps:
 class ParticleComparison:
     """A polyhedron against the particle itself, where it imitates the particle's fit.
 
-    Parameters
-    ----------
-    errors
-        Relative error of each descriptor of the loss (Eq. 8).
-    jaccard_distance
-        Eq. 7.
+    ``errors``: relative error of each descriptor of the loss (Eq. 8). ``jaccard_distance``: eq. 7.
     """
 
     errors: Mapping[str, float]
@@ -157,10 +139,7 @@ def compare_with_particle(
 ) -> Steps:
     """Compare a polyhedron with a particle in whose frame it lies; returns :class:`ParticleComparison`.
 
-    Parameters
-    ----------
-    descriptors
-        Of `mesh`, with the same box metric.
+    ``descriptors``: of `mesh`, with the same box metric.
     """
     yield from compile_first("describe")
     yield Started(N_("Comparing with the particle"))
@@ -178,10 +157,7 @@ def coarsen_particle(
 ) -> Steps:
     """Fit (where requested) and coarsen one particle of a sample; returns `CoarsenedParticle`.
 
-    Parameters
-    ----------
-    fit
-        Of the particle by the request's options, to at least its degree, if there is one already.
+    ``fit``: of the particle by the request's options, to at least its degree, if there is one already.
     """
     yield from compile_first_for(request.method)
     yield Started(f"Coarsening {particle.name}")

@@ -43,20 +43,13 @@ from regolith_studio.messages import N_
 class DatasetOptions:
     """What is written besides the shapes.
 
-    Parameters
-    ----------
-    name
-        Of the dataset; the folder's name if empty.
-    preset
-        Name of the preset that the weights came from, if they still are it.
-    overwrite
-        Whether a dataset that is there already may be replaced.
-    workers
-        Processes that coarsen at the same time, 0 for one a core; or an open executor.
-    representatives
-        How representatives are chosen; ``None`` if each particle represents itself.
-    sizes
-        Size distributions of the classes, as :mod:`regolith_studio.dataset.size_distributions` writes them.
+    - ``name``: of the dataset; the folder's name if empty.
+    - ``preset``: name of the preset that the weights came from, if they still are it.
+    - ``overwrite``: whether a dataset that is there already may be replaced.
+    - ``workers``: processes that coarsen at the same time, 0 for one a core; or an open executor.
+    - ``representatives``: how representatives are chosen; ``None`` if each particle represents itself.
+    - ``sizes``: size distributions of the classes, as :mod:`regolith_studio.dataset.size_distributions`
+      writes them.
     """
 
     name: str = ""
@@ -87,18 +80,7 @@ def build_dataset_folder(
 
     Returns :class:`DatasetBuildResult`.
 
-    Parameters
-    ----------
-    population
-        Descriptors of the particles, if they have been measured.
-
-    Raises
-    ------
-    DatasetError
-        If the folder holds a dataset that may not be replaced, or no particle could be coarsened.
-    InputError
-        If more representatives are asked for than there are particles, the sizes make no sense, or the
-        dataset would be too large to be read again.
+    ``population``: descriptors of the particles, if they have been measured.
     """
     check_place(folder, options.overwrite)
     chosen_count = len(particles) if options.representatives is None else options.representatives.count
@@ -126,15 +108,7 @@ def coarsen_chosen(
 ) -> Generator[Step, None, tuple[ChosenParticles, tuple[CoarsenedParticle, ...]]]:
     """Choose representatives and coarsen them; one that fails makes way, and the choice is made anew.
 
-    Returns
-    -------
-    tuple
-        The choice, and what became of its particles, in its order.
-
-    Raises
-    ------
-    DatasetError
-        If so many fail that too few particles are left.
+    Returns the choice, and what became of its particles, in its order.
     """
     wanted = options.representatives or RepresentativesRequest()
     known: dict[int, CoarsenedParticle] = {}
@@ -154,13 +128,7 @@ def coarsen_chosen(
 
 
 def check_place(folder: Path, overwrite: bool) -> None:
-    """Refuse a folder that is not empty, before hours of work and not after them.
-
-    Raises
-    ------
-    DatasetError
-        If something stands there that may not be replaced.
-    """
+    """Refuse a folder that is not empty, before hours of work and not after them."""
     if folder.is_file() or (folder.is_dir() and any(folder.iterdir()) and not overwrite):
         raise DatasetError(
             f"{folder} is there already; choose another folder or allow it to be overwritten (--overwrite)."
@@ -178,17 +146,8 @@ def dataset_of(
 ) -> Dataset:
     """The dataset of the particles that could be coarsened.
 
-    Parameters
-    ----------
-    chosen
-        The representatives in the order of `outcomes`; by default each particle represents itself.
-    sizing
-        From measured sizes to those that are written.
-
-    Raises
-    ------
-    DatasetError
-        If there is none.
+    ``chosen``: the representatives in the order of `outcomes`; by default each particle represents itself.
+    ``sizing``: from measured sizes to those that are written.
     """
     good = [(particles[each.index], each.coarsened) for each in outcomes if each.coarsened]
     if not good:
@@ -272,14 +231,6 @@ def export_dataset_folder(
 
     All formats are complete before the first takes its place, so that a stop leaves the earlier ones. ``all``
     leaves out those that cannot hold compounds if the dataset has any.
-
-    Raises
-    ------
-    InputError
-        If there is no such format.
-    DatasetError
-        If a format changes shapes and that was not accepted, or cannot hold the dataset's compounds (before
-        anything is written), the dataset is broken, or something cannot be written.
     """
     exporters = chosen_exporters(keys)
     yield Started(N_("Exporting"), len(exporters))
@@ -307,13 +258,7 @@ def export_dataset_folder(
 
 
 def chosen_exporters(keys: Sequence[str]) -> tuple[Exporter, ...]:
-    """The formats of these keys, each once; all of them for ``all``.
-
-    Raises
-    ------
-    InputError
-        If there is no such format.
-    """
+    """The formats of these keys, each once; all of them for ``all``."""
     wanted = list(EXPORTERS) if "all" in keys else list(dict.fromkeys(keys))
     for key in wanted:
         if key not in EXPORTERS:
@@ -338,10 +283,7 @@ def validate_dataset_folder(folder: Path) -> Steps:
 def list_library(root: Path, results: Path | None = None) -> Steps:
     """Datasets, exports and results below a folder; partial results are single ones, the result all.
 
-    Parameters
-    ----------
-    results
-        Where simulations are kept if not below `root`; those of its datasets are listed too.
+    ``results``: where simulations are kept if not below `root`; those of its datasets are listed too.
     """
     yield Started(N_("Searching for datasets"))
     found: list[CatalogEntry] = []

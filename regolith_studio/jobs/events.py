@@ -69,12 +69,8 @@ Steps = Generator[Step, None, Any]
 class Job:
     """A generator function with the arguments that it will be called with.
 
-    Parameters
-    ----------
-    function
-        Module-level generator function; yields :data:`Step`, returns the result.
-    arguments, options
-        Positional and keyword arguments; picklable, so that any runner can take the job.
+    ``function``: module-level generator function; yields :data:`Step`, returns the result. ``arguments``,
+    ``options``: positional and keyword arguments; picklable, so that any runner can take the job.
     """
 
     function: Callable[..., Steps]
@@ -113,14 +109,9 @@ _SPAN = 60.0
 class ProgressRate:
     """Counts items that are done and estimates their rate.
 
-    Parameters
-    ----------
-    total
-        Items in all.
-    done
-        Items that were done in an earlier run; they do not count for the rate.
-    clock
-        Seconds; any start.
+    - ``total``: items in all.
+    - ``done``: items that were done in an earlier run; they do not count for the rate.
+    - ``clock``: seconds; any start.
     """
 
     def __init__(self, total: int, done: int = 0, clock: Callable[[], float] = time.monotonic) -> None:

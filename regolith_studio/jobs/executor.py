@@ -36,12 +36,8 @@ _POLL_SECONDS = 0.1
 class Executor:
     """Runs jobs for a caller that wants their results in order; results do not depend on its size.
 
-    Parameters
-    ----------
-    workers
-        Jobs at the same time: 1 for this thread alone, more for as many processes, 0 for one a core.
-    runner
-        Used in place of processes of this machine; closed with the executor.
+    ``workers``: jobs at the same time: 1 for this thread alone, more for as many processes, 0 for one a
+    core. ``runner``: used in place of processes of this machine; closed with the executor.
     """
 
     def __init__(self, workers: int = 1, runner: Runner | None = None) -> None:
@@ -73,23 +69,14 @@ class Executor:
     ) -> Generator[tuple[int, JobResult] | None, None, None]:
         """Number and result of each of `jobs`, the quick ones first; ``None`` as for :meth:`results`.
 
-        Parameters
-        ----------
-        follow
-            Called with the number of a job and its progress, of jobs on this machine.
+        ``follow``: called with the number of a job and its progress, of jobs on this machine.
         """
         if self.in_this_thread:
             return _run_one_by_one(jobs, follow)
         return as_completed(self._open_runner(), jobs, window=2 * self.workers, follow=follow)
 
     def map(self, function: Callable[[Any], Any], items: Iterable[Any]) -> Iterator[Any]:
-        """As the built-in ``map``, in order and lazily, for a picklable function.
-
-        Raises
-        ------
-        RegolithError
-            With the message of the first call that raised.
-        """
+        """As the built-in ``map``, in order and lazily, for a picklable function."""
         for result in self.results(Job(call, (function, item)) for item in items):
             if result is not None:
                 yield value_of(result)
@@ -126,13 +113,7 @@ class Executor:
         return 1 if self._check_shared else max(1, self.workers // max(1, n_jobs))
 
     def check_shared(self, path: Path, folder: Path) -> None:
-        """Check that all workers find a file or folder, and `folder`, which is made, under these paths.
-
-        Raises
-        ------
-        MissingRequirement
-            If one of a cluster does not.
-        """
+        """Check that all workers find a file or folder, and `folder`, which is made, under these paths."""
         if self._check_shared is not None:
             folder.mkdir(parents=True, exist_ok=True)
             self._check_shared(path.absolute(), folder)
@@ -166,21 +147,10 @@ def open_executor(workers: int | Executor) -> Iterator[Executor]:
 class ExecutorSettings:
     """Where jobs shall run, as the command line and the window ask for it; picklable.
 
-    Parameters
-    ----------
-    runner
-        Key of :data:`RUNNERS`.
-    workers
-        Processes of this machine, also of a cluster that is started on it; 0 for one a core.
-    address
-        Of the cluster's scheduler; without it a cluster is started on this machine.
-    tls
-        Folder with :data:`TLS_NAMES` for a ``tls://`` address.
-
-    Raises
-    ------
-    InputError
-        If these do not go together.
+    - ``runner``: key of :data:`RUNNERS`.
+    - ``workers``: processes of this machine, also of a cluster that is started on it; 0 for one a core.
+    - ``address``: of the cluster's scheduler; without it a cluster is started on this machine.
+    - ``tls``: folder with :data:`TLS_NAMES` for a ``tls://`` address.
     """
 
     runner: str = "processes"
@@ -197,13 +167,7 @@ class ExecutorSettings:
             raise InputError("An address and TLS files go with the runner dask.")
 
     def open(self) -> Executor:
-        """A new executor, to be closed by the caller.
-
-        Raises
-        ------
-        InputError, MissingRequirement
-            As :class:`~regolith_studio.jobs.runners.dask_cluster.DaskRunner`.
-        """
+        """A new executor, to be closed by the caller."""
         if self.runner == "processes":
             return Executor(self.workers)
         from regolith_studio.jobs.runners.dask_cluster import TlsFiles
@@ -215,10 +179,7 @@ class ExecutorSettings:
 def in_order(runner: Runner, jobs: Iterable[Job], window: int = 2) -> Generator[JobResult | None, None, None]:
     """Results of `jobs` in their order; ``None`` while the next one is being waited for.
 
-    Parameters
-    ----------
-    window
-        Jobs that are submitted and whose results have not been handed on: bounds the memory.
+    ``window``: jobs that are submitted and whose results have not been handed on: bounds the memory.
     """
     early: dict[int, JobResult] = {}
     expected = 0
@@ -242,14 +203,10 @@ def as_completed(
 ) -> Generator[tuple[int, JobResult] | None, None, None]:
     """Number and result of each of `jobs` as they end; ``None`` while the next one is being waited for.
 
-    Parameters
-    ----------
-    window
-        Jobs that are submitted at the same time.
-    n_buffered
-        Number of results that the caller keeps back; they count as if they were still running.
-    follow
-        Called, in this thread, with the number of a job and its progress, where the runner sends that.
+    - ``window``: jobs that are submitted at the same time.
+    - ``n_buffered``: number of results that the caller keeps back; they count as if they were still running.
+    - ``follow``: called, in this thread, with the number of a job and its progress, where the runner sends
+      that.
     """
     answers: queue.SimpleQueue[tuple[int, JobResult | Progress]] = queue.SimpleQueue()
     waiting = enumerate(jobs)
@@ -285,15 +242,7 @@ def call(function: Callable[[Any], Any], item: Any) -> Steps:
 
 
 def value_of(result: JobResult) -> Any:
-    """What a job returned.
-
-    Raises
-    ------
-    RegolithError
-        If it failed.
-    JobCancelled
-        If it was stopped.
-    """
+    """What a job returned."""
     match result:
         case Finished(value):
             return value

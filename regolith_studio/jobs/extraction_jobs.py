@@ -52,19 +52,8 @@ from regolith_studio.readers.volumes.region import RegionSettings
 def write_labels(labels: Volume, settings: ExtractionSettings, path: Path, segmented: bool) -> Steps:
     """Write a label volume, and the table of its labels beside it; returns the path of the table.
 
-    Parameters
-    ----------
-    settings, segmented
-        Which labels become particles, as for ``select_labels``.
-    path
-        A name that ends in one of ``LABEL_SUFFIXES``; the table has the same name with ``.csv``.
-
-    Raises
-    ------
-    InputError
-        If there is no label, or the suffix is another.
-    FileError
-        If the file cannot be written.
+    ``settings``, ``segmented``: which labels become particles, as for ``select_labels``. ``path``: a name
+    that ends in one of ``LABEL_SUFFIXES``; the table has the same name with ``.csv``.
     """
     yield Started(Message(N_("Writing labels to {name}"), name=path.name))
     chosen = select_labels(labels, settings, segmented)
@@ -110,16 +99,10 @@ class SegmentationSummary:
 class ExtractedFile:
     """What came out of a file.
 
-    Parameters
-    ----------
-    extraction
-        The particles, where they were collected.
-    facts
-        Of the segmentation, where there was one.
-    sha256
-        Of the file, or of its slices one after the other.
-    shape, dtype, voxel_size, kind
-        Of the volume; micrometres.
+    - ``extraction``: the particles, where they were collected.
+    - ``facts``: of the segmentation, where there was one.
+    - ``sha256``: of the file, or of its slices one after the other.
+    - ``shape``, ``dtype``, ``voxel_size``, ``kind``: of the volume; micrometres.
     """
 
     extraction: Extraction
@@ -134,17 +117,7 @@ class ExtractedFile:
 def extract_file(given: VolumeInput, recipe: GrainSettings, scratch: Path | None = None) -> Steps:
     """Read a volume, segment it if it is grey, and make its particles; returns :class:`ExtractedFile`.
 
-    Parameters
-    ----------
-    scratch
-        Folder for temporary files where the volume is too large for the memory.
-
-    Raises
-    ------
-    FileError
-        If the file is no volume.
-    InputError
-        If there is no particle in it, or the voxel size is not known.
+    ``scratch``: folder for temporary files where the volume is too large for the memory.
     """
     return (yield from _extract(given, recipe, scratch, Executor()))
 
@@ -159,20 +132,10 @@ def extract_each(
 ) -> Steps:
     """As :func:`extract_file`, but no particle is kept.
 
-    Parameters
-    ----------
-    make
-        Applied to each particle where it is made, maybe in another process; picklable.
-    sink
-        Called in this process with what `make` returns, in the order of labels.
-    workers
-        Processes, or an executor. Other processes than this one read the volume and the temporary files
-        themselves; a cluster's must find both under the same paths.
-
-    Raises
-    ------
-    MissingRequirement
-        If a worker does not find them.
+    - ``make``: applied to each particle where it is made, maybe in another process; picklable.
+    - ``sink``: called in this process with what `make` returns, in the order of labels.
+    - ``workers``: processes, or an executor. Other processes than this one read the volume and the temporary
+      files themselves; a cluster's must find both under the same paths.
     """
     with open_executor(workers) as executor:
         return (yield from _extract(given, recipe, scratch, executor, make, sink))
@@ -190,15 +153,10 @@ def extract_measured(
 ) -> Steps:
     """As :func:`extract_each`, but each particle is measured where it is made.
 
-    Parameters
-    ----------
-    make
-        As in :func:`extract_each`, of a particle and what was measured of it.
-    labels_file
-        Where to write the label volume, if anywhere (:func:`write_labels`).
-    unfinished
-        Where to keep finished slabs of the map that a classifier makes of a large scan, if anywhere; the same
-        call goes on from there after an interruption.
+    - ``make``: as in :func:`extract_each`, of a particle and what was measured of it.
+    - ``labels_file``: where to write the label volume, if anywhere (:func:`write_labels`).
+    - ``unfinished``: where to keep finished slabs of the map that a classifier makes of a large scan, if
+      anywhere; the same call goes on from there after an interruption.
     """
     yield from compile_first("describe")
     measure = partial(_made_of_measured, make)
@@ -365,21 +323,9 @@ def finished_slabs(
     The folder of the file is removed when the block ends without an exception. A file about another scan,
     region, classifier or version of the libraries is begun anew, and so is a damaged one.
 
-    Parameters
-    ----------
-    path
-        As :func:`unfinished_file` gives it; none where nothing is kept.
-    source
-        The region of the scan, and the SHA-256 of the scan.
-    training
-        Of the classifier, if there is one.
-
-    Raises
-    ------
-    FileError
-        If the file cannot be written, or another process has it open.
-    MissingRequirement
-        If scikit-learn is not installed.
+    - ``path``: as :func:`unfinished_file` gives it; none where nothing is kept.
+    - ``source``: the region of the scan, and the SHA-256 of the scan.
+    - ``training``: of the classifier, if there is one.
     """
     volume, sha256 = source
     if path is None or training is None or math.prod(volume.shape) < RESUMABLE_VOXELS:

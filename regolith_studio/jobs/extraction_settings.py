@@ -67,13 +67,7 @@ class GrainSettings:
 
     @classmethod
     def from_document(cls, document: Mapping[str, Any]) -> "GrainSettings":
-        """The recipe in a JSON document; what is missing stays at its default, what is not known is left out.
-
-        Raises
-        ------
-        InputError
-            If a value is of the wrong type or out of its range.
-        """
+        """The recipe in a JSON document; what is missing stays at its default, what is not known is left out."""
         segmentation = _section(document, "segmentation")
         parts = {name: _parse_settings(kind, _section(segmentation, name)) for name, kind in _PARTS.items()}
         return cls(
@@ -101,28 +95,12 @@ def _document_of(
 
 
 def read_classifier(path: Path) -> TrainingSet:
-    """The training set of a classifier's file.
-
-    Raises
-    ------
-    FileError
-        If it cannot be read or holds no classifier.
-    InputError
-        As :class:`~regolith_studio.imaging.segmentation.pixel_classifier.TrainingSet`.
-    """
+    """The training set of a classifier's file."""
     return training_from(_read_group(path, "classifier"), path.name)
 
 
 def read_objects(path: Path) -> ObjectTraining:
-    """The examples of an object classifier's file.
-
-    Raises
-    ------
-    FileError
-        If it cannot be read or holds no object classifier.
-    InputError
-        As :class:`~regolith_studio.imaging.segmentation.object_classifier.ObjectTraining`.
-    """
+    """The examples of an object classifier's file."""
     return objects_from(_read_group(path, "object classifier"), path.name)
 
 
@@ -137,15 +115,7 @@ def _read_group(path: Path, what: str) -> dict[str, Any]:
 
 
 def read_grain_settings(path: Path) -> GrainSettings:
-    """The recipe in an ``extraction.json``, or in a file saved by the window.
-
-    Raises
-    ------
-    FileError
-        If it cannot be read or holds no such recipe.
-    InputError
-        As :meth:`GrainSettings.from_document`.
-    """
+    """The recipe in an ``extraction.json``, or in a file saved by the window."""
     document = _read_group(path, "recipe")
     if not {"segmentation", "extraction"} & set(document):
         raise FileError(f"{path.name} is no recipe of a segmentation: it names neither of its settings.")
@@ -178,26 +148,15 @@ def _parse_settings(kind: type[S], values: Mapping[str, Any]) -> S:
 class VolumeInput:
     """A volume as a user names it.
 
-    Parameters
-    ----------
-    path
-        File, or folder of slices.
-    voxel_size
-        One edge or three along x, y, z, in `unit`; by default what the file says.
-    unit
-        Of the voxel size.
-    kind
-        ``labels`` or ``grey``; by default guessed.
-    dataset
-        Which volume of a file that holds several.
-    raw
-        What a raw file does not say about itself.
-    axes
-        Of an NPY or HDF5 array, the slowest first: ``zyx`` by default.
-    group
-        Name of the group of its particles; by default that of the file.
-    allow_gaps
-        Whether slices that are absent from a folder become empty ones.
+    - ``path``: file, or folder of slices.
+    - ``voxel_size``: one edge or three along x, y, z, in `unit`; by default what the file says.
+    - ``unit``: of the voxel size.
+    - ``kind``: ``labels`` or ``grey``; by default guessed.
+    - ``dataset``: which volume of a file that holds several.
+    - ``raw``: what a raw file does not say about itself.
+    - ``axes``: of an NPY or HDF5 array, the slowest first: ``zyx`` by default.
+    - ``group``: name of the group of its particles; by default that of the file.
+    - ``allow_gaps``: whether slices that are absent from a folder become empty ones.
     """
 
     path: Path
@@ -211,15 +170,7 @@ class VolumeInput:
     allow_gaps: bool = False
 
     def opened(self) -> VolumeFile:
-        """The volume, read slab by slab.
-
-        Raises
-        ------
-        FileError
-            If it cannot be read.
-        InputError
-            If nobody says how large a voxel is.
-        """
+        """The volume, read slab by slab."""
         return open_slabs(
             self.path,
             dataset=self.dataset,

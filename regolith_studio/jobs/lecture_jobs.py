@@ -43,24 +43,15 @@ PLANE_TOLERANCE = 1e-9
 class AnnealingStep:
     """One iteration of the annealing; polyhedra about the particle's centroid, in its unit.
 
-    Parameters
-    ----------
-    number
-        k; 0 is the start.
-    polyhedron
-        After the decision.
-    evaluation
-        Its errors and loss.
-    move
-        What was proposed and decided; ``None`` for the start.
-    before
-        The polyhedron as it was.
-    proposal
-        ``None`` where the half-spaces bound no polyhedron.
-    facet, proposed_facet
-        Facet of the moved plane in `before` and in `proposal`; ``None`` where it bounds none.
-    distance
-        How far the point p_i was moved.
+    - ``number``: k; 0 is the start.
+    - ``polyhedron``: after the decision.
+    - ``evaluation``: its errors and loss.
+    - ``move``: what was proposed and decided; ``None`` for the start.
+    - ``before``: the polyhedron as it was.
+    - ``proposal``: ``None`` where the half-spaces bound no polyhedron.
+    - ``facet``, ``proposed_facet``: facet of the moved plane in `before` and in `proposal`; ``None`` where
+      it bounds none.
+    - ``distance``: how far the point p_i was moved.
     """
 
     number: int
@@ -78,16 +69,10 @@ class AnnealingStep:
 class AnnealingLesson:
     """An annealing to be looked through, and what the exact method finds for the same request.
 
-    Parameters
-    ----------
-    imitated
-        The surface that is imitated, in the particle's frame.
-    centre
-        Its centroid, shape (3,).
-    scale
-        Length that one unit of the unit-volume particle stands for.
-    exact
-        ``None`` until it is known.
+    - ``imitated``: the surface that is imitated, in the particle's frame.
+    - ``centre``: its centroid, shape (3,).
+    - ``scale``: length that one unit of the unit-volume particle stands for.
+    - ``exact``: ``None`` until it is known.
     """
 
     imitated: Mesh
@@ -105,11 +90,6 @@ def trace_annealing(mesh: Mesh, request: CoarseningRequest) -> Steps:
 
     The seed, weights and number of facets are those of the request, and its settings if they are those of the
     annealing: the last polyhedron is that of the method itself.
-
-    Raises
-    ------
-    InputError
-        If more than 2,000 iterations are asked for, or all weights are 0.
     """
     settings = settings_of("annealing", dict(request.settings) if request.method == "annealing" else None)
     if settings.iterations > MAX_ITERATIONS:
@@ -196,16 +176,11 @@ def _facet_in_plane(solid: ConvexPolyhedron, target: Target, point: FloatArray) 
 class DegreeStep:
     """The fit cut at one degree.
 
-    Parameters
-    ----------
-    mesh
-        Its surface in the particle's frame; ``None`` where a radius is negative.
-    errors
-        Relative errors (Eq. 8) against the particle, of the descriptors of the loss; empty with no mesh.
-    radial_error
-        Root mean square of the radius left over, as a share of that of the radius.
-    mean_radius
-        c_00 / sqrt(4 pi).
+    - ``mesh``: its surface in the particle's frame; ``None`` where a radius is negative.
+    - ``errors``: relative errors (Eq. 8) against the particle, of the descriptors of the loss; empty with no
+      mesh.
+    - ``radial_error``: root mean square of the radius left over, as a share of that of the radius.
+    - ``mean_radius``: c_00 / sqrt(4 pi).
     """
 
     l_max: int
@@ -244,14 +219,9 @@ def _errors(truth: Mapping[str, float], surface: Mesh | None) -> Mapping[str, fl
 class DrawnField:
     """One realisation of a Gaussian field of ln r, and its particle.
 
-    Parameters
-    ----------
-    values
-        ln(r / mean) at the vertices of `sphere` and of `mesh`, shape (n,).
-    sphere
-        Of radius 1.
-    mesh
-        The particle, centred on its star point.
+    - ``values``: ln(r / mean) at the vertices of `sphere` and of `mesh`, shape (n,).
+    - ``sphere``: of radius 1.
+    - ``mesh``: the particle, centred on its star point.
     """
 
     values: FloatArray
@@ -263,13 +233,6 @@ def draw_field(material: str, amplitudes: FloatArray, seed: int, level: int = 4)
     """Draw a particle of a material with other amplitudes sqrt(A_l) / mu, l = 1, 2, ...
 
     The same seed has the same random numbers, so that the particle changes with its spectrum.
-
-    Raises
-    ------
-    InputError
-        If there is no such material or an amplitude is negative.
-    GeometryError
-        If the amplitudes are too large for a surface.
     """
     card = materials().get(material)
     if card is None:

@@ -47,26 +47,13 @@ ModelOrigin = ShapeSource | tuple[Particle, ...]
 class GenerationRequest:
     """Which model is to draw which particles.
 
-    Parameters
-    ----------
-    model
-        Key of ``MODELS``; empty for what the source brings, or the default one.
-    settings
-        Of the model that differ from its own, as pairs.
-    l_max
-        Degree of the particles; ``None`` for that of the model's settings, where the source has it: all
-        degrees for ``recombined`` and ``sample_matched``, 10 for the others, as in section 3.1.
-    n
-        How many.
-    seed
-        Of all draws.
-    size_range
-        Smallest and largest equivalent radius, micrometres.
-
-    Raises
-    ------
-    InputError
-        If a value is out of range or a name unknown.
+    - ``model``: key of ``MODELS``; empty for what the source brings, or the default one.
+    - ``settings``: of the model that differ from its own, as pairs.
+    - ``l_max``: degree of the particles; ``None`` for that of the model's settings, where the source has it:
+      all degrees for ``recombined`` and ``sample_matched``, 10 for the others, as in section 3.1.
+    - ``n``: how many.
+    - ``seed``: of all draws.
+    - ``size_range``: smallest and largest equivalent radius, micrometres.
     """
 
     model: str = ""
@@ -97,13 +84,7 @@ def fit_request_for(request: GenerationRequest | None = None) -> FitRequest:
 def sample_of_meshes(
     particles: Sequence[Particle], request: FitRequest, workers: int | Executor = 1
 ) -> Steps:
-    """Expand particles for a model; returns a :class:`ShapeSource`, its notes name those left out.
-
-    Raises
-    ------
-    InputError
-        If fewer than two can be expanded.
-    """
+    """Expand particles for a model; returns a :class:`ShapeSource`, its notes name those left out."""
     fits = yield from fit_sample(particles, request, workers)
     return source_of_fits(particles, fits)
 
@@ -142,26 +123,14 @@ def fit_model(source: ShapeSource, request: GenerationRequest) -> Steps:
 
 
 def make_card(sample: Sample, name: str, label: str, origin: str) -> Steps:
-    """The card of a sample with its hull field, judged against the sample; returns a ``MaterialCard``.
-
-    Raises
-    ------
-    InputError
-        As :meth:`~regolith_studio.shape_models.materials.MaterialCard.of`.
-    """
+    """The card of a sample with its hull field, judged against the sample; returns a ``MaterialCard``."""
     yield from compile_first("model")
     yield Started(N_("Making a material card"))
     return MaterialCard.of(sample, name, label, origin)
 
 
 def draw(model: FittedModel, request: GenerationRequest) -> Steps:
-    """Draw the particles of a request, chunk by chunk; returns :class:`Realizations`.
-
-    Raises
-    ------
-    InputError
-        If the particles need more memory than there is, or as the model's ``draw_chunks``.
-    """
+    """Draw the particles of a request, chunk by chunk; returns :class:`Realizations`."""
     check_draws(request.n, model.l_max)
     yield from compile_first("model")
     yield Started(N_("Drawing"), request.n)
@@ -213,14 +182,9 @@ def particles_of(
 ) -> tuple[Particle, ...]:
     """The drawn particles as closed meshes on ``icosphere(level)``.
 
-    Parameters
-    ----------
-    groups
-        One for each particle; none by default.
-    level
-        By default that of their degree.
-    first
-        Number of the first one, for its name.
+    - ``groups``: one for each particle; none by default.
+    - ``level``: by default that of their degree.
+    - ``first``: number of the first one, for its name.
     """
     names = particle_names(len(draws), first)
     level = level_for(draws.l_max) if level is None else level
@@ -302,18 +266,11 @@ def _write_batch(draws: Realizations, groups: tuple[str, ...], level: int, folde
 class ModelFitResult:
     """A fitted model, what it was fitted to, and some of the measured particles at its degree.
 
-    Parameters
-    ----------
-    source
-        All that was known; a model fitted to a half has seen only that.
-    model
-        Fitted.
-    n_fitted
-        Particles that the model was fitted to; 0 where it came as a card or file.
-    examples
-        Meshes of measured particles, centred; none where there are none.
-    first
-        A drawn particle, that of seed 0; none where the model can draw none.
+    - ``source``: all that was known; a model fitted to a half has seen only that.
+    - ``model``: fitted.
+    - ``n_fitted``: particles that the model was fitted to; 0 where it came as a card or file.
+    - ``examples``: meshes of measured particles, centred; none where there are none.
+    - ``first``: a drawn particle, that of seed 0; none where the model can draw none.
     """
 
     source: ShapeSource
@@ -340,12 +297,8 @@ class GenerationResult:
 def fit_shapes(origin: ModelOrigin, request: GenerationRequest, half: bool = False) -> Steps:
     """Expand particles where that is needed, and fit; returns :class:`ModelFitResult`.
 
-    Parameters
-    ----------
-    origin
-        Particles, or what a file or a material has to offer.
-    half
-        Fit to the random half that a study with the same seed fits to in its first split.
+    ``origin``: particles, or what a file or a material has to offer. ``half``: fit to the random half that a
+    study with the same seed fits to in its first split.
     """
     if isinstance(origin, tuple):
         source: ShapeSource = yield from sample_of_meshes(origin, fit_request_for(request))

@@ -51,11 +51,6 @@ def load_particles(
     """Read the meshes in `paths` (files and folders); returns :class:`LoadedParticles`.
 
     Tables of coefficients are read as `tables` says.
-
-    Raises
-    ------
-    FileError
-        If nothing could be read: the first file's message.
     """
     problems: list[FileProblem] = []
     results: list[Particle | FileProblem] = []
@@ -94,14 +89,10 @@ def load_sample() -> Steps:
 class MeasuredParticle:
     """Health, descriptors and visibility of a particle, before anything is fitted.
 
-    Parameters
-    ----------
-    descriptors
-        ``None`` where the mesh has none, for example because it is flat.
-    problem
-        Why, in one sentence.
-    visibility
-        What its star point cannot see; ``None`` where the mesh has no inside, for example because it is open.
+    - ``descriptors``: ``None`` where the mesh has none, for example because it is flat.
+    - ``problem``: why, in one sentence.
+    - ``visibility``: what its star point cannot see; ``None`` where the mesh has no inside, for example
+      because it is open.
     """
 
     health: MeshHealth
@@ -200,17 +191,7 @@ def measure_sample(particles: Sequence[Particle], workers: int | Executor = 1) -
 class FitRequest:
     """How particles are to be expanded.
 
-    Parameters
-    ----------
-    l_max
-        Highest degree.
-    fit_options
-        Star point, radius rule and reference.
-
-    Raises
-    ------
-    InputError
-        If the degree is out of range.
+    ``l_max``: highest degree. ``fit_options``: star point, radius rule and reference.
     """
 
     l_max: int = FIT_DEGREE

@@ -42,23 +42,13 @@ DEFAULT_RANGES = MappingProxyType({"static_friction": (0.05, 1.2)})
 class ReposeCalibrationRequest:
     """What is wanted, and how it may be reached; picklable.
 
-    Parameters
-    ----------
-    datasets
-        Folders. With several the choice of one of them is a parameter; they differ in content and name.
-    ranges
-        Lowest and highest value of each parameter of Table 1 or 2, in SI units.
-    targets
-        Wanted angle, and perhaps bulk density.
-    request
-        Of every run, but for the parameters; its seed is the first run's, and each run has the next one.
-    max_runs
-        After which the calibration ends.
-
-    Raises
-    ------
-    InputError
-        If a range cannot be used, or two datasets have one name.
+    - ``datasets``: folders. With several the choice of one of them is a parameter; they differ in content
+      and name.
+    - ``ranges``: lowest and highest value of each parameter of Table 1 or 2, in SI units.
+    - ``targets``: wanted angle, and perhaps bulk density.
+    - ``request``: of every run, but for the parameters; its seed is the first run's, and each run has the
+      next one.
+    - ``max_runs``: after which the calibration ends.
     """
 
     datasets: tuple[Path, ...]
@@ -89,11 +79,6 @@ def calibration_steps(request: ReposeCalibrationRequest, folder: Path) -> Steps:
 
     After each run the folder holds the result so far. Runs that are there already are data and are not run
     again, also where another angle is wanted.
-
-    Raises
-    ------
-    FileError
-        If the folder holds runs of another dataset, engine or case.
     """
     total = PROGRESS_STEPS * request.max_runs
     yield Started(N_("Calibration"), total)
@@ -159,13 +144,7 @@ def write_calibration(calibration: ReposeCalibration, folder: Path) -> list[str]
 
 
 def _by_hash(folders: Sequence[Path]) -> dict[str, int]:
-    """Place of each dataset by the hash of its content.
-
-    Raises
-    ------
-    InputError
-        If two have the same content.
-    """
+    """Place of each dataset by the hash of its content."""
     found: dict[str, int] = {}
     for number, folder in enumerate(folders):
         earlier = found.setdefault(dataset_hash(folder), number)
@@ -220,13 +199,7 @@ def _earlier_run(
 def _next_run(
     request: ReposeCalibrationRequest, folder: Path, calibration: ReposeCalibration
 ) -> Generator[Step, None, CalibrationRun]:
-    """Simulate the run that is proposed; if it fails, it has no result.
-
-    Raises
-    ------
-    RegolithError
-        If the first run fails, as where an engine does not have a parameter.
-    """
+    """Simulate the run that is proposed; if it fails, it has no result."""
     number, name = len(calibration.runs), _run_name(len(calibration.runs))
     names = [each.name for each in calibration.parameters]
     values = calibration.next_values

@@ -73,16 +73,10 @@ class ReposeRequest:
 class ReposeRun:
     """A run on disk.
 
-    Parameters
-    ----------
-    folder
-        Where it is.
-    document
-        Content of its ``repose.json``.
-    ending
-        Particles and checks.
-    measurement
-        The angle, or the reason why there is none.
+    - ``folder``: where it is.
+    - ``document``: content of its ``repose.json``.
+    - ``ending``: particles and checks.
+    - ``measurement``: the angle, or the reason why there is none.
     """
 
     folder: Path
@@ -121,13 +115,7 @@ def simulate_prepared(prepared: PreparedCase, folder: Path, request: ReposeReque
 
 
 def check_shapes(prepared: PreparedCase, engine: Engine) -> None:
-    """Check that an engine simulates the shapes of a case.
-
-    Raises
-    ------
-    InputError
-        If they are compounds and it takes convex particles only.
-    """
+    """Check that an engine simulates the shapes of a case."""
     if prepared.parts and prepared.case.shapes == "polyhedra" and not engine.capabilities.compounds:
         others = [each.label for each in ENGINES.values() if each.capabilities.compounds]
         raise InputError(

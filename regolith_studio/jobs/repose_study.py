@@ -37,14 +37,9 @@ SHAPE_KEYS = ("n_facets", "preset")
 class ReposeVariant:
     """One value of what a study varies.
 
-    Parameters
-    ----------
-    varied, value
-        What, and to what.
-    dataset
-        Folder of the dataset.
-    request
-        How to run; its seed is the first of the repeats.
+    - ``varied``, ``value``: what, and to what.
+    - ``dataset``: folder of the dataset.
+    - ``request``: how to run; its seed is the first of the repeats.
     """
 
     varied: str
@@ -68,16 +63,8 @@ def study_repose(
     journal or the folder holds already, finished and of the same case, are not run again: a study that was
     stopped is resumed. A run that fails is a row without an angle.
 
-    Parameters
-    ----------
-    executor
-        Where runs are simulated, or how many at the same time; they change no result. Workers that are left
-        over are threads of the engine.
-
-    Raises
-    ------
-    InputError
-        If two rows are of the same value, and their runs would have the same folder.
+    ``executor``: where runs are simulated, or how many at the same time; they change no result. Workers that
+    are left over are threads of the engine.
     """
     plan = [_PlannedRun.of(row, row.request.case.seed + k) for row in rows for k in range(repeats)]
     twice = [name for name, times in Counter(run.name for run in plan).items() if times > 1]
@@ -169,15 +156,7 @@ def write_study(study: ReposeStudy, folder: Path, surface: ReposeSurface | None 
 
     Runs of earlier studies in the folder stay.
 
-    Parameters
-    ----------
-    surface
-        Through the angles of the study, which is written too.
-
-    Raises
-    ------
-    FileError
-        If the folder cannot be written.
+    ``surface``: through the angles of the study, which is written too.
     """
     from regolith_studio.studies.figures.repose import (
         write_repose_study,  # matplotlib
@@ -192,13 +171,7 @@ def write_study(study: ReposeStudy, folder: Path, surface: ReposeSurface | None 
 
 
 def write_with_runs(folder: Path, kind: str, write: Callable[[Path], Sequence[Path]]) -> list[str]:
-    """Let `write` write files into `folder` in one step with the runs of the journal; names of the files.
-
-    Raises
-    ------
-    FileError
-        If the folder cannot be written.
-    """
+    """Let `write` write files into `folder` in one step with the runs of the journal; names of the files."""
     journal = folder / JOURNAL / kind
     with staged_folder(folder, kind) as stage:
         files = write(stage)
@@ -253,13 +226,7 @@ def finished_run(place: Path, dataset: Path, request: ReposeRequest) -> dict[str
 
 
 def with_value(request: ReposeRequest, key: str, value: Any) -> ReposeRequest:
-    """The same request with one value of Table 1, Table 2 or the case changed.
-
-    Raises
-    ------
-    InputError
-        If there is no such value, or it cannot be this.
-    """
+    """The same request with one value of Table 1, Table 2 or the case changed."""
     case = request.case
     if key in CASE_KEYS:
         return replace(request, case=replace(case, **{key: value}))
@@ -328,13 +295,7 @@ class ReposeStudyRequest:
 
 
 def values_in(key: str, text: str) -> tuple[float | str, ...]:
-    """Values written with commas between them: names, whole numbers or numbers, as the key has them.
-
-    Raises
-    ------
-    InputError
-        If one is none.
-    """
+    """Values written with commas between them: names, whole numbers or numbers, as the key has them."""
     words = [word.strip() for word in text.split(",") if word.strip()]
     if key in ("shapes", "cohesion", "preset"):
         return tuple(dict.fromkeys(words))

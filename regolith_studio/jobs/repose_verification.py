@@ -9,17 +9,7 @@ def verify_engine(key: str, quick: bool = False) -> Steps:
     """Measure the lines of an engine, each a :class:`Partial` when it is done; returns a
     :class:`~regolith_studio.dem.verification.certificate.Certificate`.
 
-    Parameters
-    ----------
-    key
-        Of the engine.
-    quick
-        Leave out what takes more than minutes: gravity and dice.
-
-    Raises
-    ------
-    InputError, MissingRequirement
-        If there is no such engine, or it cannot be verified here.
+    ``key``: of the engine. ``quick``: leave out what takes more than minutes: gravity and dice.
     """
     engine = verifiable_engine(key)
     keys = tuple(QUICK if quick else MEASUREMENTS)

@@ -26,16 +26,10 @@ from regolith_studio.messages import N_, count_message
 class RepresentativesRequest:
     """What is asked of a choice; picklable.
 
-    Parameters
-    ----------
-    count
-        Number of representatives.
-    weighting
-        Whether classes and sizes count particles or their volume.
-    size_importance
-        How much a standard deviation of ln d counts against one of a shape feature.
-    seed
-        Only for populations too large for a table of distances.
+    - ``count``: number of representatives.
+    - ``weighting``: whether classes and sizes count particles or their volume.
+    - ``size_importance``: how much a standard deviation of ln d counts against one of a shape feature.
+    - ``seed``: only for populations too large for a table of distances.
     """
 
     count: int = 10
@@ -47,13 +41,7 @@ class RepresentativesRequest:
     def of(
         cls, count: int, weighting: str, size_importance: float = 0.0, seed: int = 0
     ) -> "RepresentativesRequest":
-        """From what a user has typed.
-
-        Raises
-        ------
-        InputError
-            If the weighting is none, or a number makes no sense.
-        """
+        """From what a user has typed."""
         if not (count >= 1 and size_importance >= 0.0):
             raise InputError(f"At least one representative is needed, got {count}.")
         match weighting:
@@ -66,14 +54,9 @@ class RepresentativesRequest:
 class MeasuredPopulation:
     """The particles of a sample that can be described.
 
-    Parameters
-    ----------
-    kept
-        Their places in the sample.
-    descriptors
-        Of each of them.
-    omitted
-        Name of each other particle, and why it has no descriptors.
+    - ``kept``: their places in the sample.
+    - ``descriptors``: of each of them.
+    - ``omitted``: name of each other particle, and why it has no descriptors.
     """
 
     kept: tuple[int, ...]
@@ -122,13 +105,7 @@ class ChosenParticles:
 
 
 def measure_population(particles: Sequence[Particle], workers: int | Executor = 1) -> Steps:
-    """Descriptors of every particle; returns :class:`MeasuredPopulation`.
-
-    Raises
-    ------
-    InputError
-        If no particle has descriptors.
-    """
+    """Descriptors of every particle; returns :class:`MeasuredPopulation`."""
     examined = yield from measure_sample(particles, workers=workers)
     kept: list[tuple[int, Descriptors]] = []
     omitted = []
@@ -177,13 +154,7 @@ def measure_quality(population: MeasuredPopulation, request: RepresentativesRequ
 
 
 def choose_particles(population: MeasuredPopulation, request: RepresentativesRequest) -> ChosenParticles:
-    """The representatives of a population.
-
-    Raises
-    ------
-    InputError
-        If it has fewer particles than are asked for.
-    """
+    """The representatives of a population."""
     found = choose_representatives(
         population.descriptors,
         request.count,
@@ -203,11 +174,6 @@ def survey_representatives(
     """Measure a sample, unless that is done, and its quality curve; returns :class:`RepresentativesSurvey`.
 
     Partial results are the points of the curve.
-
-    Raises
-    ------
-    InputError
-        If no particle has descriptors, or fewer than two.
     """
     if population is None:
         population = yield from measure_population(particles, workers)

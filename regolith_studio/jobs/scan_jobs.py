@@ -65,22 +65,13 @@ _Result = TypeVar("_Result")
 class Scan:
     """A volume with what is needed to show it; a large one is mapped from a file, not in memory.
 
-    Parameters
-    ----------
-    volume
-        Grey values or labels.
-    histogram
-        Histogram of its values, of some of them where there are many; none of labels.
-    contrast
-        Values to be shown black and white.
-    sections
-        Pictures of its slices.
-    scratch
-        Holds the temporary files that it is mapped from, if there are any.
-    outside
-        What lies outside of the scanner's circle, which neither histogram nor contrast count.
-    filled
-        The volume with background there, as classifiers see it.
+    - ``volume``: grey values or labels.
+    - ``histogram``: histogram of its values, of some of them where there are many; none of labels.
+    - ``contrast``: values to be shown black and white.
+    - ``sections``: pictures of its slices.
+    - ``scratch``: holds the temporary files that it is mapped from, if there are any.
+    - ``outside``: what lies outside of the scanner's circle, which neither histogram nor contrast count.
+    - ``filled``: the volume with background there, as classifiers see it.
     """
 
     volume: Volume
@@ -153,12 +144,8 @@ def read_header(given: VolumeInput) -> Steps:
 class FirstLook:
     """A coarse picture of a large volume, and what its file states, before it is read.
 
-    Parameters
-    ----------
-    scan
-        A few slices, or a coarser level of the file, with a histogram of their values.
-    shape, voxel_size, kind, dtype
-        Of the whole volume; micrometres.
+    ``scan``: a few slices, or a coarser level of the file, with a histogram of their values. ``shape``,
+    ``voxel_size``, ``kind``, ``dtype``: of the whole volume; micrometres.
     """
 
     scan: Scan
@@ -291,13 +278,7 @@ def preview_heights(
 def count_over_heights(
     given: VolumeInput, settings: GrainSettings, heights: Sequence[float], scratch: Path | None = None
 ) -> Steps:
-    """Grains of a file with each h of `heights`; returns a tuple of ``GrainsAtHeight``.
-
-    Raises
-    ------
-    InputError
-        If it holds labels, which are grains already.
-    """
+    """Grains of a file with each h of `heights`; returns a tuple of ``GrainsAtHeight``."""
     yield from compile_first("scan")
     yield Started(Message(N_("Reading {name}"), name=given.path.name))
     volume = settings.region.of(given.opened())

@@ -46,12 +46,8 @@ class StudyCheckpoint:
 
     As a context it removes its file when all went well or nothing is in it, and keeps it otherwise.
 
-    Parameters
-    ----------
-    path
-        Of the file, in a folder of its own below that of the results.
-    resume
-        Whether to continue with what is there, if anything is.
+    ``path``: of the file, in a folder of its own below that of the results. ``resume``: whether to continue
+    with what is there, if anything is.
     """
 
     def __init__(self, path: Path, resume: bool = False) -> None:
@@ -63,18 +59,8 @@ class StudyCheckpoint:
     def open(self, study: str, options: object, inputs: str) -> None:
         """Open the file, before the study asks for anything.
 
-        Parameters
-        ----------
-        options
-            Their ``repr`` must name all that the answers depend on.
-        inputs
-            Changes when an input does, as :func:`hash_of_particles`.
-
-        Raises
-        ------
-        FileError
-            If the file belongs to another study, other options, inputs or versions of programs; or if it
-            cannot be written.
+        ``options``: their ``repr`` must name all that the answers depend on. ``inputs``: changes when an
+        input does, as :func:`hash_of_particles`.
         """
         subject = {
             "study": study,
@@ -186,14 +172,9 @@ def study_lmax(
 ) -> Steps:
     """Fig. 3 for `particles`; partial results and the result are ``LmaxStudy``.
 
-    Parameters
-    ----------
-    workers
-        Processes at a time; 0 for one a core.
-    answers
-        Keeps the results of each particle, so that the study can be resumed.
-    options
-        Further ones of :func:`~regolith_studio.studies.lmax.lmax_study`: degrees, level, keys ...
+    - ``workers``: processes at a time; 0 for one a core.
+    - ``answers``: keeps the results of each particle, so that the study can be resumed.
+    - ``options``: further ones of :func:`~regolith_studio.studies.lmax.lmax_study`: degrees, level, keys ...
     """
     yield from compile_first("fit", "describe", "degrees")
     yield Started(N_("RMSRE against l_max"), len(particles))
@@ -213,16 +194,10 @@ def study_population(
 ) -> Steps:
     """Figs. 4 to 6 for `sample`; partial results and the result are ``PopulationStudy``.
 
-    Parameters
-    ----------
-    models
-        Keys of ``MODELS``; all by default.
-    workers
-        Processes at a time; 0 for one a core.
-    answers
-        Keeps the results of particles and draws, so that the study can be resumed.
-    options
-        Further ones of :func:`~regolith_studio.studies.population.population_study`.
+    - ``models``: keys of ``MODELS``; all by default.
+    - ``workers``: processes at a time; 0 for one a core.
+    - ``answers``: keeps the results of particles and draws, so that the study can be resumed.
+    - ``options``: further ones of :func:`~regolith_studio.studies.population.population_study`.
     """
     yield from compile_first("describe", "model")
     yield Started(N_("Evaluating models"), 0)
@@ -252,18 +227,12 @@ def study_coarsening(
 ) -> Steps:
     """Fig. 8 for `particles`; partial results and the result are ``CoarseningStudy``.
 
-    Parameters
-    ----------
-    request
-        Method, number of facets, settings, seed and target; weights are those of the rows.
-    workers
-        Processes at a time; 0 for one a core.
-    answers
-        Keeps the results of each particle, so that the study can be resumed.
-    title
-        Title of the task.
-    options
-        Further ones of :func:`~regolith_studio.studies.coarsening.coarsening_study`: rows, box_metric.
+    - ``request``: method, number of facets, settings, seed and target; weights are those of the rows.
+    - ``workers``: processes at a time; 0 for one a core.
+    - ``answers``: keeps the results of each particle, so that the study can be resumed.
+    - ``title``: title of the task.
+    - ``options``: further ones of :func:`~regolith_studio.studies.coarsening.coarsening_study`: rows,
+      box_metric.
     """
     yield from compile_first_for(request.method, *(row.method for row in options.get("rows") or ()))
     yield Started(title, len(particles))
@@ -303,12 +272,8 @@ def as_job_steps(steps: Generator[StudyProgress, None, Any]) -> Generator[Step, 
 class GalleryCell:
     """One picture of the gallery.
 
-    Parameters
-    ----------
-    row, column
-        Index of the loss and of the particle, from 0.
-    outcome
-        The polyhedron, or why there is none.
+    ``row``, ``column``: index of the loss and of the particle, from 0. ``outcome``: the polyhedron, or why
+    there is none.
     """
 
     row: int
@@ -321,12 +286,8 @@ def coarsen_gallery(
 ) -> Steps:
     """Coarsen each particle by the loss of each row; results, partial and final, are ``list[GalleryCell]``.
 
-    Parameters
-    ----------
-    request
-        Number of facets, seed and target of all.
-    rows
-        Whose weights, method and settings are taken; by default those of Fig. 8 by the request's method.
+    ``request``: number of facets, seed and target of all. ``rows``: whose weights, method and settings are
+    taken; by default those of Fig. 8 by the request's method.
     """
     variants = _variants(rows, request)
     total = len(particles) * len(variants)
@@ -352,12 +313,8 @@ def study_gallery(
 ) -> Steps:
     """As :func:`coarsen_gallery`, particle by particle; the result is the study that can be written.
 
-    Parameters
-    ----------
-    workers
-        Processes at a time; 0 for one a core.
-    answers
-        Keeps the polyhedra of each particle, so that the study can be resumed.
+    ``workers``: processes at a time; 0 for one a core. ``answers``: keeps the polyhedra of each particle, so
+    that the study can be resumed.
     """
     variants = _variants(rows, request)
     yield Started(N_("Coarsening for the gallery"), len(particles))

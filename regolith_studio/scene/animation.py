@@ -25,15 +25,7 @@ KINDS = (".gif", ".webp", ".png")
 def save_animation(frames: Sequence[Picture], seconds: Sequence[float], path: Path) -> None:
     """Write frames of one size that follow each other for ever; PNG files are numbered from 000.
 
-    Parameters
-    ----------
-    seconds
-        How long each frame is seen.
-
-    Raises
-    ------
-    InputError
-        If the ending of the file is none of :data:`KINDS`.
+    ``seconds``: how long each frame is seen.
     """
     kind = path.suffix.lower()
     if kind not in KINDS:
@@ -63,19 +55,10 @@ def turntable(
 ) -> None:
     """Write one turn about the upright of the picture as GIF or WebP.
 
-    Parameters
-    ----------
-    shapes
-        What turns, from left to right, in one frame of coordinates.
-    pose
-        Where the camera begins; isometric if not given. The whole bodies are seen whatever its scale.
-    scale
-        Whole factor on the size in pixels.
-
-    Raises
-    ------
-    InputError
-        If the ending of the file is another.
+    - ``shapes``: what turns, from left to right, in one frame of coordinates.
+    - ``pose``: where the camera begins; isometric if not given. The whole bodies are seen whatever its
+      scale.
+    - ``scale``: whole factor on the size in pixels.
     """
     pictures = list(_pictures(shapes, pose, frames, scale))
     save_animation(pictures, [SECONDS / frames] * frames, path)
@@ -189,11 +172,6 @@ def degree_animation(
     """Write a GIF or WebP of the fit growing through `degrees` beside the particle; the last frame lasts.
 
     Degrees with a negative radius are left out.
-
-    Raises
-    ------
-    InputError
-        If a degree is negative or above that of the fit.
     """
     frames = list(_frames(particle, fit, degrees, level))
     seconds = [FRAME_SECONDS] * (len(frames) - 1) + [LAST_FRAME_SECONDS]

@@ -19,10 +19,7 @@ _WIDEST_SHARE = 0.28
 def bar_length(picture_width: float) -> float:
     """The longest of 1, 2, 5, 10, ... that fits into its share of the picture, in the unit of the scene.
 
-    Parameters
-    ----------
-    picture_width
-        Width of the picture in the unit of the scene.
+    ``picture_width``: width of the picture in the unit of the scene.
     """
     widest = picture_width * _WIDEST_SHARE
     if not widest > 0.0:
@@ -46,14 +43,9 @@ class ScaleBar:
     parallel projection. It must be ``suspended`` for pictures that are put together from tiles, which have
     the size and the camera of a part.
 
-    Parameters
-    ----------
-    plotter
-        Any pyvista plotter; the bar belongs to its active renderer.
-    surroundings
-        Whose ink it is drawn with.
-    factor
-        Size of letters and line; pictures of several times the usual size want larger ones.
+    - ``plotter``: any pyvista plotter; the bar belongs to its active renderer.
+    - ``surroundings``: whose ink it is drawn with.
+    - ``factor``: size of letters and line; pictures of several times the usual size want larger ones.
     """
 
     def __init__(

@@ -22,14 +22,9 @@ Vector = tuple[float, float, float]
 class Direction:
     """A direction to look from.
 
-    Parameters
-    ----------
-    label
-        For menus.
-    towards_eye
-        From the particle to the eye.
-    up
-        Which way is up in the picture.
+    - ``label``: for menus.
+    - ``towards_eye``: from the particle to the eye.
+    - ``up``: which way is up in the picture.
     """
 
     label: str
@@ -57,14 +52,9 @@ FILLED = 0.85
 class CameraPose:
     """Position and direction of a camera in parallel projection.
 
-    Parameters
-    ----------
-    position, focal_point
-        In the unit of the scene.
-    view_up
-        Direction that is up in the picture.
-    parallel_scale
-        Half the height of the picture, in the unit of the scene.
+    - ``position``, ``focal_point``: in the unit of the scene.
+    - ``view_up``: direction that is up in the picture.
+    - ``parallel_scale``: half the height of the picture, in the unit of the scene.
     """
 
     position: Vector
@@ -100,16 +90,10 @@ def framing_pose(
 ) -> CameraPose:
     """The pose that fills the shorter side of a picture with points.
 
-    Parameters
-    ----------
-    points
-        Vertices, or corners of a box, shape (n, 3).
-    direction
-        A key of :data:`DIRECTIONS`, or another direction.
-    aspect
-        Width of the picture over its height.
-    turning
-        Whether the points stay in the picture however they are turned; they are smaller then.
+    - ``points``: vertices, or corners of a box, shape (n, 3).
+    - ``direction``: a key of :data:`DIRECTIONS`, or another direction.
+    - ``aspect``: width of the picture over its height.
+    - ``turning``: whether the points stay in the picture however they are turned; they are smaller then.
     """
     places = np.asarray(points, dtype=np.float64)
     centre = (places.min(axis=0) + places.max(axis=0)) / 2
@@ -148,10 +132,7 @@ def turned(pose: CameraPose, direction: str) -> CameraPose:
 def refitted(pose: CameraPose, before: float, after: float) -> CameraPose:
     """The pose that shows as much along the shorter side of a picture as one of another shape showed.
 
-    Parameters
-    ----------
-    before, after
-        Width over height of the two pictures.
+    ``before``, ``after``: width over height of the two pictures.
     """
     share = min(1.0, max(before, 1e-3)) / min(1.0, max(after, 1e-3))
     return replace(pose, parallel_scale=pose.parallel_scale * share)
@@ -169,10 +150,7 @@ TURN = 2.6
 def orbited(pose: CameraPose, right: float, up: float) -> CameraPose:
     """Turn about the focal point.
 
-    Parameters
-    ----------
-    right, up
-        How far was dragged, as shares of the picture's height.
+    ``right``, ``up``: how far was dragged, as shares of the picture's height.
     """
     focus, eye, upward, side = _frame(pose)
     about_up = _rotation(upward, -TURN * right)
@@ -224,10 +202,7 @@ END_ON = 0.25
 class Projection:
     """A camera pose and the size of the picture that it fills.
 
-    Parameters
-    ----------
-    width, height
-        In pixels.
+    ``width``, ``height``: in pixels.
     """
 
     pose: CameraPose

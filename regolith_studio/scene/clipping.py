@@ -43,10 +43,7 @@ FRAME_SHARE = 1.08
 class SectionPlane:
     """The plane <n, x> = `offset`; points with a larger <n, x> are removed.
 
-    Parameters
-    ----------
-    normal
-        Unit vector, towards what is taken away.
+    ``normal``: unit vector, towards what is taken away.
     """
 
     normal: tuple[float, float, float]

@@ -39,16 +39,10 @@ def show_cuts(
 ) -> None:
     """Fill the cuts of the bodies that are shown, and draw the outlines of all.
 
-    Parameters
-    ----------
-    own, other
-        Names of the bodies, empty for none.
-    cuts
-        By the name of the body.
-    colours
-        Of the outlines.
-    overlay
-        Whether the other body is a veil over the own one.
+    - ``own``, ``other``: names of the bodies, empty for none.
+    - ``cuts``: by the name of the body.
+    - ``colours``: of the outlines.
+    - ``overlay``: whether the other body is a veil over the own one.
     """
     for name, layer, opacity in ((own, "", 1.0), (other, OTHER, VEIL if overlay else 1.0)):
         cut = cuts.get(name) if name else None
@@ -81,12 +75,8 @@ HANDLE = 9.0
 class Divider:
     """Two planes that follow the camera, seen edge on: what they clip ends at a line in the picture.
 
-    Parameters
-    ----------
-    plotter
-        Any pyvista plotter; the line belongs to its active renderer.
-    surroundings
-        Whose ink it is drawn with.
+    ``plotter``: any pyvista plotter; the line belongs to its active renderer. ``surroundings``: whose ink it
+    is drawn with.
     """
 
     def __init__(self, plotter: Any, surroundings: ThemeColors = palette.LIGHT) -> None:

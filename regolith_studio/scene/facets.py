@@ -23,24 +23,15 @@ LIFT = 0.002
 class Facet:
     """One facet in numbers.
 
-    Parameters
-    ----------
-    index
-        From 0, in the order of the half-spaces; those of a compound are numbered through.
-    count
-        Facets of the polyhedron, or of all parts.
-    area, share
-        In the unit of the polyhedron squared, and of its surface; of a compound what is exposed.
-    normal
-        Outward unit normal, shape (3,).
-    offset
-        Distance of the plane from the polyhedron's origin.
-    outline
-        Ends of the edges of what is exposed, shape (m, 2, 3), about the polyhedron's origin.
-    middle
-        A point of what is exposed, shape (3,).
-    part
-        Of a compound, from 0.
+    - ``index``: from 0, in the order of the half-spaces; those of a compound are numbered through.
+    - ``count``: facets of the polyhedron, or of all parts.
+    - ``area``, ``share``: in the unit of the polyhedron squared, and of its surface; of a compound what is
+      exposed.
+    - ``normal``: outward unit normal, shape (3,).
+    - ``offset``: distance of the plane from the polyhedron's origin.
+    - ``outline``: ends of the edges of what is exposed, shape (m, 2, 3), about the polyhedron's origin.
+    - ``middle``: a point of what is exposed, shape (3,).
+    - ``part``: of a compound, from 0.
     """
 
     index: int
@@ -137,10 +128,7 @@ def show_facet(
 ) -> None:
     """Outline one facet and write its number upon it, counted from 1; or no facet.
 
-    Parameters
-    ----------
-    centre
-        Where the polyhedron's origin lies.
+    ``centre``: where the polyhedron's origin lies.
     """
     if facet is None:
         hide_named(plotter, FACET)

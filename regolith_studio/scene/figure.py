@@ -90,12 +90,8 @@ def heap_picture(
 ) -> None:
     """Draw a heap on its plate into a PNG file.
 
-    Parameters
-    ----------
-    shapes
-        Vertices of the convex parts of each unit-volume shape, each of shape (k, 3).
-    title
-        One line over the picture.
+    ``shapes``: vertices of the convex parts of each unit-volume shape, each of shape (k, 3). ``title``: one
+    line over the picture.
     """
     plotter_setup.choose_off_screen_window()
     width, height = 2 * VIEW_SIZE[0], VIEW_SIZE[1]

@@ -18,13 +18,7 @@ from regolith_studio.geometry.mesh import Mesh
 
 
 def heap_shapes(run: RunSummary) -> list[MjcfShape]:
-    """Unit-volume shapes of a run as convex parts.
-
-    Raises
-    ------
-    FileError
-        If they are missing or broken.
-    """
+    """Unit-volume shapes of a run as convex parts."""
     shapes = []
     for number, parts in enumerate(read_shapes(run.folder)):
         hulls = [Mesh(vertices, np.empty((0, 3), dtype=np.int64)).hull for vertices in parts]
@@ -34,13 +28,7 @@ def heap_shapes(run: RunSummary) -> list[MjcfShape]:
 
 
 def heap_mjcf(run: RunSummary, shapes: Sequence[MjcfShape], pile: ParticleState) -> bytes:
-    """An MJCF model of the heap on its plate.
-
-    Raises
-    ------
-    DatasetError
-        If the particles are too small for MuJoCo.
-    """
+    """An MJCF model of the heap on its plate."""
     contact, test = _parameters(run)
     bodies = PackedParticles(pile.class_index, pile.diameters, pile.points, pile.orientations)
     return mjcf_model(run.folder.resolve().name, shapes, bodies, contact, test)[0].encode("utf-8")
@@ -78,13 +66,7 @@ def heap_usd(run: RunSummary, shapes: Sequence[MjcfShape], pile: ParticleState) 
 
 
 def _parameters(run: RunSummary) -> tuple[ContactParameters, LiftingCylinderTest]:
-    """Tables 1 and 2 of a run.
-
-    Raises
-    ------
-    FileError
-        If its document does not hold them.
-    """
+    """Tables 1 and 2 of a run."""
     case: Any = run.document.get("case")
     try:
         return ContactParameters(**case["contact"]), LiftingCylinderTest(**case["test"])

@@ -30,12 +30,8 @@ MAX_HIDDEN_DIAMETER = 2.0
 class HiddenDepth:
     """How deep a particle is hidden.
 
-    Parameters
-    ----------
-    cell
-        Edge of the cells of a grid, in mean diameters.
-    layers
-        So many layers of cells that hold particles lie around the cell of a hidden particle.
+    ``cell``: edge of the cells of a grid, in mean diameters. ``layers``: so many layers of cells that hold
+    particles lie around the cell of a hidden particle.
     """
 
     cell: float
@@ -88,10 +84,7 @@ def without(pile: ParticleState, left_out: NDArray[np.bool_]) -> ParticleState:
 def octahedron_of(parts: Sequence[FloatArray]) -> FloatArray:
     """Corners of an octahedron of unit volume with the axes and proportions of a shape, shape (6, 3).
 
-    Parameters
-    ----------
-    parts
-        Vertices of the convex parts of the shape.
+    ``parts``: vertices of the convex parts of the shape.
     """
     vertices = np.concatenate(list(parts))
     axes = np.linalg.svd(vertices - vertices.mean(axis=0), full_matrices=False)[2]
@@ -123,18 +116,11 @@ def show_heap(
 ) -> None:
     """The particles of one moment; of a large heap without those that others hide.
 
-    Parameters
-    ----------
-    plotter
-        Any pyvista plotter.
-    shapes
-        Vertices of the convex parts of each unit-volume shape, each of shape (k, 3).
-    pile
-        The particles, in metres.
-    spheres
-        Draw balls of the same volumes instead.
-    coarse
-        Draw octahedra instead, as is enough while the view turns.
+    - ``plotter``: any pyvista plotter.
+    - ``shapes``: vertices of the convex parts of each unit-volume shape, each of shape (k, 3).
+    - ``pile``: the particles, in metres.
+    - ``spheres``: draw balls of the same volumes instead.
+    - ``coarse``: draw octahedra instead, as is enough while the view turns.
     """
     plotter_setup.sample_pixels(plotter, once=coarse)
     if is_large(shapes, pile, spheres):
@@ -195,14 +181,9 @@ def show_apparatus(
 ) -> None:
     """Plate and cylinder.
 
-    Parameters
-    ----------
-    pile
-        Tells where the cylinder's rim is; none is drawn once it is gone.
-    diameter, height
-        Of the cylinder in metres.
-    reach
-        Radius of the plate in metres.
+    - ``pile``: tells where the cylinder's rim is; none is drawn once it is gone.
+    - ``diameter``, ``height``: of the cylinder in metres.
+    - ``reach``: radius of the plate in metres.
     """
     if PLATE not in plotter.actors:
         plate = pv.Disc(center=(0, 0, 0), inner=0.0, outer=1.0, normal=(0, 0, 1), r_res=1, c_res=N_AROUND)

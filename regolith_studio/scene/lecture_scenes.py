@@ -31,18 +31,11 @@ def show_move(
 ) -> None:
     """Paint the facet that was moved, and draw the edges of the other polyhedron.
 
-    Parameters
-    ----------
-    now
-        After the step.
-    facet
-        Of `now`, in the plane that was moved; ``None`` if it bounds none.
-    other, other_facet
-        What it was, if the move was taken; what was proposed, if not.
-    centre
-        Where the origin of the polyhedra lies.
-    colour
-        Of what was moved.
+    - ``now``: after the step.
+    - ``facet``: of `now`, in the plane that was moved; ``None`` if it bounds none.
+    - ``other``, ``other_facet``: what it was, if the move was taken; what was proposed, if not.
+    - ``centre``: where the origin of the polyhedra lies.
+    - ``colour``: of what was moved.
     """
     middle = np.asarray(centre, dtype=np.float64)
     surfaces.show_polyhedron(plotter, now, middle, surroundings)
@@ -87,14 +80,9 @@ def show_field(
 ) -> None:
     """A surface coloured by the values at its vertices.
 
-    Parameters
-    ----------
-    values
-        Shape (n,); blue below zero, red above.
-    span
-        Value at the ends of the colour map.
-    scale
-        Format of the numbers at the scale, such as ``%.2g``; no scale if empty.
+    - ``values``: shape (n,); blue below zero, red above.
+    - ``span``: value at the ends of the colour map.
+    - ``scale``: format of the numbers at the scale, such as ``%.2g``; no scale if empty.
     """
     surface = smooth_surface(mesh)
     surface.point_data["field"] = np.asarray(values, dtype=np.float32)

@@ -27,11 +27,8 @@ STAR_SHARE = 0.02
 def show_box(plotter: Any, corners: FloatArray | None, surroundings: ThemeColors = palette.LIGHT) -> None:
     """The twelve edges of a box.
 
-    Parameters
-    ----------
-    corners
-        Shape (8, 3), in the order of :attr:`regolith_studio.geometry.oriented_box.OrientedBox.corners`:
-        the last axis runs fastest.
+    ``corners``: shape (8, 3), in the order of
+    :attr:`regolith_studio.geometry.oriented_box.OrientedBox.corners`: the last axis runs fastest.
     """
     if corners is None:
         hide_named(plotter, BOX)
@@ -46,10 +43,7 @@ def show_star_point(
 ) -> None:
     """A small ball where the radius function begins, and the surface about it translucent.
 
-    Parameters
-    ----------
-    size
-        Of the particle; the ball is a share of it.
+    ``size``: of the particle; the ball is a share of it.
     """
     surface = plotter.actors.get(surfaces.SURFACE)
     if surface is not None:
@@ -65,10 +59,7 @@ def show_star_point(
 def show_hidden(plotter: Any, mesh: Mesh | None, hidden: BoolArray | None) -> None:
     """The faces that the star point cannot see, in a colour of their own.
 
-    Parameters
-    ----------
-    hidden
-        Shape (m,), one for each face of `mesh`.
+    ``hidden``: shape (m,), one for each face of `mesh`.
     """
     if mesh is None or hidden is None or not hidden.any():
         hide_named(plotter, HIDDEN)

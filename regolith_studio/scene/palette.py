@@ -19,12 +19,8 @@ ERROR_MAP = "RdBu_r"
 class Material:
     """Shading of a surface.
 
-    Parameters
-    ----------
-    colour
-        Hexadecimal RGB.
-    ambient, diffuse, specular, specular_power
-        Of the Phong model.
+    ``colour``: hexadecimal RGB. ``ambient``, ``diffuse``, ``specular``, ``specular_power``: of the Phong
+    model.
     """
 
     colour: str
@@ -45,14 +41,9 @@ PART_TONES = ("#fff2cc", "#f6c56d", "#b9a04c", "#8f5f45")
 class ThemeColors:
     """Colours around a surface: background, text and lines.
 
-    Parameters
-    ----------
-    background_low, background_high
-        Colours at the bottom and at the top of the picture.
-    ink
-        Titles, scale bar.
-    outline
-        Edges of facets.
+    - ``background_low``, ``background_high``: colours at the bottom and at the top of the picture.
+    - ``ink``: titles, scale bar.
+    - ``outline``: edges of facets.
     """
 
     background_low: str

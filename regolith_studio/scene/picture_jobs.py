@@ -58,13 +58,7 @@ def _apart(title: str, path: Path, draw: Callable[..., None], *arguments: Any) -
 
 
 def write_drawn(title: str, path: Path, draw: Callable[..., None], arguments: tuple[Any, ...]) -> Steps:
-    """Call ``draw(path, *arguments)``; its files take their places once all are complete. A job.
-
-    Raises
-    ------
-    FileError
-        If they cannot be written; earlier files are then as they were.
-    """
+    """Call ``draw(path, *arguments)``; its files take their places once all are complete. A job."""
     yield Started(title)
     try:
         with hidden_folder(path) as stage:

@@ -51,12 +51,8 @@ BALL_LEVEL = 2
 class RunShapes:
     """Shapes of a run as closed meshes of unit equivalent diameter about their centres of mass.
 
-    Parameters
-    ----------
-    meshes
-        One for each shape; of compounds the surface of the union. One icosphere for a run with spheres.
-    spheres
-        Whether all particles are spheres.
+    ``meshes``: one for each shape; of compounds the surface of the union. One icosphere for a run with
+    spheres. ``spheres``: whether all particles are spheres.
     """
 
     meshes: tuple[Mesh, ...]
@@ -69,13 +65,7 @@ class RunShapes:
         return [f"shape_{index:0{digits}d}" for index in range(len(self.meshes))]
 
     def index(self, pile: ParticleState) -> IntArray:
-        """Index of the mesh of each particle.
-
-        Raises
-        ------
-        FileError
-            If a particle has a shape that the run does not hold.
-        """
+        """Index of the mesh of each particle."""
         if self.spheres:
             return np.zeros(len(pile), dtype=np.int64)
         if len(pile) and not 0 <= pile.class_index.min() <= pile.class_index.max() < len(self.meshes):
@@ -84,13 +74,7 @@ class RunShapes:
 
 
 def run_shapes(run: RunSummary) -> RunShapes:
-    """The shapes that the particles of a run have.
-
-    Raises
-    ------
-    FileError
-        If they are missing or broken.
-    """
+    """The shapes that the particles of a run have."""
     case = run.document.get("case")
     if isinstance(case, dict) and case.get("shapes") == "spheres":
         ball = icosphere(BALL_LEVEL)
@@ -130,10 +114,7 @@ def extended_xyz(shapes: RunShapes, pile: ParticleState) -> bytes:
 def heap_glb(shapes: RunShapes, pile: ParticleState, colours: Sequence[Sequence[float]]) -> bytes:
     """A scene with one node for each particle, which share a mesh for each shape; in metres, y up.
 
-    Parameters
-    ----------
-    colours
-        Red, green and blue from 0 to 1, linear, for the shapes in turn.
+    ``colours``: red, green and blue from 0 to 1, linear, for the shapes in turn.
     """
     buffer = MeshBuffer()
     for number, (name, mesh) in enumerate(zip(shapes.names, shapes.meshes, strict=True)):
@@ -250,16 +231,10 @@ ovito.scene.save(str(here / "heap.ovito"))
 class ReposeExport:
     """A written export of a run.
 
-    Parameters
-    ----------
-    folder
-        Where it is.
-    times
-        Of its moments, in seconds.
-    n_particles
-        Number of particles of the last moment.
-    files
-        Relative paths.
+    - ``folder``: where it is.
+    - ``times``: of its moments, in seconds.
+    - ``n_particles``: number of particles of the last moment.
+    - ``files``: relative paths.
     """
 
     folder: Path
@@ -422,13 +397,7 @@ def _surface(mesh: Mesh) -> pv.PolyData:
 
 
 def _write_poly_data(path: Path, data: pv.PolyData) -> None:
-    """Write a VTP file.
-
-    Raises
-    ------
-    FileError
-        If it cannot be written.
-    """
+    """Write a VTP file."""
     writer = vtkXMLPolyDataWriter()
     writer.SetFileName(str(path))
     writer.SetInputData(data)

@@ -29,12 +29,7 @@ MATERIALS: dict[str, Material] = {
 class SceneShape:
     """A body in the particle's frame.
 
-    Parameters
-    ----------
-    name
-        One of :data:`NAMES`.
-    surface
-        Its triangles, or a polyhedron about `centre`.
+    ``name``: one of :data:`NAMES`. ``surface``: its triangles, or a polyhedron about `centre`.
     """
 
     name: str
@@ -71,10 +66,7 @@ def show_shape(
 ) -> None:
     """Draw a body, or nothing.
 
-    Parameters
-    ----------
-    layer
-        Bodies of different layers stand in one plotter together.
+    ``layer``: bodies of different layers stand in one plotter together.
     """
     if shape is None:
         surfaces.hide(plotter, layer)

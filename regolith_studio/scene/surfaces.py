@@ -54,18 +54,11 @@ def show_fit(
 ) -> None:
     """The fit, in its own colour or coloured by its distance from the particle.
 
-    Parameters
-    ----------
-    plotter
-        Any pyvista plotter.
-    mesh
-        Surface of the fit.
-    distances
-        Signed distance of each vertex from the particle, shape (n,), positive outside.
-    span
-        Distance at both ends of the colour map; the largest distance if not given.
-    surroundings
-        Whose ink the scale of the map is written with.
+    - ``plotter``: any pyvista plotter.
+    - ``mesh``: surface of the fit.
+    - ``distances``: signed distance of each vertex from the particle, shape (n,), positive outside.
+    - ``span``: distance at both ends of the colour map; the largest distance if not given.
+    - ``surroundings``: whose ink the scale of the map is written with.
     """
     surface = smooth_surface(mesh)
     if distances is not None:
@@ -92,18 +85,11 @@ def show_polyhedron(
 ) -> None:
     """The coarsened polyhedron: flat facets, each outlined (facets, not triangles); parts in shades.
 
-    Parameters
-    ----------
-    plotter
-        Any pyvista plotter.
-    polyhedron
-        About its own origin.
-    centre
-        Where that origin lies in the particle's frame.
-    surroundings
-        Whose outline colour is used.
-    layer
-        Surfaces of different layers stand beside each other.
+    - ``plotter``: any pyvista plotter.
+    - ``polyhedron``: about its own origin.
+    - ``centre``: where that origin lies in the particle's frame.
+    - ``surroundings``: whose outline colour is used.
+    - ``layer``: surfaces of different layers stand beside each other.
     """
     if isinstance(polyhedron, ConvexCompound):
         corners = polyhedron.mesh.vertices + np.asarray(centre, dtype=np.float64)
@@ -351,14 +337,9 @@ def show_grains(
 ) -> None:
     """Show the surfaces of labels in the box of their volume, or the box alone.
 
-    Parameters
-    ----------
-    colours
-        RGB of each face, shape (m, 3).
-    size
-        Edges of the volume in micrometres, shape (3,).
-    highlighted
-        Labels that are seen through all others; with none, all are opaque.
+    - ``colours``: RGB of each face, shape (m, 3).
+    - ``size``: edges of the volume in micrometres, shape (3,).
+    - ``highlighted``: labels that are seen through all others; with none, all are opaque.
     """
     for name in (GRAINS, OTHERS, BOX):
         plotter.remove_actor(name, render=False)

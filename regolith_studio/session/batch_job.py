@@ -16,12 +16,8 @@ from regolith_studio.session.recipe import Recipe
 class ExecutorReady:
     """Executor details, emitted once the workers are ready.
 
-    Parameters
-    ----------
-    workers
-        Jobs at the same time.
-    dashboard
-        Address of a cluster's page; empty where there is none.
+    ``workers``: jobs at the same time. ``dashboard``: address of a cluster's page; empty where there is
+    none.
     """
 
     workers: int

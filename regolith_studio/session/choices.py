@@ -32,19 +32,10 @@ class Choices(ReadingSettings, CoarseningSettings, FitSurfaceSettings, FitOption
 
     Fields made by :func:`~regolith_studio.settings.setting` describe themselves, and are entries of a recipe.
 
-    Parameters
-    ----------
-    selected
-        Id of the particle on screen; empty for none.
-    settings
-        Settings of the method that differ from its defaults, as sorted (name, value) pairs.
-    weights
-        Of the loss (Eq. 9); :attr:`preset_modified` says whether they still are those of the preset.
-
-    Raises
-    ------
-    InputError
-        If a value is out of its range, or there is no such method or setting.
+    - ``selected``: id of the particle on screen; empty for none.
+    - ``settings``: settings of the method that differ from its defaults, as sorted (name, value) pairs.
+    - ``weights``: of the loss (Eq. 9); :attr:`preset_modified` says whether they still are those of the
+      preset.
     """
 
     selected: str = ""
@@ -70,11 +61,6 @@ class Choices(ReadingSettings, CoarseningSettings, FitSurfaceSettings, FitOption
     def replaced(self, **changes: Any) -> Self:
         """A copy with `changes`; a preset brings its weights, another method drops the old settings and
         what was to be kept.
-
-        Raises
-        ------
-        InputError
-            If a name is not a choice or a value is out of its range.
         """
         known = {each.name for each in dataclasses.fields(self)}
         if unknown := sorted(set(changes) - known):
@@ -189,12 +175,8 @@ class ComputationRequest:
 def plan(before: Choices | None, after: Choices, is_fitted: bool = False) -> tuple[ComputationRequest, ...]:
     """The results to compute after a change from `before` to `after`, in the order of dependence.
 
-    Parameters
-    ----------
-    before
-        ``None`` when nothing has been computed yet.
-    is_fitted
-        Whether the fit that `after` asks for is cached, and need not be made again.
+    ``before``: ``None`` when nothing has been computed yet. ``is_fitted``: whether the fit that `after` asks
+    for is cached, and need not be made again.
     """
     if not after.selected:
         return ()

@@ -30,11 +30,8 @@ def as_command(choices: Choices, inputs: list[str]) -> str:
 def as_python(choices: Choices, source: str) -> str:
     """A script that fits and coarsens one particle as the window does.
 
-    Parameters
-    ----------
-    source
-        Path of its mesh, or ``sample:`` and the name of a shipped particle; the first of them if there is
-        no name.
+    ``source``: path of its mesh, or ``sample:`` and the name of a shipped particle; the first of them if
+    there is no name.
     """
     kind, _, name = source.partition(":")
     sample = kind == "sample"

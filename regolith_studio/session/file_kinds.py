@@ -54,13 +54,7 @@ def kind_of(path: Path) -> FileKind:
 
 
 def kind_of_all(paths: Sequence[Path]) -> FileKind:
-    """The one kind that all of these are.
-
-    Raises
-    ------
-    InputError
-        If one is unknown, or they are of several kinds, or of a kind that is opened one at a time.
-    """
+    """The one kind that all of these are."""
     kinds = [kind_of(path) for path in paths]
     if FileKind.UNKNOWN in kinds:
         lost = paths[kinds.index(FileKind.UNKNOWN)].name

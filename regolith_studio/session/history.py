@@ -9,12 +9,7 @@ T = TypeVar("T")
 class History(Generic[T]):
     """A line of values with a position on it.
 
-    Parameters
-    ----------
-    value
-        Where it begins.
-    limit
-        Number of steps kept; older ones are forgotten.
+    ``value``: where it begins. ``limit``: number of steps kept; older ones are forgotten.
     """
 
     def __init__(self, value: T, limit: int = 500) -> None:

@@ -122,12 +122,8 @@ class UserPresets:
 
     A damaged file counts as none, and is replaced at the next saving.
 
-    Parameters
-    ----------
-    kind
-        Such as ``weights``; names the file.
-    folder
-        Where it lies; beside the preferences if left out.
+    ``kind``: such as ``weights``; names the file. ``folder``: where it lies; beside the preferences if left
+    out.
     """
 
     def __init__(self, kind: str, folder: Path | None = None) -> None:
@@ -146,15 +142,7 @@ class UserPresets:
             return {}
 
     def save(self, name: str, values: dict[str, Any]) -> None:
-        """Keep `values`, which are plain JSON, under this name; one of the same name is replaced.
-
-        Raises
-        ------
-        InputError
-            If the name is empty or too long, or there are too many.
-        FileError
-            If the file cannot be written.
-        """
+        """Keep `values`, which are plain JSON, under this name; one of the same name is replaced."""
         if not name or len(name) > MAX_NAME_LENGTH or not name.isprintable():
             raise InputError(f"A preset needs a name of 1 to {MAX_NAME_LENGTH} characters.")
         with self._changes() as presets:
@@ -163,13 +151,7 @@ class UserPresets:
             presets[name] = values
 
     def remove(self, name: str) -> None:
-        """Forget one; harmless if there is none of this name.
-
-        Raises
-        ------
-        FileError
-            If the file cannot be written.
-        """
+        """Forget one; harmless if there is none of this name."""
         with self._changes() as presets:
             presets.pop(name, None)
 

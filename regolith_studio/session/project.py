@@ -42,14 +42,10 @@ from regolith_studio.shape_models.protocol import FittedModel
 class SessionRecipe:
     """The recipe of a session, its model, and the particles that it cannot restore.
 
-    Parameters
-    ----------
-    recipe
-        Of all particles that have an origin; what is to be written, with its model, says :meth:`files_for`.
-    model
-        Model of its population, if that is not a shipped card.
-    without_source
-        Ids of the particles that it cannot restore.
+    - ``recipe``: of all particles that have an origin; what is to be written, with its model, says
+      :meth:`files_for`.
+    - ``model``: model of its population, if that is not a shipped card.
+    - ``without_source``: ids of the particles that it cannot restore.
     """
 
     recipe: Recipe
@@ -95,10 +91,7 @@ class SessionRecipe:
 
         The name of that file changes with the model, so that no recipe can name the model of another.
 
-        Parameters
-        ----------
-        absolute_path
-            Give the model by its absolute path, because the recipe is written elsewhere.
+        ``absolute_path``: give the model by its absolute path, because the recipe is written elsewhere.
         """
         population = self.recipe.population
         if self.model is None or population is None:
@@ -161,18 +154,12 @@ SUFFIX = ".regolith"
 class Project(BaseModel):
     """The recipe of a session, and the state of the window.
 
-    Parameters
-    ----------
-    recipe
-        Inputs and choices, as ``regolith-studio run`` takes them.
-    selected
-        Id of the particle on screen.
-    page
-        Key of the current page.
-    pages
-        State of each page, by its key.
-    file
-        Of the project that an automatic copy belongs to; empty in a project itself, and where there is none.
+    - ``recipe``: inputs and choices, as ``regolith-studio run`` takes them.
+    - ``selected``: id of the particle on screen.
+    - ``page``: key of the current page.
+    - ``pages``: state of each page, by its key.
+    - ``file``: of the project that an automatic copy belongs to; empty in a project itself, and where there
+      is none.
     """
 
     model_config = ConfigDict(extra="ignore", frozen=True)
@@ -192,13 +179,7 @@ class Project(BaseModel):
         return cls(recipe=recipe, selected=session.choices.selected, page=page, pages=pages or {})
 
     def save(self, path: Path, model: FittedModel | None = None) -> None:
-        """Write it, with the model that virtual particles were drawn from beside it.
-
-        Raises
-        ------
-        FileError
-            If the file cannot be written.
-        """
+        """Write it, with the model that virtual particles were drawn from beside it."""
         recipe, models = SessionRecipe(self.recipe, model).files_for(path)
         whole = self.model_copy(update={"recipe": recipe})
         write_files({**models, path: whole.model_dump_json(indent=2).encode("utf-8") + b"\n"})
@@ -206,10 +187,7 @@ class Project(BaseModel):
     def open_in(self, session: Session, base: Path) -> int:
         """Restore the choices and particles in a session; returns the task's id.
 
-        Parameters
-        ----------
-        base
-            Folder that relative inputs are looked up in.
+        ``base``: folder that relative inputs are looked up in.
         """
         chosen = self.recipe.choices()
         names = {each.name for each in dataclasses.fields(chosen)} - {"selected"}
@@ -218,13 +196,7 @@ class Project(BaseModel):
 
 
 def read_project(path: Path) -> Project:
-    """Read a project file.
-
-    Raises
-    ------
-    FileError
-        If it cannot be read or is none.
-    """
+    """Read a project file."""
     content = read_bytes(path, LARGEST)
     try:
         project = Project.model_validate_json(content)

@@ -39,18 +39,11 @@ class SampleSource:
 class FileSource:
     """Files and folders that were read together.
 
-    Parameters
-    ----------
-    paths
-        As they were named, absolute.
-    unit
-        Of those without one.
-    repair
-        Whether meshes were repaired.
-    l_max
-        Degree above which coefficients of tables were left out.
-    convention
-        Of tables of coefficients: normalisation and phase.
+    - ``paths``: as they were named, absolute.
+    - ``unit``: of those without one.
+    - ``repair``: whether meshes were repaired.
+    - ``l_max``: degree above which coefficients of tables were left out.
+    - ``convention``: of tables of coefficients: normalisation and phase.
     """
 
     paths: tuple[str, ...]
@@ -69,12 +62,7 @@ class FileSource:
 class VolumeSource:
     """Particles of a CT volume.
 
-    Parameters
-    ----------
-    volume
-        The file, and all settings.
-    grains
-        Every grain that became a particle, in order.
+    ``volume``: the file, and all settings. ``grains``: every grain that became a particle, in order.
     """
 
     volume: VolumeEntry
@@ -94,12 +82,8 @@ class VolumeSource:
 class VirtualSource:
     """Virtual particles.
 
-    Parameters
-    ----------
-    population
-        With a name and a seed; its source is a shipped card, or is to be the file of `model`.
-    model
-        Model that they were drawn from, if it is not a shipped card.
+    ``population``: with a name and a seed; its source is a shipped card, or is to be the file of `model`.
+    ``model``: model that they were drawn from, if it is not a shipped card.
     """
 
     population: Population
@@ -109,10 +93,7 @@ class VirtualSource:
     def of(cls, generated: "GenerationResult", fitted: "ModelFitResult", level: int) -> "VirtualSource":
         """The origin of particles that were drawn from `fitted`, or from what was edited in it.
 
-        Parameters
-        ----------
-        level
-            Subdivisions of the icosahedron that their surfaces are drawn on.
+        ``level``: subdivisions of the icosahedron that their surfaces are drawn on.
         """
         from regolith_studio.shape_models.materials import materials
 
@@ -186,17 +167,7 @@ class RestoredParticles:
 def restore_particles(recipe: Recipe, base: Path) -> Steps:
     """Read, extract and draw what `recipe` names; returns :class:`RestoredParticles`.
 
-    Parameters
-    ----------
-    base
-        Folder that relative files are looked up in.
-
-    Raises
-    ------
-    FileError
-        If nothing can be read.
-    InputError
-        If a setting is wrong, or the population is too large to be opened.
+    ``base``: folder that relative files are looked up in.
     """
     from regolith_studio.jobs.executor import Executor
     from regolith_studio.session.batch.inputs import BatchInputs

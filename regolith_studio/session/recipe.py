@@ -40,28 +40,19 @@ class Strict(BaseModel):
 class Population(Strict):
     """Virtual particles among the inputs.
 
-    Parameters
-    ----------
-    sources
-        What they are drawn like: the name of a shipped material card; the file of a card, a fit or a fitted
-        model; or meshes and tables of coefficients, files and folders, that are measured for it. Relative
-        files are looked up beside the recipe.
-    model, settings
-        Key of the model of shapes that is fitted to a fit or to meshes, and its settings; the default
-        model where left out.
-    n
-        Particles to draw, with the seed of the recipe.
-    l_max
-        Degree of their surfaces; that of the source and at most 10 where left out.
-    size_range
-        Smallest and largest equivalent radius in micrometres.
-    seed
-        Of the draws; that of the recipe where left out.
-    level
-        Subdivisions of the icosahedron that their surfaces are drawn on; where left out that of the recipe,
-        and at least 5 above l_max = 10.
-    name
-        What they are called, and their group where the model has no parts; by default after the first source.
+    - ``sources``: what they are drawn like: the name of a shipped material card; the file of a card, a fit
+      or a fitted model; or meshes and tables of coefficients, files and folders, that are measured for it.
+      Relative files are looked up beside the recipe.
+    - ``model``, ``settings``: key of the model of shapes that is fitted to a fit or to meshes, and its
+      settings; the default model where left out.
+    - ``n``: particles to draw, with the seed of the recipe.
+    - ``l_max``: degree of their surfaces; that of the source and at most 10 where left out.
+    - ``size_range``: smallest and largest equivalent radius in micrometres.
+    - ``seed``: of the draws; that of the recipe where left out.
+    - ``level``: subdivisions of the icosahedron that their surfaces are drawn on; where left out that of the
+      recipe, and at least 5 above l_max = 10.
+    - ``name``: what they are called, and their group where the model has no parts; by default after the
+      first source.
     """
 
     sources: list[str] = Field(min_length=1, max_length=MAX_ENTRIES)
@@ -83,12 +74,8 @@ class Population(Strict):
 class FilesEntry(Strict):
     """Files and folders that are read together, in a unit of their own; relative to the recipe.
 
-    Parameters
-    ----------
-    l_max
-        Degree above which coefficients of tables are left out; by default none are.
-    convention
-        Of tables of coefficients: normalisation and phase.
+    ``l_max``: degree above which coefficients of tables are left out; by default none are. ``convention``:
+    of tables of coefficients: normalisation and phase.
     """
 
     files: list[str] = Field(min_length=1, max_length=MAX_ENTRIES)
@@ -117,19 +104,13 @@ class RawVolume(Strict):
 class VolumeEntry(Strict):
     """A CT volume whose grains are among the inputs.
 
-    Parameters
-    ----------
-    file
-        File, or folder of slices, relative to the recipe; ``sample:grey``, ``sample:labels`` or
-        ``sample:gradient`` for a scan that ships with the program.
-    voxel_size, unit, kind, dataset, axes, allow_gaps, raw
-        As ``regolith-studio extract`` takes them; by default what the file says.
-    recipe
-        An ``extraction.json`` with all settings, as ``extract`` and the window write it.
-    region, segmentation, extraction
-        The settings themselves, in place of such a file.
-    classifier
-        The file of a classifier of voxels, whose probabilities are thresholded.
+    - ``file``: file, or folder of slices, relative to the recipe; ``sample:grey``, ``sample:labels`` or
+      ``sample:gradient`` for a scan that ships with the program.
+    - ``voxel_size``, ``unit``, ``kind``, ``dataset``, ``axes``, ``allow_gaps``, ``raw``: as
+      ``regolith-studio extract`` takes them; by default what the file says.
+    - ``recipe``: an ``extraction.json`` with all settings, as ``extract`` and the window write it.
+    - ``region``, ``segmentation``, ``extraction``: the settings themselves, in place of such a file.
+    - ``classifier``: the file of a classifier of voxels, whose probabilities are thresholded.
     """
 
     file: str
@@ -158,20 +139,13 @@ class VolumeEntry(Strict):
 class Representatives(Strict):
     """As ``regolith-studio dataset build`` takes them.
 
-    Parameters
-    ----------
-    count
-        Particles that stand for all; with 0 each stands for itself.
-    weighting
-        What they count: ``number`` or ``volume``.
-    size_importance
-        How much a standard deviation of ln d counts in their choice against one of a shape feature.
-    seed
-        Of the choice among very many particles; that of the recipe where left out.
-    sizes
-        Size distributions of the classes, such as ``measured`` or ``classes:25,37,56``.
-    name
-        Of the dataset; that of the folder of the results where left out.
+    - ``count``: particles that stand for all; with 0 each stands for itself.
+    - ``weighting``: what they count: ``number`` or ``volume``.
+    - ``size_importance``: how much a standard deviation of ln d counts in their choice against one of a
+      shape feature.
+    - ``seed``: of the choice among very many particles; that of the recipe where left out.
+    - ``sizes``: size distributions of the classes, such as ``measured`` or ``classes:25,37,56``.
+    - ``name``: of the dataset; that of the folder of the results where left out.
     """
 
     count: int = Field(default=10, ge=0)
@@ -185,20 +159,12 @@ class Representatives(Strict):
 class Exports(Strict):
     """As ``regolith-studio dataset export`` takes them.
 
-    Parameters
-    ----------
-    targets
-        Keys of the formats, or ``all``.
-    coarse_graining
-        By which all diameters are enlarged.
-    particles
-        Bodies in formats that list single ones.
-    seed
-        Of their draw; that of the recipe where left out.
-    settings
-        Of contact, cylinder, times or formats, by their names, in SI units.
-    lossy
-        Whether formats that change the shapes are allowed.
+    - ``targets``: keys of the formats, or ``all``.
+    - ``coarse_graining``: by which all diameters are enlarged.
+    - ``particles``: bodies in formats that list single ones.
+    - ``seed``: of their draw; that of the recipe where left out.
+    - ``settings``: of contact, cylinder, times or formats, by their names, in SI units.
+    - ``lossy``: whether formats that change the shapes are allowed.
     """
 
     targets: list[str] = Field(min_length=1)
@@ -232,20 +198,14 @@ class Outputs(Strict):
 class RecipeInputs(Strict):
     """The particles of a recipe; relative files are looked up beside the recipe file.
 
-    Parameters
-    ----------
-    inputs
-        Files and folders of meshes and tables of coefficients, or ``sample:all``; by default the sample,
-        or nothing where there are volumes or a population. Those in another unit, with another answer
-        to whether meshes are repaired, or cut at a degree, stand in entries of their own, and are read after
-        the others.
-    volumes
-        CT volumes whose grains are particles too.
-    population
-        Virtual particles, besides those.
-    particles
-        Names of those of all these particles that are worked on, in this order; all of them, in the order
-        of the fields above, where left out.
+    - ``inputs``: files and folders of meshes and tables of coefficients, or ``sample:all``; by default the
+      sample, or nothing where there are volumes or a population. Those in another unit, with another answer
+      to whether meshes are repaired, or cut at a degree, stand in entries of their own, and are read after
+      the others.
+    - ``volumes``: CT volumes whose grains are particles too.
+    - ``population``: virtual particles, besides those.
+    - ``particles``: names of those of all these particles that are worked on, in this order; all of them, in
+      the order of the fields above, where left out.
     """
 
     format: Literal["regolith-studio recipe"] = FORMAT
@@ -281,18 +241,12 @@ else:
 class Recipe(_ChoiceEntries):
     """Inputs, choices and outputs: an entry for each setting of ``Choices``, and those that follow.
 
-    Parameters
-    ----------
-    settings
-        Settings of the method that differ from its defaults.
-    weights
-        Of the loss, in place of the preset's.
-    keep
-        Terms of the loss that are kept exactly; left to the weights where left out.
-    representatives
-        Which of the particles the dataset holds, and their sizes; all as they are where left out.
-    exports
-        Other programs that the dataset is written for, below ``exports``.
+    - ``settings``: settings of the method that differ from its defaults.
+    - ``weights``: of the loss, in place of the preset's.
+    - ``keep``: terms of the loss that are kept exactly; left to the weights where left out.
+    - ``representatives``: which of the particles the dataset holds, and their sizes; all as they are where
+      left out.
+    - ``exports``: other programs that the dataset is written for, below ``exports``.
     """
 
     settings: dict[str, Scalar] = Field(default_factory=dict)
@@ -358,13 +312,7 @@ class Recipe(_ChoiceEntries):
         return cls(inputs=list(inputs), outputs=outputs or Outputs(), **(chosen | others))
 
     def choices(self) -> Choices:
-        """The choices that it holds.
-
-        Raises
-        ------
-        InputError
-            If a value is out of its range.
-        """
+        """The choices that it holds."""
         changes: dict[str, Any] = {name: getattr(self, name) for name in _ENTRIES}
         changes["settings"] = tuple(self.settings.items())
         if self.weights is not None or self.keep is not None:
@@ -379,13 +327,7 @@ class Recipe(_ChoiceEntries):
 
 
 def read_recipe(path: Path) -> Recipe:
-    """Read a recipe file.
-
-    Raises
-    ------
-    FileError
-        If it cannot be read or is no recipe; the sentence names the first entry that is wrong.
-    """
+    """Read a recipe file."""
     content = read_bytes(path, LARGEST)
     try:
         recipe = Recipe.model_validate_json(content)
@@ -405,13 +347,7 @@ def recipe_schema() -> dict[str, Any]:
 
 
 def recipe_of(**entries: Any) -> Recipe:
-    """A recipe from Python values.
-
-    Raises
-    ------
-    InputError
-        If an entry is wrong.
-    """
+    """A recipe from Python values."""
     try:
         return Recipe(**entries)
     except ValidationError as error:

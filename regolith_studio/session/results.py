@@ -27,12 +27,8 @@ if TYPE_CHECKING:
 class ParticleEntry:
     """One row of the particle list; `health` and `descriptors` follow a moment after opening.
 
-    Parameters
-    ----------
-    ref
-        Where a recipe finds it again; ``None`` if nowhere.
-    visibility
-        What its star point cannot see; follows with the health, ``None`` where the mesh has no inside.
+    ``ref``: where a recipe finds it again; ``None`` if nowhere. ``visibility``: what its star point cannot
+    see; follows with the health, ``None`` where the mesh has no inside.
     """
 
     id: str
@@ -47,33 +43,25 @@ class ParticleEntry:
 class Results:
     """Everything is ``None`` (or empty) until it has been computed.
 
-    Parameters
-    ----------
-    fit
-        Coefficients up to degree 30; hidden surface share and warnings with them.
-    surface, surface_l_max
-        The fit's surface in the particle's frame, micrometres, and the degree at which it is cut: the
-        chosen one when nothing runs; while a slider is dragged, one that it has passed.
-    particle_descriptors, fit_descriptors, fit_errors
-        Of the particle, of `surface`, and the relative errors (Eq. 8) of the second.
-    coarsening_progress
-        The newest step of the coarsening that runs or ran.
-    best
-        The newest step with a polyhedron, or the finished coarsening; read :attr:`polyhedron` and
-        :attr:`polyhedron_mesh`.
-    coarsened
-        The finished coarsening for the present choices; ``None`` while it runs.
-    loss_history
-        (step, loss) pairs: thinned out while it runs, complete in the end.
-    against_particle
-        The finished polyhedron of a fit against the particle itself; ``None`` where it imitates the particle.
-    fewer_facets
-        The fewest facets, tried with otherwise the same choices, that gave no larger loss; and that
-        loss; ``None`` if there are none.
-    lmax_study, coarsening_study
-        Of all particles that are open; `outdated` names those that no longer fit the choices.
-    failures
-        Why there is no result, by its kind: its own work failed, or that which it is computed from.
+    - ``fit``: coefficients up to degree 30; hidden surface share and warnings with them.
+    - ``surface``, ``surface_l_max``: the fit's surface in the particle's frame, micrometres, and the degree
+      at which it is cut: the chosen one when nothing runs; while a slider is dragged, one that it has
+      passed.
+    - ``particle_descriptors``, ``fit_descriptors``, ``fit_errors``: of the particle, of `surface`, and the
+      relative errors (Eq. 8) of the second.
+    - ``coarsening_progress``: the newest step of the coarsening that runs or ran.
+    - ``best``: the newest step with a polyhedron, or the finished coarsening; read :attr:`polyhedron` and
+      :attr:`polyhedron_mesh`.
+    - ``coarsened``: the finished coarsening for the present choices; ``None`` while it runs.
+    - ``loss_history``: (step, loss) pairs: thinned out while it runs, complete in the end.
+    - ``against_particle``: the finished polyhedron of a fit against the particle itself; ``None`` where it
+      imitates the particle.
+    - ``fewer_facets``: the fewest facets, tried with otherwise the same choices, that gave no larger loss;
+      and that loss; ``None`` if there are none.
+    - ``lmax_study``, ``coarsening_study``: of all particles that are open; `outdated` names those that no
+      longer fit the choices.
+    - ``failures``: why there is no result, by its kind: its own work failed, or that which it is computed
+      from.
     """
 
     fit: "HarmonicFit | None" = None

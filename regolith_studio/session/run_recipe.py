@@ -63,20 +63,12 @@ ENDED = "ended"
 class RecipeRun:
     """A recipe while it runs, and its results.
 
-    Parameters
-    ----------
-    folder
-        Folder of the results.
-    stage
-        Hidden folder that they are written to before they take their places.
-    tally
-        Sums over all particles.
-    summary
-        Content of the summary page.
-    problems
-        One sentence for each file or particle that failed.
-    resume
-        Whether studies continue from their checkpoints.
+    - ``folder``: folder of the results.
+    - ``stage``: hidden folder that they are written to before they take their places.
+    - ``tally``: sums over all particles.
+    - ``summary``: content of the summary page.
+    - ``problems``: one sentence for each file or particle that failed.
+    - ``resume``: whether studies continue from their checkpoints.
     """
 
     folder: Path
@@ -110,27 +102,12 @@ def run_recipe(
     Particles that fail are listed in ``problems`` and do not stop the others. The output is written
     completely or not at all.
 
-    Parameters
-    ----------
-    base
-        Folder that relative inputs are relative to.
-    folder
-        Where to write.
-    workers
-        Processes at a time; 0 for one a core. The results do not depend on it.
-    resume
-        Whether to continue an unfinished run of the same recipe into the same folder.
-    chunk
-        Particles that are done, written and lost together; by default 1 in small batches and 25 to 200
-        in those of 200 or more. The results do not depend on it.
-
-    Raises
-    ------
-    InputError
-        If the recipe holds a choice that cannot be used.
-    FileError
-        If no input can be read, the folder cannot be written, or holds an unfinished run that is not to
-        be resumed or is of another recipe.
+    - ``base``: folder that relative inputs are relative to.
+    - ``folder``: where to write.
+    - ``workers``: processes at a time; 0 for one a core. The results do not depend on it.
+    - ``resume``: whether to continue an unfinished run of the same recipe into the same folder.
+    - ``chunk``: particles that are done, written and lost together; by default 1 in small batches and 25 to
+      200 in those of 200 or more. The results do not depend on it.
     """
     choices, journal = recipe.choices(), folder / JOURNAL
     if folder.exists() and not folder.is_dir():

@@ -67,11 +67,6 @@ def filter_of(text: str) -> Filter:
 
     A word is looked for in name, group, form and health; a comparison has a key or symbol of the
     catalogue on its left: ``flat S<0.8 volume>=1e5``.
-
-    Raises
-    ------
-    InputError
-        If a comparison names no descriptor or compares with no number.
     """
     tests = [_test(word) for word in text.split()]
     return lambda entry: all(test(entry) for test in tests)
@@ -87,13 +82,8 @@ def statistics_table(
 ) -> Table:
     """One row a group and one for all: count, mean, standard deviation and quantiles of a descriptor.
 
-    Parameters
-    ----------
-    weighting
-        ``number`` or ``volume``.
-    border_weights
-        Let each particle count as often as its weight says, which undoes the loss of large grains at the
-        border of a scan.
+    ``weighting``: ``number`` or ``volume``. ``border_weights``: let each particle count as often as its
+    weight says, which undoes the loss of large grains at the border of a scan.
     """
     measured = [entry for entry in entries if entry.descriptors and key in entry.descriptors]
     groups = list(dict.fromkeys(entry.particle.group for entry in measured))

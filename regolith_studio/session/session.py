@@ -41,23 +41,14 @@ from regolith_studio.session.tasks import Reactions, Task, TaskBoard
 class Session:
     """Particles, choices and results of one user; belongs to the thread that made it.
 
-    Parameters
-    ----------
-    runner
-        Drives the jobs and brings their events into this thread.
-    choices
-        Where to begin; the defaults if left out.
+    ``runner``: drives the jobs and brings their events into this thread. ``choices``: where to begin; the
+    defaults if left out.
 
-    Attributes
-    ----------
-    events
-        Signals of the session.
-    particles, results
-        All that is open, and what has been computed of the selected particle.
-    runs_folder
-        Folder of the simulations.
-    dataset_request
-        Dataset settings of a recipe of this session; ``None`` before representatives are chosen.
+    - ``events``: signals of the session.
+    - ``particles``, ``results``: all that is open, and what has been computed of the selected particle.
+    - ``runs_folder``: folder of the simulations.
+    - ``dataset_request``: dataset settings of a recipe of this session; ``None`` before representatives are
+      chosen.
     """
 
     def __init__(self, runner: Runner, choices: Choices | None = None) -> None:
@@ -139,16 +130,10 @@ class Session:
     ) -> int:
         """Read files and folders of meshes in the background; returns the task's id.
 
-        Parameters
-        ----------
-        unit
-            Length unit of files that have none; the chosen one if left out.
-        add
-            Keep the particles that are open already.
-        repair
-            Whether meshes are repaired; as chosen if left out.
-        convention
-            Of tables of coefficients: normalisation and phase.
+        - ``unit``: length unit of files that have none; the chosen one if left out.
+        - ``add``: keep the particles that are open already.
+        - ``repair``: whether meshes are repaired; as chosen if left out.
+        - ``convention``: of tables of coefficients: normalisation and phase.
         """
         unit = unit or self.choices.unit
         repair = self.choices.repair if repair is None else repair
@@ -164,12 +149,8 @@ class Session:
     def open_recipe(self, recipe: Recipe, base: Path, *, keep_selected: bool = False) -> int:
         """Restore the particles of a recipe: read, extract or draw them; returns the task's id.
 
-        Parameters
-        ----------
-        base
-            Folder that relative files are looked up in.
-        keep_selected
-            Whether the particle on screen stays there if it is among the restored ones.
+        ``base``: folder that relative files are looked up in. ``keep_selected``: whether the particle on
+        screen stays there if it is among the restored ones.
         """
         if keep_selected:
             return self._restore(recipe, base, self.choices.selected)
@@ -193,13 +174,7 @@ class Session:
         return self._board.start("load", title, job, reactions, repeats=True)
 
     def keep(self, ids: Collection[str]) -> None:
-        """Close all particles but these.
-
-        Raises
-        ------
-        InputError
-            If none would be left.
-        """
+        """Close all particles but these."""
         kept = [entry for entry in self.particles if entry.id in ids]
         if not kept:
             raise InputError("There are no particles to keep.")
@@ -211,17 +186,7 @@ class Session:
     ) -> None:
         """Open particles that were made elsewhere, as if they had been read.
 
-        Parameters
-        ----------
-        origin
-            How a recipe restores them.
-        add
-            Keep the particles that are open already.
-
-        Raises
-        ------
-        InputError
-            If there are none.
+        ``origin``: how a recipe restores them. ``add``: keep the particles that are open already.
         """
         if not particles:
             raise InputError("There are no particles to open.")
@@ -237,15 +202,7 @@ class Session:
     def choose(self, step: str | None = None, /, **changes: Any) -> None:
         """Change choices; what follows from them is recomputed in the background.
 
-        Parameters
-        ----------
-        step
-            Changes in a row with the same word are one step of undo, until :meth:`end_step`.
-
-        Raises
-        ------
-        InputError
-            If a value is out of its range or the particle is not there.
+        ``step``: changes in a row with the same word are one step of undo, until :meth:`end_step`.
         """
         after = self.choices.replaced(**changes)
         if "selected" in changes and after.selected not in {"", *(entry.id for entry in self.particles)}:
@@ -273,13 +230,7 @@ class Session:
     # --- studies, exports and other jobs ----------------------------------------------------------------
 
     def start_study(self, kind: Kind | str, **options: Any) -> int:
-        """Run ``lmax_study`` or ``coarsening_study`` over all open particles; returns the task's id.
-
-        Raises
-        ------
-        InputError
-            If no particle is open.
-        """
+        """Run ``lmax_study`` or ``coarsening_study`` over all open particles; returns the task's id."""
         kind = Kind(kind)
         choices = self.choices
         job = study_job(kind, self._open_particles(), choices, options)
@@ -307,13 +258,10 @@ class Session:
     ) -> int:
         """Run any job in the background, the newest of its lane; returns the task's id.
 
-        Parameters
-        ----------
-        finished, partial, failed, stopped
-            Called in this thread while no newer job has taken the lane; without `failed`, a failure
-            is emitted as ``events.failed``.
-        repeats, after_running
-            See :meth:`TaskBoard.start <regolith_studio.session.tasks.TaskBoard.start>`.
+        - ``finished``, ``partial``, ``failed``, ``stopped``: called in this thread while no newer job has
+          taken the lane; without `failed`, a failure is emitted as ``events.failed``.
+        - ``repeats``, ``after_running``: see :meth:`TaskBoard.start
+          <regolith_studio.session.tasks.TaskBoard.start>`.
         """
         reactions = Reactions(
             finished,

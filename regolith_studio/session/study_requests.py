@@ -43,13 +43,7 @@ def loss_names() -> dict[str, str]:
 
 
 def chosen_rows(names: Sequence[str], choices: Choices) -> tuple[LossVariant, ...]:
-    """A row for each name of :func:`loss_names`.
-
-    Raises
-    ------
-    InputError
-        If there is no such loss.
-    """
+    """A row for each name of :func:`loss_names`."""
     like = present_row(choices)
     own = {CHOSEN: like, COMPOUND: compound_row(choices)}
     return tuple(own[name] if name in own else loss_variants((name,), like)[0] for name in names)
@@ -60,15 +54,7 @@ def varied_rows(
 ) -> tuple[LossVariant, ...]:
     """The rows of a variation of the present choices, from values with commas between them.
 
-    Parameters
-    ----------
-    with_compound
-        Whether a union of convex parts is compared with the rows of a trade-off.
-
-    Raises
-    ------
-    InputError
-        If a value is wrong, or the choices leave nothing to vary.
+    ``with_compound``: whether a union of convex parts is compared with the rows of a trade-off.
     """
     rows = SWEEPS[key].rows(present_row(choices), parse_values(values))
     if key == "tradeoff" and with_compound:
@@ -89,13 +75,7 @@ class StudyJob:
 def study_job(
     kind: Kind, particles: Sequence[Particle], choices: Choices, options: Mapping[str, Any]
 ) -> StudyJob:
-    """The job of a study of `particles` with the present `choices`.
-
-    Raises
-    ------
-    InputError
-        If `kind` is no study.
-    """
+    """The job of a study of `particles` with the present `choices`."""
     match kind:
         case Kind.LMAX_STUDY:
             return StudyJob(

@@ -44,10 +44,7 @@ class Reactions:
 class TaskBoard:
     """Submits jobs to a runner and drops the events of jobs that a newer one has replaced.
 
-    Parameters
-    ----------
-    changed
-        Called whenever :attr:`running` has changed.
+    ``changed``: called whenever :attr:`running` has changed.
     """
 
     def __init__(self, runner: Runner, changed: Callable[[], None]) -> None:
@@ -79,13 +76,10 @@ class TaskBoard:
     ) -> int:
         """Run `job`; the previous job of `lane` is cancelled and its events dropped. Returns its id.
 
-        Parameters
-        ----------
-        repeats
-            See :class:`Task`.
-        after_running
-            Let the running job of `lane` end and be shown first, and drop one that waits: for a control
-            that is dragged, where nothing would be seen if each new value stopped the job of the last.
+        - ``repeats``: see :class:`Task`.
+        - ``after_running``: let the running job of `lane` end and be shown first, and drop one that waits:
+          for a control that is dragged, where nothing would be seen if each new value stopped the job of the
+          last.
         """
         if after_running and self.is_running(lane):
             self._waiting[lane] = partial(self.start, lane, title, job, reactions, repeats=repeats)

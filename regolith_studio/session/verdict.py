@@ -19,16 +19,11 @@ CLOSE = 1e-3
 class PolyhedronVerdict:
     """How well a polyhedron stands for what it imitates.
 
-    Parameters
-    ----------
-    loss
-        Eq. 9.
-    rmsre
-        Root of the mean squared relative error (Eq. 10) over the weighted descriptors; NaN if there are none.
-    jaccard_distance
-        Eq. 7.
-    sentence
-        Which descriptors are met, and how far the polyhedron is from the particle itself.
+    - ``loss``: eq. 9.
+    - ``rmsre``: root of the mean squared relative error (Eq. 10) over the weighted descriptors; NaN if there
+      are none.
+    - ``jaccard_distance``: eq. 7.
+    - ``sentence``: which descriptors are met, and how far the polyhedron is from the particle itself.
     """
 
     loss: float
@@ -45,14 +40,9 @@ def polyhedron_verdict(
 ) -> PolyhedronVerdict:
     """The verdict on a finished coarsening.
 
-    Parameters
-    ----------
-    weights
-        Those of its loss.
-    against_particle
-        The polyhedron of a fit against the particle itself.
-    fewer
-        Number of facets and loss of a polyhedron with fewer facets and no larger loss.
+    - ``weights``: those of its loss.
+    - ``against_particle``: the polyhedron of a fit against the particle itself.
+    - ``fewer``: number of facets and loss of a polyhedron with fewer facets and no larger loss.
     """
     chosen = [key for key in LOSS_KEYS if weights[key]]
     errors = np.array([coarsened.errors[key] for key in chosen])

@@ -244,16 +244,10 @@ STEPS = {"undo": N_("&Undo"), "redo": N_("&Redo")}
 class Actions:
     """The actions as Qt actions in the menus and the tool bar of a window.
 
-    Parameters
-    ----------
-    window
-        Gets the menus and the tool bar.
-    commands
-        A function for each name; switches are called with their state.
-    pages
-        Their rows are seen, and their shortcuts work, while the page is seen.
-    run
-        Runs a command of a page: its key, the name of the command, the state of a switch.
+    - ``window``: gets the menus and the tool bar.
+    - ``commands``: a function for each name; switches are called with their state.
+    - ``pages``: their rows are seen, and their shortcuts work, while the page is seen.
+    - ``run``: runs a command of a page: its key, the name of the command, the state of a switch.
     """
 
     def __init__(

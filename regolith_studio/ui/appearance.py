@@ -91,14 +91,9 @@ class PreferencesDialog(QDialog):
 class Appearance(QObject):
     """Applies the saved appearance; the font size is set before other widgets are made.
 
-    Parameters
-    ----------
-    preferences
-        Where it is kept.
-    apply
-        Called when theme or letters have changed.
-    window
-        Parent of the dialog.
+    - ``preferences``: where it is kept.
+    - ``apply``: called when theme or letters have changed.
+    - ``window``: parent of the dialog.
     """
 
     def __init__(self, preferences: Preferences, apply: Callable[[], None], window: QWidget) -> None:

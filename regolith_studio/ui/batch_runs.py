@@ -30,16 +30,10 @@ Dialog = TypeVar("Dialog", bound=RunDialog)
 class DialogRuns(QObject, Generic[Dialog]):
     """One run at a time; its dialog can be closed and opened again while it runs.
 
-    Parameters
-    ----------
-    session
-        Whose particles and choices are taken, and who runs it.
-    preferences
-        What was asked for last, under the name of the lane.
-    toast
-        Says how it ended where the dialog is closed.
-    window
-        Parent of the dialog.
+    - ``session``: whose particles and choices are taken, and who runs it.
+    - ``preferences``: what was asked for last, under the name of the lane.
+    - ``toast``: says how it ended where the dialog is closed.
+    - ``window``: parent of the dialog.
     """
 
     LANE, TITLE = "", ""
@@ -69,13 +63,7 @@ class DialogRuns(QObject, Generic[Dialog]):
         raise NotImplementedError
 
     def make_job(self, request: Any) -> Job:
-        """What a request asks for.
-
-        Raises
-        ------
-        RegolithError
-            If it cannot be done.
-        """
+        """What a request asks for."""
         raise NotImplementedError
 
     def sentence_of(self, result: Any) -> str:

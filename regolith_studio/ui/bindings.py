@@ -34,12 +34,8 @@ class ChoicePanel(Protocol):
 class Bindings(QObject):
     """Refreshes panels after changes, at a limited rate, and passes choices to the session.
 
-    Parameters
-    ----------
-    session
-        Whose events are listened to.
-    problem
-        Told the sentence of a choice that the session refuses.
+    ``session``: whose events are listened to. ``problem``: told the sentence of a choice that the session
+    refuses.
     """
 
     def __init__(self, session: Session, problem: Callable[[str], None], parent: QObject) -> None:
@@ -79,15 +75,10 @@ class Bindings(QObject):
     ) -> None:
         """Call `action` soon after any of the events (words in one text), and now.
 
-        Parameters
-        ----------
-        fields
-            Of the choices, whose change matters to `action`; each of them if empty.
-        slow
-            For tables and plots.
-        keeps_particles
-            Whether `action` keeps references to particles; :meth:`refresh_hidden` calls it while the page is
-            hidden.
+        - ``fields``: of the choices, whose change matters to `action`; each of them if empty.
+        - ``slow``: for tables and plots.
+        - ``keeps_particles``: whether `action` keeps references to particles; :meth:`refresh_hidden` calls
+          it while the page is hidden.
         """
         beat = self._slow if slow else self._fast
         beat.register(action)

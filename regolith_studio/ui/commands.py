@@ -72,16 +72,10 @@ def without(session_recipe: SessionRecipe) -> tuple[str, ...]:
 class Commands(QObject):
     """Opens, saves and exports, with the dialogs that are needed.
 
-    Parameters
-    ----------
-    session
-        What is commanded.
-    preferences
-        Recent files, and the unit of each folder.
-    toast
-        Says what came of it.
-    window
-        Parent of the dialogs.
+    - ``session``: what is commanded.
+    - ``preferences``: recent files, and the unit of each folder.
+    - ``toast``: says what came of it.
+    - ``window``: parent of the dialogs.
     """
 
     stepped = Signal()

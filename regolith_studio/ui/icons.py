@@ -12,13 +12,7 @@ SIZES = (16, 20, 24, 32, 48)
 
 
 def icon(name: str, colour: str, faint: str | None = None) -> QIcon:
-    """The icon ``resources/icons/<name>.svg`` drawn in one colour, and in a fainter one when disabled.
-
-    Raises
-    ------
-    MissingRequirement
-        If there is no such icon.
-    """
+    """The icon ``resources/icons/<name>.svg`` drawn in one colour, and in a fainter one when disabled."""
     made = QIcon()
     for size in SIZES:
         made.addPixmap(pixmap(name, colour, size))
@@ -28,13 +22,7 @@ def icon(name: str, colour: str, faint: str | None = None) -> QIcon:
 
 
 def pixmap(name: str, colour: str, size: int) -> QPixmap:
-    """The icon as a square picture of `size` pixels.
-
-    Raises
-    ------
-    MissingRequirement
-        If there is no such icon.
-    """
+    """The icon as a square picture of `size` pixels."""
     coloured, drawing = _drawing(name, size)
     picture = QImage(drawing)
     if not coloured:

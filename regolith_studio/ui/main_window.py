@@ -33,14 +33,9 @@ from regolith_studio.ui.window_state import STANDARD_SIZE, WindowState
 class MainWindow(QMainWindow):
     """Sidebar, current page, menus, and the running task.
 
-    Parameters
-    ----------
-    session
-        Shown and steered.
-    preferences
-        Recent files, units, and the layout of the window.
-    views
-        ``live`` or ``image``.
+    - ``session``: shown and steered.
+    - ``preferences``: recent files, units, and the layout of the window.
+    - ``views``: ``live`` or ``image``.
     """
 
     closing = Signal()

@@ -27,27 +27,17 @@ PAGE_MENU, VIEW = N_("&Page"), N_("&View")
 class ActionSpec:
     """One row.
 
-    Parameters
-    ----------
-    name
-        Of the command that it runs, and its object name; :data:`BREAK` for a line between actions.
-    text
-        In the menu; "&" marks the letter.
-    icon
-        File in ``resources/icons``; empty for none.
-    shortcut
-        Empty for none.
-    tip
-        In the tool bar; the text if empty.
-    checked
-        ``True`` or ``False`` for a switch, ``None`` for a command.
-    bar
-        Its place in the tool bar: ``words`` with its text, ``under`` with `label` below its icon, ``icon``
-        without, empty for none.
-    label
-        One or two words for the tool bar; the text if empty.
-    menu
-        Title of its menu; those of :data:`regolith_studio.ui.actions.WITHIN_VIEW` are menus within View.
+    - ``name``: of the command that it runs, and its object name; :data:`BREAK` for a line between actions.
+    - ``text``: in the menu; "&" marks the letter.
+    - ``icon``: file in ``resources/icons``; empty for none.
+    - ``shortcut``: empty for none.
+    - ``tip``: in the tool bar; the text if empty.
+    - ``checked``: ``True`` or ``False`` for a switch, ``None`` for a command.
+    - ``bar``: its place in the tool bar: ``words`` with its text, ``under`` with `label` below its icon,
+      ``icon`` without, empty for none.
+    - ``label``: one or two words for the tool bar; the text if empty.
+    - ``menu``: title of its menu; those of :data:`regolith_studio.ui.actions.WITHIN_VIEW` are menus within
+      View.
     """
 
     name: str
@@ -102,25 +92,15 @@ class PageWidget(QWidget):
 class PageContext:
     """The context of a page: session, preferences and services of the window.
 
-    Parameters
-    ----------
-    key
-        Of the page.
-    session
-        Particles, choices, results, events; see :mod:`regolith_studio.session`.
-    bindings
-        The page's own: what it refreshes is refreshed while the page is seen, and at its next visit
-        if something has changed meanwhile.
-    preferences
-        What is remembered between sittings; see :meth:`recall`.
-    toast
-        ``note(sentence)`` and ``problem(sentence, details)``.
-    commands
-        Opening, saving and exporting, with their dialogs.
-    views
-        Backend of three-dimensional views, for :func:`regolith_studio.ui.views.factory.make_view`.
-    go
-        Shows another page by its key, and returns its widget.
+    - ``key``: of the page.
+    - ``session``: particles, choices, results, events; see :mod:`regolith_studio.session`.
+    - ``bindings``: the page's own: what it refreshes is refreshed while the page is seen, and at its next
+      visit if something has changed meanwhile.
+    - ``preferences``: what is remembered between sittings; see :meth:`recall`.
+    - ``toast``: ``note(sentence)`` and ``problem(sentence, details)``.
+    - ``commands``: opening, saving and exporting, with their dialogs.
+    - ``views``: backend of three-dimensional views, for :func:`regolith_studio.ui.views.factory.make_view`.
+    - ``go``: shows another page by its key, and returns its widget.
     """
 
     key: str
@@ -147,21 +127,15 @@ class PageContext:
     ) -> int:
         """Run a job in the background, seen in the task list; returns the number for :meth:`Session.cancel`.
 
-        Parameters
-        ----------
-        title
-            On screen.
-        job
-            A generator function with its arguments; see :mod:`regolith_studio.jobs.events`.
-        finished, partial, failed, stopped
-            Called in the thread of the window, and only while no newer job has taken the lane. A
-            failure that is not taken care of becomes a toast.
-        lane
-            Jobs of one lane of one page replace each other.
-        repeats
-            The job starts by itself when the page is opened again: closing the window does not ask about it.
-        after_running
-            Let the running job of the lane end and be shown first: for controls that are dragged.
+        - ``title``: on screen.
+        - ``job``: a generator function with its arguments; see :mod:`regolith_studio.jobs.events`.
+        - ``finished``, ``partial``, ``failed``, ``stopped``: called in the thread of the window, and only
+          while no newer job has taken the lane. A failure that is not taken care of becomes a toast.
+        - ``lane``: jobs of one lane of one page replace each other.
+        - ``repeats``: the job starts by itself when the page is opened again: closing the window does not
+          ask about it.
+        - ``after_running``: let the running job of the lane end and be shown first: for controls that are
+          dragged.
         """
         return self.session.run(
             f"{self.key}:{lane}",
@@ -193,25 +167,16 @@ class PageContext:
 class Page:
     """A page as a row of the sidebar.
 
-    Parameters
-    ----------
-    key
-        Name of its package.
-    title
-        In the sidebar: one word or two.
-    icon
-        File in ``resources/icons``.
-    order
-        Place in the sidebar, from small to large.
-    tip
-        One sentence on what can be done there.
-    make
-        ``module:Class`` of the widget, called with its context; imported at the first visit, so that the
-        window starts fast.
-    opens
-        Kinds of files that :meth:`PageWidget.open_path` of this page opens.
-    actions
-        Commands of the page, in menus and tool bar while it is seen, in the command palette always.
+    - ``key``: name of its package.
+    - ``title``: in the sidebar: one word or two.
+    - ``icon``: file in ``resources/icons``.
+    - ``order``: place in the sidebar, from small to large.
+    - ``tip``: one sentence on what can be done there.
+    - ``make``: ``module:Class`` of the widget, called with its context; imported at the first visit, so that
+      the window starts fast.
+    - ``opens``: kinds of files that :meth:`PageWidget.open_path` of this page opens.
+    - ``actions``: commands of the page, in menus and tool bar while it is seen, in the command palette
+      always.
     """
 
     key: str

@@ -32,10 +32,7 @@ ICON_SIZE = QSize(24, 24)
 class Sidebar(QFrame):
     """One button a page, in the order of the pages.
 
-    Parameters
-    ----------
-    pages
-        By key.
+    ``pages``: by key.
     """
 
     chosen = Signal(str)
@@ -110,12 +107,7 @@ class ScrollablePage(QScrollArea):
 class PageStack(QWidget):
     """Shows one page at a time.
 
-    Parameters
-    ----------
-    pages
-        In the order of the sidebar.
-    context_of
-        What a page is given, by its key.
+    ``pages``: in the order of the sidebar. ``context_of``: what a page is given, by its key.
     """
 
     changed = Signal(str)

@@ -32,12 +32,8 @@ def may_close(
 ) -> bool:
     """Ask whether to close although work would be lost, and whether to save first; yes where there is none.
 
-    Parameters
-    ----------
-    reasons, unsaved
-        What would be stopped, and what is not saved, in sentences.
-    save
-        Saves what is not; whether that was done.
+    ``reasons``, ``unsaved``: what would be stopped, and what is not saved, in sentences. ``save``: saves
+    what is not; whether that was done.
     """
     if not reasons and not unsaved:
         return True
@@ -68,14 +64,9 @@ AUTOSAVE_SECONDS = 10
 class ProjectFiles(QObject):
     """The current project file, and whether the session has changed since it was saved.
 
-    Parameters
-    ----------
-    session, pages
-        What is saved.
-    toast
-        Says what came of it.
-    window
-        Parent of the dialogs.
+    - ``session``, ``pages``: what is saved.
+    - ``toast``: says what came of it.
+    - ``window``: parent of the dialogs.
     """
 
     changed = Signal()

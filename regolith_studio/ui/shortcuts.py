@@ -48,12 +48,8 @@ _NEEDED = {
 class Shortcuts:
     """The shortcuts of all commands; commands that are shown together must not share keys.
 
-    Parameters
-    ----------
-    actions
-        By name; those of a page begin with its key and a dot, and work while the page is seen.
-    pages
-        Keys of the pages.
+    ``actions``: by name; those of a page begin with its key and a dot, and work while the page is seen.
+    ``pages``: keys of the pages.
     """
 
     def __init__(
@@ -88,13 +84,7 @@ class Shortcuts:
         return ""
 
     def change(self, name: str, keys: str) -> None:
-        """Give a command other keys, and keep them.
-
-        Raises
-        ------
-        InputError
-            If another command has them, or they are needed otherwise.
-        """
+        """Give a command other keys, and keep them."""
         if sentence := self.conflict(name, keys):
             raise InputError(sentence)
         self._set(name, keys)

@@ -31,17 +31,8 @@ _GROUND, _LETTERS, _QUIET = "#1d2126", "#e4e7eb", "#9aa4b0"
 def run(paths: Sequence[str | Path] = (), unit: str | None = None) -> int:
     """Open the window, with these files or with the shipped sample; returns when it is closed.
 
-    Parameters
-    ----------
-    paths
-        Mesh files and folders, a project or a recipe.
-    unit
-        Their length unit; the window asks if it is not given.
-
-    Raises
-    ------
-    MissingRequirement
-        If there is no display.
+    ``paths``: mesh files and folders, a project or a recipe. ``unit``: their length unit; the window asks if
+    it is not given.
     """
     check_display()
     gc.disable()  # almost nothing that is loaded or built here is garbage
@@ -70,13 +61,7 @@ def run(paths: Sequence[str | Path] = (), unit: str | None = None) -> int:
 
 
 def check_display(environment: Mapping[str, str] | None = None, platform: str = sys.platform) -> None:
-    """Make sure that a window can be opened: without a display Qt aborts the process.
-
-    Raises
-    ------
-    MissingRequirement
-        If there is no display.
-    """
+    """Make sure that a window can be opened: without a display Qt aborts the process."""
     given = os.environ if environment is None else environment
     if not platform.startswith("linux"):
         return

@@ -19,20 +19,14 @@ GAP = 8
 class Theme:
     """Colours of the window and of its plots.
 
-    Parameters
-    ----------
-    dark
-        Whether letters are lighter than the ground.
-    window, base, raised, border
-        Grounds of the window, of lists and plots, of buttons; lines between them.
-    text, muted, accent, selected
-        Letters, side remarks, what can be used, what is selected in a list.
-    particle, fit, polyhedron
-        The same three things in every plot and title.
-    good, doubtful, bad
-        Health of a mesh.
-    surroundings
-        Of the three-dimensional views.
+    - ``dark``: whether letters are lighter than the ground.
+    - ``window``, ``base``, ``raised``, ``border``: grounds of the window, of lists and plots, of buttons;
+      lines between them.
+    - ``text``, ``muted``, ``accent``, ``selected``: letters, side remarks, what can be used, what is
+      selected in a list.
+    - ``particle``, ``fit``, ``polyhedron``: the same three things in every plot and title.
+    - ``good``, ``doubtful``, ``bad``: health of a mesh.
+    - ``surroundings``: of the three-dimensional views.
     """
 
     dark: bool

@@ -21,10 +21,7 @@ EQUAL = 1000
 class WindowState:
     """Keeps geometry and splitters in the preferences; splitters without an object name are left alone.
 
-    Parameters
-    ----------
-    preferences
-        Where it is kept, under ``window["layout"]``.
+    ``preferences``: where it is kept, under ``window["layout"]``.
     """
 
     def __init__(self, preferences: Preferences) -> None:

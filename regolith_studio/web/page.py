@@ -55,13 +55,8 @@ class ThreeViewPage:
 
     Everybody who has the page open sees, and changes, the same session.
 
-    Parameters
-    ----------
-    server
-        A trame server that has not been started.
-    session
-        With its particles; its events arrive in the thread of the server's event loop, where the page must
-        be made, too.
+    ``server``: a trame server that has not been started. ``session``: with its particles; its events arrive
+    in the thread of the server's event loop, where the page must be made, too.
     """
 
     def __init__(self, server: Any, session: Session) -> None:

@@ -25,24 +25,11 @@ TOKEN_BYTES = 24
 class ViewServer:
     """A server of the three views; its methods are called in the thread of one event loop.
 
-    Parameters
-    ----------
-    particles
-        What can be chosen on the page.
-    choices
-        Where sliders and method begin.
-    host, port
-        Where it listens; port 0 takes a free one.
+    - ``particles``: what can be chosen on the page.
+    - ``choices``: where sliders and method begin.
+    - ``host``, ``port``: where it listens; port 0 takes a free one.
 
-    Attributes
-    ----------
-    session
-        Choices and results; read it from any thread, change it in the server's.
-
-    Raises
-    ------
-    MissingRequirement
-        If trame is not installed.
+    ``session``: choices and results; read it from any thread, change it in the server's.
     """
 
     def __init__(

@@ -44,10 +44,7 @@ class Runner(Protocol):
     def submit(self, job: Job, listener: Listener, lane: str = "") -> Handle:
         """Run `job`; `listener` receives its steps and, last, exactly one result.
 
-        Parameters
-        ----------
-        lane
-            Jobs of one lane replace each other where the runner says so: the newest wins.
+        ``lane``: jobs of one lane replace each other where the runner says so: the newest wins.
         """
         ...
 
@@ -59,10 +56,7 @@ class Runner(Protocol):
 def run_job(job: Job, listener: Listener, stopped: Callable[[], bool]) -> JobResult:
     """Run `job` to its end, pass every step to `listener`, and return the result.
 
-    Parameters
-    ----------
-    stopped
-        Called before the first step and between any two; a true answer closes the generator.
+    ``stopped``: called before the first step and between any two; a true answer closes the generator.
     """
     if stopped():
         return Stopped()

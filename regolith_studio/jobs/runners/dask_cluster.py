@@ -40,13 +40,7 @@ class SchedulerAddress:
 
     @classmethod
     def parse(cls, text: str) -> Self:
-        """From ``tcp://host:port``, ``tls://host:port`` or ``host:port``.
-
-        Raises
-        ------
-        InputError
-            Saying what is wrong.
-        """
+        """From ``tcp://host:port``, ``tls://host:port`` or ``host:port``."""
         given = text.strip()
         parts = urlsplit(given if "://" in given else f"tcp://{given}")
         if parts.scheme not in SCHEMES:
@@ -70,11 +64,6 @@ class SchedulerAddress:
         """Check that a Dask scheduler answers, within seconds.
 
         Dask's own client tries for half a minute, and takes the answer of a web server for a message length.
-
-        Raises
-        ------
-        MissingRequirement
-            If nothing answers, or something else does.
         """
         deadline = time.monotonic() + ANSWER_SECONDS
         with self._connect(deadline) as connection:
@@ -119,12 +108,8 @@ class SchedulerAddress:
 class TlsFiles:
     """Files of an encrypted cluster (addresses that begin with ``tls://``).
 
-    Parameters
-    ----------
-    authority
-        Certificate of the authority that signed those of the cluster, PEM.
-    certificate, key
-        Of this program, PEM.
+    ``authority``: certificate of the authority that signed those of the cluster, PEM. ``certificate``,
+    ``key``: of this program, PEM.
     """
 
     authority: Path
@@ -132,13 +117,7 @@ class TlsFiles:
     key: Path
 
     def security(self) -> Any:
-        """For Dask's client: everything encrypted, both ends authenticated.
-
-        Raises
-        ------
-        InputError
-            If a file is missing.
-        """
+        """For Dask's client: everything encrypted, both ends authenticated."""
         for path in (self.authority, self.certificate, self.key):
             if not path.is_file():
                 raise InputError(f"The TLS file {path} is not there.")
@@ -182,22 +161,9 @@ class DaskRunner:
     ended several workers has failed. A job that was cancelled, or whose client has gone, stops between two of
     its steps.
 
-    Parameters
-    ----------
-    address
-        Of a scheduler, ``tcp://host:8786`` or ``tls://host:8786``; empty to start a cluster here.
-    workers
-        Processes of a cluster started here; 0 for one a core.
-    tls
-        Files for an encrypted cluster.
-
-    Raises
-    ------
-    MissingRequirement
-        If Dask is not installed, nothing answers, or the workers run other versions of what the numbers
-        come from.
-    InputError
-        If an address asks for encryption and there are no files for it.
+    - ``address``: of a scheduler, ``tcp://host:8786`` or ``tls://host:8786``; empty to start a cluster here.
+    - ``workers``: processes of a cluster started here; 0 for one a core.
+    - ``tls``: files for an encrypted cluster.
     """
 
     def __init__(self, address: str = "", workers: int = 0, tls: TlsFiles | None = None) -> None:
@@ -242,13 +208,7 @@ class DaskRunner:
         return handle
 
     def check_shared(self, path: Path, folder: Path) -> None:
-        """Check that each worker finds a file or folder, and a folder for temporary files, under these paths.
-
-        Raises
-        ------
-        MissingRequirement
-            If one does not.
-        """
+        """Check that each worker finds a file or folder, and a folder for temporary files, under these paths."""
         probe = folder / "probe"
         probe.write_text(key := uuid.uuid4().hex)
         for worker, (size, seen) in self._client.run(_size_and_text, str(path), str(probe)).items():

@@ -40,10 +40,7 @@ def run_jobs(pipe: Connection, flags: Any) -> None:
     Before the first step of each job :data:`STARTED` is sent: a process that has not sent it can be killed
     without loss. A job that is cancelled by then takes no step.
 
-    Parameters
-    ----------
-    flags
-        Shared with the parent: slot n holds the number of a job that shall stop.
+    ``flags``: shared with the parent: slot n holds the number of a job that shall stop.
     """
     end_with_parent()
     while True:
@@ -209,12 +206,8 @@ class ProcessPoolRunner:
     replaced after its job. One that dies is replaced too, and its job is run again while nothing else
     runs; only a job that dies alone has failed.
 
-    Parameters
-    ----------
-    workers
-        Number of processes; 0 for one a core.
-    memory
-        Bytes that a process may hold on to between two jobs; by default :func:`memory_limit`.
+    ``workers``: number of processes; 0 for one a core. ``memory``: bytes that a process may hold on to
+    between two jobs; by default :func:`memory_limit`.
     """
 
     def __init__(self, workers: int = 0, memory: int | None = None) -> None:

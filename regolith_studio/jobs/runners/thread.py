@@ -168,12 +168,9 @@ class _Lane:
 class ThreadRunner:
     """One worker thread a lane; within a lane a new job stops the running one and takes its place.
 
-    Parameters
-    ----------
-    post
-        Brings a call into the thread that owns the listeners (a queue in tests, the event loop of
-        the window); events of one job arrive in order. Progress and partial results that have not
-        been read when newer ones come are skipped, endings never.
+    - ``post``: brings a call into the thread that owns the listeners (a queue in tests, the event loop of
+      the window); events of one job arrive in order. Progress and partial results that have not been read
+      when newer ones come are skipped, endings never.
     """
 
     def __init__(self, post: Post) -> None:

@@ -55,13 +55,7 @@ class BatchInput(Protocol):
         """Changes when the input changes."""
 
     def particle(self) -> Particle:
-        """Read or draw it.
-
-        Raises
-        ------
-        RegolithError
-            If that is impossible.
-        """
+        """Read or draw it."""
 
     def called(self, name: str) -> "BatchInput":
         """The same particle under another name."""
@@ -71,10 +65,7 @@ class BatchInput(Protocol):
 class _NamedInput:
     """Fields of all inputs.
 
-    Parameters
-    ----------
-    name
-        Unique within the batch.
+    ``name``: unique within the batch.
     """
 
     name: str
@@ -144,10 +135,7 @@ class GrainInput(_NamedInput):
 class VirtualInput(_NamedInput):
     """A virtual particle.
 
-    Parameters
-    ----------
-    model
-        Folder of the fitted model; ``None`` where a shipped card is one.
+    ``model``: folder of the fitted model; ``None`` where a shipped card is one.
     """
 
     population: Population
@@ -173,10 +161,7 @@ class VirtualInput(_NamedInput):
 class BatchInputs:
     """All particles of a recipe.
 
-    Parameters
-    ----------
-    problems
-        Inputs that hold none.
+    ``problems``: inputs that hold none.
     """
 
     members: tuple[BatchInput, ...]
@@ -184,14 +169,7 @@ class BatchInputs:
 
     @classmethod
     def of(cls, recipe: Recipe, base: Path, prepared: PreparedInputs = NO_PREPARED_INPUTS) -> Self:
-        """The particles of `recipe`; relative paths are relative to `base`.
-
-        Raises
-        ------
-        InputError
-            If the material card does not reach the degree asked for, or a particle that is chosen is not
-            there.
-        """
+        """The particles of `recipe`; relative paths are relative to `base`."""
         problems: list[FileProblem] = list(prepared.problems)
         members: list[BatchInput] = []
         taken: dict[str, int] = {}
@@ -278,17 +256,7 @@ def _cached_draws(population: str, folder: Path | None, seed: int) -> tuple[Real
 def load_recipe_particles(recipe: Recipe, base: Path, workers: int = 1) -> Steps:
     """Read or make all particles of a recipe; returns :class:`LoadedParticles`.
 
-    Parameters
-    ----------
-    base
-        Folder that relative inputs are relative to.
-
-    Raises
-    ------
-    FileError
-        If nothing can be read.
-    InputError
-        If the recipe holds something that cannot be used.
+    ``base``: folder that relative inputs are relative to.
     """
     with tempfile.TemporaryDirectory(dir=scratch_folder()) as folder, open_executor(workers) as executor:
         prepared = yield from prepare_inputs(recipe, base, Path(folder) / "prepared", executor)

@@ -38,14 +38,9 @@ STAGES = ("reading", "measuring", "fitting", "coarsening", "writing")
 class ParticleTask:
     """What is computed of each particle.
 
-    Parameters
-    ----------
-    coarsening
-        Settings of the coarsening; ``None`` for none.
-    shapes
-        Whether the polyhedra become a dataset.
-    fit_options
-        How fits are made.
+    - ``coarsening``: settings of the coarsening; ``None`` for none.
+    - ``shapes``: whether the polyhedra become a dataset.
+    - ``fit_options``: how fits are made.
     """
 
     measure: bool
@@ -181,11 +176,5 @@ def _bytes(values: Any) -> bytes:
 
 
 def _finite(values: Any) -> Any:
-    """Plain values as they are read back from JSON.
-
-    Raises
-    ------
-    ValueError
-        If a number is not finite.
-    """
+    """Plain values as they are read back from JSON."""
     return json.loads(json.dumps(values, allow_nan=False))

@@ -60,14 +60,9 @@ SAMPLE_VOLUMES: dict[str, tuple[SampleVolume, SampleScan]] = {
 class PreparedInputs:
     """What the particles of a recipe are read or drawn from, besides its mesh files.
 
-    Parameters
-    ----------
-    volumes
-        Folder of the grains of each volume.
-    model
-        Folder of the population's model; ``None`` where a shipped card is one.
-    problems
-        Files that could not be used for the model.
+    - ``volumes``: folder of the grains of each volume.
+    - ``model``: folder of the population's model; ``None`` where a shipped card is one.
+    - ``problems``: files that could not be used for the model.
     """
 
     volumes: tuple[Path, ...] = ()
@@ -80,21 +75,9 @@ def prepare_inputs(
 ) -> Steps:
     """Extract the grains of all volumes and fit the population's model; returns :class:`PreparedInputs`.
 
-    Parameters
-    ----------
-    base
-        Folder that relative files are relative to.
-    root
-        Where the folders are.
-    finished
-        Whether all grains are processed already, so that their index is enough.
-
-    Raises
-    ------
-    FileError
-        If a file cannot be used.
-    InputError
-        If a setting is wrong, there is no grain, or no such card.
+    - ``base``: folder that relative files are relative to.
+    - ``root``: where the folders are.
+    - ``finished``: whether all grains are processed already, so that their index is enough.
     """
     volumes = []
     for entry in recipe.volumes:

@@ -40,14 +40,10 @@ _Rows = list[dict[str, str]]
 class ScanGroups:
     """What became of many scans.
 
-    Parameters
-    ----------
-    extracted, kept
-        Names of the groups that were extracted now, and that were there from an earlier run.
-    problems
-        Name of each scan that gave no particles, and why.
-    comparison
-        The table that was written as ``groups.csv``; None where there is no group.
+    - ``extracted``, ``kept``: names of the groups that were extracted now, and that were there from an
+      earlier run.
+    - ``problems``: name of each scan that gave no particles, and why.
+    - ``comparison``: the table that was written as ``groups.csv``; None where there is no group.
     """
 
     extracted: tuple[str, ...]
@@ -57,24 +53,12 @@ class ScanGroups:
 
 
 def find_scans(paths: Sequence[Path]) -> tuple[Path, ...]:
-    """The scans that files and folders stand for, each once, in their order.
-
-    Raises
-    ------
-    FileError
-        If there is nothing at a path, or no scan in a folder.
-    """
+    """The scans that files and folders stand for, each once, in their order."""
     return tuple(dict.fromkeys(scan for path in paths for scan in volume_files(path)))
 
 
 def group_names(scans: Sequence[Path]) -> tuple[str, ...]:
-    """A name for each scan: that of its file, after that of its folder where several are called alike.
-
-    Raises
-    ------
-    InputError
-        If folders and files of two are called alike.
-    """
+    """A name for each scan: that of its file, after that of its folder where several are called alike."""
     stems = [file_stem(scan.stem) for scan in scans]
     keys = list(map(name_key, stems))
     names = tuple(
@@ -92,17 +76,8 @@ def extract_groups(
 ) -> Steps:
     """Extract the particles of each scan into a folder of its own; returns :class:`ScanGroups`.
 
-    Parameters
-    ----------
-    scans
-        Each with the name of its group and its settings.
-    output
-        Folder of the groups and of the tables; exists already.
-
-    Raises
-    ------
-    FileError
-        If the folder holds the particles of a single scan, cannot be written, or is removed meanwhile.
+    ``scans``: each with the name of its group and its settings. ``output``: folder of the groups and of the
+    tables; exists already.
     """
     if (output / LISTED).exists():
         raise FileError(f"The folder {output} holds the particles of one scan; name another for several.")
@@ -182,16 +157,10 @@ def _read_rows(path: Path) -> _Rows:
 def compare_groups(tables: Mapping[str, _Rows]) -> Table:
     """Distributions of each descriptor in each group, every particle counting by its weight.
 
-    Parameters
-    ----------
-    tables
-        Rows of each group's ``particles.csv``.
+    ``tables``: rows of each group's ``particles.csv``.
 
-    Returns
-    -------
-    Table
-        A row for each descriptor and group: count, mean, standard deviation, quantiles, and, where there are
-        several groups, the Kolmogorov-Smirnov and the Wasserstein-1 distance to the particles of all others.
+    Returns a row for each descriptor and group: count, mean, standard deviation, quantiles, and, where there
+    are several groups, the Kolmogorov-Smirnov and the Wasserstein-1 distance to the particles of all others.
     """
     rows: list[tuple[Any, ...]] = []
     for key, row in CATALOGUE.items():

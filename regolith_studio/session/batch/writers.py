@@ -41,15 +41,7 @@ DATASET, EXPORTS = "dataset", "exports"
 
 
 def check_dataset_request(recipe: Recipe, n_particles: int) -> None:
-    """Check before the work what would fail after it.
-
-    Raises
-    ------
-    InputError
-        If there are too few particles, or sizes, formats or settings make no sense.
-    DatasetError
-        If a format changes the shapes and that is not allowed.
-    """
+    """Check before the work what would fail after it."""
     if (request := recipe.representatives) is not None:
         parse_sizes(request.sizes)
         if request.count > n_particles:
@@ -72,26 +64,14 @@ def build_dataset_step(
     folder: Path,
     workers: int | Executor,
 ) -> Steps:
-    """Write ``dataset`` in `folder`; returns :class:`~regolith_studio.jobs.dataset_jobs.DatasetBuildResult`.
-
-    Raises
-    ------
-    RegolithError
-        As :func:`regolith_studio.jobs.dataset_jobs.build_dataset_folder`.
-    """
+    """Write ``dataset`` in `folder`; returns :class:`~regolith_studio.jobs.dataset_jobs.DatasetBuildResult`."""
     chosen = representatives_request(request, recipe.seed)
     options = DatasetOptions(request.name, preset, True, workers, chosen, sizes=request.sizes)
     return (yield from build_dataset_folder(particles, coarsening, folder / DATASET, options))
 
 
 def export_dataset_step(request: Exports, seed: int, folder: Path) -> Steps:
-    """Write ``dataset`` below `folder` for other programs, below ``exports``; returns the exports.
-
-    Raises
-    ------
-    RegolithError
-        As :func:`regolith_studio.jobs.dataset_jobs.export_dataset_folder`.
-    """
+    """Write ``dataset`` below `folder` for other programs, below ``exports``; returns the exports."""
     return (
         yield from export_dataset_folder(
             folder / DATASET, request.targets, folder / EXPORTS, export_options(request, seed), request.lossy
@@ -108,13 +88,7 @@ def representatives_request(request: Representatives, seed: int) -> Representati
 
 
 def export_options(request: Exports, seed: int) -> ExportOptions:
-    """The export options of a recipe.
-
-    Raises
-    ------
-    InputError
-        If there is no such setting, or a value cannot be used.
-    """
+    """The export options of a recipe."""
     options = ExportOptions(coarse_graining_factor=request.coarse_graining, n_particles=request.particles)
     return replace(options, seed=seed if request.seed is None else request.seed).replaced(**request.settings)
 
@@ -279,16 +253,10 @@ def time_writer(path: Path) -> Iterator[ResultWriter]:
 class RunStatistics:
     """Sums and lists over all particles.
 
-    Parameters
-    ----------
-    unread
-        One sentence for each particle that could not be read or drawn.
-    problems
-        One sentence for each particle that could not be fitted or coarsened.
-    fitted
-        Coefficients of the coarsened particles at the degree that was coarsened.
-    first_coarse
-        Index of the first particle that could be coarsened.
+    - ``unread``: one sentence for each particle that could not be read or drawn.
+    - ``problems``: one sentence for each particle that could not be fitted or coarsened.
+    - ``fitted``: coefficients of the coarsened particles at the degree that was coarsened.
+    - ``first_coarse``: index of the first particle that could be coarsened.
     """
 
     n_read: int = 0

@@ -188,17 +188,9 @@ def write_fits(
 
     Both take the places of earlier ones at the same moment.
 
-    Parameters
-    ----------
-    surfaces
-        Folder for the surfaces of the fits as STL.
-    level
-        Icosphere level of the surfaces.
+    ``surfaces``: folder for the surfaces of the fits as STL. ``level``: icosphere level of the surfaces.
 
-    Returns
-    -------
-    reasons
-        Why a particle has no surface, by its name.
+    Returns why a particle has no surface, by its name.
     """
     content = json_bytes(fits_document(sample))
     if surfaces is None:

@@ -86,10 +86,7 @@ def _intervals(extracted: ExtractedParticle, facts: MeasuredParticle) -> dict[st
 class ExtractionFolder:
     """The particles of a volume as files; keeps only the rows of the tables in memory.
 
-    Parameters
-    ----------
-    folder
-        Exists already.
+    ``folder``: exists already.
     """
 
     def __init__(self, folder: Path) -> None:
@@ -180,14 +177,10 @@ class _NameAndGroup:
 class GeneratedParticles:
     """Drawn particles with their source, request and model.
 
-    Parameters
-    ----------
-    source, request, model, draws
-        Source and request, the fitted model and the drawn particles.
-    groups
-        Name of the part of the mixture each came from, or empty.
-    comparison
-        With the particles of the sample, where there are any.
+    - ``source``, ``request``, ``model``, ``draws``: source and request, the fitted model and the drawn
+      particles.
+    - ``groups``: name of the part of the mixture each came from, or empty.
+    - ``comparison``: with the particles of the sample, where there are any.
     """
 
     source: ShapeSource

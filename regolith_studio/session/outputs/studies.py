@@ -24,16 +24,10 @@ FIGURES = "regolith_studio.studies.figures"
 class StudyKind:
     """One kind of study: what it is called, and how it becomes files.
 
-    Parameters
-    ----------
-    title
-        What it shows, and where in the paper.
-    picture
-        Name of its main figure.
-    write
-        Writes tables (CSV, JSON) and figures (PNG, SVG) into a folder, and returns their paths.
-    table
-        Its main table.
+    - ``title``: what it shows, and where in the paper.
+    - ``picture``: name of its main figure.
+    - ``write``: writes tables (CSV, JSON) and figures (PNG, SVG) into a folder, and returns their paths.
+    - ``table``: its main table.
     """
 
     title: str

@@ -40,14 +40,9 @@ SHOWN_ROWS = 200
 class Summary:
     """Content of the page, collected particle by particle; only the first of many are kept.
 
-    Parameters
-    ----------
-    n_particles, n_coarse
-        Particles, and those of them that could be coarsened.
-    described, coarse
-        What ``descriptors.json`` and ``coarsening.json`` say of the first of them.
-    pictures
-        (file, caption) pairs besides those of the studies, files relative to the page.
+    - ``n_particles``, ``n_coarse``: particles, and those of them that could be coarsened.
+    - ``described``, ``coarse``: what ``descriptors.json`` and ``coarsening.json`` say of the first of them.
+    - ``pictures``: (file, caption) pairs besides those of the studies, files relative to the page.
     """
 
     n_particles: int = 0
@@ -79,12 +74,8 @@ def write_summary(
 ) -> Path:
     """Write ``summary.html``; returns its path.
 
-    Parameters
-    ----------
-    studies
-        Kinds of the studies that have been written.
-    problems
-        One sentence for each file or particle that failed.
+    ``studies``: kinds of the studies that have been written. ``problems``: one sentence for each file or
+    particle that failed.
     """
     path = folder / "summary.html"
     write_bytes(path, summary_page(recipe, summary, studies, problems).encode("utf-8"))
@@ -252,12 +243,8 @@ DEMO_TITLE = "Regolith Studio: from a scan to a heap"
 def demo_page(folder: Path, problems: Sequence[str]) -> str:
     """The page about what a folder holds; links and pictures by their relative paths.
 
-    Parameters
-    ----------
-    folder
-        Where the steps have written to. A step that left nothing has no section.
-    problems
-        One sentence for each step or particle that failed.
+    ``folder``: where the steps have written to. A step that left nothing has no section. ``problems``: one
+    sentence for each step or particle that failed.
     """
     sections = (_scan, _fits, _polyhedra, _population, _dataset, _heap)
     parts = [f"<h1>{DEMO_TITLE}</h1>", _LEAD, *(section(folder) for section in sections)]

@@ -51,12 +51,8 @@ def write_report_pdf(sections: Sequence[ReportSection], path: Path) -> None:
 def column_groups(widths: Sequence[int], letters: int) -> list[list[int]]:
     """Columns of a table that fit beside each other; each group begins with the first column.
 
-    Parameters
-    ----------
-    widths
-        Of the columns in letters.
-    letters
-        Width of a line; a column that is too wide for it even alone gets a group of its own.
+    ``widths``: of the columns in letters. ``letters``: width of a line; a column that is too wide for it
+    even alone gets a group of its own.
     """
     groups, used = [[0]], widths[0]
     for column, width in enumerate(widths[1:], start=1):

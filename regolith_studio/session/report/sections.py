@@ -36,18 +36,11 @@ class ReportFigure:
 class ReportSection:
     """What a report says of one figure or table of the paper.
 
-    Parameters
-    ----------
-    title
-        Heading.
-    paragraphs
-        Method and results, in plain text.
-    figures, tables
-        In this order.
-    meshes
-        By caption, to be turned in the page; the PDF has none.
-    problem
-        Why the figure is missing, in one sentence.
+    - ``title``: heading.
+    - ``paragraphs``: method and results, in plain text.
+    - ``figures``, ``tables``: in this order.
+    - ``meshes``: by caption, to be turned in the page; the PDF has none.
+    - ``problem``: why the figure is missing, in one sentence.
     """
 
     title: str
@@ -72,12 +65,8 @@ def _shown(value: float) -> str:
 def error_table(table: Table, by: str, title: str, **only: Cell) -> Table:
     """The RMSRE of a study's table with their intervals, a row a value of `by`, a column a descriptor.
 
-    Parameters
-    ----------
-    table
-        With the columns ``descriptor``, ``rmsre``, ``rmsre_low`` and ``rmsre_high``.
-    only
-        Values of columns; other rows are left out.
+    ``table``: with the columns ``descriptor``, ``rmsre``, ``rmsre_low`` and ``rmsre_high``. ``only``: values
+    of columns; other rows are left out.
     """
     names = [column.name for column in table.columns]
     lines: dict[str, dict[str, str]] = {}
@@ -111,14 +100,9 @@ SectionSteps = Generator[Step, None, ReportSection]
 class ReportDraft:
     """What the sections of a report are made from.
 
-    Parameters
-    ----------
-    folder
-        Of the report; every section writes into a folder of its own below it.
-    population
-        Descriptors of the sample, as soon as they are known.
-    dataset
-        The representatives, as soon as they are made.
+    - ``folder``: of the report; every section writes into a folder of its own below it.
+    - ``population``: descriptors of the sample, as soon as they are known.
+    - ``dataset``: the representatives, as soon as they are made.
     """
 
     particles: tuple[Particle, ...]
@@ -144,13 +128,7 @@ class ReportDraft:
 
     @property
     def representatives(self) -> Dataset:
-        """The dataset.
-
-        Raises
-        ------
-        InputError
-            If it could not be made.
-        """
+        """The dataset."""
         if self.dataset is None:
             raise InputError("There is no dataset of representative particles, as said above.")
         return self.dataset

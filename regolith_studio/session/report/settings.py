@@ -12,13 +12,7 @@ if TYPE_CHECKING:  # the command line makes its options of these fields, and mus
 
 @dataclass(frozen=True)
 class ReportSettings:
-    """Settings of a report.
-
-    Raises
-    ------
-    InputError
-        If a value is out of its range, there is no such method or preset, or a heap has too few particles.
-    """
+    """Settings of a report."""
 
     l_max: int = setting(
         10,

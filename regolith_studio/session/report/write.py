@@ -126,14 +126,9 @@ PARTS: Mapping[str, Callable[[ReportDraft, str], SectionSteps]] = {
 class WrittenReport:
     """A report on disk.
 
-    Parameters
-    ----------
-    folder
-        Holds :data:`PAGE`, :data:`PDF`, :data:`DOCUMENT` and a folder a figure.
-    files
-        Relative to the folder, sorted.
-    problems
-        One sentence for each section that is missing.
+    - ``folder``: holds :data:`PAGE`, :data:`PDF`, :data:`DOCUMENT` and a folder a figure.
+    - ``files``: relative to the folder, sorted.
+    - ``problems``: one sentence for each section that is missing.
     """
 
     folder: Path
@@ -145,10 +140,7 @@ class WrittenReport:
 class SectionBegun:
     """Emitted before a section is made.
 
-    Parameters
-    ----------
-    number, total
-        Of the sections, from 1.
+    ``number``, ``total``: of the sections, from 1.
     """
 
     number: int
@@ -167,17 +159,7 @@ def write_report(
     A section that fails says so in its place and stops nothing. Partial results are :class:`SectionBegun`.
     Returns :class:`WrittenReport`.
 
-    Parameters
-    ----------
-    workers
-        Processes at a time; 0 for one a core. The files do not depend on it.
-
-    Raises
-    ------
-    InputError
-        If there is no particle.
-    FileError
-        If the folder cannot be written.
+    ``workers``: processes at a time; 0 for one a core. The files do not depend on it.
     """
     if not particles:
         raise InputError("A report needs at least one particle.")

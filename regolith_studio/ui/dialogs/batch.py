@@ -117,13 +117,7 @@ class SourceField(QWidget):
         return (self.file.value() or Path()) if self.kind.currentData() == "file" else None
 
     def checked(self) -> Path | None:
-        """As :meth:`value`.
-
-        Raises
-        ------
-        InputError
-            If there is no such file, or no particle.
-        """
+        """As :meth:`value`."""
         path = self.value()
         if path is None and self._count < 1:
             raise InputError(tr("No open particle comes from a file: open some, or choose a recipe file."))
@@ -175,13 +169,7 @@ class WorkersField(QWidget):
         self._changed()
 
     def value(self) -> ExecutorSettings:
-        """Who shall work.
-
-        Raises
-        ------
-        InputError
-            If the address has not its form, or certificates are missing.
-        """
+        """Who shall work."""
         executor = self.executor.currentData()
         if executor == "processes":
             return ExecutorSettings("processes", self.count.value())
@@ -221,14 +209,9 @@ class RunDialog(QDialog):
     Emits ``started`` with the request, and ``stopped``. A dialog calls :meth:`judge` whenever its value may
     have changed.
 
-    Parameters
-    ----------
-    name
-        Begins the names of its widgets.
-    folder
-        Suggested for the results.
-    page
-        Of the results, which the last button opens.
+    - ``name``: begins the names of its widgets.
+    - ``folder``: suggested for the results.
+    - ``page``: of the results, which the last button opens.
     """
 
     started = Signal(object)
@@ -262,13 +245,7 @@ class RunDialog(QDialog):
         self.box.rejected.connect(self.close)
 
     def value(self) -> Any:
-        """The request.
-
-        Raises
-        ------
-        InputError
-            If it cannot be given yet, saying why.
-        """
+        """The request."""
         raise NotImplementedError
 
     def field_values(self) -> dict[str, Any]:
@@ -361,18 +338,11 @@ RESULTS = {
 class BatchRequest:
     """The settings of the dialog.
 
-    Parameters
-    ----------
-    recipe
-        File; ``None`` for the open particles and the present choices.
-    folder
-        Where the results go.
-    resume
-        Whether to go on with the run that has not ended there.
-    outputs
-        What is written; a recipe file says that itself.
-    executor
-        Who works.
+    - ``recipe``: file; ``None`` for the open particles and the present choices.
+    - ``folder``: where the results go.
+    - ``resume``: whether to go on with the run that has not ended there.
+    - ``outputs``: what is written; a recipe file says that itself.
+    - ``executor``: who works.
     """
 
     recipe: Path | None
@@ -385,12 +355,8 @@ class BatchRequest:
 class BatchDialog(RunDialog):
     """Edits a :class:`BatchRequest`.
 
-    Parameters
-    ----------
-    count, unsaved
-        Open particles, and those of them that came from no file.
-    folder
-        Suggested for the results.
+    ``count``, ``unsaved``: open particles, and those of them that came from no file. ``folder``: suggested
+    for the results.
     """
 
     def __init__(self, count: int, unsaved: int, folder: Path, parent: QWidget | None = None) -> None:
@@ -418,13 +384,7 @@ class BatchDialog(RunDialog):
         self.judge()
 
     def value(self) -> BatchRequest:
-        """The request.
-
-        Raises
-        ------
-        InputError
-            If it cannot be given yet, saying why.
-        """
+        """The request."""
         folder = self.folder.value()
         if folder is None or folder.is_file():
             raise InputError(tr("Enter a folder for the results."))

@@ -10,14 +10,9 @@ from regolith_studio.ui.translation import tr
 class FolderDialog(QFileDialog):
     """A choice of folders that makes the one that is named, where Qt's would refuse it.
 
-    Parameters
-    ----------
-    parent
-        The dialog is in front of.
-    title
-        What the folder is for.
-    start
-        The folder that is shown first; that of the program if there is none.
+    - ``parent``: the dialog is in front of.
+    - ``title``: what the folder is for.
+    - ``start``: the folder that is shown first; that of the program if there is none.
     """
 
     def __init__(self, parent: QWidget | None, title: str, start: str = "") -> None:

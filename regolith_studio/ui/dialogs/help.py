@@ -143,10 +143,7 @@ def about_dialog(parent: QWidget, renderer: str) -> QDialog:
 class CitationLinks(QObject):
     """Opens the citation of the paper for every link of a label to it.
 
-    Parameters
-    ----------
-    show
-        Opens the dialog that cites the paper.
+    ``show``: opens the dialog that cites the paper.
     """
 
     def __init__(self, show: Callable[[], object], parent: QObject) -> None:

@@ -32,10 +32,7 @@ ADD, REPLACE = "add", "replace"
 def ask_add_or_replace(preferences: Preferences, count: int, parent: QWidget) -> str | None:
     """``add`` or ``replace``, as remembered or as answered now; ``None`` to open nothing.
 
-    Parameters
-    ----------
-    count
-        Of the particles that are open.
+    ``count``: of the particles that are open.
     """
     kept = preferences.window.get(SETTING)
     if kept in (ADD, REPLACE):
@@ -177,10 +174,8 @@ class UnitDialog(QDialog):
     def set_first(self, first: tuple[str, float] | str | None) -> None:
         """Show how large a particle would be; suggest the unit that makes it a grain.
 
-        Parameters
-        ----------
-        first
-            Name of the first particle, and its longest side as the file gives it; or why there is none.
+        ``first``: name of the first particle, and its longest side as the file gives it; or why there is
+        none.
         """
         self._buttons.button(QDialogButtonBox.StandardButton.Open).setEnabled(not isinstance(first, str))
         if isinstance(first, str):

@@ -26,12 +26,7 @@ from regolith_studio.ui.widgets.labels import remark
 class ReportRequest:
     """The settings of the dialog.
 
-    Parameters
-    ----------
-    folder
-        Of the report.
-    workers
-        Processes at a time.
+    ``folder``: of the report. ``workers``: processes at a time.
     """
 
     folder: Path
@@ -72,13 +67,7 @@ class ReportDialog(RunDialog):
         self.judge()
 
     def value(self) -> ReportRequest:
-        """The request.
-
-        Raises
-        ------
-        InputError
-            If it cannot be given yet, saying why.
-        """
+        """The request."""
         if not self._count:
             raise InputError(tr("No particle is open to report on: open one first."))
         folder = self.folder.value()

@@ -30,10 +30,7 @@ EDGE = 0.02
 class DividerGrip:
     """Moves the line of a wipe.
 
-    Parameters
-    ----------
-    moved
-        Told the new share of the picture's width.
+    ``moved``: told the new share of the picture's width.
     """
 
     cursor = Qt.CursorShape.SplitHCursor
@@ -54,12 +51,8 @@ class DividerGrip:
 class PlaneGrip:
     """Moves the plane of a section along its normal, held at its frame.
 
-    Parameters
-    ----------
-    plane
-        The plane and the corners of its frame, shape (4, 3), or ``None`` while there is no section.
-    moved
-        Told the new offset.
+    ``plane``: the plane and the corners of its frame, shape (4, 3), or ``None`` while there is no section.
+    ``moved``: told the new offset.
     """
 
     cursor = Qt.CursorShape.SizeAllCursor
@@ -230,12 +223,7 @@ def partners_of(name: str) -> dict[str, str]:
 class Comparison:
     """Overlay, wipe and section of all views.
 
-    Parameters
-    ----------
-    frames
-        By the name of the body that each shows.
-    sections
-        The plane that is common to all.
+    ``frames``: by the name of the body that each shows. ``sections``: the plane that is common to all.
     """
 
     def __init__(self, frames: Mapping[str, ViewFrame], sections: Sections) -> None:

@@ -35,18 +35,11 @@ from regolith_studio.ui.views.view_frame import ViewFrame
 class FacetHover:
     """Outlines and numbers the facet, and reports its properties in one line.
 
-    Parameters
-    ----------
-    view
-        That shows the polyhedron.
-    shape
-        Reads what it shows.
-    ink
-        Reads the inks.
-    is_visible
-        Whether a point of the body, shape (3,), at a share of the picture's width is seen.
-    report
-        Receives the line, or nothing when the mouse is elsewhere.
+    - ``view``: that shows the polyhedron.
+    - ``shape``: reads what it shows.
+    - ``ink``: reads the inks.
+    - ``is_visible``: whether a point of the body, shape (3,), at a share of the picture's width is seen.
+    - ``report``: receives the line, or nothing when the mouse is elsewhere.
     """
 
     def __init__(
@@ -126,10 +119,8 @@ def snapshot(
 
     What they show is drawn anew at that size, not enlarged.
 
-    Parameters
-    ----------
-    lines
-        For each frame the share of its width at which the line of a wipe stands, ``None`` for no line.
+    ``lines``: for each frame the share of its width at which the line of a wipe stands, ``None`` for no
+    line.
     """
     standing = dict(zip(frames, lines, strict=True)) if lines else {}
     seen = [frame for frame in frames if not frame.isHidden()]
@@ -211,12 +202,8 @@ Follow = Callable[[Job, Callable[[Any], None], Callable[[str], None]], None]
 class ThreeViews(QSplitter):
     """Three framed views under linked cameras; ``hovered`` reports what the mouse points at.
 
-    Parameters
-    ----------
-    kind
-        ``live`` or ``image``.
-    follow
-        Does in the background what must be measured before it is drawn.
+    ``kind``: ``live`` or ``image``. ``follow``: does in the background what must be measured before it is
+    drawn.
     """
 
     hovered = Signal(str)
@@ -502,10 +489,7 @@ class Distances(QObject):
 
     ``measured`` is emitted for new ones, ``refused`` with the reason for none.
 
-    Parameters
-    ----------
-    follow
-        Does the work.
+    ``follow``: does the work.
     """
 
     measured = Signal()

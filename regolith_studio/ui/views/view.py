@@ -60,14 +60,9 @@ Pointed = Callable[[Projection, float, float], None]
 class CameraMouse:
     """Turns mouse events into poses.
 
-    Parameters
-    ----------
-    pose
-        Reads the present pose.
-    move
-        Receives the new one.
-    widget
-        Whose size the picture has, and which gets the cursor.
+    - ``pose``: reads the present pose.
+    - ``move``: receives the new one.
+    - ``widget``: whose size the picture has, and which gets the cursor.
     """
 
     def __init__(
@@ -227,10 +222,7 @@ class KeepFramed:
     What is shown along the shorter side is kept, whatever the user has done with the camera: a body that was
     framed is framed again, and what was looked at closely stays as close.
 
-    Parameters
-    ----------
-    view
-        Tells when its camera was placed and when it was resized.
+    ``view``: tells when its camera was placed and when it was resized.
     """
 
     def __init__(self, view: SceneView) -> None:
@@ -252,10 +244,7 @@ class KeepFramed:
 class CameraLink:
     """Copies the pose of one view to the others while it is on.
 
-    Parameters
-    ----------
-    views
-        All in one frame of coordinates.
+    ``views``: all in one frame of coordinates.
     """
 
     def __init__(self, views: Sequence[SceneView]) -> None:

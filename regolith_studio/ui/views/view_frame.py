@@ -23,18 +23,13 @@ _BESIDE = 8
 class ViewFrame(QFrame):
     """Title, a line of details and the view; a double click on the title enlarges it.
 
-    Parameters
-    ----------
-    view
-        What is framed.
-    name
-        Object name, and plain name for screen readers.
-    partners
-        What it can be compared with, by key; the box is shown when :meth:`set_comparing` says so.
-    compare
-        What the box asks, for screen readers.
-    colour
-        Field of :class:`Theme` with the colour of the mark before the title: the same as in the plots.
+    - ``view``: what is framed.
+    - ``name``: object name, and plain name for screen readers.
+    - ``partners``: what it can be compared with, by key; the box is shown when :meth:`set_comparing` says
+      so.
+    - ``compare``: what the box asks, for screen readers.
+    - ``colour``: field of :class:`Theme` with the colour of the mark before the title: the same as in the
+      plots.
     """
 
     partnerChanged = Signal(str)  # noqa: N815

@@ -34,18 +34,12 @@ class SettingsForm(QWidget):
 
     A field's ``metadata`` is what :func:`~regolith_studio.settings.setting` makes of its arguments.
 
-    Parameters
-    ----------
-    choices
-        Label of each key of further texts, by the name of the field.
-    names
-        Fields to edit, in this order; all by default.
-    prefix
-        Begins the object names of the editors.
-    rows
-        Takes the rows, so that those of several dataclasses are aligned; a layout of its own by default.
-    without
-        Fields that are edited elsewhere.
+    - ``choices``: label of each key of further texts, by the name of the field.
+    - ``names``: fields to edit, in this order; all by default.
+    - ``prefix``: begins the object names of the editors.
+    - ``rows``: takes the rows, so that those of several dataclasses are aligned; a layout of its own by
+      default.
+    - ``without``: fields that are edited elsewhere.
     """
 
     valueChanged = Signal(dict)  # noqa: N815
@@ -257,12 +251,7 @@ class ParameterForm(SettingsForm):
 
     Each field's ``metadata`` has a ``source`` too.
 
-    Parameters
-    ----------
-    kind
-        The dataclass; its defaults are shown first.
-    name
-        Begins the object names of the editors.
+    ``kind``: the dataclass; its defaults are shown first. ``name``: begins the object names of the editors.
     """
 
     def __init__(self, kind: type[Any], name: str) -> None:

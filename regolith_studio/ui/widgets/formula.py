@@ -44,10 +44,7 @@ class FormulaLabel(QWidget):
     An outline takes up to 40 ms to make: missing ones are made by a thread, one at a time, and nothing is
     drawn until all are there; :func:`prepare` makes them ahead.
 
-    Parameters
-    ----------
-    words
-        Accessible name.
+    ``words``: accessible name.
     """
 
     def __init__(self, words: str) -> None:
@@ -248,13 +245,7 @@ def all_outlines() -> bool:
 
 
 def outline(line: str) -> QPainterPath:
-    """Outlines of a line of mathtext, the base line at y = 0, y downwards.
-
-    Raises
-    ------
-    ValueError
-        If it is not valid mathtext.
-    """
+    """Outlines of a line of mathtext, the base line at y = 0, y downwards."""
     if line not in _outlines:
         made = _outlined(line)
         if len(_outlines) >= CACHE_SIZE:

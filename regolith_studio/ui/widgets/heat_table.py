@@ -75,10 +75,7 @@ class HeatTable(QWidget):
     ) -> None:
         """Show other shares, each with its interval below; without rows the placeholder is shown.
 
-        Parameters
-        ----------
-        tips
-            Tool tips of the columns.
+        ``tips``: tool tips of the columns.
         """
         self._values = tuple(tuple(float(value) for value in row) for row in values)
         self._bands = bands
@@ -139,10 +136,7 @@ class HeatTable(QWidget):
 def numbers_table(name: str) -> QTableWidget:
     """A read-only table whose columns stretch to its width.
 
-    Parameters
-    ----------
-    name
-        Accessible name.
+    ``name``: accessible name.
     """
     table = QTableWidget()
     table.setAccessibleName(name)
@@ -174,12 +168,8 @@ def keep_legible(table: QTableWidget, width: int, heights: FontRowHeight, lines:
 
     The width of a cell is what its delegate asks for: with less, the longest text is elided.
 
-    Parameters
-    ----------
-    width
-        Of the table. The vertical header shrinks first and wraps its names.
-    heights, lines
-        Of the rows, and how many lines of text their cells have.
+    ``width``: of the table. The vertical header shrinks first and wraps its names. ``heights``, ``lines``:
+    of the rows, and how many lines of text their cells have.
     """
     names, model = table.horizontalHeader().fontMetrics(), table.model()
     width -= table.verticalScrollBar().sizeHint().width()  # which many rows need

@@ -103,12 +103,8 @@ NOTE_LINES = 2
 class FixedHeightText(QScrollArea):
     """Labels with the height of a fixed number of lines, so that the controls below do not move.
 
-    Parameters
-    ----------
-    texts
-        From top to bottom; hidden ones take no space. Longer ones are scrolled.
-    lines
-        Visible at once.
+    ``texts``: from top to bottom; hidden ones take no space. Longer ones are scrolled. ``lines``: visible at
+    once.
     """
 
     def __init__(self, texts: Sequence[QLabel], lines: int = NOTE_LINES) -> None:
@@ -169,12 +165,8 @@ class WrappedLabel(QLabel):
 class ElidedLabel(QWidget):
     """One line of plain text, elided if necessary, with the whole text as tool tip.
 
-    Parameters
-    ----------
-    role
-        ``heading`` or ``remark``, for the style sheet.
-    elide
-        Where it is elided: paths in the middle.
+    ``role``: ``heading`` or ``remark``, for the style sheet. ``elide``: where it is elided: paths in the
+    middle.
     """
 
     def __init__(

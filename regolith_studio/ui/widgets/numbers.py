@@ -67,22 +67,13 @@ ARROWS = 28
 class NumberSpec:
     """Range, step and texts of a number; the texts are translated when displayed.
 
-    Parameters
-    ----------
-    label
-        Rich text before the slider; empty for none.
-    name
-        Accessible name.
-    minimum, maximum
-        Range of the slider.
-    step
-        Smallest change; the number is an integer if it is one.
-    limit
-        Largest number that can be typed; `maximum` if not given.
-    suffix
-        Unit, with a leading blank.
-    tip
-        Tool tip.
+    - ``label``: rich text before the slider; empty for none.
+    - ``name``: accessible name.
+    - ``minimum``, ``maximum``: range of the slider.
+    - ``step``: smallest change; the number is an integer if it is one.
+    - ``limit``: largest number that can be typed; `maximum` if not given.
+    - ``suffix``: unit, with a leading blank.
+    - ``tip``: tool tip.
     """
 
     label: str

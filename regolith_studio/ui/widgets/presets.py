@@ -25,12 +25,8 @@ SHIPPED = "paper"
 class PresetEntry:
     """A preset in the list.
 
-    Parameters
-    ----------
-    key
-        Identifies the preset in signals; `label` is displayed, `tip` is its tool tip.
-    own
-        Whether the user has saved it and may delete it.
+    ``key``: identifies the preset in signals; `label` is displayed, `tip` is its tool tip. ``own``: whether
+    the user has saved it and may delete it.
     """
 
     key: str
@@ -42,14 +38,10 @@ class PresetEntry:
 class PresetBar(QWidget):
     """Shows presets and emits what the user requests; its owner keeps values and presets.
 
-    Parameters
-    ----------
-    name
-        Object name of the list, and prefix of those of the buttons.
-    accessible
-        Accessible name of the list.
-    title
-        A heading to which the buttons are added, with the list below; else they stand behind the list.
+    - ``name``: object name of the list, and prefix of those of the buttons.
+    - ``accessible``: accessible name of the list.
+    - ``title``: a heading to which the buttons are added, with the list below; else they stand behind the
+      list.
     """
 
     chosen = Signal(str)
@@ -143,14 +135,9 @@ class PresetBar(QWidget):
 class PresetForm(ParameterForm):
     """A :class:`ParameterForm` with a :class:`PresetBar`; forms of one dataclass share their presets.
 
-    Parameters
-    ----------
-    kind
-        The dataclass; its defaults are the shipped preset.
-    name
-        Prefix of the editors' object names.
-    label
-        Of the shipped preset.
+    - ``kind``: the dataclass; its defaults are the shipped preset.
+    - ``name``: prefix of the editors' object names.
+    - ``label``: of the shipped preset.
     """
 
     def __init__(self, kind: type[Any], name: str, label: str) -> None:
@@ -181,13 +168,7 @@ class PresetForm(ParameterForm):
         return self.changes() != self._known[self._chosen]
 
     def save_as(self, name: str) -> None:
-        """Save the present values as an own preset.
-
-        Raises
-        ------
-        RegolithError
-            If the name cannot be taken or the file cannot be written.
-        """
+        """Save the present values as an own preset."""
         self._own.save(name, self.changes())
         self._list()
         self._chosen = f"own:{name}"

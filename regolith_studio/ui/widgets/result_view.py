@@ -37,18 +37,11 @@ class ResultState(Enum):
 class ResultRecord:
     """A result as its card shows it.
 
-    Parameters
-    ----------
-    values
-        As text, one for each caption; empty where there is no value.
-    made_from
-        Sample and number of particles.
-    made_with
-        Method and its settings.
-    state
-        Values are dimmed unless it is ``CURRENT``.
-    note
-        What the values mean, or why there are none.
+    - ``values``: as text, one for each caption; empty where there is no value.
+    - ``made_from``: sample and number of particles.
+    - ``made_with``: method and its settings.
+    - ``state``: values are dimmed unless it is ``CURRENT``.
+    - ``note``: what the values mean, or why there are none.
     """
 
     values: tuple[str, ...] = ()
@@ -70,18 +63,11 @@ class ResultView(QFrame):
 
     Its height does not change with what it shows.
 
-    Parameters
-    ----------
-    name
-        Object name.
-    captions
-        One below each figure.
-    start, again
-        Text of the button without and with a result; without `start` there is no button.
-    lead
-        Size of the first figure in units of the widget's font.
-    lines
-        Visible lines of the sentences.
+    - ``name``: object name.
+    - ``captions``: one below each figure.
+    - ``start``, ``again``: text of the button without and with a result; without `start` there is no button.
+    - ``lead``: size of the first figure in units of the widget's font.
+    - ``lines``: visible lines of the sentences.
     """
 
     startRequested = Signal()  # noqa: N815

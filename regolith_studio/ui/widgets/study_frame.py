@@ -12,12 +12,7 @@ from regolith_studio.ui.widgets.labels import ElidedLabel
 class StudyFrame(QWidget):
     """Places a plot below its controls.
 
-    Parameters
-    ----------
-    name
-        Prefix of the buttons' object names.
-    plot
-        The plot.
+    ``name``: prefix of the buttons' object names. ``plot``: the plot.
     """
 
     startRequested = Signal()  # noqa: N815

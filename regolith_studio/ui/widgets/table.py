@@ -267,10 +267,7 @@ class ParticleTableModel(QAbstractTableModel):
 class FontRowHeight(QObject):
     """Keeps the row height of a table that of its font.
 
-    Parameters
-    ----------
-    spare
-        Additional pixels of a row.
+    ``spare``: additional pixels of a row.
     """
 
     def __init__(self, table: QTableView, spare: int) -> None:
@@ -306,10 +303,7 @@ class ParticleTable(QTableView):
     Groups are listed where there are two, weights where one differs from 1. Columns are as wide as their
     contents, and scrolled to where there is no room for them.
 
-    Parameters
-    ----------
-    columns
-        See :func:`particle_columns`.
+    ``columns``: see :func:`particle_columns`.
     """
 
     chosenChanged = Signal(list)  # noqa: N815

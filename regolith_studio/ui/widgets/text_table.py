@@ -13,12 +13,8 @@ from regolith_studio.ui.widgets.table import RIGHT, FontRowHeight
 class TextTable(QTableView):
     """Rows of texts; ``chosen`` carries the number of the row that the user has selected.
 
-    Parameters
-    ----------
-    name, spoken
-        Object name and accessible name.
-    headings
-        Of the columns; texts are aligned right but for the first column.
+    ``name``, ``spoken``: object name and accessible name. ``headings``: of the columns; texts are aligned
+    right but for the first column.
     """
 
     chosen = Signal(int)

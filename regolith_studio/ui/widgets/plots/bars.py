@@ -24,18 +24,11 @@ MIN_SCALE = 0.75
 class BarSeries:
     """The bars of one colour.
 
-    Parameters
-    ----------
-    label
-        For the legend.
-    colour
-        Hexadecimal RGB.
-    values
-        One for each category; NaN for none.
-    faint
-        Drawn half transparent, for a result that is being replaced.
-    bounds
-        Lower bound of each value, drawn as a line across its bar; empty for none.
+    - ``label``: for the legend.
+    - ``colour``: hexadecimal RGB.
+    - ``values``: one for each category; NaN for none.
+    - ``faint``: drawn half transparent, for a result that is being replaced.
+    - ``bounds``: lower bound of each value, drawn as a line across its bar; empty for none.
     """
 
     label: str
@@ -71,12 +64,8 @@ class BarPlot(Plot):
     ) -> None:
         """Draw other bars.
 
-        Parameters
-        ----------
-        short
-            Names of the categories for narrow plots.
-        tips
-            What the categories mean, for the tool tip.
+        ``short``: names of the categories for narrow plots. ``tips``: what the categories mean, for the tool
+        tip.
         """
         self._categories, self._series = tuple(categories), tuple(series)
         self._short = tuple(short) or self._categories

@@ -51,10 +51,7 @@ class PlotCanvas(pg.GraphicsView):  # type: ignore[misc]
     Replaces :class:`pyqtgraph.PlotWidget`, whose form of options costs 10 ms and 0.3 MB for each plot, and
     has dozens of widgets that are polished again at every change of the style sheet.
 
-    Parameters
-    ----------
-    axes
-        The axes "left" and "bottom".
+    ``axes``: the axes "left" and "bottom".
     """
 
     def __init__(self, axes: Mapping[str, pg.AxisItem]) -> None:
@@ -276,12 +273,7 @@ class Plot(QWidget):
 
     The context menu saves the figure, and its numbers if :meth:`numbers` has any.
 
-    Parameters
-    ----------
-    x, y
-        Axis labels with their units.
-    placeholder
-        Shown instead of an empty plot.
+    ``x``, ``y``: axis labels with their units. ``placeholder``: shown instead of an empty plot.
     """
 
     def __init__(self, x: str, y: str, placeholder: str) -> None:
@@ -452,25 +444,11 @@ class Plot(QWidget):
         return menu
 
     def save_figure(self, path: Path) -> None:
-        """Write legend and plot as a PNG, SVG or PDF file.
-
-        Raises
-        ------
-        InputError
-            If the suffix is another.
-        FileError
-            If the file cannot be written.
-        """
+        """Write legend and plot as a PNG, SVG or PDF file."""
         save_figure(self._page, path)
 
     def save_numbers(self, path: Path) -> None:
-        """Write the data as a CSV file.
-
-        Raises
-        ------
-        FileError
-            If the file cannot be written.
-        """
+        """Write the data as a CSV file."""
         save_numbers(self.accessibleName() or self.objectName(), *self.numbers(), path)
 
     def _choose_figure_file(self) -> None:

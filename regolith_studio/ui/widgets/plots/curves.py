@@ -24,10 +24,7 @@ class CurveItems:
 
     :class:`pyqtgraph.PlotDataItem` always creates both, at several times the cost.
 
-    Parameters
-    ----------
-    log_y
-        Whether the y axis is logarithmic.
+    ``log_y``: whether the y axis is logarithmic.
     """
 
     def __init__(self, canvas: PlotCanvas, log_y: bool) -> None:
@@ -39,14 +36,10 @@ class CurveItems:
     def draw(self, x: Sequence[float], y: Sequence[float], pen: object, symbols: str = "") -> None:
         """Draw other points.
 
-        Parameters
-        ----------
-        x, y
-            The line is interrupted where one is not finite or, on a logarithmic axis, not positive.
-        pen
-            Of the line; ``None`` for none.
-        symbols
-            Colour of the symbols; empty for none.
+        - ``x``, ``y``: the line is interrupted where one is not finite or, on a logarithmic axis, not
+          positive.
+        - ``pen``: of the line; ``None`` for none.
+        - ``symbols``: colour of the symbols; empty for none.
         """
         across, up = self._coordinates(x, y)
         self.line.setData(across, up, pen=pen)
@@ -83,20 +76,12 @@ class CurveItems:
 class PlotCurve:
     """A line through points.
 
-    Parameters
-    ----------
-    label
-        For the legend; rich text; empty for no entry.
-    colour
-        Hexadecimal RGB.
-    x, y
-        The points; NaN breaks the line.
-    markers
-        Whether the points themselves are drawn.
-    dash
-        Whether the line is dashed.
-    line
-        Whether there is a line, or only markers.
+    - ``label``: for the legend; rich text; empty for no entry.
+    - ``colour``: hexadecimal RGB.
+    - ``x``, ``y``: the points; NaN breaks the line.
+    - ``markers``: whether the points themselves are drawn.
+    - ``dash``: whether the line is dashed.
+    - ``line``: whether there is a line, or only markers.
     """
 
     label: str
@@ -116,10 +101,7 @@ def plain_decades(values: Sequence[float], _scale: float, _spacing: float) -> li
 class CurvePlot(Plot):
     """Curves with automatic axes; the tool tip shows the values of a point.
 
-    Parameters
-    ----------
-    log_y
-        Whether the y axis is logarithmic.
+    ``log_y``: whether the y axis is logarithmic.
     """
 
     def __init__(self, x: str, y: str, placeholder: str, log_y: bool = False) -> None:

@@ -27,15 +27,7 @@ POINTS_AN_INCH = 72
 
 
 def save_figure(widget: QWidget, path: Path) -> None:
-    """Write the widget as an image in the format of the file's suffix.
-
-    Raises
-    ------
-    InputError
-        If the suffix is none of ``.png``, ``.svg`` and ``.pdf``.
-    FileError
-        If the file cannot be written.
-    """
+    """Write the widget as an image in the format of the file's suffix."""
     if path.suffix.lower() not in FIGURE_WRITERS:
         raise InputError(f"Figures are saved as {', '.join(FIGURE_WRITERS)}, not as {path.suffix or 'that'}.")
     write_bytes(path, FIGURE_WRITERS[path.suffix.lower()](widget))
@@ -44,13 +36,7 @@ def save_figure(widget: QWidget, path: Path) -> None:
 def save_numbers(
     title: str, columns: Sequence[str], rows: Sequence[tuple[str | float, ...]], path: Path
 ) -> None:
-    """Write a CSV file; column names may be rich text.
-
-    Raises
-    ------
-    FileError
-        If the file cannot be written.
-    """
+    """Write a CSV file; column names may be rich text."""
     named = tuple(Column(plain_text(name)) for name in columns)
     write_bytes(path, csv_text(Table(title, named, tuple(rows))).encode("utf-8"))
 
