@@ -19,6 +19,7 @@ from regolith_studio.io.atomic import check_listed, listed_hashes
 from regolith_studio.io.file_names import file_stem, name_key, natural_key, unique_name
 from regolith_studio.io.tables import read_csv
 from regolith_studio.messages import N_, count_message
+from regolith_studio.readers.archives import ArchiveMember, archive_content, archive_of, is_archive
 from regolith_studio.readers.coefficient_tables import (
     DEFAULT_TABLE_READING,
     TABLE_SUFFIXES,
@@ -38,6 +39,7 @@ from regolith_studio.readers.file_bytes import sha256_of
 from regolith_studio.readers.formats import MESH_FORMATS, mesh_suffixes
 from regolith_studio.readers.sandbox.parent import Sandbox, shared_sandbox
 from regolith_studio.readers.units import unit_factor
+from regolith_studio.readers.zip_members import SUFFIX
 from regolith_studio.resources import resource
 
 ProblemListener = Callable[[Path, str], None]
@@ -52,12 +54,15 @@ _COMPANIONS = (
 """Suffixes of what lies beside meshes: documents, pictures, and parts of OBJ and glTF."""
 
 
+_UNLISTED: Mapping[str, str] = {}
+
+
 @dataclass(frozen=True)
 class MeshFile:
     """A file to be read, the group that its place in a folder puts it in, and its particle's weight.
 
     `listed` holds the SHA-256 of files by their names, as the list of its folder has them. Tables of
-    coefficients are read as `tables` says.
+    coefficients are read as `tables` says. A `member` of an archive has a path as if that were a folder.
     """
 
     path: Path
@@ -65,6 +70,7 @@ class MeshFile:
     weight: float = 1.0
     listed: Mapping[str, str] = field(default_factory=dict)
     tables: TableReading = DEFAULT_TABLE_READING
+    member: ArchiveMember | None = None
 
 
 @dataclass(frozen=True)
@@ -127,7 +133,10 @@ def read_mesh(
     GeometryError
         With one sentence if it holds nothing that encloses a volume.
     """
-    return read_file(MeshFile(Path(path), tables=TableReading(l_max, convention)), unit, repair, sandbox)
+    file = MeshFile(Path(path), tables=TableReading(l_max, convention))
+    if archive_of(file.path) is not None:
+        file = mesh_files([path])[0]
+    return read_file(file, unit, repair, sandbox)
 
 
 def read_particles(
@@ -249,7 +258,8 @@ def _mesh_or_table(file: MeshFile, unit: str, repair: bool, sandbox: Sandbox | N
 def _read_mesh(file: MeshFile, unit: str, repair: bool, sandbox: Sandbox | None) -> Particle:
     factor = unit_factor(unit)
     path = file.path
-    answer = (sandbox or shared_sandbox()).request("mesh", path)
+    sandbox = sandbox or shared_sandbox()
+    answer = sandbox.request("mesh", path) if file.member is None else file.member.request(sandbox)
     own_unit: str | None = answer.header["unit"]
     overruled = own_unit is not None and unit.startswith("voxel")
     if own_unit is not None and not overruled:
@@ -281,9 +291,9 @@ def find_files(
     problems: list[FileProblem],
     tables: TableReading = DEFAULT_TABLE_READING,
 ) -> list[MeshFile]:
-    """As `mesh_files`, but a folder without meshes is added to `problems`."""
+    """As `mesh_files`, but folders and archives without meshes are added to `problems`."""
     try:
-        return mesh_files(paths, tables)
+        return mesh_files(paths, tables, problems)
     except FileError as error:
         if len(paths) == 1:
             problems.append(FileProblem(str(paths[0]), str(error)))
@@ -291,10 +301,15 @@ def find_files(
     return [file for path in paths for file in find_files([path], problems, tables)]
 
 
-def mesh_files(paths: Sequence[str | Path], tables: TableReading = DEFAULT_TABLE_READING) -> list[MeshFile]:
-    """The files that `read_particles` would read, in its order: those given, and those in folders.
+def mesh_files(
+    paths: Sequence[str | Path],
+    tables: TableReading = DEFAULT_TABLE_READING,
+    problems: list[FileProblem] | None = None,
+) -> list[MeshFile]:
+    """The files that `read_particles` would read, in its order: those given, in folders and in archives.
 
-    Weights come from the ``particles.csv`` that ``extract`` writes beside its meshes.
+    A path may lead into an archive as if that were a folder. Weights come from the ``particles.csv`` that
+    ``extract`` writes beside its meshes; members of archives that are refused are added to `problems`.
 
     Raises
     ------
@@ -302,28 +317,64 @@ def mesh_files(paths: Sequence[str | Path], tables: TableReading = DEFAULT_TABLE
         If a folder holds no mesh file, or its table of weights is not that of its list.
     """
     given = [Path(path) for path in paths]
-    several = sum(path.is_dir() for path in given) > 1
+    several = sum(path.is_dir() or is_archive(path) for path in given) > 1
     files: list[MeshFile] = []
     for path in given:
         found = list(_in_folder(path, several)) if path.is_dir() else [MeshFile(path)]
+        refused: list[FileProblem] = []
+        found = [each for file in found for each in _with_members(file, refused, several)]
+        if not found and len(refused) == 1:
+            raise FileError(refused[0].sentence)
+        if problems is not None:
+            problems += refused
         if not found:
             raise FileError(
-                f"The folder {display_name(path)} holds no mesh file; "
+                f"The {'folder' if path.is_dir() else 'archive'} {display_name(path)} holds no mesh file; "
                 f"meshes end in {', '.join(sorted(mesh_suffixes()))}, tables of coefficients in "
                 f"{', '.join(TABLE_SUFFIXES)}."
             )
         files += found
-    folders = {file.path.parent for file in files}
+    folders = {file.path.parent for file in files if file.member is None}
     lists = {folder: listed_hashes(folder) for folder in folders}
     weights = {folder: read_weights(folder, lists[folder]) for folder in folders}
     return [
-        replace(
+        file
+        if file.member is not None
+        else replace(
             file,
             weight=weights[file.path.parent].get(file_stem(file.path.stem), 1.0),
             listed=lists[file.path.parent],
             tables=tables,
         )
         for file in files
+    ]
+
+
+def _with_members(file: MeshFile, problems: list[FileProblem], several: bool) -> list[MeshFile]:
+    """The file itself, or the meshes of the archive that it is or leads into.
+
+    Where there are `several`, or the archive lies in a folder, groups begin with the name of the archive.
+    """
+    archive = archive_of(file.path)
+    whole = archive is None
+    if archive is None:
+        if not is_archive(file.path):
+            return [file]
+        archive = file.path
+    try:
+        content = archive_content(archive)
+    except FileError as error:
+        problems.append(FileProblem(str(archive), str(error)))
+        return []
+    problems += [FileProblem(*problem) for problem in content.problems if whole]
+    name = printable(archive.stem)
+    prefix = (file.group, name) if several or file.group else ()
+    chosen = (each for each in content.members if whole or file.path in (each.path, *each.path.parents))
+    return [
+        MeshFile(
+            each.path, "/".join(filter(None, (*prefix, each.group))) or name, listed=_UNLISTED, member=each
+        )
+        for each in chosen
     ]
 
 
@@ -387,7 +438,7 @@ def _is_companion(name: str) -> bool:
 
 def _in_folder(folder: Path, several: bool) -> Iterator[MeshFile]:
     name = folder.name or folder.resolve().name
-    suffixes = mesh_suffixes() | set(TABLE_SUFFIXES)
+    suffixes = mesh_suffixes() | {*TABLE_SUFFIXES, SUFFIX}
     for where, folders, files in os.walk(folder):
         folders[:] = sorted((inner for inner in folders if not inner.startswith(".")), key=natural_key)
         inside = Path(where).relative_to(folder).as_posix()

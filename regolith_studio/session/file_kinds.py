@@ -9,6 +9,7 @@ from regolith_studio.errors import InputError
 from regolith_studio.readers.coefficient_tables import TABLE_SUFFIXES, TEXT_SUFFIXES
 from regolith_studio.readers.formats import mesh_suffixes
 from regolith_studio.readers.voxels.slice_series import dicom_names, is_zarr
+from regolith_studio.readers.zip_members import SUFFIX as SUFFIX_OF_ARCHIVES
 from regolith_studio.session.project import SUFFIX
 
 _SNIFFED = 200_000
@@ -46,7 +47,7 @@ def kind_of(path: Path) -> FileKind:
         return FileKind.PROJECT
     if name.endswith(".json"):
         return _kind_of_json(path)
-    if name.endswith((*mesh_suffixes(), *TABLE_SUFFIXES, *TEXT_SUFFIXES)):
+    if name.endswith((*mesh_suffixes(), SUFFIX_OF_ARCHIVES, *TABLE_SUFFIXES, *TEXT_SUFFIXES)):
         return FileKind.PARTICLES
     from regolith_studio.readers.volume_formats import volume_suffixes  # loads every one of them
 

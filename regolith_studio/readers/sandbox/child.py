@@ -24,6 +24,7 @@ Task = Callable[[dict[str, Any]], SandboxMessage]
 
 
 TASKS: dict[str, Task] = {
+    "archive": tasks.list_archive,
     "mesh": tasks.read_mesh_file,
     "volume-prepare": tasks.prepare_volume,
     "volume-open": tasks.open_volume,

@@ -28,15 +28,16 @@ from regolith_studio.readers.units import UNITS
 from regolith_studio.readers.volume_formats import VOLUME_FORMATS, WITH_AXES, VolumeFormat, volume_suffixes
 from regolith_studio.readers.voxels.header import OpenVolume, Sizes, VoxelHeader, checked_header
 from regolith_studio.readers.voxels.stored import PlainVoxels
+from regolith_studio.readers.zip_members import Place, listed_members, member_bytes
 
 MAX_COORDINATE = 1e40
 """Beyond it the sixth powers in the checks would leave the range of float64."""
 
 
 def read_mesh_file(request: dict[str, Any]) -> SandboxMessage:
-    """Vertices and faces of the file at ``request["path"]``."""
+    """Vertices and faces of the file at ``request["path"]``, which may be in an archive."""
     path = Path(request["path"])
-    data = path.read_bytes()
+    data = path.read_bytes() if "archive" not in request else _member_bytes(request, path)
     parsed, row = parse_mesh(data, path)
     header = {
         "notes": parsed.notes,
@@ -46,6 +47,27 @@ def read_mesh_file(request: dict[str, Any]) -> SandboxMessage:
         "sha256": hashlib.sha256(data).hexdigest(),
     }
     return SandboxMessage(header, (parsed.vertices.astype("<f8"), parsed.faces.astype("<i8")))
+
+
+def list_archive(request: dict[str, Any]) -> SandboxMessage:
+    """Names and places of the meshes and archives in an archive."""
+    path = Path(request["path"])
+    try:
+        names, places, refused = listed_members(
+            Path(request["archive"]), request["chain"], request["suffixes"]
+        )
+    except FileError as error:
+        raise FileError(message_about(path, str(error))) from None
+    text = "\0".join(names).encode("utf-8", "replace")
+    rows = np.array(places, dtype="<u8").reshape(-1, len(Place._fields))
+    return SandboxMessage({"refused": refused}, (np.frombuffer(text, dtype=np.uint8), rows))
+
+
+def _member_bytes(request: dict[str, Any], path: Path) -> bytes:
+    try:
+        return member_bytes(Path(request["archive"]), request["chain"])
+    except FileError as error:
+        raise FileError(message_about(path, str(error))) from None
 
 
 def parse_mesh(data: bytes, path: Path) -> tuple[ParsedMesh, MeshFormat]:

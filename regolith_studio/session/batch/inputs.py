@@ -85,7 +85,10 @@ class FileInput(_NamedInput):
 
     @property
     def fingerprint(self) -> str:
-        """Path, size and time of the file, and the degree that its table is cut at."""
+        """Path, size and time of the file, or place and check sum in an archive; how its table is read."""
+        member = self.file.member
+        if member is not None:
+            return f"{self.file.path} {member.chain[-1]}"
         try:
             state = self.file.path.stat()
         except (OSError, ValueError):  # no such file, or no name of one

@@ -205,7 +205,10 @@ def _fit_population_model(
         marks = [named[0], source.sha256]
     else:
         _check_sources_exist(population, paths)
-        marks = [sha256_of(file.path) for file in find_files(paths, problems)]
+        marks = [
+            sha256_of(file.path) if file.member is None else [str(file.path), *file.member.chain[-1]]
+            for file in find_files(paths, problems)
+        ]
     document = population.model_dump(mode="json", exclude={"n", "size_range"})
     folder = root / f"model-{_digest(document, recipe.seed, recipe.unit, recipe.repair, marks)}"
     if not (folder / MODEL).is_file():

@@ -1,0 +1,159 @@
+"""Archives of meshes: which members they have, and where the bytes of each are."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path, PurePosixPath
+from typing import Any
+
+from regolith_studio.errors import FileError
+from regolith_studio.io.file_names import natural_key
+from regolith_studio.readers.error_messages import display_name, printable
+from regolith_studio.readers.formats import mesh_suffixes
+from regolith_studio.readers.sandbox.messages import SandboxMessage
+from regolith_studio.readers.sandbox.parent import (
+    BASE_SECONDS,
+    MAX_FILE_BYTES,
+    SECONDS_PER_BYTE,
+    WORK_SECONDS,
+    Sandbox,
+    checked_size,
+    shared_sandbox,
+)
+from regolith_studio.readers.zip_members import SUFFIX, Place
+
+MAX_DEPTH = 4
+"""Of archives in archives."""
+MAX_ARCHIVES = 1000
+"""In one archive, at any depth."""
+_UNPACKED_PER_SECOND = 20e6
+"""Bytes of an archive in an archive that are surely passed in a second."""
+
+
+@dataclass(frozen=True, slots=True)
+class ArchiveMember:
+    """A file in an archive on the disk.
+
+    Parameters
+    ----------
+    archive
+        The archive.
+    chain
+        Place of each archive in an archive, and of the file at the end.
+    name
+        Path from the archive on, with those of archives in it.
+    """
+
+    archive: Path
+    chain: tuple[Place, ...]
+    name: str
+
+    @property
+    def path(self) -> Path:
+        """That the member has if archives count as folders."""
+        return self.archive / self.name
+
+    @property
+    def group(self) -> str:
+        """Its folder in the archive; empty where it is in none."""
+        folders = PurePosixPath(self.name).parent.parts
+        stems = [part[: -len(SUFFIX)] if part.lower().endswith(SUFFIX) else part for part in folders]
+        return printable("/".join(stems))
+
+    def request(self, sandbox: Sandbox) -> SandboxMessage:
+        """Its mesh, parsed by the sandbox.
+
+        Raises
+        ------
+        FileError
+            If it is refused, or its reader crashes or exceeds its limits.
+        """
+        size = self.chain[-1].size
+        if size > MAX_FILE_BYTES:
+            reason = f"has {size / 1024**3:.1f} GiB; at most 2 GiB are read."
+            raise FileError(f"{display_name(self.path)} {reason}")
+        more = size * SECONDS_PER_BYTE + _passing(self.chain[:-1])
+        options = {"archive": str(self.archive.absolute()), "chain": self.chain}
+        seconds, work = BASE_SECONDS + more, WORK_SECONDS + more
+        return sandbox.request_within("mesh", self.path, seconds, work, **options)
+
+
+@dataclass(frozen=True)
+class ArchiveContent:
+    """Meshes of an archive in the order of their names, and sentences about members that are refused."""
+
+    members: tuple[ArchiveMember, ...]
+    problems: tuple[tuple[str, str], ...]
+
+
+def is_archive(path: Path) -> bool:
+    """Whether a file is an archive by its name."""
+    return path.suffix.lower() == SUFFIX
+
+
+def archive_of(path: Path) -> Path | None:
+    """The archive that a path leads into; ``None`` if there is something at the path itself, or none."""
+    if not path.exists():
+        return next((above for above in path.parents if is_archive(above) and above.is_file()), None)
+    return None
+
+
+def archive_content(path: Path) -> ArchiveContent:
+    """The meshes of an archive and of archives in it.
+
+    Raises
+    ------
+    FileError
+        With one sentence if it cannot be read.
+    """
+    size, state = checked_size(path, None), path.stat()
+    return _content(path, size, state.st_mtime_ns)
+
+
+@lru_cache(maxsize=1)
+def _content(path: Path, _size: int, _time: int) -> ArchiveContent:
+    problems: list[tuple[str, str]] = []
+    left = [MAX_ARCHIVES]
+    members = list(_walk(path, (), "", problems, left))
+    members.sort(key=lambda each: [natural_key(part) for part in each.name.split("/")])
+    return ArchiveContent(tuple(members), tuple(problems))
+
+
+def _walk(
+    path: Path, chain: tuple[Place, ...], prefix: str, problems: list[tuple[str, str]], left: list[int]
+) -> Iterator[ArchiveMember]:
+    """The members of an archive (in an archive), and of those in it."""
+    shown = str(path / prefix)
+    names, places, refused = _listed(path, chain, prefix)
+    problems += [(shown, f"{display_name(path / prefix)} {sentence}") for sentence in refused]
+    for name, place in zip(names, places, strict=True):
+        inner = (*chain, place)
+        if not is_archive(Path(name)):
+            yield ArchiveMember(path, inner, prefix + name)
+            continue
+        left[0] -= 1
+        try:
+            if len(inner) > MAX_DEPTH or left[0] < 0:
+                limit = f"{MAX_DEPTH} archives in each other or {MAX_ARCHIVES:,} in one"
+                raise FileError(f"{display_name(Path(name))} was left out: more than {limit}.")
+            yield from _walk(path, inner, f"{prefix}{name}/", problems, left)
+        except FileError as error:
+            problems.append((f"{path / prefix / name}", str(error)))
+
+
+def _listed(path: Path, chain: tuple[Place, ...], prefix: str) -> tuple[list[str], list[Place], list[str]]:
+    size = chain[-1].size if chain else checked_size(path, None)
+    more = size * SECONDS_PER_BYTE + _passing(chain)
+    options: dict[str, Any] = {"archive": str(path.absolute()), "chain": chain}
+    options["suffixes"] = sorted({*mesh_suffixes(), SUFFIX})
+    answer = shared_sandbox().request_within(
+        "archive", path / prefix, BASE_SECONDS + more, 10.0 + more, **options
+    )
+    names, rows = answer.arrays
+    texts = names.tobytes().decode("utf-8", "replace").split("\0") if len(rows) else []
+    return texts, [Place(*map(int, row)) for row in rows], answer.header["refused"]
+
+
+def _passing(chain: tuple[Place, ...]) -> float:
+    """Seconds that it may take to come to a member of archives in archives."""
+    return sum(place.size for place in chain) / _UNPACKED_PER_SECOND
